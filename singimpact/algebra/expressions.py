@@ -1,0 +1,282 @@
+"""Expression trees of a whitelisted language: exact numbers, pi, names, + - * / ** and a few smooth functions.
+
+A tree is data: it is never run as code.  `evaluate` walks it over a ring (floats, arrays, mpf, balls, jets, sympy).
+Trees are immutable, compare and hash by structure, and print as text that parses back to the same tree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Protocol
+
+FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "atan", "abs")
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An exact rational."""
+
+    value: Fraction
+
+    def __str__(self) -> str:
+        return decimal_text(self.value)
+
+
+@dataclass(frozen=True, slots=True)
+class Pi:
+    """The number pi."""
+
+    def __str__(self) -> str:
+        return "pi"
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A variable or a parameter."""
+
+    name: str
+
+    def __str__(self) -> str:
+        return self.name
+
+
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """terms[0] + terms[1] + ..."""
+
+    terms: tuple[Expression, ...]
+
+    def __str__(self) -> str:
+        parts = [str(self.terms[0])]
+        for term in self.terms[1:]:
+            text = str(term)
+            parts.append(f" - {text[1:]}" if text.startswith("-") else f" + {text}")
+        return "".join(parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """factors[0] * factors[1] * ...; a factor with exponent -1 prints as a division."""
+
+    factors: tuple[Expression, ...]
+
+    def __str__(self) -> str:
+        head, *rest = self.factors
+        text = "-" if head == MINUS_ONE and rest and not _inverse_of(rest[0]) else _bracketed(head, first=True)
+        for factor in rest:
+            inverse = _inverse_of(factor)
+            if inverse is not None:
+                text += f"/{_bracketed(inverse)}"
+            else:
+                text += _bracketed(factor) if text == "-" else f"*{_bracketed(factor)}"
+        return text
+
+
+@dataclass(frozen=True, slots=True)
+class Power:
+    """base ** exponent."""
+
+    base: Expression
+    exponent: Expression
+
+    def __str__(self) -> str:
+        base = str(self.base)
+        plain = isinstance(self.base, Name | Pi | Call) or (isinstance(self.base, Number) and base.isdigit())
+        exponent = str(self.exponent)
+        simple = isinstance(self.exponent, Name | Pi) or exponent.isdigit()
+        return f"{base if plain else f'({base})'}**{exponent if simple else f'({exponent})'}"
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """function(argument) for a function of the whitelist."""
+
+    function: str
+    argument: Expression
+
+    def __str__(self) -> str:
+        return f"{self.function}({self.argument})"
+
+
+Expression = Number | Pi | Name | Sum | Product | Power | Call
+ZERO, ONE, MINUS_ONE = Number(Fraction(0)), Number(Fraction(1)), Number(Fraction(-1))
+
+
+def _inverse_of(factor: Expression) -> Expression | None:
+    return factor.base if isinstance(factor, Power) and factor.exponent == MINUS_ONE else None
+
+
+def _bracketed(part: Expression, first: bool = False) -> str:
+    text = str(part)
+    if isinstance(part, Sum | Product) or (isinstance(part, Number) and "/" in text):
+        return f"({text})"
+    return f"({text})" if text.startswith("-") and not first else text
+
+
+def decimal_text(value: Fraction) -> str:
+    """A rational as a terminating decimal if it is short, else as a quotient.
+
+    Examples
+    --------
+    >>> decimal_text(Fraction(1, 10)), decimal_text(Fraction(1, 3))
+    ('0.1', '1/3')
+    """
+    if value.denominator == 1:
+        return str(value.numerator)
+    rest, twos, fives = value.denominator, 0, 0
+    while rest % 2 == 0:
+        rest, twos = rest // 2, twos + 1
+    while rest % 5 == 0:
+        rest, fives = rest // 5, fives + 1
+    places = max(twos, fives)
+    if rest != 1 or places > 60:
+        return f"{value.numerator}/{value.denominator}"
+    digits = str(abs(value.numerator) * 10**places // value.denominator).rjust(places + 1, "0")
+    return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def number(value: int | Fraction) -> Number:
+    """An exact rational as a tree."""
+    return Number(Fraction(value))
+
+
+def add(*terms: Expression) -> Expression:
+    """The sum, with sums flattened and rationals collected."""
+    flat = [part for term in terms for part in (term.terms if isinstance(term, Sum) else (term,))]
+    constant = sum((part.value for part in flat if isinstance(part, Number)), Fraction(0))
+    others: list[Expression] = [part for part in flat if not isinstance(part, Number)]
+    if constant or not others:
+        others.append(Number(constant))
+    return others[0] if len(others) == 1 else Sum(tuple(others))
+
+
+def multiply(*factors: Expression) -> Expression:
+    """The product, with products flattened and rationals collected in front."""
+    flat = [part for factor in factors for part in (factor.factors if isinstance(factor, Product) else (factor,))]
+    constant = Fraction(1)
+    for part in flat:
+        constant *= part.value if isinstance(part, Number) else 1
+    others: list[Expression] = [part for part in flat if not isinstance(part, Number)]
+    if not constant:
+        return ZERO
+    if constant != 1 or not others:
+        others.insert(0, Number(constant))
+    return others[0] if len(others) == 1 else Product(tuple(others))
+
+
+def power(base: Expression, exponent: Expression) -> Expression:
+    """The power; rational ** integer is folded (the parser bounds its size)."""
+    if isinstance(exponent, Number):
+        if exponent.value == 1:
+            return base
+        if isinstance(base, Number) and exponent.value.denominator == 1:
+            if exponent.value < 0 and not base.value:
+                raise ZeroDivisionError("division by zero")
+            return Number(base.value ** int(exponent.value))
+    return Power(base, exponent)
+
+
+def negate(part: Expression) -> Expression:
+    """-part."""
+    return multiply(MINUS_ONE, part)
+
+
+def subtract(left: Expression, right: Expression) -> Expression:
+    """left - right."""
+    return add(left, negate(right))
+
+
+def children(tree: Expression) -> tuple[Expression, ...]:
+    """The direct parts of a tree."""
+    match tree:
+        case Sum(parts) | Product(parts):
+            return parts
+        case Power(base, exponent):
+            return (base, exponent)
+        case Call(_, argument):
+            return (argument,)
+    return ()
+
+
+def walk(tree: Expression) -> Iterator[Expression]:
+    """Every part of a tree, itself first."""
+    stack = [tree]
+    while stack:
+        part = stack.pop()
+        yield part
+        stack.extend(children(part))
+
+
+def names_in(tree: Expression) -> frozenset[str]:
+    """The names that occur."""
+    return frozenset(part.name for part in walk(tree) if isinstance(part, Name))
+
+
+class Ring(Protocol):
+    """What `evaluate` needs besides the operators + and * of the values."""
+
+    def rational(self, value: Fraction) -> Any: ...
+    def pi(self) -> Any: ...
+    def power(self, base: Any, exponent: Fraction) -> Any: ...
+    def call(self, function: str, argument: Any) -> Any: ...
+
+
+def evaluate(tree: Expression, values: Mapping[str, Any], ring: Ring) -> Any:
+    """The value of a tree over a ring.
+
+    Parameters
+    ----------
+    tree : the expression.
+    values : name -> element of the ring.
+    ring : how rationals, pi, powers and functions are made there.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> from singimpact.algebra.rings import EXACT
+    >>> evaluate(parse("x**2/4 + 0.5", ["x"]), {"x": Fraction(3)}, EXACT)
+    Fraction(11, 4)
+    """
+    match tree:
+        case Number(value):
+            return ring.rational(value)
+        case Pi():
+            return ring.pi()
+        case Name(name):
+            return values[name]
+        case Sum(terms):
+            total = evaluate(terms[0], values, ring)
+            for term in terms[1:]:
+                total = total + evaluate(term, values, ring)
+            return total
+        case Product(factors):
+            total = evaluate(factors[0], values, ring)
+            for factor in factors[1:]:
+                total = total * evaluate(factor, values, ring)
+            return total
+        case Power(base, Number(exponent)):
+            return ring.power(evaluate(base, values, ring), exponent)
+        case Power(base, general):
+            logarithm = ring.call("log", evaluate(base, values, ring))
+            return ring.call("exp", evaluate(general, values, ring) * logarithm)
+        case Call(function, argument):
+            return ring.call(function, evaluate(argument, values, ring))
+    raise TypeError(f"not an expression: {tree!r}")
+
+
+def substitute(tree: Expression, values: Mapping[str, Expression]) -> Expression:
+    """The tree with names replaced by trees."""
+    match tree:
+        case Name(name):
+            return values.get(name, tree)
+        case Sum(parts):
+            return add(*(substitute(part, values) for part in parts))
+        case Product(parts):
+            return multiply(*(substitute(part, values) for part in parts))
+        case Power(base, exponent):
+            return power(substitute(base, values), substitute(exponent, values))
+        case Call(function, argument):
+            return Call(function, substitute(argument, values))
+    return tree

@@ -1,0 +1,141 @@
+"""Numbers on demand: what a caller wrote, kept exact, and given to any number of digits.
+
+A float means its exact binary value; a string, int, Fraction or sympy Rational means what is written.  A number is
+a constant expression tree, so ``pi/2.8`` and ``sqrt(2)`` are numbers too.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number
+from singimpact.algebra.parsing import tree_of
+from singimpact.inputs import InputError, refuse
+
+ACCEPTED = "a finite real number, or text such as '0.3', '1/3' or 'pi/2.8'"
+
+
+def exact(name: str, value: Any) -> Fraction:
+    """The rational that a Python, numpy or mpmath number is, exactly.
+
+    Examples
+    --------
+    >>> exact("r", 0.5), exact("r", np.float64(0.25))
+    (Fraction(1, 2), Fraction(1, 4))
+    """
+    if isinstance(value, bool | np.bool_):
+        raise refuse(name, value, ACCEPTED)
+    if isinstance(value, int | float | Fraction | np.integer | np.floating):
+        try:
+            return Fraction(float(value)) if isinstance(value, float | np.floating) else Fraction(value)  # type: ignore[arg-type]
+        except (ValueError, OverflowError):
+            raise refuse(name, value, ACCEPTED) from None
+    if hasattr(value, "_mpf_"):
+        sign, mantissa, exponent, _ = value._mpf_
+        if mantissa or not exponent:
+            return (-1 if sign else 1) * Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    raise refuse(name, value, ACCEPTED)
+
+
+def constant(name: str, value: Any) -> Expression:
+    """A number as a constant tree; text and sympy constants are accepted.
+
+    Raises
+    ------
+    InputError : the value is not a finite real number.
+
+    Examples
+    --------
+    >>> print(constant("tau", "pi/2.8"))
+    (5/14)*pi
+    >>> constant("r", "1/2") == constant("r", 0.5)
+    True
+    """
+    tree = tree_of(value, (), name)
+    if names_in(tree):
+        raise refuse(name, value, ACCEPTED)
+    if not isinstance(tree, Number):
+        _finite(name, value, tree)
+    return tree
+
+
+def _finite(name: str, value: Any, tree: Expression) -> None:
+    middle = _ball(tree, 64)
+    if not middle.is_finite():
+        raise refuse(name, value, ACCEPTED)
+
+
+def _ball(tree: Expression, bits: int) -> Any:
+    from singimpact.algebra.balls import Balls
+
+    return Balls(bits).evaluate(tree, {})
+
+
+def as_fraction(tree: Expression) -> Fraction | None:
+    """The rational a constant tree is, if it is written as one."""
+    return tree.value if isinstance(tree, Number) else None
+
+
+def as_float(tree: Expression) -> float:
+    """The nearest double of a constant tree.
+
+    Examples
+    --------
+    >>> as_float(constant("tau", "pi/2"))
+    1.5707963267948966
+    """
+    if isinstance(tree, Number):
+        return float(tree.value)
+    return float(_ball(tree, 160).mid())
+
+
+def as_mpf(tree: Expression, context: Any) -> Any:
+    """The value of a constant tree in an mpmath context, at that context's precision."""
+    from singimpact.algebra.rings import Multiprecision
+
+    return evaluate(tree, {}, Multiprecision(context))
+
+
+def sign_of(tree: Expression) -> int:
+    """The sign of a constant, decided by balls of growing precision; 0 only for an exact zero.
+
+    Raises
+    ------
+    InputError : not decided with 4096 bits and not written as a rational.
+    """
+    if isinstance(tree, Number):
+        return (tree.value > 0) - (tree.value < 0)
+    for bits in (64, 256, 1024, 4096):
+        ball = _ball(tree, bits)
+        if ball > 0 or ball < 0:
+            return 1 if ball > 0 else -1
+    raise InputError(f"the sign of {tree} is not decided with 4096 bits: write the number as a rational if it is zero")
+
+
+def compare(left: Expression, right: Expression | int) -> int:
+    """-1, 0 or 1 as left is less than, equal to or greater than right."""
+    from singimpact.algebra.expressions import subtract
+
+    other = number(right) if isinstance(right, int) else right
+    return 0 if left == other else sign_of(subtract(left, other))
+
+
+def float_array(name: str, values: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """An array of doubles from numbers, text, or arrays of them; nan and inf are refused.
+
+    Examples
+    --------
+    >>> float_array("tau", ["pi/2", 1]).tolist()
+    [1.5707963267948966, 1.0]
+    """
+    raw = np.asarray(values)
+    if raw.dtype.kind not in "iuf":
+        flat = [as_float(constant(name, item)) for item in raw.ravel().tolist()]
+        raw = np.array(flat).reshape(raw.shape)
+    array = raw.astype(np.float64)
+    if not np.all(np.isfinite(array)):
+        raise refuse(name, array.ravel()[~np.isfinite(array.ravel())][0], "finite numbers only")
+    return array

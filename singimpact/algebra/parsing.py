@@ -1,0 +1,307 @@
+"""Text and sympy objects into expression trees, through a whitelist of names and operations.
+
+Nothing here evaluates text as code.  What is refused is refused before it can cost time or memory: the length of the
+text, its depth, and the size of a constant power are bounded (`Limits`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from singimpact.algebra.expressions import (
+    FUNCTIONS,
+    MINUS_ONE,
+    Call,
+    Expression,
+    Name,
+    Number,
+    Pi,
+    add,
+    multiply,
+    negate,
+    power,
+)
+from singimpact.inputs import InputError, nearest, shown
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How much an expression may ask for; a model of mechanics stays far below each of these."""
+
+    characters: int = 10_000
+    depth: int = 60
+    digits: int = 4_000
+    exponent: int = 1_000
+
+
+LIMITS = Limits()
+_TOKEN = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<sign>\*\*|[-+*/(),^.]))"
+)
+_LANGUAGE = "numbers, + - * / **, pi and " + " ".join(FUNCTIONS)
+
+
+def parse(text: str, names: Iterable[str] = (), what: str = "expression") -> Expression:
+    """The tree of a text.
+
+    Parameters
+    ----------
+    text : the expression, e.g. ``"x + 0.1*xdot"``; numbers are exact decimals.
+    names : the variables and parameters that may occur.
+    what : what to call the input in an error.
+
+    Raises
+    ------
+    InputError : in one line, for anything outside the language.
+
+    Examples
+    --------
+    >>> print(parse("x + 0.1*xdot + x**3/4", ["x", "xdot"]))
+    x + 0.1*xdot + 0.25*x**3
+    >>> parse("__import__('os')")
+    Traceback (most recent call last):
+    singimpact.inputs.InputError: expression = "__import__('os')" is not accepted: unknown function '__import__'; \
+accepted are numbers, + - * / **, pi and sin cos tan exp log sqrt tanh atan abs
+    """
+    if len(text) > LIMITS.characters:
+        raise InputError(f"{what} has {len(text)} characters: at most {LIMITS.characters} are accepted")
+    return _Parser(text, tuple(names), what).whole()
+
+
+class _Parser:
+    """Precedence climbing over the tokens of one text."""
+
+    def __init__(self, text: str, names: tuple[str, ...], what: str) -> None:
+        self.text, self.names, self.what = text.rstrip(), names, what
+        self.at = 0
+        self.depth = 0
+        self.token, self.kind = "", ""
+        self.advance()
+
+    def refusal(self, reason: str) -> InputError:
+        return InputError(f"{self.what} = {shown(self.text)} is not accepted: {reason}")
+
+    def advance(self) -> None:
+        if self.at == len(self.text):
+            self.token, self.kind = "", "end"
+            return
+        found = _TOKEN.match(self.text, self.at)
+        if found is None:
+            bad = self.text[self.at :].lstrip()[0]
+            raise self.refusal(f"the character {bad!r} has no meaning here; accepted are {_LANGUAGE}")
+        self.at = found.end()
+        self.kind = str(found.lastgroup)
+        self.token = found.group(self.kind)
+
+    def take(self, sign: str) -> bool:
+        if self.kind == "sign" and self.token == sign:
+            self.advance()
+            return True
+        return False
+
+    def whole(self) -> Expression:
+        if self.kind == "end":
+            raise self.refusal(f"it is empty; accepted are {_LANGUAGE}")
+        tree = self.sum()
+        if self.kind != "end":
+            raise self.refusal(self.unexpected())
+        return tree
+
+    def unexpected(self) -> str:
+        if self.token == "^":
+            return "'^' has no meaning here; write a power as **"
+        if self.token == ".":
+            return f"'.' has no meaning here (there are no attributes); accepted are {_LANGUAGE}"
+        return f"{self.token!r} is out of place" if self.token else "it ends too early"
+
+    def sum(self) -> Expression:
+        self.depth += 1
+        if self.depth > LIMITS.depth:
+            raise self.refusal(f"it is nested deeper than {LIMITS.depth} levels")
+        tree = self.product()
+        terms = [tree]
+        while self.kind == "sign" and self.token in "+-":
+            minus = self.token == "-"
+            self.advance()
+            terms.append(negate(self.product()) if minus else self.product())
+        self.depth -= 1
+        return add(*terms) if len(terms) > 1 else tree
+
+    def product(self) -> Expression:
+        factors = [self.signed()]
+        while self.kind == "sign" and self.token in ("*", "/"):
+            divide = self.token == "/"
+            self.advance()
+            factor = self.signed()
+            factors.append(self.raised(factor, MINUS_ONE) if divide else factor)
+        return multiply(*factors) if len(factors) > 1 else factors[0]
+
+    def signed(self) -> Expression:
+        minus = False
+        while self.kind == "sign" and self.token in ("+", "-"):
+            minus ^= self.token == "-"
+            self.advance()
+        tree = self.powered()
+        return negate(tree) if minus else tree
+
+    def powered(self) -> Expression:
+        base = self.atom()
+        if not self.take("**"):
+            return base
+        self.depth += 1
+        if self.depth > LIMITS.depth:
+            raise self.refusal(f"it is nested deeper than {LIMITS.depth} levels")
+        exponent = self.signed()
+        self.depth -= 1
+        return self.raised(base, exponent)
+
+    def raised(self, base: Expression, exponent: Expression) -> Expression:
+        try:
+            return bounded_power(base, exponent)
+        except InputError as error:
+            raise self.refusal(str(error)) from None
+
+    def atom(self) -> Expression:
+        token, kind = self.token, self.kind
+        if kind == "number":
+            self.advance()
+            return self.number(token)
+        if kind == "name":
+            self.advance()
+            return self.named(token)
+        if self.take("("):
+            tree = self.sum()
+            if not self.take(")"):
+                raise self.refusal(self.unexpected() if self.kind != "end" else "a bracket is not closed")
+            return tree
+        raise self.refusal(self.unexpected())
+
+    def number(self, token: str) -> Expression:
+        exponent = re.search(r"[eE]([+-]?\d+)$", token)
+        if len(token) > LIMITS.digits or (exponent and (len(exponent[1]) > 6 or abs(int(exponent[1])) > LIMITS.digits)):
+            raise self.refusal(f"a number has more than {LIMITS.digits} digits")
+        return Number(Fraction(token))
+
+    def named(self, token: str) -> Expression:
+        if self.kind == "sign" and self.token == "(":
+            if token not in FUNCTIONS:
+                raise self.refusal(f"unknown function {shown(token)}; accepted are {_LANGUAGE}")
+            self.advance()
+            argument = self.sum()
+            if not self.take(")"):
+                raise self.refusal(f"{token} takes one argument" if self.token == "," else "a bracket is not closed")
+            return Call(token, argument)
+        if token in self.names:
+            return Name(token)
+        if token == "pi":
+            return Pi()
+        raise self.refusal(unknown_name(token, self.names))
+
+
+def unknown_name(token: str, names: Iterable[str]) -> str:
+    """The sentence about a symbol that has no value."""
+    known = list(names)
+    near = nearest(token, known, count=1)
+    hint = f"; did you mean {near[0]}?" if near else ""
+    listed = f"known names are {', '.join(known)}" if known else "a number is expected here"
+    return f"the symbol {shown(token)} has no value ({listed}){hint}"
+
+
+def bounded_power(base: Expression, exponent: Expression) -> Expression:
+    """base ** exponent, refused when the exact result would be huge or is a division by zero."""
+    if isinstance(exponent, Number):
+        if abs(exponent.value) > LIMITS.exponent or exponent.value.denominator > LIMITS.exponent:
+            raise InputError(
+                f"the exponent {shown(exponent.value)} is too large; at most {LIMITS.exponent} is accepted"
+            )
+        if isinstance(base, Number):
+            size = max(base.value.numerator.bit_length(), base.value.denominator.bit_length())
+            if size * abs(exponent.value) > 4 * LIMITS.digits:
+                raise InputError(f"a constant power has more than {LIMITS.digits} digits")
+    try:
+        return power(base, exponent)
+    except ZeroDivisionError:
+        raise InputError("it divides by zero") from None
+
+
+def from_sympy(tree: Any, names: Iterable[str] = (), what: str = "expression") -> Expression:
+    """The tree of a sympy expression, through the same whitelist; a sympy Float means its exact binary value."""
+    known = tuple(names)
+    if sum(1 for _ in _first(tree, LIMITS.characters)) >= LIMITS.characters:
+        raise InputError(f"{what} has more than {LIMITS.characters} parts: it is too large")
+    try:
+        return _convert(tree, known, 0)
+    except InputError as error:
+        raise InputError(f"{what} = {shown(tree)} is not accepted: {error}") from None
+
+
+def _first(tree: Any, count: int) -> Iterable[Any]:
+    stack = [tree]
+    while stack and count:
+        part = stack.pop()
+        count -= 1
+        yield part
+        stack.extend(part.args)
+
+
+_SYMPY_FUNCTIONS = {name: name for name in FUNCTIONS} | {"Abs": "abs"}
+
+
+def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
+    kind = type(tree).__name__
+    if depth > LIMITS.depth:
+        raise InputError(f"it is nested deeper than {LIMITS.depth} levels")
+    if tree.is_Rational:
+        return Number(Fraction(int(tree.p), int(tree.q)))
+    if tree.is_Float:
+        if not tree.is_finite:
+            raise InputError("it contains a number that is not finite")
+        return Number(_exact_float(tree))
+    if kind == "Pi":
+        return Pi()
+    if tree.is_Symbol:
+        if tree.name not in names:
+            raise InputError(unknown_name(tree.name, names))
+        return Name(tree.name)
+    if kind == "Exp1":
+        return Call("exp", Number(Fraction(1)))
+    parts = [_convert(part, names, depth + 1) for part in tree.args]
+    if tree.is_Add:
+        return add(*parts)
+    if tree.is_Mul:
+        return multiply(*parts)
+    if tree.is_Pow:
+        half = isinstance(parts[1], Number) and parts[1].value == Fraction(1, 2)
+        return Call("sqrt", parts[0]) if half else bounded_power(parts[0], parts[1])
+    if kind in _SYMPY_FUNCTIONS and len(parts) == 1:
+        return Call(_SYMPY_FUNCTIONS[kind], parts[0])
+    raise InputError(f"{shown(kind)} is not one of {_LANGUAGE}")
+
+
+def _exact_float(value: Any) -> Fraction:
+    sign, mantissa, exponent, _ = value._mpf_
+    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return -size if sign else size
+
+
+def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> Expression:
+    """A tree from text, a sympy object, a number or a tree already made.
+
+    Examples
+    --------
+    >>> tree_of(0.5) == tree_of("1/2")
+    True
+    """
+    if isinstance(value, str):
+        return parse(value, names, what)
+    if isinstance(value, Expression):
+        return value
+    if type(value).__module__.partition(".")[0] == "sympy" and hasattr(value, "args"):
+        return from_sympy(value, names, what)
+    from singimpact.algebra.numbers import exact
+
+    return Number(exact(what, value))

@@ -1,0 +1,120 @@
+"""Kinds of number a tree is evaluated over: exact rationals, doubles and arrays, mpmath numbers, sympy objects.
+
+Balls have a file of their own (`balls`), jets too (`jets`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import Expression, evaluate
+
+
+class Exact:
+    """Rationals; what is not rational raises."""
+
+    def rational(self, value: Fraction) -> Fraction:
+        return value
+
+    def pi(self) -> Any:
+        raise ArithmeticError("pi is not rational")
+
+    def power(self, base: Any, exponent: Fraction) -> Any:
+        if exponent.denominator != 1:
+            raise ArithmeticError("a root is not rational")
+        return base ** int(exponent)
+
+    def call(self, function: str, argument: Any) -> Any:
+        if function == "abs":
+            return abs(argument)
+        known: dict[tuple[str, Any], int] = {("sin", 0): 0, ("tan", 0): 0, ("tanh", 0): 0, ("atan", 0): 0, ("cos", 0): 1, ("exp", 0): 1,
+                 ("log", 1): 0, ("sqrt", 0): 0, ("sqrt", 1): 1}  # fmt: skip
+        if isinstance(argument, Fraction) and (function, argument) in known:
+            return Fraction(known[function, int(argument)])
+        raise ArithmeticError(f"{function} of a rational is not rational")
+
+
+class Doubles:
+    """Python floats and numpy arrays."""
+
+    def rational(self, value: Fraction) -> float:
+        return float(value)
+
+    def pi(self) -> float:
+        return np.pi
+
+    def power(self, base: Any, exponent: Fraction) -> Any:
+        if exponent.denominator == 1 and abs(exponent) <= 64:
+            return base ** int(exponent) if exponent > 0 else 1.0 / base ** int(-exponent)
+        return np.power(base, float(exponent))
+
+    def call(self, function: str, argument: Any) -> Any:
+        return getattr(np, {"atan": "arctan"}.get(function, function))(argument)
+
+
+@dataclass(frozen=True)
+class Multiprecision:
+    """mpmath numbers of one context."""
+
+    context: Any
+
+    def rational(self, value: Fraction) -> Any:
+        return self.context.mpf(value.numerator) / value.denominator
+
+    def pi(self) -> Any:
+        return +self.context.pi
+
+    def power(self, base: Any, exponent: Fraction) -> Any:
+        return base ** int(exponent) if exponent.denominator == 1 else base ** self.rational(exponent)
+
+    def call(self, function: str, argument: Any) -> Any:
+        return (
+            abs(argument)
+            if function == "abs"
+            else getattr(self.context, {"log": "ln"}.get(function, function))(argument)
+        )
+
+
+class Symbolic:
+    """sympy objects."""
+
+    def rational(self, value: Fraction) -> Any:
+        import sympy
+
+        return sympy.Rational(value.numerator, value.denominator)
+
+    def pi(self) -> Any:
+        import sympy
+
+        return sympy.pi
+
+    def power(self, base: Any, exponent: Fraction) -> Any:
+        return base ** self.rational(exponent)
+
+    def call(self, function: str, argument: Any) -> Any:
+        import sympy
+
+        return getattr(sympy, "Abs" if function == "abs" else function)(argument)
+
+
+EXACT, DOUBLES, SYMBOLIC = Exact(), Doubles(), Symbolic()
+
+
+def to_sympy(tree: Expression) -> Any:
+    """The tree as a sympy expression in plain symbols.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> to_sympy(parse("x**2/2", ["x"]))
+    x**2/2
+    """
+    import sympy
+
+    from singimpact.algebra.expressions import names_in
+
+    return evaluate(tree, {name: sympy.Symbol(name) for name in names_in(tree)}, SYMBOLIC)

@@ -1,0 +1,54 @@
+"""One-line refusals: every bad input ends in a sentence that names it, its value and what would be accepted."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class InputError(ValueError):
+    """The caller's mistake, told in one line."""
+
+
+def refuse(name: str, value: object, accepted: str) -> InputError:
+    """The error for an input that cannot be used; the caller raises it.
+
+    Examples
+    --------
+    >>> print(refuse("restitution", 1.5, "a number in (0, 1]"))
+    restitution = 1.5 is not accepted: give a number in (0, 1]
+    """
+    return InputError(f"{name} = {shown(value)} is not accepted: give {accepted}")
+
+
+def shown(value: object, limit: int = 60) -> str:
+    """A value as one short line, whatever its size."""
+    text = value[: limit + 1] if isinstance(value, str) else _plain(value)
+    text = repr(text) if isinstance(value, str) else text
+    text = " ".join(text.split())
+    return text if len(text) <= limit else text[: limit - 3] + "..."
+
+
+def _plain(value: object) -> str:
+    size = getattr(value, "size", None)
+    if isinstance(size, int) and size > 8:
+        return f"an array of shape {getattr(value, 'shape', '?')}"
+    return str(value)
+
+
+def nearest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
+    """The known names that look most like the one given.
+
+    Examples
+    --------
+    >>> nearest("clearence", ["clearance", "restitution"])
+    ['clearance']
+    """
+    return difflib.get_close_matches(name[:200], list(known), n=count, cutoff=0.4)
+
+
+def unknown(kind: str, name: str, known: Iterable[str]) -> InputError:
+    """The error for a name that does not exist, with the nearest names that do."""
+    names = list(known)
+    near = nearest(name, names) or sorted(names)[:8]
+    return InputError(f"unknown {kind} {shown(name)}: the nearest known are {', '.join(near) or 'none'}")

@@ -1,0 +1,163 @@
+"""`Oscillator`: f, g, clearance, restitution and parameters, kept exact."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from typing import Any
+
+from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in, substitute, walk
+from singimpact.algebra.numbers import compare, constant
+from singimpact.algebra.parsing import tree_of
+from singimpact.inputs import InputError, refuse, shown, unknown
+from singimpact.oscillator.period import checked_period, period_of
+
+STATE = ("x", "xdot")
+RESERVED = {*STATE, "t", "v", "pi", *FUNCTIONS}
+
+
+class Oscillator:
+    """x'' + f(x, x') = g(t), x >= clearance, v -> -restitution v.
+
+    Parameters
+    ----------
+    f : expression in x, xdot and the parameters; text, sympy or a number.
+    g : expression in t and the parameters.
+    clearance : number, the obstacle's place; finite.
+    restitution : number in (0, 1].
+    parameters : name -> number.
+    period : number, optional; a period of g. Found from g when it can be; needed only where a task asks for one.
+
+    Raises
+    ------
+    InputError : one line that names the input, its value and what is accepted.
+
+    Notes
+    -----
+    Two oscillators are equal when their texts are; they hash, pickle and print by that text.
+
+    Examples
+    --------
+    >>> Oscillator("x", "cos(2*t)", "0.3", "1/2")
+    Oscillator(f='x', g='cos(2*t)', clearance='0.3', restitution='0.5')
+    """
+
+    __slots__ = ("_period", "_texts", "clearance", "f", "g", "parameters", "restitution")
+
+    def __init__(
+        self,
+        f: Any,
+        g: Any,
+        clearance: Any,
+        restitution: Any,
+        parameters: Mapping[str, Any] | None = None,
+        period: Any = None,
+    ) -> None:
+        values = _parameters(parameters or {})
+        self.parameters: dict[str, Expression] = values
+        self.f = tree_of(f, (*STATE, *values), "f")
+        self.g = tree_of(g, ("t", *values), "g")
+        used = names_in(self.f) | names_in(self.g)
+        for name in values:
+            if name not in used:
+                raise unknown("parameter", name, sorted((used | {name}) - {*STATE, "t", name}))
+        self.clearance = constant("clearance", clearance)
+        self.restitution = _restitution(restitution)
+        found = period_of(self.forcing())
+        self._period = found if period is None else checked_period(self.forcing(), period, found)
+        self._texts = (str(self.f), str(self.g), str(self.clearance), str(self.restitution),
+                       tuple((name, str(value)) for name, value in sorted(values.items())),
+                       str(self._period) if period is not None else None)  # fmt: skip
+
+    @property
+    def period(self) -> Expression | None:
+        """The period of g, or None when g is constant or not known to be periodic."""
+        return self._period
+
+    @property
+    def structure(self) -> str:
+        """A digest of f and g alone: models that differ in parameters, clearance or restitution share it."""
+        return hashlib.sha256(f"{self._texts[0]}|{self._texts[1]}".encode()).hexdigest()[:16]
+
+    def force(self) -> Expression:
+        """f with the parameters' values put in."""
+        return substitute(self.f, self.parameters)
+
+    def forcing(self) -> Expression:
+        """g with the parameters' values put in."""
+        return substitute(self.g, self.parameters)
+
+    def replace(self, **changes: Any) -> Oscillator:
+        """The same model with some fields changed; a parameter is changed by its own name.
+
+        Examples
+        --------
+        >>> Oscillator("x", "cos(w*t)", 0, 1, {"w": 2}).replace(w=3, clearance="0.3")
+        Oscillator(f='x', g='cos(w*t)', clearance='0.3', restitution='1', parameters={'w': '3'})
+        """
+        fields: dict[str, Any] = {
+            "f": self.f,
+            "g": self.g,
+            "clearance": self.clearance,
+            "restitution": self.restitution,
+        }
+        fields["period"] = self._period if self._texts[5] is not None else None
+        parameters: dict[str, Any] = dict(self.parameters)
+        for name, value in changes.items():
+            if name not in fields and name not in parameters:
+                raise unknown("field or parameter", name, [*fields, *parameters])
+            (fields if name in fields else parameters)[name] = value
+        return type(self)(**fields, parameters=parameters)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields as text; `type(self)(**osc.to_dict())` is an equal model."""
+        f, g, clearance, restitution, parameters, period = self._texts
+        fields: dict[str, Any] = {"f": f, "g": g, "clearance": clearance, "restitution": restitution}
+        if parameters:
+            fields["parameters"] = dict(parameters)
+        return fields | ({"period": period} if period is not None else {})
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Oscillator) and self._texts == other._texts
+
+    def __hash__(self) -> int:
+        return hash(self._texts)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{key}={value!r}' for key, value in self.to_dict().items())})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_rebuilt, (type(self), self.to_dict()))
+
+
+def _rebuilt(kind: type[Oscillator], fields: dict[str, Any]) -> Oscillator:
+    return kind(**fields)
+
+
+def _parameters(given: Mapping[str, Any]) -> dict[str, Expression]:
+    if not isinstance(given, Mapping):
+        raise refuse("parameters", given, "a mapping from names to numbers, such as {'omega': 1.7}")
+    for name in given:
+        if not isinstance(name, str) or not name.isidentifier() or name in RESERVED:
+            raise refuse("parameter name", name, f"a plain name other than {', '.join(sorted(RESERVED))}")
+    return {name: constant(name, value) for name, value in given.items()}
+
+
+def _restitution(value: Any) -> Expression:
+    accepted = "a number in (0, 1]"
+    try:
+        tree = constant("restitution", value)
+    except InputError:
+        raise refuse("restitution", value, accepted) from None
+    if compare(tree, 0) <= 0 or compare(tree, 1) > 0:
+        raise refuse("restitution", value, accepted)
+    return tree
+
+
+def require_smooth_text(tree: Expression, what: str) -> None:
+    """Refuse abs where a task needs derivatives."""
+    for part in walk(tree):
+        if isinstance(part, Call) and part.function == "abs":
+            raise InputError(
+                f"{what} = {shown(str(tree))} is not smooth where abs changes sign: a smooth expression is needed here"
+            )

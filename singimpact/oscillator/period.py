@@ -1,0 +1,122 @@
+"""The period of a forcing g(t): found from its frequencies, or checked when it is given."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import gcd, lcm
+from typing import Any
+
+from singimpact.algebra.expressions import (
+    Call,
+    Expression,
+    Name,
+    Number,
+    Pi,
+    Product,
+    Sum,
+    add,
+    children,
+    multiply,
+    names_in,
+    number,
+    power,
+    substitute,
+    subtract,
+)
+from singimpact.algebra.numbers import compare, constant
+from singimpact.inputs import InputError, refuse, shown
+
+
+def linear_in_t(tree: Expression) -> tuple[Expression, Expression] | None:
+    """(rate, phase) of rate*t + phase with constant rate and phase, or None."""
+    if "t" not in names_in(tree):
+        return number(0), tree
+    if isinstance(tree, Name):
+        return number(1), number(0)
+    if isinstance(tree, Sum):
+        parts = [linear_in_t(term) for term in tree.terms]
+        if any(part is None for part in parts):
+            return None
+        return add(*(part[0] for part in parts if part)), add(*(part[1] for part in parts if part))
+    if isinstance(tree, Product):
+        moving = [factor for factor in tree.factors if "t" in names_in(factor)]
+        inner = linear_in_t(moving[0]) if len(moving) == 1 else None
+        if inner is None:
+            return None
+        rest = [factor for factor in tree.factors if factor is not moving[0]]
+        return multiply(*rest, inner[0]), multiply(*rest, inner[1])
+    return None
+
+
+def _frequencies(tree: Expression) -> list[Expression] | None:
+    """Rates of the circular functions through which t enters; None when t enters in another way."""
+    if "t" not in names_in(tree):
+        return []
+    if isinstance(tree, Call) and tree.function in ("sin", "cos", "tan"):
+        inner = linear_in_t(tree.argument)
+        if inner is not None:
+            return [multiply(number(2), inner[0]) if tree.function == "tan" else inner[0]]
+    if isinstance(tree, Name):
+        return None
+    found: list[Expression] = []
+    for part in children(tree):
+        rates = _frequencies(part)
+        if rates is None:
+            return None
+        found.extend(rates)
+    return found
+
+
+def _split(rate: Expression) -> tuple[Fraction, Expression]:
+    """rate = rational * rest, the rest free of rational factors."""
+    if isinstance(rate, Number):
+        return rate.value, number(1)
+    if isinstance(rate, Product) and isinstance(rate.factors[0], Number):
+        return rate.factors[0].value, multiply(*rate.factors[1:])
+    return Fraction(1), rate
+
+
+def period_of(forcing: Expression) -> Expression | None:
+    """The period 2 pi/(greatest common frequency), or None when g is constant or is not seen to be periodic.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> print(period_of(parse("cos(3*t) + sin(4.5*t)", ["t"])))
+    (4/3)*pi
+    >>> print(period_of(parse("t*cos(t)", ["t"])))
+    None
+    """
+    rates = _frequencies(forcing)
+    moving = [_split(rate) for rate in rates or [] if rate != number(0)]
+    if not moving or any(rest != moving[0][1] for _, rest in moving):
+        return None
+    sizes = [abs(size) for size, _ in moving]
+    common = Fraction(gcd(*(size.numerator for size in sizes)), lcm(*(size.denominator for size in sizes)))
+    period = multiply(number(2 / common), Pi(), power(moving[0][1], number(-1)))
+    return period if compare(period, 0) > 0 else multiply(number(-1), period)
+
+
+def checked_period(forcing: Expression, given: Any, found: Expression | None) -> Expression:
+    """A period the caller gives, refused when g does not repeat with it at some sample times."""
+    period = constant("period", given)
+    if compare(period, 0) <= 0:
+        raise refuse("period", given, "a positive number")
+    if "t" in names_in(forcing) and period != found and not _repeats(forcing, period):
+        raise InputError(
+            f"period = {shown(given)} is not a period of g = {shown(str(forcing))}: give one with g(t + period) = g(t)"
+        )
+    return period
+
+
+def _repeats(forcing: Expression, period: Expression) -> bool:
+    from singimpact.algebra.balls import Balls
+
+    balls = Balls(256)
+    for numerator in (1, 17, 35, 52, 71, 97):
+        start = number(Fraction(numerator, 53))
+        later = substitute(forcing, {"t": add(start, period)})
+        difference = balls.evaluate(subtract(later, substitute(forcing, {"t": start})), {})
+        if not difference.is_finite() or not abs(difference) < balls.rational(Fraction(1, 10**30)):
+            return False
+    return True
