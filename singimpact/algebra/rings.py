@@ -31,10 +31,11 @@ class Exact:
     def call(self, function: str, argument: Any) -> Any:
         if function == "abs":
             return abs(argument)
-        known: dict[tuple[str, Any], int] = {("sin", 0): 0, ("tan", 0): 0, ("tanh", 0): 0, ("atan", 0): 0, ("cos", 0): 1, ("exp", 0): 1,
-                 ("log", 1): 0, ("sqrt", 0): 0, ("sqrt", 1): 1}  # fmt: skip
-        if isinstance(argument, Fraction) and (function, argument) in known:
-            return Fraction(known[function, int(argument)])
+        at_zero = {"sin": 0, "tan": 0, "tanh": 0, "atan": 0, "cos": 1, "exp": 1, "sqrt": 0}
+        if argument == 0 and function in at_zero:
+            return Fraction(at_zero[function])
+        if argument == 1 and function in ("log", "sqrt"):
+            return Fraction(int(function == "sqrt"))
         raise ArithmeticError(f"{function} of a rational is not rational")
 
 

@@ -1,0 +1,52 @@
+"""Polynomials in symbols with rational coefficients, as a ring of coefficients: python-flint's fmpq_mpoly."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+
+class SymbolRing:
+    """The ring Q[names].
+
+    Examples
+    --------
+    >>> ring = SymbolRing(("a", "b"))
+    >>> ring.to_sympy(ring.symbol("a") * ring.rational(Fraction(1, 2)))
+    a/2
+    """
+
+    def __init__(self, names: tuple[str, ...]) -> None:
+        import flint
+
+        self.names = names
+        self._context = flint.fmpq_mpoly_ctx.get(names, "degrevlex")
+        self._symbols = dict(zip(names, self._context.gens(), strict=True))
+
+    def symbol(self, name: str) -> Any:
+        """One of the names as a polynomial."""
+        return self._symbols[name]
+
+    def rational(self, value: Fraction) -> Any:
+        import flint
+
+        return self._context.constant(flint.fmpq(value.numerator, value.denominator))
+
+    def to_sympy(self, value: Any) -> Any:
+        """A polynomial of the ring as a sympy expression in plain symbols."""
+        import sympy
+
+        symbols = [sympy.Symbol(name) for name in self.names]
+        terms = []
+        for exponents, coefficient in value.to_dict().items():
+            term = sympy.Rational(int(coefficient.p), int(coefficient.q))
+            for symbol, exponent in zip(symbols, exponents, strict=True):
+                term *= symbol ** int(exponent)
+            terms.append(term)
+        return sympy.Add(*terms)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, SymbolRing) and self.names == other.names
+
+    def __hash__(self) -> int:
+        return hash(self.names)

@@ -1,0 +1,127 @@
+"""`Contact`: the jets of an oscillator at a point of the tau-axis, with the zeros of its contact order set first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import factorial
+from typing import Any
+
+from singimpact.algebra.expressions import Expression, evaluate, number, substitute, subtract
+from singimpact.algebra.jets import JetSpace
+from singimpact.algebra.symbols import SymbolRing
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.model import Oscillator, require_smooth_text
+
+NAMED_ORDERS = {"generic": 0, "regular": 0, "tangency": 1, "swan": 2}
+
+
+def acceleration(oscillator: Oscillator) -> Expression:
+    """a_c(t) = g(t) - f(c, 0) as a tree in t.
+
+    Examples
+    --------
+    >>> print(acceleration(Oscillator("x", "cos(2*t)", "0.3", 1)))
+    cos(2*t) - 0.3
+    """
+    rest = substitute(oscillator.force(), {"x": oscillator.clearance, "xdot": number(0)})
+    return subtract(oscillator.forcing(), rest)
+
+
+def contact_order(at: str | int) -> int:
+    """The contact order j that a name or a number means.
+
+    Examples
+    --------
+    >>> contact_order("swan"), contact_order(3)
+    (2, 3)
+    """
+    if isinstance(at, str) and at in NAMED_ORDERS:
+        return NAMED_ORDERS[at]
+    if isinstance(at, int) and not isinstance(at, bool) and 0 <= at <= 12:
+        return at
+    raise refuse("at", at, "'generic', 'tangency', 'swan' or a contact order 0..12")
+
+
+def derivative_name(order: int) -> str:
+    """The symbol for the derivative of a_c of this order at tau_*: a, a_d1, a_d2, ..."""
+    return f"a_d{order}" if order else "a"
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Jets at a point of contact order j: a_0 = ... = a_{j-1} = 0, a_j != 0.
+
+    Attributes
+    ----------
+    order : the contact order j.
+    ring : the ring of the coefficients.
+    a : k -> a^(k)(tau_*)/k!, from k = j on.
+    f : (i, k) -> f_ik/(i! k!) at (c, 0), (0, 0) left out.
+    tau : the point as an exact constant; None for a generic one.
+    """
+
+    order: int
+    ring: Any
+    a: Mapping[int, Any]
+    f: Mapping[tuple[int, int], Any]
+    tau: Expression | None = None
+
+    @classmethod
+    def generic(cls, j: int, order: int) -> Contact:
+        """Symbols for all jets that the sheet to total order `order` contains."""
+        powers = range(j, max(order, j + 1))
+        pairs = _pairs(j, order)
+        names = [derivative_name(k) for k in powers] + [f"f_{i}{k}" for i, k in pairs]
+        ring = SymbolRing(tuple(names))
+        a = {k: ring.symbol(derivative_name(k)) * ring.rational(Fraction(1, factorial(k))) for k in powers}
+        f = {
+            (i, k): ring.symbol(f"f_{i}{k}") * ring.rational(Fraction(1, factorial(i) * factorial(k))) for i, k in pairs
+        }
+        return cls(j, ring, a, f)
+
+    @classmethod
+    def of(cls, oscillator: Oscillator, tau: Any, j: int, order: int, ring: Any) -> Contact:
+        """The jets of a model at tau, evaluated in `ring`; the first j of a_c are set to zero.
+
+        Parameters
+        ----------
+        tau : constant tree, or an element of the ring.
+        """
+        require_smooth_text(oscillator.force(), "f")
+        require_smooth_text(oscillator.forcing(), "g")
+        a = acceleration_jet(oscillator, tau, max(order - 1, j), ring)
+        kept = {k: value for k, value in enumerate(a) if k >= j}
+        if order > j and all(value == 0 for value in kept.values()):
+            raise InputError(
+                f"the contact order at tau = {tau} is above {max(order - 1, j)}: a_c vanishes to that order"
+            )
+        return cls(j, ring, kept, force_jet(oscillator, j, order, ring), tau)
+
+
+def _pairs(j: int, order: int) -> list[tuple[int, int]]:
+    """Indices of the jets of f that enter the sheet to total order `order`: X has degree j + 2, X' degree j + 1."""
+    return [(i, k) for i in range(order) for k in range(order) if i + k and i * (j + 2) + k * (j + 1) + 1 <= order]
+
+
+def acceleration_jet(oscillator: Oscillator, tau: Any, order: int, ring: Any) -> list[Any]:
+    """a_c^(k)(tau)/k! for k = 0..order."""
+    start = evaluate(tau, {}, ring) if isinstance(tau, Expression) else tau
+    space = JetSpace(("u",), order, ring)
+    (u,) = space.generators() if order else (space.jet({}),)
+    jet = space.evaluate(acceleration(oscillator), {"t": space.constant(start) + u})
+    return [jet.coefficient((k,)) for k in range(order + 1)]
+
+
+def force_jet(oscillator: Oscillator, j: int, order: int, ring: Any) -> dict[tuple[int, int], Any]:
+    """(i, k) -> f_ik/(i! k!) at (c, 0), for the pairs that the sheet to total order `order` needs."""
+    pairs = _pairs(j, order)
+    top = max((i + k for i, k in pairs), default=0)
+    if not top:
+        return {}
+    space = JetSpace(("X", "V"), top, ring)
+    X, V = space.generators()
+    start = space.constant(evaluate(oscillator.clearance, {}, ring))
+    jet = space.evaluate(oscillator.force(), {"x": start + X, "xdot": V})
+    return {pair: jet.terms[pair] for pair in pairs if pair in jet.terms}

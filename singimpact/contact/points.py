@@ -1,0 +1,244 @@
+"""Tangency points of a model and swan points of a family, with exact definitions: their numbers give any digits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.expressions import Call, Expression, Power, children, evaluate, names_in, substitute, walk
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import DOUBLES
+from singimpact.contact.contact import acceleration
+from singimpact.contact.zeros import Zero, derivatives, isolate, refined
+from singimpact.inputs import InputError
+from singimpact.oscillator.model import Oscillator
+
+
+@dataclass(frozen=True)
+class TangencyPoint:
+    """A zero tau_* of a_c.
+
+    Attributes
+    ----------
+    function : a_c as a tree in t. zero : the piece of the axis that isolates it.
+    kind : "gamma" (a' > 0, an invariant arc ends here), "foliation" (a' < 0), "degenerate" (a' = 0 to 2048 bits).
+    """
+
+    function: Expression
+    zero: Zero
+    kind: str
+
+    def ball(self, bits: int = 128) -> Any:
+        """A ball that contains tau_*."""
+        if self.kind == "degenerate":
+            return refined(self.function, "t", self.zero, bits, order=1)
+        return refined(self.function, "t", self.zero, bits)
+
+    @cached_property
+    def tau(self) -> float:
+        """tau_* as a double."""
+        return float(self.ball().mid())
+
+    def value(self, digits: int = 30) -> Any:
+        """tau_* as an mpmath number with this many digits."""
+        import mpmath
+
+        bits = ceil(digits * 3.33) + 16
+        with mpmath.workprec(bits):
+            exact = as_rational(self.ball(bits))
+            return mpmath.mpf(exact.numerator) / exact.denominator
+
+
+class TangencyPoints(tuple[TangencyPoint, ...]):
+    """Tangency points in order, with `.tau` and `.kind` as arrays."""
+
+    __slots__ = ()
+
+    @property
+    def tau(self) -> np.ndarray[Any, np.dtype[np.float64]]:
+        """The times tau_*."""
+        return np.array([point.tau for point in self])
+
+    @property
+    def kind(self) -> tuple[str, ...]:
+        """ "gamma", "foliation" or "degenerate" for each."""
+        return tuple(point.kind for point in self)
+
+
+def tangency_points(oscillator: Oscillator) -> TangencyPoints:
+    """The zeros of a_c over one period [0, T), or all real zeros when g is a polynomial.
+
+    Raises
+    ------
+    InputError : g is neither periodic nor a polynomial.
+
+    Examples
+    --------
+    >>> points = tangency_points(Oscillator("x", "cos(2*t)", "0.3", "1/2"))
+    >>> points.kind, points.tau.round(6).tolist()
+    (('foliation', 'gamma'), [0.633052, 2.508541])
+    """
+    function = acceleration(oscillator)
+    if "t" not in names_in(function):
+        return TangencyPoints()
+    low, high = _window(oscillator, function)
+    points = []
+    for zero in isolate(function, "t", low, high):
+        kind = {1: "gamma", -1: "foliation"}.get(zero.slope) or _degenerate(function, zero)
+        if kind:
+            points.append(TangencyPoint(function, zero, kind))
+    return TangencyPoints(_within(points, oscillator))
+
+
+def _window(oscillator: Oscillator, function: Expression) -> tuple[Fraction, Fraction]:
+    """A window with rational ends that contains one period, or all zeros of a polynomial."""
+    if oscillator.period is not None:
+        period = Fraction(as_float(oscillator.period))
+        return -period * Fraction(1, 97), period * Fraction(98, 97)
+    if any(isinstance(part, Call) or (isinstance(part, Power) and names_in(part.exponent)) for part in walk(function)):
+        raise InputError(f"g = {oscillator.g} is not seen to be periodic: give period=")
+    bound = _root_bound(function)
+    return -bound, bound
+
+
+def _root_bound(function: Expression) -> Fraction:
+    """Cauchy's bound on the zeros of a polynomial in t, a little enlarged."""
+    from singimpact.algebra.rings import EXACT
+
+    degree = 1 + sum(int(abs(e.exponent.value)) if hasattr(e, "exponent") and hasattr(e.exponent, "value") else 1
+                     for e in walk(function) if not children(e) or isinstance(e, Power))  # fmt: skip
+    try:
+        coefficients = derivatives(function, "t", Fraction(0), degree, EXACT)
+    except ArithmeticError:
+        raise InputError(
+            "a polynomial forcing needs rational coefficients here: give period= or rational numbers"
+        ) from None
+    while len(coefficients) > 1 and coefficients[-1] == 0:
+        coefficients.pop()
+    size: Fraction = max(abs(value / coefficients[-1]) for value in coefficients)
+    return size + Fraction(98, 97)
+
+
+def _degenerate(function: Expression, zero: Zero) -> str:
+    """Decide an undecided piece: no zero, or a zero of a_c and a_c' together."""
+    import flint
+
+    inner = [piece for piece in isolate(function, "t", zero.low, zero.high, order=1) if piece.slope]
+    if not inner:
+        raise InputError(
+            f"a_c has zeros near t = {float(zero.low):.6g} of contact order 3 or more: they are not classified"
+        )
+    for bits in (256, 2048):
+        ball = refined(function, "t", inner[0], bits, order=1)
+        with flint.ctx.workprec(bits):
+            value = derivatives(function, "t", ball, 0, Balls(bits))[0]
+            if not value.contains(0):
+                return ""
+    return "degenerate"
+
+
+def _within(points: list[TangencyPoint], oscillator: Oscillator) -> list[TangencyPoint]:
+    """The points in [0, T), each once."""
+    if oscillator.period is None:
+        return sorted(points, key=lambda point: point.tau)
+    period = as_float(oscillator.period)
+    slack = 1e-12 * period  # a zero at 0 is found with a tiny sign
+    return sorted((p for p in points if -slack <= p.tau < period - slack), key=lambda point: point.tau)
+
+
+@dataclass(frozen=True)
+class SwanPoint:
+    """A clearance c_0 and a time at which a_c and a_c' vanish together.
+
+    Attributes
+    ----------
+    model : the family, at any clearance. zero : isolates tau_*, a zero of g'.
+    kind : "positive" (a'' > 0) or "negative". clearance_zero : isolates c_0.
+    """
+
+    model: Oscillator
+    zero: Zero
+    kind: str
+    clearance_zero: Zero
+
+    def tau_ball(self, bits: int = 128) -> Any:
+        """A ball that contains tau_*."""
+        return refined(self.model.forcing(), "t", self.zero, bits, order=1)
+
+    def clearance_ball(self, bits: int = 128) -> Any:
+        """A ball that contains c_0: f(c_0, 0) = g(tau_*), by Newton's method on balls."""
+        import flint
+
+        with flint.ctx.workprec(bits + 32):
+            level = derivatives(self.model.forcing(), "t", self.tau_ball(bits + 32), 0, Balls(bits + 32))[0]
+            rest = _rest_force(self.model)
+            balls = Balls(bits + 32)
+            enclosure = balls.interval(self.clearance_zero.low, self.clearance_zero.high)
+            for _ in range(200):
+                middle = enclosure.mid()
+                value, slope = (
+                    derivatives(rest, "x", middle, 0, balls)[0],
+                    derivatives(rest, "x", enclosure, 1, balls)[1],
+                )
+                smaller = (middle - (value - level) / slope).intersection(enclosure)
+                if smaller.rad() >= enclosure.rad() * flint.arb(0.9):
+                    return smaller
+                enclosure = smaller
+            return enclosure
+
+    @cached_property
+    def tau(self) -> float:
+        """tau_* as a double."""
+        return float(self.tau_ball().mid())
+
+    @cached_property
+    def clearance(self) -> float:
+        """c_0 as a double."""
+        return float(self.clearance_ball().mid())
+
+
+def _rest_force(model: Oscillator) -> Expression:
+    from singimpact.algebra.expressions import number
+
+    return substitute(model.force(), {"xdot": number(0)})
+
+
+def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fraction]) -> tuple[SwanPoint, ...]:
+    """The swan points of x'' + f = g as the clearance varies in an interval.
+
+    a_c'(tau) = g'(tau) is free of c, so tau_* is a zero of g' and c_0 solves f(c, 0) = g(tau_*).
+
+    Examples
+    --------
+    >>> model = Oscillator("x", "cos(2*t)", 0, 1)
+    >>> [(p.kind, p.clearance) for p in swan_points_over_clearance(model, (Fraction(-2), Fraction(2)))]
+    [('negative', 1.0), ('positive', -1.0)]
+    """
+    forcing, rest = model.forcing(), _rest_force(model)
+    if model.period is None:
+        raise InputError(f"g = {model.g} is not seen to be periodic: give period=")
+    period = Fraction(as_float(model.period))
+    found = []
+    for zero in isolate(forcing, "t", -period / 97, period * Fraction(98, 97), order=1):
+        tau = float(refined(forcing, "t", zero, 64, order=1).mid()) if zero.slope else float(zero.low)
+        if not zero.slope or not -1e-12 * float(period) <= tau < float(period) * (1 - 1e-12):
+            continue
+        level = float(evaluate(forcing, {"t": tau}, DOUBLES))
+        shifted = _minus(rest, Fraction(level))
+        for piece in isolate(shifted, "x", *between):
+            if piece.slope:
+                wide = Zero(piece.low - Fraction(1, 10**9), piece.high + Fraction(1, 10**9), piece.slope)
+                found.append(SwanPoint(model, zero, "positive" if zero.slope > 0 else "negative", wide))
+    return tuple(found)
+
+
+def _minus(tree: Expression, value: Fraction) -> Expression:
+    from singimpact.algebra.expressions import number, subtract
+
+    return subtract(tree, number(value))

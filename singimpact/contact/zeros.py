@@ -1,0 +1,131 @@
+"""All real zeros of a function of one variable in a window: isolated by balls, so none is missed.
+
+A piece of the window is dropped when the ball of the function over it leaves out 0, and settled when the ball of the
+derivative does: then there is at most one zero, and the signs at the two ends decide.  A piece that is neither, down to
+the least width, is kept as `undecided` (a double zero looks like this).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import Expression
+from singimpact.algebra.jets import JetSpace
+
+BITS = 128  # of the balls that isolate; far more than the least width needs
+LEAST_WIDTH = Fraction(1, 2**26)  # of the window: below it a double zero is suspected and handed on as undecided
+
+
+@dataclass(frozen=True)
+class Zero:
+    """A piece of the axis with one zero, or with none or more when undecided.
+
+    Attributes
+    ----------
+    low, high : ends of the piece, exact. slope : sign of the derivative on it; 0 when undecided.
+    """
+
+    low: Fraction
+    high: Fraction
+    slope: int
+
+
+def derivatives(tree: Expression, variable: str, at: Any, order: int, ring: Any) -> list[Any]:
+    """Taylor coefficients of a tree at `at`, an element of the ring."""
+    space = JetSpace((variable,), order, ring)
+    step = space.generators()[0] if order else space.jet({})
+    jet = space.evaluate(tree, {variable: space.constant(at) + step})
+    return [jet.coefficient((k,)) for k in range(order + 1)]
+
+
+def isolate(tree: Expression, variable: str, low: Fraction, high: Fraction, order: int = 0) -> list[Zero]:
+    """All zeros in [low, high) of the derivative of this order of a tree in one variable.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> [zero.slope for zero in isolate(parse("cos(t)", ["t"]), "t", Fraction(-1), Fraction(6))]
+    [-1, 1]
+    """
+    import flint
+
+    balls = Balls(BITS)
+    least = (high - low) * LEAST_WIDTH
+    found: list[Zero] = []
+    with flint.ctx.workprec(BITS):
+        stack = [(low, high)]
+        while stack:
+            left, right = stack.pop()
+            window = balls.interval(left, right)
+            value, slope = derivatives(tree, variable, window, order + 1, balls)[order : order + 2]
+            if value > 0 or value < 0:
+                continue
+            if slope > 0 or slope < 0:
+                rising = 1 if slope > 0 else -1
+                if _sign(tree, variable, left, order) * rising <= 0 < _sign(tree, variable, right, order) * rising:
+                    found.append(Zero(left, right, rising))
+                continue
+            if right - left < least:
+                found.append(Zero(left, right, 0))
+                continue
+            middle = left + (right - left) * Fraction(127, 256)  # off the middle: symmetric zeros do not fall on an end
+            stack += [(middle, right), (left, middle)]
+    return _merged(found)
+
+
+def _sign(tree: Expression, variable: str, at: Fraction, order: int) -> int:
+    """The sign of a derivative at an exact point; 0 when 2048 bits do not tell it from zero."""
+    import flint
+
+    for bits in (128, 512, 2048):
+        balls = Balls(bits)
+        with flint.ctx.workprec(bits):
+            value = derivatives(tree, variable, balls.rational(at), order, balls)[order]
+            if value > 0 or value < 0:
+                return 1 if value > 0 else -1
+    return 0
+
+
+def _merged(found: list[Zero]) -> list[Zero]:
+    """Neighbouring undecided pieces as one."""
+    merged: list[Zero] = []
+    for zero in found:
+        if merged and zero.slope == 0 == merged[-1].slope and zero.low == merged[-1].high:
+            merged[-1] = Zero(merged[-1].low, zero.high, 0)
+        else:
+            merged.append(zero)
+    return merged
+
+
+def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int = 0) -> Any:
+    """A ball of about this many bits around the simple zero in a piece, by interval Newton steps."""
+    import flint
+
+    low, high = zero.low, zero.high
+    work = 64
+    while True:
+        work = min(2 * work, bits + 64)
+        balls = Balls(work)
+        with flint.ctx.workprec(work):
+            enclosure = balls.interval(low, high)
+            for _ in range(200):
+                middle = enclosure.mid()
+                value = derivatives(tree, variable, middle, order, balls)[order]
+                slope = derivatives(tree, variable, enclosure, order + 1, balls)[order + 1] * (order + 1)
+                smaller = (middle - value / slope).intersection(enclosure)
+                if smaller.rad() >= enclosure.rad() * flint.arb(0.9):
+                    break
+                enclosure = smaller
+        if work == bits + 64:
+            return enclosure
+        low, high = _ends(enclosure)
+
+
+def _ends(ball: Any) -> tuple[Fraction, Fraction]:
+    from singimpact.algebra.balls import as_rational
+
+    low, high = ball.lower(), ball.upper()
+    return as_rational(low), as_rational(high)
