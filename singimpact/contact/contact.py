@@ -25,8 +25,12 @@ def acceleration(oscillator: Oscillator) -> Expression:
     >>> print(acceleration(Oscillator("x", "cos(2*t)", "0.3", 1)))
     cos(2*t) - 0.3
     """
-    rest = substitute(oscillator.force(), {"x": oscillator.clearance, "xdot": number(0)})
-    return subtract(oscillator.forcing(), rest)
+    return rest_acceleration(oscillator.force(), oscillator.forcing(), oscillator.clearance)
+
+
+def rest_acceleration(f: Expression, g: Expression, clearance: Expression) -> Expression:
+    """g(t) - f(clearance, 0) as a tree, for any trees."""
+    return subtract(g, substitute(f, {"x": clearance, "xdot": number(0)}))
 
 
 def contact_order(at: str | int) -> int:

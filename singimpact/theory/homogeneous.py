@@ -70,3 +70,32 @@ def mu_of_lambda(j: int) -> Any:
 def leading_coefficient(j: int) -> Any:
     """gamma: v = a_j (1-lambda) P_j/((j+1)(j+2)) sigma^(j+1) + ..., a_j = a^(j)/j!; the factor beside a_j."""
     return sympy.factor((1 - lambda_) * P(j) / ((j + 1) * (j + 2)))
+
+
+@lru_cache(maxsize=8)
+def DG_on_ray(j: int) -> Any:
+    """DG of the homogeneous model on its invariant ray, at sigma = 1 on it, as a matrix in (tau, v) and a function of lambda.
+
+    G takes (s, nu(s, e)) to (e, -r nu(e, s)).  At the point sigma of the ray the entries scale with powers of sigma that
+    leave trace and determinant alone, so the eigenvalues are the same all along gamma to leading order.
+
+    Examples
+    --------
+    >>> sympy.factor(DG_on_ray(1).det())
+    lambda**2*(lambda + 2)**2/(2*lambda + 1)**2
+    """
+    s, e = sympy.symbols("s e")
+    launch, impact = launch_velocity(j, s, e), -r_of_lambda(j) * launch_velocity(j, e, s)
+    before = sympy.Matrix([s, launch]).jacobian([s, e])
+    after = sympy.Matrix([e, impact]).jacobian([s, e])
+    ratio = (after * before.inv()).subs({s: 1, e: lambda_})
+    return ratio.applyfunc(sympy.cancel)
+
+
+@lru_cache(maxsize=8)
+def eigenvalues_on_gamma(j: int) -> tuple[Any, Any]:
+    """(larger, smaller) eigenvalue of DG at points of gamma, in the limit at the contact point, as functions of lambda."""
+    matrix = DG_on_ray(j)
+    trace, determinant = sympy.cancel(matrix.trace()), sympy.cancel(matrix.det())
+    root = sympy.sqrt(sympy.factor(trace**2 - 4 * determinant))
+    return (sympy.factor(trace) + root) / 2, (sympy.factor(trace) - root) / 2

@@ -1,0 +1,104 @@
+"""`Claim`: a sentence of the paper that can be checked.  `Verdict`: what its verifier found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+KINDS = ("proved", "certified", "supported", "cited", "corrected", "open", "error")
+STRENGTH = {"proved": 5, "certified": 4, "supported": 3, "cited": 2, "open": 1, "error": 0}
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A statement in two forms: LaTeX to be read, and the object that the verifier takes."""
+
+    latex: str
+    value: Any
+
+
+@dataclass(frozen=True)
+class Check:
+    """What a verifier says of one statement.
+
+    Attributes
+    ----------
+    holds : whether the statement passed.
+    kind : what the argument is worth if it holds: proved, certified, supported or cited.
+    evidence : one line for a person. witness : numbers at which a failing statement fails.
+    """
+
+    holds: bool
+    kind: str
+    evidence: str
+    witness: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A checkable statement of the paper.
+
+    Attributes
+    ----------
+    id : the claim's name; the paper's equation label where it has one.
+    section : where it stands. title : the statement in our words, one line.
+    printed : as printed. verify : decides any statement of this form; also shown the mutants.
+    corrected : makes the statement that holds instead, from what was derived; None when the printed one is expected to hold.
+    mutants : wrong statements that the verifier must reject.
+    rests_on : ids of the claims that the verifier uses.
+    """
+
+    id: str
+    section: str
+    title: str
+    printed: Statement
+    verify: Callable[[Any], Check]
+    mutants: tuple[Any, ...]
+    corrected: Callable[[], Statement] | None = None
+    rests_on: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str | None:
+        """The equation label, when the claim is a displayed equation."""
+        return self.id if self.id.startswith(("e:", "e3")) else None
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The verdict on a claim, as computed.
+
+    Attributes
+    ----------
+    kind : one of `KINDS`. effective : the weakest kind along what it rests on.
+    corrected, corrected_kind : the statement that holds instead, in LaTeX, and its own verdict.
+    witness : numbers at which the printed statement fails. seconds : of CPU time.
+    """
+
+    id: str
+    section: str
+    title: str
+    kind: str
+    effective: str
+    printed: str
+    corrected: str | None
+    corrected_kind: str | None
+    witness: Mapping[str, str] | None
+    evidence: str
+    rests_on: tuple[str, ...]
+    seconds: float
+
+    @property
+    def strength(self) -> str:
+        """The kind that dependants rest on: of the corrected statement when the printed one fails."""
+        return self.corrected_kind if self.kind == "corrected" and self.corrected_kind else self.kind
+
+    def as_dict(self) -> dict[str, Any]:
+        """The verdict as plain data; the kind is called "verdict" there."""
+        data = asdict(self)
+        data["verdict"] = data.pop("kind")
+        data["witness"] = dict(self.witness) if self.witness is not None else None
+        data["rests_on"] = list(self.rests_on)
+        data["seconds"] = round(self.seconds, 4)
+        first = ("id", "verdict", "effective", "title", "printed", "corrected", "corrected_kind", "witness")
+        return {key: data[key] for key in first} | {key: value for key, value in data.items() if key not in first}

@@ -1,0 +1,96 @@
+"""Run claims: choose them with what they rest on, decide each, and pass verdicts along the dependencies."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+
+from singimpact.claims.claim import STRENGTH, Check, Claim, Verdict
+from singimpact.claims.sections import CLAIMS
+from singimpact.inputs import unknown
+
+
+def select(ids: Sequence[str] | None = None) -> list[Claim]:
+    """The claims named and what they rest on, each after what it rests on; all of them for None.
+
+    Raises
+    ------
+    InputError : an unknown id; the nearest known ones are named.
+
+    Examples
+    --------
+    >>> [claim.id for claim in select(["s3-slope-r"])]
+    ['e:yeq', 'e:acc', 'e:phi', 's3-Dp', 's3-Dphi', 's3-DG', 's3-eigenvectors', 's3-slope-r']
+    """
+    wanted = list(CLAIMS) if not ids else list(dict.fromkeys(ids))
+    for name in wanted:
+        if name not in CLAIMS:
+            raise unknown("claim", name, CLAIMS)
+    chosen: dict[str, Claim] = {}
+
+    def visit(name: str) -> None:
+        if name not in chosen:
+            for other in CLAIMS[name].rests_on:
+                visit(other)
+            chosen[name] = CLAIMS[name]
+
+    for name in wanted:
+        visit(name)
+    return list(chosen.values())
+
+
+def run(
+    claims: Iterable[Claim],
+    on_start: Callable[[Claim, int, int], None] | None = None,
+    on_end: Callable[[Verdict, int, int], None] | None = None,
+) -> list[Verdict]:
+    """Decide claims in the order given.
+
+    Parameters
+    ----------
+    claims : as `select` returns them.
+    on_start, on_end : called with the claim or its verdict, its index and the number of claims.
+    """
+    chosen = list(claims)
+    done: dict[str, Verdict] = {}
+    for index, claim in enumerate(chosen):
+        if on_start is not None:
+            on_start(claim, index, len(chosen))
+        done[claim.id] = decide(claim, done)
+        if on_end is not None:
+            on_end(done[claim.id], index, len(chosen))
+    return list(done.values())
+
+
+def decide(claim: Claim, known: dict[str, Verdict]) -> Verdict:
+    """The verdict on one claim, given the verdicts on what it rests on."""
+    started = time.process_time()
+    corrected, corrected_kind = None, None
+    try:
+        check = claim.verify(claim.printed.value)
+        kind, evidence = check.kind, check.evidence
+        if not check.holds:
+            kind, corrected, corrected_kind, evidence = _corrected(claim, check)
+    except Exception as error:  # a verifier that raises is a verdict, not a crash of the run
+        check = Check(False, "error", "")
+        kind, evidence = "error", f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+    strength = corrected_kind if kind == "corrected" and corrected_kind else kind
+    below = [known[name].effective for name in claim.rests_on if name in known]
+    effective = min([strength, *below], key=lambda name: STRENGTH[name])
+    return Verdict(
+        claim.id, claim.section, claim.title, kind, effective, claim.printed.latex, corrected, corrected_kind,
+        None if check.holds else check.witness, evidence, claim.rests_on, time.process_time() - started,
+    )  # fmt: skip
+
+
+def _corrected(claim: Claim, failed: Check) -> tuple[str, str | None, str | None, str]:
+    """(kind, corrected LaTeX, its kind, evidence) when the printed statement failed."""
+    if claim.corrected is None:
+        raise ArithmeticError(f"the printed statement fails and nothing is known to hold instead: {failed.evidence}")
+    statement = claim.corrected()
+    check = claim.verify(statement.value)
+    if not check.holds:
+        raise ArithmeticError(f"printed and corrected statement both fail: {failed.evidence}; {check.evidence}")
+    if not failed.witness:
+        raise ArithmeticError("the printed statement fails without a witness")
+    return "corrected", statement.latex, check.kind, f"printed: {failed.evidence}; corrected: {check.evidence}"

@@ -1,0 +1,90 @@
+"""Ways to decide a statement: an identity of exact expressions, and signs proved on an interval."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+import sympy
+
+from singimpact.claims.claim import Check
+
+_SAMPLES = [Fraction(n, d) for n, d in ((3, 5), (7, 4), (2, 9), (11, 6), (5, 13), (17, 8), (1, 7), (19, 12))]
+
+
+def is_zero(expression: Any) -> bool:
+    """Whether an expression with rational coefficients and square roots vanishes identically, decided exactly."""
+    expression = sympy.together(sympy.sympify(expression))
+    roots = sorted((p for p in expression.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2), key=str)
+    bases = list(dict.fromkeys(root.base for root in roots))
+    if not bases:
+        return bool(sympy.cancel(expression) == 0)
+    if len(bases) > 1:
+        raise ArithmeticError(f"more than one radical in {expression}")
+    w = sympy.Dummy("w")
+    replaced = expression.subs({root: w ** (2 * root.exp) for root in roots})
+    numerator = sympy.fraction(sympy.cancel(replaced))[0]
+    return bool(sympy.cancel(sympy.rem(numerator, w**2 - bases[0], w)) == 0)
+
+
+def parts_of(value: Any) -> list[Any]:
+    """The scalar parts of an expression, a tuple (nested or not) or a matrix."""
+    if isinstance(value, tuple | list):
+        return [part for item in value for part in parts_of(item)]
+    return list(value) if isinstance(value, sympy.MatrixBase) else [sympy.sympify(value)]
+
+
+def identity(truth: Callable[[], Any], what: str = "derived from the equation of motion") -> Callable[[Any], Check]:
+    """A verifier: the statement equals what `truth` derives, part by part, as exact expressions.
+
+    Parameters
+    ----------
+    truth : derives the expression, tuple or matrix; called when the claim runs.
+    what : where the derived side comes from, for the evidence.
+    """
+
+    def verify(value: Any) -> Check:
+        stated, derived = parts_of(value), parts_of(truth())
+        if len(stated) != len(derived):
+            raise ArithmeticError(f"{len(stated)} parts are stated, {len(derived)} derived")
+        for left, right in zip(stated, derived, strict=True):
+            if not is_zero(left - right):
+                return Check(False, "proved", f"differs from what is {what}", sample(left, right))
+        return Check(True, "proved", f"equal to what is {what}, as exact expressions")
+
+    return verify
+
+
+def sample(stated: Any, derived: Any) -> dict[str, str]:
+    """Numbers at which two expressions differ."""
+    symbols = sorted((stated - derived).free_symbols, key=str)
+    for shift in range(len(_SAMPLES)):
+        point = {
+            symbol: sympy.Rational(*_SAMPLES[(n + shift) % len(_SAMPLES)].as_integer_ratio())
+            for n, symbol in enumerate(symbols)
+        }
+        left, right = (sympy.nsimplify(side.subs(point)) for side in (stated, derived))
+        if left.is_finite and right.is_finite and left != right:
+            at = ", ".join(f"{symbol} = {value}" for symbol, value in point.items())
+            return {"at": at or "every point", "stated": _short(left), "derived": _short(right)}
+    raise ArithmeticError("no sample point tells the two expressions apart")
+
+
+def _short(value: Any) -> str:
+    return str(value) if value.is_Rational else str(sympy.N(value, 15))
+
+
+def every(
+    checks: Sequence[tuple[str, bool]], kind: str = "proved", witness: Callable[[], dict[str, str]] | None = None
+) -> Check:
+    """One check from several named ones; all must pass.
+
+    Parameters
+    ----------
+    checks : (what was tested, whether it passed). witness : numbers for a failure; else the parts that failed are named.
+    """
+    failed = [name for name, passed in checks if not passed]
+    if not failed:
+        return Check(True, kind, "; ".join(name for name, _ in checks))
+    return Check(False, kind, f"fails: {'; '.join(failed)}", witness() if witness else {"fails": "; ".join(failed)})
