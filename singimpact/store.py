@@ -44,6 +44,16 @@ def write_text(path: str | Path, text: str) -> None:
         draft.write_text(text, encoding="utf-8", newline="\n")
 
 
+def require_writable(path: str | Path) -> None:
+    """Refuse a place where no file can be put.
+
+    Raises
+    ------
+    InputError : nothing can be written there.
+    """
+    _draft(Path(path)).unlink()
+
+
 def folder(path: str | Path) -> Path:
     """A folder to write into, made when it is not there."""
     try:

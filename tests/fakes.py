@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 from singimpact.inputs import unknown
 
@@ -68,4 +68,55 @@ def claims_room(verdicts=VERDICTS):
         return [verdicts[claim.id] for claim in claims]
 
     room.select, room.run, room.CLAIMS = select, run, CLAIMS
+    return room
+
+
+def oscillator_room():
+    """A module with the interface of `singimpact.impact_oscillator`, flights made up."""
+    import numpy as np
+
+    from singimpact.algebra.numbers import float_array
+    from singimpact.oscillator.files import read_fields
+    from singimpact.oscillator.model import Oscillator
+
+    class ImpactOscillator(Oscillator):
+        def impact_map(self, tau, v, *, digits=None, tolerance=None, horizon=None):  # noqa: ARG002
+            tau, v = np.broadcast_arrays(float_array("tau", tau), float_array("v", v))
+            gone = tau >= 2
+            time = np.where(gone, np.inf, 0.25)
+            if digits:
+                import mpmath
+
+                with mpmath.workdps(digits + 5):
+                    time = np.array([mpmath.mpf(1) / 3 for _ in tau])
+            return SimpleNamespace(tau=tau + 0.25, v=v, flight_time=time, status=np.where(gone, 3, 0).astype(np.int8))
+
+        def orbit(self, tau, v, impacts=200):  # noqa: ARG002
+            tau, v = float_array("tau", tau), float_array("v", v)
+            return SimpleNamespace(
+                tau=np.array([tau, tau + 0.5]),
+                v=np.array([v, 0]),
+                kind=["impact", "rest"],
+                phases=[("sticking", 1.5, 2)],
+            )
+
+    room = ModuleType("singimpact.impact_oscillator")
+    room.ImpactOscillator = ImpactOscillator
+    room.linear = lambda omega, clearance, restitution: ImpactOscillator("x", f"cos({omega}*t)", clearance, restitution)
+    room.read_model = lambda path: ImpactOscillator(**read_fields(path))
+    return room
+
+
+def scenes_room():
+    """A module whose `plot` draws a point."""
+    room = ModuleType("singimpact.scenes")
+
+    def plot(orbit):
+        from matplotlib.figure import Figure
+
+        axes = Figure().subplots()
+        axes.plot(orbit.tau, orbit.v)
+        return axes
+
+    room.plot = plot
     return room

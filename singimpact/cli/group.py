@@ -15,7 +15,7 @@ from singimpact.inputs import InputError, unknown
 
 # The short helps stand here, so that `singimpact --help` opens no command and no room.
 COMMANDS = {
-    "verify": "derive, prove and cross-check every claim, and list what is misprinted",
+    "verify": "derive, prove and cross-check every claim",
     "derive": "write the derivations as LaTeX, PDF, Markdown or JSON",
     "map": "fly from an impact to the next one",
     "orbit": "fly many impacts; -o draws x(t)",
@@ -38,7 +38,7 @@ class Commands(click.Group):
         with formatter.section("Commands"):
             formatter.write_dl(list(COMMANDS.items()))
 
-    def main(self, args: Sequence[str] | None = None, *_: Any, **__: Any) -> NoReturn:  # type: ignore[override]
+    def main(self, args: Sequence[str] | None = None, *_: Any, **__: Any) -> NoReturn:
         """Run and leave with an exit code: 2 for the caller's mistakes, each in one line without a traceback."""
         sys.exit(self._code(args))
 

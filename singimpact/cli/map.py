@@ -46,7 +46,9 @@ def command(
 def _paired(taus: tuple[str, ...], vs: tuple[str, ...]) -> list[tuple[str, str]]:
     count = max(len(taus), len(vs))
     if min(len(taus), len(vs)) not in (1, count):
-        raise InputError(f"{len(taus)} --tau and {len(vs)} --v do not pair: give one of each, or as many, or one of one kind")
+        raise InputError(
+            f"{len(taus)} --tau and {len(vs)} --v do not pair: give one of each, or as many, or one of one kind"
+        )
     return list(zip(taus * (count // len(taus)), vs * (count // len(vs)), strict=True))
 
 
@@ -74,5 +76,7 @@ def _table(states: list[tuple[str, str]], rows: list[list[Any]]) -> str:
         [*state, str(time), str(tau), str(v), status.name]
         for state, (tau, v, time, status) in zip(states, rows, strict=True)
     ]
-    notes = [f"{status.name}: {status.sentence}" for status in sorted({row[3] for row in rows}) if status is not Status.hit]
+    notes = [
+        f"{status.name}: {status.sentence}" for status in sorted({row[3] for row in rows}) if status is not Status.hit
+    ]
     return "\n".join([columns(header, cells), *notes])

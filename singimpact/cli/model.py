@@ -33,7 +33,9 @@ def model_options(function: Function) -> Function:
     """
     for name in reversed(LINEAR):
         function = click.option(f"--{name}", metavar="NUMBER", help=f"Linear model: {LINEAR[name]}.")(function)
-    return click.option("--model", metavar="FILE", help="TOML file: f, g, clearance, restitution, parameters.")(function)
+    return click.option("--model", metavar="FILE", help="TOML file: f, g, clearance, restitution, parameters.")(
+        function
+    )
 
 
 def take_model(options: dict[str, Any]) -> ImpactOscillator:
@@ -49,7 +51,9 @@ def take_model(options: dict[str, Any]) -> ImpactOscillator:
         return _from_file(path, numbers)
     missing = [f"--{name}" for name in NEEDED if name not in numbers]
     if missing:
-        raise InputError(f"no {', '.join(missing)} given: a model is --model FILE, or --omega --clearance --restitution")
+        raise InputError(
+            f"no {', '.join(missing)} given: a model is --model FILE, or --omega --clearance --restitution"
+        )
     from singimpact.impact_oscillator import linear
 
     return linear(**numbers)

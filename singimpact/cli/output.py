@@ -9,15 +9,24 @@ from typing import Any, TypeVar
 
 import click
 
-from singimpact.store import write_text
+from singimpact.store import require_writable, write_text
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def output_options(function: Function) -> Function:
     """The options ``--json`` and ``-o`` of a command that gives text."""
-    function = click.option("-o", "--output", metavar="FILE", help="Write there instead of standard output.")(function)
+    function = click.option(
+        "-o", "--output", metavar="FILE", callback=_checked, help="Write there instead of standard output."
+    )(function)
     return click.option("--json", "as_json", is_flag=True, help="Give JSON.")(function)
+
+
+def _checked(ctx: click.Context, option: click.Parameter, path: str | None) -> str | None:  # noqa: ARG001
+    """Refuse a place that cannot be written before the work is done, not after it."""
+    if path is not None:
+        require_writable(path)
+    return path
 
 
 def emit(text: str, output: str | None) -> None:

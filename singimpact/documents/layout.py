@@ -68,7 +68,8 @@ def _one_line_each(rows: list[Row]) -> str:
     statement = min(WIDTHS.statement, max(len(row.statement) for row in table))
     evidence = min(WIDTHS.evidence, max(len(row.evidence) for row in table))
     return "\n".join(
-        f"{row.id:<{ids}}  {row.statement:<{statement}}  {row.verdict:<{verdicts}}  {row.evidence:<{evidence}}  {row.seconds:>7}"
+        f"{row.id:<{ids}}  {row.statement:<{statement}}  {row.verdict:<{verdicts}}  "
+        f"{row.evidence:<{evidence}}  {row.seconds:>7}"
         for row in table
     )
 

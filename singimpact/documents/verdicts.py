@@ -95,7 +95,9 @@ class VerdictTable(Sequence["Verdict"]):
 
     def _rows(self) -> list[Row]:
         titles = {claim.id: claim.title for claim in self.claims}
-        return [Row(v.id, titles.get(v.id, ""), v.kind, _full(v), v.evidence, f"{v.seconds:.2f}") for v in self.verdicts]
+        return [
+            Row(v.id, titles.get(v.id, ""), v.kind, _full(v), v.evidence, f"{v.seconds:.2f}") for v in self.verdicts
+        ]
 
     def _summary(self) -> str:
         counts = Counter(verdict.kind for verdict in self.verdicts)
