@@ -27,8 +27,7 @@ class Widths:
     """How wide the columns may be."""
 
     narrow: int = 96  # columns; below, statement and evidence would get less than 25 each and a stack reads better
-    statement: int = 60  # in a pipe, longer cells run on instead of padding every other line
-    evidence: int = 72
+    evidence: int = 72  # in a pipe, longer evidence runs on instead of padding every other line
     least: int = 24  # a cell narrower than this breaks formulas at every sign
 
 
@@ -65,7 +64,7 @@ def _columns(rows: list[Row]) -> tuple[int, int]:
 def _one_line_each(rows: list[Row]) -> str:
     table = [HEADER, *rows]
     ids, verdicts = _columns(table)
-    statement = min(WIDTHS.statement, max(len(row.statement) for row in table))
+    statement = max(len(row.statement) for row in table)
     evidence = min(WIDTHS.evidence, max(len(row.evidence) for row in table))
     return "\n".join(
         f"{row.id:<{ids}}  {row.statement:<{statement}}  {row.verdict:<{verdicts}}  "

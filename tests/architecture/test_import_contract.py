@@ -32,6 +32,11 @@ PLANTED = {
         "from singimpact.flights.flow import planted_two",
         "The flows are witnesses of each other",
     ),
+    "sheet": (
+        "theory/implicit_route.py",
+        "from singimpact.theory import sheet",
+        "The sheet and the paper's route to it share no solver",
+    ),
     "tangency": (
         "theory/fold_route.py",
         "from singimpact.theory import invariant_curve",
@@ -43,7 +48,7 @@ PLANTED = {
         "The invariant curve and the paper's route at a swan share no solver",
     ),
 }
-NEEDED = ["flights/flow/planted_two.py", "theory/invariant_curve.py"]
+NEEDED = ["flights/flow/planted_two.py", "theory/invariant_curve.py", "theory/sheet.py"]
 
 
 def contracts(folder):
