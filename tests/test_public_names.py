@@ -10,9 +10,9 @@ HOMES = si._ROOMS | si._HOMES
 
 
 def built(name):
-    """Whether the room a name lives in is there."""
-    room = HOMES[name].split(".")[1]
-    return find_spec(f"singimpact.{room}") is not None
+    """Whether the module a name lives in is there."""
+    room, _, _ = HOMES[name].rpartition(".")
+    return find_spec(room) is not None and find_spec(HOMES[name]) is not None
 
 
 @pytest.mark.parametrize("name", [name for name in HOMES if built(name)])

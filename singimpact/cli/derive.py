@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from singimpact.inputs import InputError
 from singimpact.progress import ProgressLine
+from singimpact.store import folder
 
 if TYPE_CHECKING:
     from singimpact.documents.steps import Section
@@ -30,6 +32,8 @@ def command(names: tuple[str, ...], form: str, as_json: bool, output: str | None
     if form == "pdf" and output is None:
         raise InputError("--format pdf goes to files only: give a folder with -o")
     told = sections(names)
+    if output is not None:
+        folder(output)  # a place that cannot be written is refused before the claims are run
     with ProgressLine() as line:
         done = iter(range(1, sys.maxsize))
         verdicts = verdicts_of(told, lambda claim, _, total: line.show(next(done), total, claim.id))
@@ -52,13 +56,12 @@ def _print(told: list[Section], verdicts: dict[str, str], form: str) -> None:
 def _write(told: list[Section], verdicts: dict[str, str], form: str, output: str) -> None:
     from singimpact.documents.compiling import CompileError
     from singimpact.documents.derivations import ENDINGS, rendered
-    from singimpact.store import folder, written
+    from singimpact.store import written
 
-    target = folder(output)
     for section in told:
         try:
             content = rendered(section, verdicts, form)
         except CompileError as error:
             raise click.ClickException(f"section {section.name}: {error}") from None
-        with written(target / f"{section.name}{ENDINGS[form]}") as draft:
+        with written(Path(output) / f"{section.name}{ENDINGS[form]}") as draft:
             draft.write_bytes(content)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -45,7 +44,6 @@ class Commands(click.Group):
     def _code(self, args: Sequence[str] | None) -> int:
         try:
             code = super().main(args, prog_name="singimpact", standalone_mode=False)
-            sys.stdout.flush()
             return code if isinstance(code, int) else 0
         except InputError as error:
             return _refused(str(error))
@@ -54,10 +52,9 @@ class Commands(click.Group):
         except (click.Abort, KeyboardInterrupt):
             click.echo("singimpact: interrupted", err=True)
             return 130
-        except BrokenPipeError:
-            # the reader left; Python would complain once more when it flushes standard output at the end
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return 0
+        except OSError as error:
+            click.echo(f"singimpact: the system refused: {error}", err=True)
+            return 1
 
 
 def _refused(message: str) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
 from typing import Any
@@ -44,8 +45,6 @@ def _width(output: str | None) -> int | None:
 
 
 def _painter(output: str | None) -> Any:
-    import os
-
     if not _seen(output) or "NO_COLOR" in os.environ:
         return lambda text, kind: text  # noqa: ARG005
     return lambda text, kind: click.style(text, fg=COLOURS.get(kind))

@@ -48,7 +48,7 @@ def verify(
     return VerdictTable(claims, run(claims, on_start=on_start))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class VerdictTable(Sequence["Verdict"]):
     """Claims and their verdicts, in the order of the paper."""
 
@@ -92,6 +92,8 @@ class VerdictTable(Sequence["Verdict"]):
         import shutil
 
         return self.text(shutil.get_terminal_size().columns if sys.stdout.isatty() else None)
+
+    __repr__ = __str__
 
     def _rows(self) -> list[Row]:
         titles = {claim.id: claim.title for claim in self.claims}

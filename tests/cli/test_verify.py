@@ -50,6 +50,16 @@ def test_file_instead_of_standard_output(singimpact, tmp_path):
     assert len(json.loads((tmp_path / "verdicts.json").read_text())["claims"]) == 3
 
 
+def test_a_full_disk_is_one_line(singimpact, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("singimpact.cli.verify.emit", full)
+    result = singimpact("verify")
+    assert result.exit_code == 1
+    assert result.stderr == "singimpact: the system refused: [Errno 28] No space left on device\n"
+
+
 @pytest.mark.parametrize("width", [20, 40, 60, 80, 96, 120, 200])
 def test_table_fits_and_loses_no_word(width):
     text = TABLE.text(width)
