@@ -57,7 +57,7 @@ class ProgressLine:
             return
         if self._bar is None:
             self._bar = _bar()
-            self._task = self._bar.add_task("", total=total)
+            self._task = self._bar.add_task(text, total=total)
             self._bar.start()
         self._bar.update(self._task, completed=done, total=total, description=text)
 

@@ -32,7 +32,7 @@ def command(
     """
     oscillator = take_model(options)
     states = _paired(taus, vs)
-    keywords = {"digits": digits, "horizon": horizon}
+    keywords: dict[str, Any] = {"digits": digits, "horizon": horizon}
     step = oscillator.impact_map(
         [tau for tau, _ in states], [v for _, v in states], **{key: value for key, value in keywords.items() if value}
     )

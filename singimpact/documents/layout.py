@@ -84,7 +84,8 @@ def _side_by_side(rows: list[Row], width: int, paint: Painter) -> str:
         cells = zip_longest(_cell(row.statement, statement), _cell(row.evidence, evidence), fillvalue="")
         for at, (left, right) in enumerate(cells):
             head = row if at == 0 else Row("", "", "", "", "", "")
-            verdict = paint(f"{head.verdict:<{verdicts}}", row.kind)
+            verdict = f"{head.verdict:<{verdicts}}"
+            verdict = paint(verdict, row.kind) if head.kind else verdict
             line = f"{head.id:<{ids}}  {left:<{statement}}  {verdict}  {right:<{evidence}}  {head.seconds:>7}"
             lines.append(line.rstrip())
         if row is HEADER:
