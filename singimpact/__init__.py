@@ -1,1 +1,61 @@
+"""An impact oscillator near a degenerate graze: theory that is executable, exact and checkable.
+
+Everything public is reached from here; a name loads its room when it is first used.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+from singimpact.inputs import InputError as InputError
+from singimpact.status import Status as Status
+
+if TYPE_CHECKING:
+    from singimpact import claims as claims
+    from singimpact import theory as theory
+    from singimpact.documents.verdicts import verify as verify
+    from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
+    from singimpact.impact_oscillator import linear as linear
+    from singimpact.impact_oscillator import read_model as read_model
+    from singimpact.impact_oscillator import universal as universal
+    from singimpact.scenes import plot as plot
+    from singimpact.theory import fixed_points as fixed_points
+
 __version__ = "0.1.0"
+
+_ROOMS = {
+    "claims": "singimpact.claims",
+    "theory": "singimpact.theory",
+    "fixed_points": "singimpact.theory.fixed_points",
+}
+_HOMES = {
+    "ImpactOscillator": "singimpact.impact_oscillator",
+    "linear": "singimpact.impact_oscillator",
+    "universal": "singimpact.impact_oscillator",
+    "read_model": "singimpact.impact_oscillator",
+    "plot": "singimpact.scenes",
+    "verify": "singimpact.documents.verdicts",
+}
+_PUBLIC = sorted(["InputError", "Status", *_ROOMS, *_HOMES])
+
+
+def __getattr__(name: str) -> Any:
+    from importlib import import_module
+
+    if name in _ROOMS:
+        return import_module(_ROOMS[name])
+    if name in _HOMES:
+        found = globals()[name] = getattr(import_module(_HOMES[name]), name)
+        return found
+    raise AttributeError(_no_such(name))
+
+
+def _no_such(name: str) -> str:
+    if name.startswith("__"):
+        return f"module 'singimpact' has no attribute {name!r}"
+    from singimpact.inputs import nearest
+
+    near = nearest(name, _PUBLIC) or _PUBLIC
+    return f"module 'singimpact' has no attribute {name!r}: the nearest known are {', '.join(near)}"
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_PUBLIC})

@@ -1,0 +1,46 @@
+"""Suite-wide: an empty cache, no display, and slow tests on demand.
+
+It stands at the root so that it serves the doctests of the package too.
+"""
+
+import os
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent / "tests"))  # tests/fakes.py
+os.environ["MPLBACKEND"] = "Agg"
+
+
+def pytest_addoption(parser):
+    parser.addoption("--slow", action="store_true", help="run the slow tests too")
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: takes more than some seconds; runs with --slow, and in .ci/run")
+    if not hasattr(config, "workerinput"):  # workers of one run share the cache of the first
+        config.singimpact_cache = tempfile.mkdtemp(prefix="singimpact-suite-")
+        os.environ["SINGIMPACT_CACHE"] = config.singimpact_cache
+        os.environ["NUMBA_CACHE_DIR"] = str(Path(config.singimpact_cache) / "numba")
+
+
+def pytest_unconfigure(config):
+    if hasattr(config, "singimpact_cache"):
+        shutil.rmtree(config.singimpact_cache, ignore_errors=True)
+
+
+def pytest_collection_modifyitems(config, items):
+    if config.getoption("--slow"):
+        return
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    config.hook.pytest_deselected(items=slow)
+    items[:] = [item for item in items if not item.get_closest_marker("slow")]
+
+
+@pytest.fixture
+def clone():
+    """The folder that holds pyproject.toml."""
+    return Path(__file__).parent

@@ -1,0 +1,71 @@
+"""The group `singimpact`: its commands by name, and one line on standard error for every mistake of the caller."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any, NoReturn
+
+import click
+
+from singimpact import __version__
+from singimpact.inputs import InputError, unknown
+
+# The short helps stand here, so that `singimpact --help` opens no command and no room.
+COMMANDS = {
+    "verify": "derive, prove and cross-check every claim",
+    "derive": "write the derivations as LaTeX, PDF, Markdown or JSON",
+    "map": "fly from an impact to the next one",
+    "orbit": "fly many impacts; -o draws x(t)",
+}
+
+
+class Commands(click.Group):
+    """Commands that are imported when they are called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:  # noqa: ARG002
+        if cmd_name not in COMMANDS:
+            raise unknown("command", cmd_name, COMMANDS)
+        command: click.Command = import_module(f"singimpact.cli.{cmd_name.replace('-', '_')}").command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+    def main(self, args: Sequence[str] | None = None, *_: Any, **__: Any) -> NoReturn:
+        """Run and leave with an exit code: 2 for the caller's mistakes, each in one line without a traceback."""
+        sys.exit(self._code(args))
+
+    def _code(self, args: Sequence[str] | None) -> int:
+        try:
+            code = super().main(args, prog_name="singimpact", standalone_mode=False)
+            return code if isinstance(code, int) else 0
+        except InputError as error:
+            return _refused(str(error))
+        except click.ClickException as error:
+            return _refused(error.format_message())
+        except (click.Abort, KeyboardInterrupt):
+            click.echo("singimpact: interrupted", err=True)
+            return 130
+        except OSError as error:
+            click.echo(f"singimpact: the system refused: {error}", err=True)
+            return 1
+
+
+def _refused(message: str) -> int:
+    click.echo(f"singimpact: {' '.join(message.split())}", err=True)
+    return 2
+
+
+@click.group(cls=Commands, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="singimpact")
+@click.pass_context
+def main(ctx: click.Context) -> None:
+    """An impact oscillator near a degenerate graze: theory that is executable, exact and checkable."""
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help())

@@ -1,0 +1,67 @@
+"""`singimpact orbit`: flights after flights, as numbers or as a picture of x(t)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.model import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.store import written
+
+PICTURES = (".png", ".pdf", ".svg")
+
+
+@click.command(short_help="fly many impacts; -o draws x(t)")
+@model_options
+@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
+@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
+@click.option("--impacts", type=click.IntRange(1, 10_000_000), default=200, show_default=True, help="How many.")
+@output_options
+def command(tau: str, v: str, impacts: int, as_json: bool, output: str | None, **options: Any) -> None:
+    """An orbit of the impact map: impacts, rests on the obstacle, chatter.
+
+    With -o FILE.png (or .pdf, .svg) the orbit is drawn. Numbers may be expressions such as pi/2.8.
+    """
+    oscillator = take_model(options)
+    orbit = oscillator.orbit(tau, v, impacts=impacts)
+    if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
+        draw(orbit, output)
+    elif as_json:
+        emit(as_json_text({"model": oscillator.to_dict(), **_told(orbit)}), output)
+    else:
+        emit(_table(orbit), output)
+
+
+def draw(orbit: Any, output: str) -> None:
+    """The picture of an orbit, in the format its file name ends in."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from singimpact.scenes import plot
+
+    with written(output) as draft:
+        plot(orbit).figure.savefig(draft, format=Path(output).suffix[1:].lower())
+
+
+def _name(kind: Any) -> str:
+    return str(getattr(kind, "name", kind))
+
+
+def _told(orbit: Any) -> dict[str, Any]:
+    impacts = [
+        {"tau": float(tau), "v": float(v), "kind": _name(kind)}
+        for tau, v, kind in zip(orbit.tau, orbit.v, orbit.kind, strict=True)
+    ]
+    phases = [{"kind": _name(kind), "start": float(start), "end": float(end)} for kind, start, end in orbit.phases]
+    return {"impacts": impacts, "phases": phases}
+
+
+def _table(orbit: Any) -> str:
+    told = _told(orbit)
+    impacts = [[str(at), str(i["tau"]), str(i["v"]), i["kind"]] for at, i in enumerate(told["impacts"])]
+    phases = [[p["kind"], str(p["start"]), str(p["end"])] for p in told["phases"]]
+    return columns(["", "tau", "v", "kind"], impacts) + "\n\n" + columns(["phase", "from tau", "to tau"], phases)

@@ -1,0 +1,50 @@
+"""`singimpact verify`: every claim, its verdict, and what is misprinted."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from typing import Any
+
+import click
+
+from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.progress import ProgressLine
+
+COLOURS = {"proved": "green", "certified": "green", "corrected": "yellow", "open": "cyan", "error": "red"}
+
+
+@click.command(short_help="derive, prove and cross-check every claim")
+@click.argument("ids", metavar="[ID]...", nargs=-1)
+@output_options
+@click.pass_context
+def command(ctx: click.Context, ids: tuple[str, ...], as_json: bool, output: str | None) -> None:
+    """Derive, prove and cross-check every claim, or those named and what they rest on.
+
+    Ends with the list of what is misprinted. The exit code is 1 when a claim ends in `error`.
+    """
+    from singimpact.documents.verdicts import verify
+
+    with ProgressLine(delay=0.2) as line:
+        done = iter(range(1, sys.maxsize))
+        found = verify(
+            ids or None, on_start=lambda claim, _, total: line.show(next(done), total, f"{claim.id}  {claim.title}")
+        )
+    emit(as_json_text(found.as_dict()) if as_json else found.text(_width(output), _painter(output)), output)
+    ctx.exit(found.exit_code)
+
+
+def _seen(output: str | None) -> bool:
+    return output is None and sys.stdout.isatty()
+
+
+def _width(output: str | None) -> int | None:
+    """The terminal's width; None where lines may be as long as they are."""
+    return shutil.get_terminal_size().columns if _seen(output) else None
+
+
+def _painter(output: str | None) -> Any:
+    if not _seen(output) or "NO_COLOR" in os.environ:
+        return lambda text, kind: text  # noqa: ARG005
+    return lambda text, kind: click.style(text, fg=COLOURS.get(kind))

@@ -1,0 +1,70 @@
+"""LaTeX into PDF by latexmk, where it is installed."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from singimpact.inputs import InputError
+
+
+@dataclass(frozen=True)
+class Patience:
+    """How long a document may take."""
+
+    seconds: float = 300.0  # a section of twenty pages takes 3 s; the rest is a first run that builds fonts
+
+
+class CompileError(RuntimeError):
+    """LaTeX refused a document; the message has its first complaint."""
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A PDF and what LaTeX said of it."""
+
+    pdf: bytes
+    log: str
+
+    @property
+    def overfull(self) -> list[float]:
+        """By how many points lines stick out of the page, in order."""
+        return [float(points) for points in re.findall(r"Overfull \\hbox \(([\d.]+)pt too wide\)", self.log)]
+
+
+def compiled(source: str) -> Compiled:
+    """The PDF of a LaTeX document.
+
+    Raises
+    ------
+    InputError : latexmk is not installed.
+    CompileError : LaTeX stopped.
+    """
+    if shutil.which("latexmk") is None:
+        raise InputError("format = 'pdf' needs the program latexmk, which is not found: give latex, or install it")
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "document.tex").write_text(source, encoding="utf-8")
+        _run(folder)
+        log = (Path(folder) / "document.log").read_text(encoding="utf-8", errors="replace")
+        return Compiled((Path(folder) / "document.pdf").read_bytes(), log)
+
+
+def _run(folder: str) -> None:
+    command = ["latexmk", "-pdf", "-interaction=nonstopmode", "-halt-on-error", "-file-line-error", "document.tex"]
+    # a fixed date makes the same source give the same PDF
+    environment = os.environ | {"SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1", "max_print_line": "1000"}
+    try:
+        done = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL,
+            env=environment, timeout=Patience().seconds, check=False,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired:
+        raise CompileError(f"latexmk did not end within {Patience().seconds:.0f} s") from None
+    if done.returncode:
+        found = re.search(r"^\S*document\.tex:\d+: .*$", done.stdout, re.MULTILINE)
+        raise CompileError(found.group() if found else f"latexmk ended with exit code {done.returncode}")

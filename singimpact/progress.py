@@ -1,0 +1,78 @@
+"""A live line on a terminal that says what is being worked on; nothing when nobody looks."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Pace:
+    """When a line of progress is worth showing."""
+
+    delay: float = 1.0  # seconds; what is done sooner needs no line, and rich takes 0.1 s to import
+
+
+PACE = Pace()
+
+
+def watched() -> bool:
+    """Whether a person sees standard error."""
+    return sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+
+
+class ProgressLine:
+    """Shows ``done/total text`` on standard error; it is gone when the work ends.
+
+    Parameters
+    ----------
+    delay : float, seconds of work before the line appears.
+
+    Examples
+    --------
+    >>> with ProgressLine() as line:
+    ...     line.show(1, 2, "first")
+    """
+
+    def __init__(self, delay: float = PACE.delay) -> None:
+        self._after = time.monotonic() + delay
+        self._watched = watched()
+        self._bar: Any = None
+        self._task: Any = None
+
+    def __enter__(self) -> ProgressLine:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+    def show(self, done: int, total: int, text: str) -> None:
+        """Say what is being done now."""
+        if not self._watched or (self._bar is None and time.monotonic() < self._after):
+            return
+        if self._bar is None:
+            self._bar = _bar()
+            self._task = self._bar.add_task(text, total=total)
+            self._bar.start()
+        self._bar.update(self._task, completed=done, total=total, description=text)
+
+
+def _bar() -> Any:
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.table import Column
+
+    return Progress(
+        MofNCompleteColumn(),
+        BarColumn(bar_width=20),
+        TimeElapsedColumn(),
+        TextColumn("{task.description}", markup=False, table_column=Column(no_wrap=True, ratio=1)),
+        console=Console(stderr=True),
+        transient=True,
+        expand=True,
+    )

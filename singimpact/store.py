@@ -1,0 +1,111 @@
+"""Results on disk: a file appears under its name when it is whole, or not at all."""
+
+from __future__ import annotations
+
+import os
+import stat
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from singimpact.inputs import InputError, shown
+
+
+@contextmanager
+def written(path: str | Path) -> Iterator[Path]:
+    """A temporary path that takes the name `path` when the block ends well, and is removed when it does not.
+
+    Raises
+    ------
+    InputError : nothing can be written there.
+
+    Examples
+    --------
+    >>> place = Path(tempfile.mkdtemp())
+    >>> with written(place / "a.txt") as draft:
+    ...     _ = draft.write_text("whole")
+    >>> [item.name for item in place.iterdir()]
+    ['a.txt']
+    """
+    target, special = _target(path)
+    draft = _draft(target, special)
+    try:
+        yield draft
+        _take_place(draft, target, special)
+    except OSError as error:
+        raise _unwritable(path, error) from None
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def write_text(path: str | Path, text: str) -> None:
+    """Put a text under a name, whole or not at all."""
+    with written(path) as draft:
+        draft.write_text(text, encoding="utf-8", newline="\n")
+
+
+def require_writable(path: str | Path) -> None:
+    """Refuse a place where no file can be put.
+
+    Raises
+    ------
+    InputError : nothing can be written there.
+    """
+    _draft(*_target(path)).unlink()
+
+
+def folder(path: str | Path) -> Path:
+    """A folder to write into, made when it is not there."""
+    try:
+        Path(path).mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise _unwritable(path, error) from None
+    return Path(path)
+
+
+def _target(path: str | Path) -> tuple[Path, bool]:
+    """Where to write, links followed; and whether a device or a pipe is there, which must not be replaced by a file."""
+    try:
+        mode = os.stat(path).st_mode
+    except FileNotFoundError:
+        return _followed(path), False
+    except (OSError, ValueError) as error:
+        raise _unwritable(path, error) from None
+    if stat.S_ISDIR(mode):
+        raise InputError(f"output = {shown(str(path))} is a folder: give the name of a file")
+    return (_followed(path), False) if stat.S_ISREG(mode) else (Path(path), True)
+
+
+def _followed(path: str | Path) -> Path:
+    return Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
+
+
+def _draft(target: Path, special: bool) -> Path:
+    # the ending stays, because writers of pictures read the format from it
+    try:
+        place = tempfile.gettempdir() if special else target.parent
+        handle, name = tempfile.mkstemp(prefix=".draft-", suffix=target.suffix, dir=place)
+    except (OSError, ValueError) as error:
+        raise _unwritable(target, error) from None
+    os.close(handle)
+    os.chmod(name, 0o666 & ~_umask())
+    return Path(name)
+
+
+def _take_place(draft: Path, target: Path, special: bool) -> None:
+    if special:
+        target.write_bytes(draft.read_bytes())
+    else:
+        os.replace(draft, target)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _unwritable(path: str | Path, error: Exception) -> InputError:
+    reason = getattr(error, "strerror", None) or str(error)
+    return InputError(f"output = {shown(str(path))} cannot be written ({reason}): give a place that can")

@@ -1,0 +1,98 @@
+"""The direction of imports holds, and each contract catches the violation it is there for."""
+
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+# a file of the planted copy -> what is put at its end, and the contract that must break
+PLANTED = {
+    "direction": ("algebra/numbers.py", "from singimpact.oscillator import model", "An import points downwards only"),
+    "inside a function": (
+        "algebra/numbers.py",
+        "def late() -> None:\n    from singimpact.oscillator import model",
+        "An import points downwards only",
+    ),
+    "neighbours": ("algebra/numbers.py", "from singimpact import generated", "An import points downwards only"),
+    "through the root": ("status.py", "from singimpact import cli", "An import points downwards only"),
+    "a room nobody listed": ("helpers/__init__.py", "", "An import points downwards only"),
+    "frozen source": (
+        "oscillator/model.py",
+        "from singimpact import generated",
+        "Theory and all below it work with generated/ emptied",
+    ),
+    "frozen source, theory": (
+        "theory/planted.py",
+        "from singimpact import generated",
+        "Theory and all below it work with generated/ emptied",
+    ),
+    "flows": (
+        "flights/flow/planted_one.py",
+        "from singimpact.flights.flow import planted_two",
+        "The flows are witnesses of each other",
+    ),
+    "sheet": (
+        "theory/implicit_route.py",
+        "from singimpact.theory import sheet",
+        "The sheet and the paper's route to it share no solver",
+    ),
+    "tangency": (
+        "theory/fold_route.py",
+        "from singimpact.theory import invariant_curve",
+        "The invariant curve and the paper's route at a tangency share no solver",
+    ),
+    "swan": (
+        "theory/swan_route.py",
+        "from singimpact.theory import invariant_curve",
+        "The invariant curve and the paper's route at a swan share no solver",
+    ),
+}
+NEEDED = ["flights/flow/planted_two.py", "theory/invariant_curve.py", "theory/sheet.py"]
+
+
+def contracts(folder):
+    """The contracts of the package in a folder: what lint-imports prints, and whether all are kept."""
+    command = [sys.executable, "-c", "from importlinter.cli import lint_imports_command; lint_imports_command()"]
+    done = subprocess.run([*command, "--no-cache"], cwd=folder, capture_output=True, text=True, check=False)
+    return done.stdout + done.stderr, done.returncode == 0
+
+
+@pytest.fixture
+def copy(clone, tmp_path):
+    shutil.copy(clone / ".importlinter", tmp_path)
+    shutil.copytree(clone / "singimpact", tmp_path / "singimpact", ignore=shutil.ignore_patterns("__pycache__", "data"))
+    return tmp_path
+
+
+def add(package, path, text=""):
+    """Put a text at the end of a file of the copy, with the packages above it."""
+    file = package / path
+    for room in reversed(list(file.relative_to(package).parents)[:-1]):
+        (package / room).mkdir(exist_ok=True)
+        (package / room / "__init__.py").touch()
+    file.touch()
+    file.write_text(f"{file.read_text()}\n{text}\n")
+
+
+def test_contracts_are_kept(clone):
+    told, kept = contracts(clone)
+    assert kept, told
+
+
+def test_copy_with_needed_files_is_kept(copy):
+    for path in NEEDED:
+        add(copy / "singimpact", path)
+    told, kept = contracts(copy)
+    assert kept, told
+
+
+@pytest.mark.parametrize("name", PLANTED)
+def test_violation_is_caught(name, copy):
+    path, text, contract = PLANTED[name]
+    for needed in NEEDED:
+        add(copy / "singimpact", needed)
+    add(copy / "singimpact", path, text)
+    told, kept = contracts(copy)
+    assert not kept
+    assert f"{contract} BROKEN" in told, told

@@ -1,0 +1,131 @@
+"""Habits of the source that are checked by reading it: sizes, banned calls, nothing unfinished."""
+
+import ast
+import re
+
+import pytest
+
+BANNED = {"series", "limit", "simplify", "solve", "integrate"}
+OTHERS = {"np", "numpy", "scipy", "flint"}
+LONGEST = 600
+IMPORTLIB_HOMES = ("__init__.py", "cli/")
+NAMELESS = {"utils.py", "helpers.py", "core.py", "common.py", "misc.py"}
+
+
+def sources(clone):
+    """Path inside the package -> text, of what people wrote."""
+    package = clone / "singimpact"
+    found = {path.relative_to(package).as_posix(): path.read_text() for path in package.rglob("*.py")}
+    assert len(found) > 20
+    return {
+        path: text for path, text in found.items() if not path.startswith("generated/") or path.endswith("__init__.py")
+    }
+
+
+def banned_uses(text):
+    """Lines where a banned function of sympy is imported, named or called, as a function or as a method."""
+    tree = ast.parse(text)
+    aliases = {alias for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in sympy_aliases(node)}
+    sympy_here = bool(aliases) or any(from_sympy(node) for node in ast.walk(tree))
+    return sorted({node.lineno for node in ast.walk(tree) if banned(node, aliases, sympy_here)})
+
+
+def sympy_aliases(node):
+    return {(alias.asname or "sympy") for alias in node.names if alias.name.partition(".")[0] == "sympy"}
+
+
+def from_sympy(node):
+    return isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] == "sympy"
+
+
+def banned(node, aliases, sympy_here):
+    if from_sympy(node):
+        return any(alias.name in BANNED for alias in node.names)
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in BANNED:
+        # no other library in use has a method `simplify`; the other names are sympy's only where sympy is imported
+        return (sympy_here and owner(node.func) not in OTHERS) or node.func.attr == "simplify"
+    return isinstance(node, ast.Attribute) and node.attr in BANNED and owner(node) in aliases
+
+
+def owner(node):
+    """The first name of a dotted one."""
+    while isinstance(node, ast.Attribute):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else None
+
+
+def of_bench_peers(path):
+    return path.startswith("bench/peers")
+
+
+def test_banned_functions_of_sympy_are_not_called(clone):
+    found = {path: banned_uses(text) for path, text in sources(clone).items() if not of_bench_peers(path)}
+    assert {path: lines for path, lines in found.items() if lines} == {}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "import sympy\nsympy.simplify(x)",
+        "import sympy as sp\nsp.series(x)",
+        "import sympy\nshorten = sympy.simplify",
+        "def late(x):\n    import sympy as sp\n    return sp.limit(x)",
+        "from sympy import solve as root",
+        "from sympy.integrals import integrate",
+        "from sympy import Symbol\nSymbol('x').series()",
+        "def shown(x):\n    return x.simplify()",
+    ],
+)
+def test_planted_banned_call_is_seen(text):
+    assert banned_uses(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["import numpy\nimport sympy\nnumpy.linalg.solve(a, b)", "import sympy\nsympy.Poly(x).resultant(y)"]
+)
+def test_other_calls_are_not(text):
+    assert not banned_uses(text)
+
+
+def test_no_file_is_too_long(clone):
+    long = {path: count for path, text in sources(clone).items() if (count := text.count("\n")) > LONGEST}
+    assert long == {}
+
+
+def test_every_file_is_named_for_its_content(clone):
+    assert [path for path in sources(clone) if path.rpartition("/")[2] in NAMELESS] == []
+
+
+def test_nothing_is_unfinished(clone):
+    sign = re.compile(r"\b(TODO|FIXME|XXX|NotImplementedError)\b")
+    assert [path for path, text in sources(clone).items() if sign.search(text)] == []
+
+
+def test_importlib_stays_at_the_doors(clone):
+    """An import by name is not seen by the contract on the direction of imports."""
+    found = [path for path, text in sources(clone).items() if imports_by_name(text)]
+    assert [path for path in found if not path.startswith(IMPORTLIB_HOMES)] == []
+
+
+def imports_by_name(text):
+    """importlib.resources and importlib.metadata read data; everything else imports by name."""
+    data = {"importlib.resources", "importlib.metadata"}
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import) and any(
+            a.name.startswith("importlib") and a.name not in data for a in node.names
+        ):
+            return True
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("importlib"):
+            inside = {f"{node.module}.{alias.name}" for alias in node.names}
+            if node.module not in data and not inside <= data:
+                return True
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "__import__":
+            return True
+    return False
+
+
+def test_rooms_say_what_they_hold(clone):
+    """The docstring of a room: what lives here, what does not and which neighbour takes it."""
+    rooms = [path for path in sources(clone) if path.count("/") == 1 and path.endswith("/__init__.py")]
+    told = {path: ast.get_docstring(ast.parse(sources(clone)[path])) or "" for path in rooms}
+    assert [path for path, text in told.items() if "Not here:" not in text] == []

@@ -1,0 +1,11 @@
+"""The command in this process, with what it writes and the code it leaves with."""
+
+import pytest
+from click.testing import CliRunner
+
+
+@pytest.fixture
+def singimpact():
+    from singimpact.cli import main
+
+    return lambda *args: CliRunner().invoke(main, [str(arg) for arg in args])

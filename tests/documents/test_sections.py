@@ -1,0 +1,142 @@
+"""A small section through every format: words escaped, equations broken, verdicts beside them, the same bytes twice."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+from fakes import claims_room
+from hypothesis import given
+from hypothesis import strategies as st
+
+from singimpact.documents.breaking import PAGE, lines_of, width
+from singimpact.documents.compiling import CompileError, compiled
+from singimpact.documents.derivations import sections
+from singimpact.documents.escape import latex
+from singimpact.documents.rendering import as_data, as_latex, as_markdown
+from singimpact.documents.sections import SECTIONS
+from singimpact.documents.steps import Section, Step
+
+LONG = "v = " + " + ".join(
+    rf"\frac{{{k} a_{{{k}}}}}{{{k + 1}}} \sigma^{{{k}}} \left(1 - \lambda_{{{k}}}\right)" for k in range(1, 30)
+)
+DEMO = Section(
+    "demo",
+    "Energy of $x'' + x = 0$ & 100% of it",
+    (
+        Step("Multiply by $x'$ and take the first integral; #1 of {two} steps_."),
+        Step("It is constant:", r"E = \tfrac12 x'^2 + \tfrac12 x^2", "e:meq", ("e:meq", "p:odd")),
+        Step("A long sum:", LONG, "", ("e:qdef",)),
+    ),
+)
+VERDICTS = {"e:meq": "proved", "p:odd": "corrected", "e:qdef": "proved"}
+
+
+@pytest.fixture
+def demo(monkeypatch):
+    monkeypatch.setitem(sys.modules, "singimpact.claims", claims_room())
+    monkeypatch.setitem(SECTIONS, "demo", lambda: DEMO)
+
+
+def test_latex_has_words_labels_and_verdicts():
+    text = as_latex(DEMO, VERDICTS)
+    assert r"\section*{Energy of $x'' + x = 0$ \& 100\% of it}" in text
+    assert r"\#1 of \{two\} steps\_." in text
+    assert r"\label{e:meq}" in text
+    assert r"\verdict{p:odd}{corrected}" in text
+
+
+def test_a_claim_without_a_verdict_is_an_error():
+    from jinja2 import UndefinedError
+
+    with pytest.raises(UndefinedError):
+        as_latex(DEMO, {})
+
+
+def test_markdown_and_data():
+    assert "$$\n" + LONG + "\n$$" in as_markdown(DEMO, VERDICTS)
+    assert as_data(DEMO, VERDICTS)["steps"][1]["claims"] == {"e:meq": "proved", "p:odd": "corrected"}
+
+
+def test_broken_formula_is_the_same_formula():
+    assert "".join("".join(lines_of(LONG)).split()) == "".join(LONG.split())
+
+
+def test_lines_fit():
+    assert max(width(line) for line in lines_of(LONG)) <= PAGE.line
+
+
+@pytest.mark.parametrize("formula", ["a = -b", r"\left(" + "a + " * 60 + r"b\right)", r"\frac{a + b}{c}"])
+def test_no_break_where_none_may_be(formula):
+    assert lines_of(formula, limit=1 if len(formula) < 20 else PAGE.line) == [formula]
+
+
+@given(st.text(max_size=40))
+def test_escaped_text_has_no_sign_with_a_meaning(text):
+    bare = latex(text)
+    for command in (
+        r"\textbackslash{}",
+        r"\textasciicircum{}",
+        r"\textasciitilde{}",
+        r"\textless{}",
+        r"\textgreater{}",
+    ):
+        bare = bare.replace(command, "")
+    for sign in "{}$&#%_":
+        bare = bare.replace("\\" + sign, "")
+    assert not set(bare) & set("\\{}$&#%_^~<>")
+
+
+def test_same_bytes_under_two_hash_seeds(clone):
+    program = "from test_sections import *; import sys; sys.stdout.write(as_latex(DEMO, VERDICTS))"
+    texts = [
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env=os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": f"{clone}:{clone}/tests:{clone}/tests/documents"},
+            capture_output=True,
+            check=True,
+        ).stdout
+        for seed in ("0", "12345")
+    ]
+    assert texts[0] == texts[1] == as_latex(DEMO, VERDICTS).encode()
+
+
+@pytest.mark.slow
+def test_pdf_compiles_with_nothing_sticking_out():
+    assert shutil.which("latexmk"), "CI installs latexmk"
+    done = compiled(as_latex(DEMO, VERDICTS))
+    assert done.pdf.startswith(b"%PDF")
+    assert max(done.overfull, default=0) <= 20
+
+
+@pytest.mark.slow
+def test_latex_that_fails_says_where():
+    with pytest.raises(CompileError, match=r"document\.tex:2: Undefined control sequence"):
+        compiled("\\documentclass{article}\\begin{document}\n\\nothing\n\\end{document}")
+
+
+@pytest.mark.usefixtures("demo")
+def test_command_prints_or_writes(singimpact, tmp_path):
+    assert singimpact("derive", "demo").stdout == as_latex(DEMO, VERDICTS)
+    assert [s["name"] for s in json.loads(singimpact("derive", "--json", "demo").stdout)["sections"]] == ["demo"]
+    assert singimpact("derive", "demo", "--format", "markdown", "-o", tmp_path / "new").exit_code == 0
+    assert (tmp_path / "new" / "demo.md").read_text() == as_markdown(DEMO, VERDICTS)
+
+
+@pytest.mark.usefixtures("demo")
+def test_pdf_needs_a_folder_and_latexmk(singimpact, tmp_path, monkeypatch):
+    assert "give a folder with -o" in singimpact("derive", "demo", "--format", "pdf").stderr
+    monkeypatch.setenv("PATH", str(tmp_path))
+    result = singimpact("derive", "demo", "--format", "pdf", "-o", tmp_path)
+    assert result.exit_code == 2
+    assert "needs the program latexmk" in result.stderr
+
+
+@pytest.mark.usefixtures("demo")
+def test_unknown_section():
+    from singimpact import InputError
+
+    with pytest.raises(InputError, match="unknown section 'dmeo': the nearest known are demo"):
+        sections(["dmeo"])

@@ -1,0 +1,43 @@
+"""The public names: each resolves, appears in dir(), and a misspelt one is told the nearest."""
+
+from importlib.util import find_spec
+
+import pytest
+
+import singimpact as si
+
+HOMES = si._ROOMS | si._HOMES
+
+
+def built(name):
+    """Whether the module a name lives in is there."""
+    room, _, _ = HOMES[name].rpartition(".")
+    return find_spec(room) is not None and find_spec(HOMES[name]) is not None
+
+
+@pytest.mark.parametrize("name", [name for name in HOMES if built(name)])
+def test_name_resolves(name):
+    assert getattr(si, name) is getattr(si, name)
+    assert name in dir(si)
+
+
+def test_version_is_that_of_the_project(clone):
+    assert 'dynamic = ["version"]' in (clone / "pyproject.toml").read_text()
+    assert si.__version__.count(".") == 2
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"), [("ImpactOscilator", "ImpactOscillator"), ("liner", "linear"), ("verfy", "verify")]
+)
+def test_misspelt_name_is_told_the_nearest(wrong, right):
+    with pytest.raises(AttributeError, match=f"no attribute '{wrong}': the nearest known are {right}"):
+        getattr(si, wrong)
+
+
+def test_special_name_is_just_missing():
+    assert not hasattr(si, "__wrapped__")
+
+
+def test_type_checker_sees_the_same_names(clone):
+    text = (clone / "singimpact" / "__init__.py").read_text()
+    assert [name for name in HOMES if f"import {name.split('.')[-1]} as {name}" not in text] == []
