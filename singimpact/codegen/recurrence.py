@@ -77,7 +77,8 @@ class _Writer:
 
     def dot(self, left: _Series, right: _Series, first: str, last: str, weight: str = "") -> None:
         """s = sum of [weight] left[i] right[k - i] for i in first..last."""
-        self.emit("s = 0.0", f"for i in range({first}, {last} + 1):", f"    s += {weight}{left('i')} * {right('k - i')}")
+        step = f"    s += {weight}{left('i')} * {right('k - i')}"
+        self.emit("s = 0.0", f"for i in range({first}, {last} + 1):", step)
 
     def product(self, left: _Series, right: _Series) -> _Series:
         target = self.row()
@@ -111,8 +112,8 @@ def recurrence(force: Expression, forcing: Expression) -> Recurrence:
     pulls = _terms(writer, forcing, "") + _terms(writer, force, "-")
     body = [*writer.lines, "total = 0.0", *pulls]
     body += ["X[k + 2] = total / ((k + 1) * (k + 2))", "if k == 0:", "    X[2] += shift"]
-    head = ["def coefficients(launch, time, z, u, shift, n, p, X, W):", "    t = launch[0] + time", "    X[0] = p[0] + z",
-            "    X[1] = u", "    for k in range(n - 1):"]  # fmt: skip
+    head = ["def coefficients(launch, time, z, u, shift, n, p, X, W):", "    t = launch[0] + time",
+            "    X[0] = p[0] + z", "    X[1] = u", "    for k in range(n - 1):"]  # fmt: skip
     source = "\n".join([*head, *(f"        {line}" for line in body)]) + "\n"
     return Recurrence(source, tuple(writer.constants), max(writer.rows, 1))
 
@@ -217,7 +218,7 @@ def _general_power(writer: _Writer, base: _Series, exponent: Expression) -> _Ser
     return target
 
 
-def _driven(writer: _Writer, target: _Series, inner: _Series, slope: _Series, sign: str = "") -> tuple[str, ...]:
+def _driven(target: _Series, inner: _Series, slope: _Series, sign: str = "") -> tuple[str, ...]:
     """Lines for target' = [sign] slope inner'; an affine inner function needs no sum."""
     if inner.affine:
         return (f"{target('k')} = {sign}{inner('1')} * {slope('k - 1')} / k",)
@@ -228,7 +229,7 @@ def _driven(writer: _Writer, target: _Series, inner: _Series, slope: _Series, si
 def _exp(writer: _Writer, argument: Expression) -> _Series:
     inner = _series(writer, argument)
     target = writer.row()
-    writer.starts(target, f"exp({inner('0')})", *_driven(writer, target, inner, target))
+    writer.starts(target, f"exp({inner('0')})", *_driven(target, inner, target))
     return target
 
 
@@ -236,8 +237,8 @@ def _circular(writer: _Writer, argument: Expression) -> tuple[_Series, _Series]:
     inner = _series(writer, argument)
     sine, cosine = writer.row(), writer.row()
     writer.known[Call("sin", argument)], writer.known[Call("cos", argument)] = sine, cosine
-    writer.starts(sine, f"sin({inner('0')})", *_driven(writer, sine, inner, cosine))
-    writer.starts(cosine, f"cos({inner('0')})", *_driven(writer, cosine, inner, sine, "-"))
+    writer.starts(sine, f"sin({inner('0')})", *_driven(sine, inner, cosine))
+    writer.starts(cosine, f"cos({inner('0')})", *_driven(cosine, inner, sine, "-"))
     return sine, cosine
 
 

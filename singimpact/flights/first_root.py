@@ -32,8 +32,7 @@ def first_root(q: Any, n: int, h: Any, base: Any, ulp: Any) -> Any:
 
     Examples
     --------
-    >>> import numpy as np
-    >>> first_root(np.array([2.0, -3.0, 1.0]), 2, 3.0, 0.0, 1e-16)[:2]
+    >>> first_root([2.0, -3.0, 1.0], 2, 3.0, 0.0, 1e-16)[:2]
     (1, 1.0)
     """
     power = 1.0 + 0 * h

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,10 +11,13 @@ from singimpact.algebra.numbers import as_float, constant
 from singimpact.codegen.kernels import compiled
 from singimpact.flights import manydigits
 from singimpact.flights.carriers import Flight, Step
+from singimpact.flights.condition import condition
 from singimpact.flights.kernel import Kernel, kernel_of
 from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
 from singimpact.flights.limits import LIMITS, degree_for
+from singimpact.flights.phase import reduced
 from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.linear import LinearForm
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
@@ -105,14 +109,20 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     removed = _removed(osc, states, status)
     numbers = _flown(osc, kernel, states, removed, status, limit, epsilon)
     _settle(osc, states, limit, status, numbers)
-    return flight_of(status, numbers)
+    flight = flight_of(status, numbers)
+    return flight if kernel.form is None else replace(flight, condition=_conditions(osc, kernel.form, states, flight))
+
+
+def _conditions(osc: Oscillator, form: LinearForm, states: States, flight: Flight) -> Array:
+    tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
+    return condition(form, tau, states.v, known_accelerations(osc, states), flight.flight_time, flight.velocity)
 
 
 def _removed(osc: Oscillator, states: States, status: Array) -> Array:
     """How often t = 0 is a root of x - c; a mass at rest that stays is marked."""
     removed = np.ones(states.v.size, dtype=np.int64)
     for index in np.flatnonzero(states.v == 0):
-        sign, order = at_rest(osc, states.exact_tau(index))
+        sign, order = at_rest(osc, states.exact_tau(int(index)))
         removed[index] = order + 2
         status[index] = Status.hit if sign > 0 else Status.sticks
     return removed

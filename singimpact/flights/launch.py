@@ -44,10 +44,14 @@ class States:
             raise InputError(
                 f"tau of shape {raw[0].shape} and v of shape {raw[1].shape} do not broadcast: give shapes that do"
             ) from None
-        doubles = [np.broadcast_to(float_array(name, part), written[0].shape).ravel() for name, part in zip(("tau", "v"), raw, strict=True)]
-        if np.any(doubles[1] < 0):
-            raise refuse("v", float(doubles[1][doubles[1] < 0][0]), "velocities >= 0, just after an impact")
-        return States(doubles[0], doubles[1], written[0].shape, (written[0].ravel(), written[1].ravel()))
+        shape = written[0].shape
+        times, speeds = (
+            np.broadcast_to(float_array(name, part), shape).ravel()
+            for name, part in zip(("tau", "v"), raw, strict=True)
+        )
+        if np.any(speeds < 0):
+            raise refuse("v", float(speeds[speeds < 0][0]), "velocities >= 0, just after an impact")
+        return States(times, speeds, shape, (written[0].ravel(), written[1].ravel()))
 
     def exact_tau(self, index: int) -> Expression:
         """tau as it was written."""

@@ -41,7 +41,7 @@ def degree_for(epsilon: float) -> int:
     Examples
     --------
     >>> degree_for(2.0**-52), degree_for(1e-6)
-    (24, 10)
+    (24, 9)
     """
     from math import ceil, log
 

@@ -134,7 +134,8 @@ def _march(osc: Oscillator, states: States, index: int, v: Any, removed: int, li
     order = degree_for(float(mpmath.eps)) if mpmath.mp.prec < 1000 else int(mpmath.mp.prec / 2.15)
     order += removed - 1
     p = np.array([as_mpf(tree, mpmath.mp) for tree in kernel.constants], dtype=object)
-    work = [np.full(shape, mpmath.mpf(0), dtype=object) for shape in ((order + 2,), (kernel.rows, order + 2), (order + 2,))]
+    shapes = (order + 2,), (kernel.rows, order + 2), (order + 2,)
+    work = [np.full(shape, mpmath.mpf(0), dtype=object) for shape in shapes]
     code, *numbers = space["march"](
         launch(osc, kernel, states, index), v, removed, mpmath.nan, order, mpmath.mpf(limit), 8 * mpmath.eps, p, *work
     )

@@ -24,7 +24,7 @@ def reduced(tau: np.ndarray[Any, Any], period: Expression) -> np.ndarray[Any, An
     --------
     >>> from singimpact.algebra.numbers import constant
     >>> reduced(np.array([1e22, -1e-20]), constant("period", "2*pi")).tolist()
-    [-1.0214246527650957, -1e-20]
+    [-1.020177392559087, -1e-20]
     """
     size = float(_scaled(period, 64)) / 2.0**64
     result = np.array(tau, dtype=float)
@@ -45,4 +45,5 @@ def _scaled(period: Expression, bits: int) -> int:
     """The integer nearest to period * 2^bits."""
     from singimpact.algebra.balls import Balls, as_rational
 
-    return round(as_rational(Balls(bits + 80).evaluate(period, {})) * 2**bits)
+    scaled: int = round(as_rational(Balls(bits + 80).evaluate(period, {})) * 2**bits)
+    return scaled

@@ -49,7 +49,8 @@ def pair(a: complex, b: complex, t: float) -> complex:
     y = (a - b) * t / 2
     if abs(y) < 0.1:
         y2 = y * y
-        return complex_exp((a + b) * t / 2) * t * (1 + y2 / 6 * (1 + y2 / 20 * (1 + y2 / 42 * (1 + y2 / 72 * (1 + y2 / 110)))))
+        ratio = 1 + y2 / 6 * (1 + y2 / 20 * (1 + y2 / 42 * (1 + y2 / 72 * (1 + y2 / 110))))
+        return complex_exp((a + b) * t / 2) * t * ratio
     return (complex_exp(a * t) - complex_exp(b * t)) / (a - b)
 
 
