@@ -9,7 +9,9 @@ from __future__ import annotations
 import hashlib
 import math
 import os
+import sys
 import tempfile
+import types
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -65,8 +67,11 @@ def compiled(text: str, names: tuple[str, ...]) -> dict[str, Any]:
     import numba
 
     path = written(text)
-    space: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
-    space["__name__"] = path.stem
+    module = types.ModuleType(f"singimpact_{path.stem}")
+    # numba's disk cache looks the module of a function up by its name
+    sys.modules[module.__name__] = module
+    space = vars(module)
+    space.update({name: getattr(math, name) for name in FUNCTIONS})
     exec(compile(text, str(path), "exec"), space)
     for name in names:
         space[name] = numba.njit(cache=True, error_model="numpy")(space[name])
