@@ -63,10 +63,11 @@ def first_root(q: Any, n: int, h: Any, base: Any, ulp: Any) -> Any:
             bend = abs(a2) + third * reach
             if s + reach <= h and 8 * (abs(a0) + noise) * bend < a1 * a1:
                 return polished(q, n, s, reach, a0, a1)
-        if s > 0 and a0 <= noise:
+        if s > 0 and a0 <= 2 * noise:
             depth = a0 - a1 * a1 / (2 * a2) if a2 > 0 else a0
             return 2, s, a1, depth, noise
-        step = safe_step(a0, a1, a2, third, h - s)
+        # the lower end of what q may be: near a touch the rounding of q decides the sign of the discriminant
+        step = safe_step(a0 - noise, a1, a2, third, h - s)
         s += step
         if s >= h:
             return 0, h, h, h, h
@@ -80,10 +81,13 @@ def safe_step(a0: Any, a1: Any, a2: Any, third: Any, room: Any) -> Any:
         low = a2 - third * width
         inside = a1 * a1 - 2 * low * a0
         step = width
-        if inside >= 0:
+        if inside >= 0 and a1 <= 0:
             slope = -a1 + inside**0.5
             if slope > 0:
                 step = 2 * a0 / slope
+        elif inside >= 0 and low < 0:
+            # with a0 = 1e-300 the other form divides by a difference that is rounded to zero
+            step = (a1 + inside**0.5) / -low
         if step >= width / 2:
             return step if step < width else width
         # the geometric mean: v = 1e-300 is reached in ten halvings of the exponent, not in a thousand halvings

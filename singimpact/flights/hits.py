@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -149,6 +150,11 @@ def _flown(
 
 def doubles(kernel: Kernel) -> Array:
     """The numbers of the model, refused when they do not fit a double."""
+    return _doubles(kernel).copy()
+
+
+@lru_cache(maxsize=256)
+def _doubles(kernel: Kernel) -> Array:
     p = np.array([as_float(tree) for tree in kernel.constants])
     if not np.all(np.isfinite(p)):
         raise InputError("a constant of the model is too large for a double: scale the model, or ask with digits=")

@@ -28,7 +28,7 @@ from typing import Any
 '''
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Kernel:
     """What is needed to fly: text, names of its functions (callees first), rows of work, numbers, waves.
 
@@ -53,10 +53,15 @@ def kernel_of(osc: Oscillator, exact_restart: bool = True) -> Kernel:
         parts: tuple[Callable[..., Any], ...] = (taylor.step_size, taylor.restart, *COMMON)
         text = _joined(emitted.source, parts)
         return Kernel(text, ("coefficients", *_names(parts)), emitted.rows, tuple(taylor.constants(osc)), None)
+    text, names = _linear_text(exact_restart)
+    return Kernel(text, names, max(2 * len(form.harmonics), 1), linear_constants(osc, form), form)
+
+
+@lru_cache(maxsize=2)
+def _linear_text(exact_restart: bool) -> tuple[str, tuple[str, ...]]:
     restart = (closed_form.pair, closed_form.triple, closed_form.restart) if exact_restart else (taylor.restart,)
     parts = (closed_form.coefficients, closed_form.step_size, *restart, *COMMON)
-    rows = max(2 * len(form.harmonics), 1)
-    return Kernel(_joined("", parts), _names(parts), rows, linear_constants(osc, form), form)
+    return _joined("", parts), _names(parts)
 
 
 def _names(parts: tuple[Callable[..., Any], ...]) -> tuple[str, ...]:
@@ -64,7 +69,12 @@ def _names(parts: tuple[Callable[..., Any], ...]) -> tuple[str, ...]:
 
 
 def _joined(source: str, parts: tuple[Callable[..., Any], ...]) -> str:
-    return "\n\n".join([HEAD, source, *(inspect.getsource(part) for part in parts)])
+    return "\n\n".join([HEAD, source, *(_source(part) for part in parts)])
+
+
+@lru_cache(maxsize=64)
+def _source(part: Callable[..., Any]) -> str:
+    return inspect.getsource(part)
 
 
 def linear_constants(osc: Oscillator, form: LinearForm) -> tuple[Expression, ...]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Expression, Number, names_in, number, substitute
+from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number, substitute
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
@@ -41,7 +41,7 @@ def acceleration(osc: Oscillator, tau: np.ndarray[Any, Any], order: int = 0) -> 
     >>> acceleration(Oscillator("x", "cos(t)", 1, 1), np.array([1e-9])).tolist()
     [-5e-19]
     """
-    forcing, force = _forcing(osc, tau, order), as_float(resting_force(osc)) if order == 0 else 0.0
+    forcing, force = _forcing(osc, tau, order), _resting_float(osc) if order == 0 else 0.0
     values = np.asarray(forcing - force, dtype=float)
     size = np.abs(forcing) + abs(force)
     # a big tau loses its phase in double arithmetic, and a derivative has no size to compare with
@@ -52,12 +52,23 @@ def acceleration(osc: Oscillator, tau: np.ndarray[Any, Any], order: int = 0) -> 
 
 
 def _forcing(osc: Oscillator, tau: np.ndarray[Any, Any], order: int) -> np.ndarray[Any, Any]:
-    from singimpact.algebra.expressions import evaluate
-
-    if order or "t" not in names_in(osc.forcing()):
-        return np.full(tau.shape, as_float(osc.forcing()) if not order else 0.0)
+    forcing, steady = _forcing_tree(osc)
+    if order or steady is not None:
+        return np.full(tau.shape, 0.0 if order or steady is None else steady)
     with np.errstate(all="ignore"):
-        return np.broadcast_to(evaluate(osc.forcing(), {"t": tau}, DOUBLES), tau.shape)
+        return np.broadcast_to(evaluate(forcing, {"t": tau}, DOUBLES), tau.shape)
+
+
+@lru_cache(maxsize=256)
+def _forcing_tree(osc: Oscillator) -> tuple[Expression, float | None]:
+    """g with its parameters put in, and its value when it does not move."""
+    forcing = osc.forcing()
+    return forcing, None if "t" in names_in(forcing) else as_float(forcing)
+
+
+@lru_cache(maxsize=256)
+def _resting_float(osc: Oscillator) -> float:
+    return as_float(resting_force(osc))
 
 
 def as_ball(osc: Oscillator, tau: Expression, order: int = 0) -> Any:
@@ -80,10 +91,10 @@ def _ball(osc: Oscillator, tau: Expression, order: int, bits: int) -> Any:
     force = balls.evaluate(resting_force(osc), {})
     with flint.ctx.workprec(balls.bits):
         if not order:
-            return balls.evaluate(osc.forcing(), {"t": start}) - force
+            return balls.evaluate(_forcing_tree(osc)[0], {"t": start}) - force
         space = JetSpace(("s",), order, balls)
         moved = space.constant(start) + space.generators()[0]
-        return space.evaluate(osc.forcing(), {"t": moved}).coefficient((order,)) * factorial(order)
+        return space.evaluate(_forcing_tree(osc)[0], {"t": moved}).coefficient((order,)) * factorial(order)
 
 
 def _exponent(tau: Expression) -> int:

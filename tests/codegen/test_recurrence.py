@@ -32,11 +32,10 @@ def test_coefficients_solve_the_equation(force: str) -> None:
         order, h = 24, mpmath.mpf("0.001")
         X, W = np.full(order + 1, mpmath.mpf(0)), np.full((made.rows, order + 1), mpmath.mpf(0))
         space["coefficients"]([mpmath.mpf("0.3")], 0, 0, mpmath.mpf("0.2"), 0, order, p, X, W)
-        x, xdot, xddot = (
-            sum(X[k] * mpmath.ff(k, d) * h ** (k - d) for k in range(d, order + 1)) for d in range(3)
-        )
+        x, xdot, xddot = (sum(X[k] * mpmath.ff(k, d) * h ** (k - d) for k in range(d, order + 1)) for d in range(3))
         t = mpmath.mpf("0.3") + h
-        pull = eval(force.replace("1/3", "mpf(1)/3"), {**functions, "sqrt": mpmath.sqrt, "mpf": mpmath.mpf, "x": x, "xdot": xdot})
+        names = {**functions, "sqrt": mpmath.sqrt, "mpf": mpmath.mpf, "x": x, "xdot": xdot}
+        pull = eval(force.replace("1/3", "mpf(1)/3"), names)
         assert abs(xddot + pull - mpmath.sin(2 * t) - t**2) < mpmath.mpf(10) ** -50
 
 
@@ -56,7 +55,8 @@ def test_models_of_one_structure_share_a_text() -> None:
 def test_the_cache_folder_is_the_named_one(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path / "here"))
     path = written("x = 1\n")
-    assert path.is_relative_to(tmp_path / "here") and path.read_text() == "x = 1\n"
+    assert path.is_relative_to(tmp_path / "here")
+    assert path.read_text() == "x = 1\n"
     path.write_text("damaged")
     assert written("x = 1\n").read_text() == "x = 1\n"
     monkeypatch.setenv("SINGIMPACT_CACHE", "off")

@@ -17,9 +17,8 @@ def errors(problem: Problem) -> tuple[int, float, float, float]:
     step = problem.model().impact_map(problem.tau, problem.v)
     with mpmath.workdps(40):
         time, speed = mpmath.mpf(problem.flight_time), mpmath.mpf(problem.v_next)
-        return int(step.status), *(float(abs(a / b - 1)) for a, b in ((step.flight_time, time), (step.v, speed))), float(
-            step.condition
-        )
+        in_time, in_speed = float(abs(step.flight_time / time - 1)), float(abs(step.v / speed - 1))
+    return int(step.status), in_time, in_speed, float(step.condition)
 
 
 @pytest.mark.parametrize("family", ["linear", "duffing"])
@@ -34,7 +33,7 @@ def test_no_impact_is_wrong(family: str) -> None:
 
 def test_forty_digits() -> None:
     # every 40th state here; all 2000 take minutes
-    for problem in states("linear")[::40]:
+    for problem in states("linear")[::60]:
         step = problem.model().impact_map(problem.tau, problem.v, digits=40)
         with mpmath.workdps(45):
             truth = mpmath.mpf(problem.flight_time), mpmath.mpf(problem.v_next)

@@ -30,11 +30,11 @@ def test_value(name: str, digits: int | None) -> None:
 
 
 def test_unfolded_swan_lands_by_the_root_sum_identity() -> None:
-    tau = "-acos"  # A = (-acos(c)/2, 0): the flight that lifts off at a tangency lands at 3 tau2
-    del tau
+    # A = (-acos(c)/2, 0): the flight that lifts off at a tangency lands at 3 tau2; a little later a is positive there
     osc = linear(2, "0.99", "0.5")
-    start = mpmath.mpf(values()["negswan.C2.tau[w=2,c=0.99]"]) / 3
     with mpmath.workdps(40):
-        place = mpmath.mpf(values()["negswan.C2.tau[w=2,c=0.99]"]) / 3
-    step = osc.impact_map(-place * (1 - mpmath.mpf(10) ** -25), 0, digits=15)
-    assert abs(step.tau - 3 * start) < 1e-9
+        landing = mpmath.mpf(values()["negswan.C2.tau[w=2,c=0.99]"])
+        start = -landing / 3 * (1 - mpmath.mpf(10) ** -25)
+    step = osc.impact_map(start, 0, digits=20)
+    assert abs(step.tau - landing) < 1e-15
+    assert abs(step.v / -mpmath.mpf(values()["negswan.C2.v[w=2,c=0.99]"]) - 0.5) < 1e-15

@@ -21,7 +21,8 @@ def test_not_a_sum_of_harmonics(g: str) -> None:
 
 
 def test_parts_are_collected() -> None:
-    form = linear_form(Oscillator("2*(x + k*xdot) + x - 1", "3*(cos(w*t) - 1) + sin(2*t + 1)/2", 0, 1, {"k": 5, "w": 7}))
+    forcing = "3*(cos(w*t) - 1) + sin(2*t + 1)/2"
+    form = linear_form(Oscillator("2*(x + k*xdot) + x - 1", forcing, 0, 1, {"k": 5, "w": 7}))
     assert form is not None
     assert (str(form.stiffness), str(form.damping), str(form.constant)) == ("3", "10", "-2")
     assert [(str(h.rate), str(h.cosine), str(h.sine)) for h in form.harmonics] == [("7", "3", "0"), ("2", "0", "0.5")]
