@@ -30,7 +30,10 @@ def exact(name: str, value: Any) -> Fraction:
         raise refuse(name, value, ACCEPTED)
     if isinstance(value, int | float | Fraction | np.integer | np.floating):
         try:
-            return Fraction(float(value)) if isinstance(value, float | np.floating) else Fraction(value)  # type: ignore[arg-type]
+            if isinstance(value, float | np.floating):
+                return Fraction(float(value))
+            # a Fraction of a numpy integer keeps numpy integers inside, and they overflow
+            return value if isinstance(value, Fraction) else Fraction(int(value))
         except (ValueError, OverflowError):
             raise refuse(name, value, ACCEPTED) from None
     if hasattr(value, "_mpf_"):

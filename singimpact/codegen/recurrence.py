@@ -1,0 +1,283 @@
+"""The Taylor recurrence of x'' = g(t) - f(x, x'), as the source of one Python function.
+
+The text holds loops and integer constants alone, so that it runs on doubles (compiled or not) and on mpmath numbers.
+Every constant part of f and g is an entry of the argument `p`: it is computed elsewhere, once, correctly rounded,
+and models that differ in parameter values share one text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from singimpact.algebra.expressions import (
+    Call,
+    Expression,
+    Name,
+    Number,
+    Power,
+    Product,
+    Sum,
+    add,
+    multiply,
+    names_in,
+    number,
+)
+from singimpact.inputs import InputError
+
+MOVING = frozenset({"x", "xdot", "t"})
+
+
+@dataclass(frozen=True)
+class Recurrence:
+    """The emitted function with what it expects.
+
+    Parameters
+    ----------
+    source : text of `coefficients(launch, time, z, u, shift, n, p, X, W)`; `launch[0]` is the time of the launch.
+    constants : trees whose values fill p[1], p[2], ...; p[0] is the clearance.
+    rows : rows that the work array W needs.
+    """
+
+    source: str
+    constants: tuple[Expression, ...]
+    rows: int
+
+
+@dataclass(frozen=True)
+class _Series:
+    """Where coefficient i of a part is found: `at.format(i)`; affine parts stop after coefficient 1."""
+
+    at: str
+    affine: bool = False
+
+    def __call__(self, index: str) -> str:
+        return self.at.format(index)
+
+
+@dataclass
+class _Writer:
+    constants: list[Expression] = field(default_factory=list)
+    lines: list[str] = field(default_factory=list)
+    known: dict[Expression, _Series] = field(default_factory=dict)
+    rows: int = 0
+
+    def row(self, affine: bool = False) -> _Series:
+        self.rows += 1
+        return _Series(f"W[{self.rows - 1}, {{}}]", affine)
+
+    def constant(self, tree: Expression) -> str:
+        if tree not in self.constants:
+            self.constants.append(tree)
+        return f"p[{self.constants.index(tree) + 1}]"
+
+    def emit(self, *lines: str) -> None:
+        self.lines.extend(lines)
+
+    def dot(self, left: _Series, right: _Series, first: str, last: str, weight: str = "") -> None:
+        """s = sum of [weight] left[i] right[k - i] for i in first..last."""
+        step = f"    s += {weight}{left('i')} * {right('k - i')}"
+        self.emit("s = 0.0", f"for i in range({first}, {last} + 1):", step)
+
+    def product(self, left: _Series, right: _Series) -> _Series:
+        target = self.row()
+        self.dot(left, right, "0", "k")
+        self.emit(f"{target('k')} = s")
+        return target
+
+    def starts(self, target: _Series, start: str, *otherwise: str) -> None:
+        self.emit("if k == 0:", f"    {target('k')} = {start}", "else:", *(f"    {line}" for line in otherwise))
+
+
+def recurrence(force: Expression, forcing: Expression) -> Recurrence:
+    """The recurrence for the Taylor coefficients of a flight.
+
+    Parameters
+    ----------
+    force, forcing : f in x, xdot and parameters; g in t and parameters.
+
+    Raises
+    ------
+    InputError : abs occurs; it has no Taylor series where it matters.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> made = recurrence(parse("3*x", ["x"]), parse("t", ["t"]))
+    >>> [str(tree) for tree in made.constants], made.rows
+    (['3'], 2)
+    """
+    writer = _Writer()
+    pulls = _terms(writer, forcing, "") + _terms(writer, force, "-")
+    body = [*writer.lines, "total = 0.0", *pulls]
+    body += ["X[k + 2] = total / ((k + 1) * (k + 2))", "if k == 0:", "    X[2] += shift"]
+    head = ["def coefficients(launch, time, z, u, shift, n, p, X, W):", "    t = launch[0] + time",
+            "    X[0] = p[0] + z", "    X[1] = u", "    for k in range(n - 1):"]  # fmt: skip
+    source = "\n".join([*head, *(f"        {line}" for line in body)]) + "\n"
+    return Recurrence(source, tuple(writer.constants), max(writer.rows, 1))
+
+
+def _terms(writer: _Writer, tree: Expression, sign: str) -> list[str]:
+    steady, moving = _parted(tree)
+    lines = [f"total {sign or '+'}= {_series(writer, part)('k')}" for part in moving]
+    if steady != number(0):
+        lines += ["if k == 0:", f"    total {sign or '+'}= {writer.constant(steady)}"]
+    return lines
+
+
+def _parted(tree: Expression) -> tuple[Expression, list[Expression]]:
+    """A sum as its constant part and the rest."""
+    parts = tree.terms if isinstance(tree, Sum) else (tree,)
+    moving = [part for part in parts if names_in(part) & MOVING]
+    return add(number(0), *(part for part in parts if not names_in(part) & MOVING)), moving
+
+
+def _series(writer: _Writer, tree: Expression) -> _Series:
+    if tree not in writer.known:
+        writer.known[tree] = _made(writer, tree)
+    return writer.known[tree]
+
+
+def _made(writer: _Writer, tree: Expression) -> _Series:
+    match tree:
+        case Name("x"):
+            return _Series("X[{}]")
+        case Name("xdot"):
+            target = writer.row()
+            writer.emit(f"{target('k')} = (k + 1) * X[k + 1]")
+            return target
+        case Name("t"):
+            target = writer.row(affine=True)
+            writer.emit(f"{target('k')} = 1.0 if k == 1 else 0.0", "if k == 0:", f"    {target('k')} = t")
+            return target
+        case Sum():
+            return _sum(writer, tree)
+        case Product(factors):
+            return _product(writer, factors)
+        case Power(base, exponent):
+            return _power(writer, base, exponent)
+        case Call(function, argument):
+            if function == "sqrt":
+                return _power(writer, argument, Number(Fraction(1, 2)))
+            if function not in _CALLS:
+                raise InputError(f"{tree} is not smooth: a flight is computed only where f and g are smooth")
+            return _CALLS[function](writer, argument)
+    raise TypeError(f"a constant has no series of its own: {tree}")
+
+
+def _sum(writer: _Writer, tree: Expression) -> _Series:
+    steady, moving = _parted(tree)
+    parts = [_series(writer, part) for part in moving]
+    target = writer.row(affine=all(part.affine for part in parts))
+    writer.emit(f"{target('k')} = {' + '.join(part('k') for part in parts)}")
+    if steady != number(0):
+        writer.emit("if k == 0:", f"    {target('k')} += {writer.constant(steady)}")
+    return target
+
+
+def _product(writer: _Writer, factors: Sequence[Expression]) -> _Series:
+    steady = [part for part in factors if not names_in(part) & MOVING]
+    result, *rest = [_series(writer, part) for part in factors if names_in(part) & MOVING]
+    for part in rest:
+        result = writer.product(result, part)
+    if not steady:
+        return result
+    target = writer.row(affine=result.affine)
+    writer.emit(f"{target('k')} = {writer.constant(multiply(*steady))} * {result('k')}")
+    return target
+
+
+def _power(writer: _Writer, base: Expression, exponent: Expression) -> _Series:
+    if isinstance(exponent, Number) and exponent.value.denominator == 1 and 1 <= exponent.value <= 64:
+        return _whole_power(writer, _series(writer, base), int(exponent.value))
+    if not names_in(exponent) & MOVING and names_in(base) & MOVING:
+        return _general_power(writer, _series(writer, base), exponent)
+    return _exp(writer, multiply(exponent, Call("log", base)))
+
+
+def _whole_power(writer: _Writer, base: _Series, exponent: int) -> _Series:
+    """By repeated squaring: no division, so the base may vanish."""
+    result: _Series | None = None
+    while True:
+        if exponent & 1:
+            result = base if result is None else writer.product(result, base)
+        exponent >>= 1
+        if not exponent:
+            assert result is not None
+            return result
+        base = writer.product(base, base)
+
+
+def _general_power(writer: _Writer, base: _Series, exponent: Expression) -> _Series:
+    """w = b^q from b w' = q b' w."""
+    target, power = writer.row(), writer.constant(exponent)
+    writer.starts(target, f"{base('0')} ** {power}", "s = 0.0", "for i in range(1, k + 1):",
+                  f"    s += ({power} * i - (k - i)) * {base('i')} * {target('k - i')}",
+                  f"{target('k')} = s / (k * {base('0')})")  # fmt: skip
+    return target
+
+
+def _driven(target: _Series, inner: _Series, slope: _Series, sign: str = "") -> tuple[str, ...]:
+    """Lines for target' = [sign] slope inner'; an affine inner function needs no sum."""
+    if inner.affine:
+        return (f"{target('k')} = {sign}{inner('1')} * {slope('k - 1')} / k",)
+    return ("s = 0.0", "for i in range(1, k + 1):", f"    s += i * {inner('i')} * {slope('k - i')}",
+            f"{target('k')} = {sign}s / k")  # fmt: skip
+
+
+def _exp(writer: _Writer, argument: Expression) -> _Series:
+    inner = _series(writer, argument)
+    target = writer.row()
+    writer.starts(target, f"exp({inner('0')})", *_driven(target, inner, target))
+    return target
+
+
+def _circular(writer: _Writer, argument: Expression) -> tuple[_Series, _Series]:
+    inner = _series(writer, argument)
+    sine, cosine = writer.row(), writer.row()
+    writer.known[Call("sin", argument)], writer.known[Call("cos", argument)] = sine, cosine
+    writer.starts(sine, f"sin({inner('0')})", *_driven(sine, inner, cosine))
+    writer.starts(cosine, f"cos({inner('0')})", *_driven(cosine, inner, sine, "-"))
+    return sine, cosine
+
+
+def _log(writer: _Writer, argument: Expression) -> _Series:
+    inner, target = _series(writer, argument), writer.row()
+    writer.starts(target, f"log({inner('0')})", "s = 0.0", "for i in range(1, k):",
+                  f"    s += i * {target('i')} * {inner('k - i')}",
+                  f"{target('k')} = ({inner('k')} - s / k) / {inner('0')}")  # fmt: skip
+    return target
+
+
+def _atan(writer: _Writer, argument: Expression) -> _Series:
+    """y' (1 + b^2) = b'."""
+    inner = _series(writer, argument)
+    square, target = writer.product(inner, inner), writer.row()
+    writer.starts(target, f"atan({inner('0')})", "s = 0.0", "for i in range(1, k):",
+                  f"    s += i * {target('i')} * {square('k - i')}",
+                  f"{target('k')} = ({inner('k')} - s / k) / (1 + {square('0')})")  # fmt: skip
+    return target
+
+
+def _riccati(writer: _Writer, argument: Expression, function: str, sign: str) -> _Series:
+    """y' = (1 + sign y^2) b'."""
+    inner = _series(writer, argument)
+    target, square = writer.row(), writer.row()
+    writer.starts(target, f"{function}({inner('0')})", "s = 0.0", "for i in range(1, k + 1):",
+                  f"    s += i * {inner('i')} * {square('k - i')}",
+                  f"{target('k')} = {inner('k')} {sign} s / k")  # fmt: skip
+    writer.dot(target, target, "0", "k")
+    writer.emit(f"{square('k')} = s")
+    return target
+
+
+_CALLS: dict[str, Callable[[_Writer, Expression], _Series]] = {
+    "exp": _exp,
+    "sin": lambda writer, argument: _circular(writer, argument)[0],
+    "cos": lambda writer, argument: _circular(writer, argument)[1],
+    "log": _log,
+    "atan": _atan,
+    "tan": lambda writer, argument: _riccati(writer, argument, "tan", "+"),
+    "tanh": lambda writer, argument: _riccati(writer, argument, "tanh", "-"),
+}

@@ -1,0 +1,94 @@
+"""A mass at rest on the obstacle: when the acceleration lifts it off."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import number, subtract
+from singimpact.algebra.numbers import as_float
+from singimpact.codegen.kernels import FUNCTIONS, plain
+from singimpact.flights.first_root import first_root
+from singimpact.flights.flow.taylor import constants, recurrence_of
+from singimpact.flights.launch import at_rest, exact_number
+from singimpact.flights.limits import LIMITS
+from singimpact.oscillator.acceleration import resting_force
+from singimpact.oscillator.model import Oscillator
+
+ORDER = 22
+EPSILON = 2.0**-52
+
+
+def release(osc: Oscillator, tau: float, horizon: float) -> float:
+    """The first time after tau at which a_c becomes positive; inf when that is not before the horizon.
+
+    Parameters
+    ----------
+    osc : the model. tau : a time at which the mass is pressed against the obstacle.
+    horizon : time after tau at which the search ends.
+
+    Returns
+    -------
+    float : a double at which a mass at rest lifts off (within an ulp of the zero of a_c, on its positive side); nan
+        when a_c comes so near to zero that doubles cannot tell whether it becomes positive.
+
+    Examples
+    --------
+    >>> release(Oscillator("x", "sin(t)", 0, 1), 4.0, 100.0)
+    6.283185307179587
+    """
+    start = tau
+    longest = 1.0
+    while start - tau < horizon:
+        series = _pressure(osc, start)
+        width = _width(series, longest)
+        code, s, _slope, _depth, _bound = first_root(series, ORDER, width * 17 / 16, 0.0, LIMITS.safety * EPSILON)
+        if code == 2:
+            return float("nan")
+        if code == 1:
+            return _lifted(osc, start + s)
+        start, longest = start + width, 2 * width
+    return float("inf")
+
+
+def _lifted(osc: Oscillator, tau: float) -> float:
+    """The nearest double from tau upwards where the exact acceleration lifts the mass."""
+    candidate, gap = tau, float(np.spacing(abs(tau)))
+    candidate -= 2 * gap
+    for _ in range(80):
+        if at_rest(osc, exact_number(candidate))[0] > 0:
+            return candidate
+        candidate += gap
+        gap = gap if candidate < tau + 4 * gap else 2 * gap
+    return float("nan")
+
+
+@lru_cache(maxsize=64)
+def _resting_model(osc: Oscillator) -> tuple[Any, list[float], int]:
+    """x'' = -a_c(t) as a recurrence; its coefficients give those of -a_c."""
+    model = Oscillator(number(0), subtract(resting_force(osc), osc.forcing()), 0, 1)
+    emitted = recurrence_of(model)
+    import math
+
+    space = plain(emitted.source, {name: getattr(math, name) for name in FUNCTIONS})
+    return space["coefficients"], [as_float(tree) for tree in constants(model)], emitted.rows
+
+
+def _pressure(osc: Oscillator, tau: float) -> Any:
+    """Taylor coefficients of -a_c at tau."""
+    coefficients, p, rows = _resting_model(osc)
+    series = np.zeros(ORDER + 4)
+    coefficients([tau], 0.0, 0.0, 0.0, 0.0, ORDER + 2, p, series, np.zeros((rows, ORDER + 4)))
+    return [float(series[k + 2]) * (k + 1) * (k + 2) for k in range(ORDER + 1)]
+
+
+def _width(series: Any, longest: float) -> float:
+    """A step on which the last terms are below rounding."""
+    width = longest
+    size = sum(abs(part) * width**k for k, part in enumerate(series[:4]))
+    for k in range(ORDER - 2, ORDER + 1):
+        if series[k]:
+            width = min(width, (EPSILON * size / abs(series[k])) ** (1.0 / k))
+    return width

@@ -1,0 +1,39 @@
+"""Any smooth f and g: the emitted Taylor recurrence, restarted from its own sums."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+from singimpact.algebra.expressions import substitute
+from singimpact.codegen.recurrence import Recurrence, recurrence
+from singimpact.oscillator.model import Oscillator
+
+
+def step_size(X: Any, z: Any, n: int, longest: Any, ulp: Any, p: Any) -> Any:  # noqa: ARG001
+    """The step on which the last three terms are below ulp times the first ones, at most `longest`."""
+    h = longest
+    for _ in range(3):
+        size = abs(z) + h * (abs(X[1]) + h * (abs(X[2]) + h * abs(X[3])))
+        for k in range(n - 2, n + 1):
+            if X[k] != 0:
+                fit = (ulp * size / abs(X[k])) ** (1 / (k + 0 * h))
+                if not fit >= h:
+                    h = fit
+    return h
+
+
+def restart(launch: Any, v: Any, time: Any, z: Any, u: Any, noise: Any, ulp: Any, p: Any) -> Any:  # noqa: ARG001
+    """The state a step ends in is the state the next one starts from."""
+    return z, u, noise
+
+
+@lru_cache(maxsize=256)
+def recurrence_of(osc: Oscillator) -> Recurrence:
+    """The emitted recurrence of a model; models of one structure have one text."""
+    return recurrence(osc.f, osc.g)
+
+
+def constants(osc: Oscillator) -> list[Any]:
+    """The trees p[0], p[1], ...: the clearance and the constant parts of f and g, parameters put in."""
+    return [osc.clearance, *(substitute(tree, osc.parameters) for tree in recurrence_of(osc).constants)]

@@ -1,0 +1,181 @@
+"""First hit F and impact map G for arrays of states, in doubles; `digits` hands over to `manydigits`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float, constant
+from singimpact.codegen.kernels import compiled
+from singimpact.flights import manydigits
+from singimpact.flights.carriers import Flight, Step
+from singimpact.flights.condition import condition
+from singimpact.flights.kernel import Kernel, kernel_of
+from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
+from singimpact.flights.limits import LIMITS, degree_for
+from singimpact.flights.phase import reduced
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.linear import LinearForm
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+EPSILON = 2.0**-52
+Array = np.ndarray[Any, Any]
+
+
+def first_hit(
+    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None
+) -> Flight:
+    """The first hit of the obstacle by the flight from (tau, v).
+
+    Parameters
+    ----------
+    osc : the model.
+    tau : launch times, any finite numbers. v : launch velocities >= 0; they broadcast.
+    digits : decimal digits; the result then holds mpmath numbers.
+    tolerance : relative error allowed in a step of a Taylor flow; a linear model does not use it.
+    horizon : time after which a flight is given up.
+
+    Returns
+    -------
+    Flight : arrays of the broadcast shape, scalars for scalars.
+
+    Examples
+    --------
+    >>> hit = first_hit(Oscillator("0", "-2", 0, 1), 0, [0, 1, 3])
+    >>> hit.flight_time.tolist(), hit.velocity.tolist(), hit.status.tolist()
+    ([0.0, 1.0, 3.0], [0.0, -1.0, -3.0], [2, 0, 0])
+    """
+    states = States.read(tau, v)
+    limit = horizon_of(osc, horizon)
+    epsilon = _tolerance(tolerance)
+    if digits is not None:
+        return shaped(manydigits.flights(osc, states, checked_digits(digits), limit), states.shape)
+    return shaped(_flights(osc, states, limit, epsilon), states.shape)
+
+
+def impact_map(
+    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None
+) -> Step:
+    """The impact map G(tau, v) = (tau + T, -r x'(T)); parameters as in `first_hit`.
+
+    Notes
+    -----
+    At `no_return` tau is inf and v nan; at `unresolved` both are nan; at `sticks` and `graze` v is 0.
+
+    Examples
+    --------
+    >>> step = impact_map(Oscillator("0", "-2", 0, "1/2"), 1.0, 3.0)
+    >>> step.tau, step.v, step.status
+    (np.float64(4.0), np.float64(1.5), np.int8(0))
+    """
+    states = States.read(tau, v)
+    hit = first_hit(osc, tau, v, digits=digits, tolerance=tolerance, horizon=horizon)
+    if digits is not None:
+        return manydigits.step(osc, states, hit, digits)
+    start = states.tau.reshape(states.shape)
+    bounce = np.abs(as_float(osc.restitution) * hit.velocity)
+    values = (start + hit.flight_time, bounce) if states.shape else (start[()] + hit.flight_time, bounce)
+    return Step(**vars(hit), tau=values[0], v=values[1])
+
+
+def checked_digits(digits: Any) -> int:
+    """Digits as an int between 1 and 2000."""
+    if isinstance(digits, bool) or not isinstance(digits, int | np.integer) or not 1 <= digits <= 2000:
+        raise refuse("digits", digits, "a whole number from 1 to 2000")
+    return int(digits)
+
+
+def _tolerance(tolerance: Any) -> float:
+    if tolerance is None:
+        return EPSILON
+    value = as_float(constant("tolerance", tolerance))
+    if not EPSILON <= value <= 1e-3:
+        raise refuse("tolerance", tolerance, "a number from 2.3e-16 to 1e-3, or digits= for more than doubles hold")
+    return value
+
+
+def shaped(flight: Flight, shape: tuple[int, ...]) -> Flight:
+    """The flat fields in a shape, or as scalars."""
+    fields = {name: np.asarray(value).reshape(shape)[()] for name, value in vars(flight).items()}
+    return type(flight)(**fields)
+
+
+def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> Flight:
+    kernel = kernel_of(osc)
+    status = np.zeros(states.v.size, dtype=np.int8)
+    removed = _removed(osc, states, status)
+    numbers = _flown(osc, kernel, states, removed, status, limit, epsilon)
+    _settle(osc, states, limit, status, numbers)
+    flight = flight_of(status, numbers)
+    return flight if kernel.form is None else replace(flight, condition=_conditions(osc, kernel.form, states, flight))
+
+
+def _conditions(osc: Oscillator, form: LinearForm, states: States, flight: Flight) -> Array:
+    tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
+    return condition(form, tau, states.v, known_accelerations(osc, states), flight.flight_time, flight.velocity)
+
+
+def _removed(osc: Oscillator, states: States, status: Array) -> Array:
+    """How often t = 0 is a root of x - c; a mass at rest that stays is marked."""
+    removed = np.ones(states.v.size, dtype=np.int64)
+    for index in np.flatnonzero(states.v == 0):
+        sign, order = at_rest(osc, states.exact_tau(int(index)))
+        removed[index] = order + 2
+        status[index] = Status.hit if sign > 0 else Status.sticks
+    return removed
+
+
+def _flown(
+    osc: Oscillator, kernel: Kernel, states: States, removed: Array, status: Array, limit: float, epsilon: float
+) -> Array:
+    order = degree_for(epsilon) + int(removed.max(initial=1)) - 1
+    numbers = np.zeros((states.v.size, 4))
+    moving = np.flatnonzero(status == Status.hit)
+    if not moving.size:
+        return numbers
+    p = doubles(kernel)
+    part, flown = np.empty(moving.size, dtype=np.int8), np.empty((moving.size, 4))
+    work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
+    compiled(kernel.text, kernel.names)["run"](
+        launches(osc, kernel, states.tau)[moving], states.v[moving], removed[moving],
+        known_accelerations(osc, states)[moving], order, limit, LIMITS.safety * epsilon, p, *work, part, flown,
+    )  # fmt: skip
+    status[moving], numbers[moving] = part, flown
+    return numbers
+
+
+def doubles(kernel: Kernel) -> Array:
+    """The numbers of the model, refused when they do not fit a double."""
+    return _doubles(kernel).copy()
+
+
+@lru_cache(maxsize=256)
+def _doubles(kernel: Kernel) -> Array:
+    p = np.array([as_float(tree) for tree in kernel.constants])
+    if not np.all(np.isfinite(p)):
+        raise InputError("a constant of the model is too large for a double: scale the model, or ask with digits=")
+    return p
+
+
+def _settle(osc: Oscillator, states: States, limit: float, status: Array, numbers: Array) -> None:
+    """What doubles leave open is asked again with many digits: the state is exact, so the answer exists."""
+    for index in np.flatnonzero(status == Status.unresolved)[: LIMITS.settled]:
+        settled = manydigits.settle(osc, states, int(index), limit)
+        if settled is not None:
+            status[index], numbers[index] = settled
+
+
+def flight_of(status: Array, numbers: Array) -> Flight:
+    """The carrier, with nan and inf where the status says so."""
+    time, velocity, depth, bound = (numbers[:, column].copy() for column in range(4))
+    unknown = status == Status.unresolved
+    gone = (status == Status.no_return) | (status == Status.escaped)
+    time[gone], velocity[gone | unknown], time[unknown] = np.inf, np.nan, np.nan
+    velocity[(status == Status.graze) | (status == Status.sticks)] = 0.0
+    plain = ~unknown & (status != Status.graze)
+    depth[plain], bound[plain] = np.nan, np.nan
+    return Flight(time, velocity, status, depth, bound, np.full(time.shape, np.nan))

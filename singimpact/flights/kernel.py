@@ -1,0 +1,92 @@
+"""The kernel of a model: which flow it has, the text joined for it, its numbers as doubles or mpf."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power
+from singimpact.algebra.numbers import as_float, sign_of
+from singimpact.flights import first_root, march
+from singimpact.flights.flow import closed_form, taylor
+from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
+from singimpact.oscillator.model import Oscillator
+
+COMMON = (first_root.safe_step, first_root.polished, first_root.first_root,
+          march.advanced, march.march, march.run, march.follow)  # fmt: skip
+HEAD = '''"""Written by singimpact from the text of its own functions and from f and g: edit those, not this file."""
+
+from __future__ import annotations
+
+from cmath import exp as complex_exp
+from cmath import sqrt as complex_sqrt
+from typing import Any
+'''
+
+
+@dataclass(frozen=True, eq=False)
+class Kernel:
+    """What is needed to fly: text, names of its functions (callees first), rows of work, numbers, waves.
+
+    Parameters
+    ----------
+    form : the linear form; None: the launch is its time.
+    """
+
+    text: str
+    names: tuple[str, ...]
+    rows: int
+    constants: tuple[Expression, ...]
+    form: LinearForm | None
+
+
+@lru_cache(maxsize=256)
+def kernel_of(osc: Oscillator, exact_restart: bool = True) -> Kernel:
+    """The kernel of a model; with `exact_restart` a linear model restarts from its closed form (doubles only)."""
+    form = linear_form(osc)
+    if form is None:
+        emitted = taylor.recurrence_of(osc)
+        parts: tuple[Callable[..., Any], ...] = (taylor.step_size, taylor.restart, *COMMON)
+        text = _joined(emitted.source, parts)
+        return Kernel(text, ("coefficients", *_names(parts)), emitted.rows, tuple(taylor.constants(osc)), None)
+    text, names = _linear_text(exact_restart)
+    return Kernel(text, names, max(2 * len(form.harmonics), 1), linear_constants(osc, form), form)
+
+
+@lru_cache(maxsize=2)
+def _linear_text(exact_restart: bool) -> tuple[str, tuple[str, ...]]:
+    restart = (closed_form.pair, closed_form.triple, closed_form.restart) if exact_restart else (taylor.restart,)
+    parts = (closed_form.coefficients, closed_form.step_size, *restart, *COMMON)
+    return _joined("", parts), _names(parts)
+
+
+def _names(parts: tuple[Callable[..., Any], ...]) -> tuple[str, ...]:
+    return tuple(part.__name__ for part in parts)
+
+
+def _joined(source: str, parts: tuple[Callable[..., Any], ...]) -> str:
+    return "\n\n".join([HEAD, source, *(_source(part) for part in parts)])
+
+
+@lru_cache(maxsize=64)
+def _source(part: Callable[..., Any]) -> str:
+    return inspect.getsource(part)
+
+
+def linear_constants(osc: Oscillator, form: LinearForm) -> tuple[Expression, ...]:
+    """p of the closed form; the largest rate is only a scale, so a double of it is enough."""
+    damping, stiffness = as_float(form.damping), as_float(form.stiffness)
+    scale = max(abs(damping), abs(stiffness) ** 0.5, *(abs(as_float(wave.rate)) for wave in form.harmonics), 0.0)
+    numbers = [osc.clearance, form.damping, form.stiffness, at_rest(form, osc.clearance), Number(Fraction(scale))]
+    for wave in form.harmonics:
+        numbers += [wave.rate, wave.cosine, wave.sine]
+    return tuple(numbers)
+
+
+def turn(rate: Expression) -> Expression:
+    """The time 2 pi/|rate| of a turn."""
+    return multiply(number(2 * sign_of(rate)), Pi(), power(rate, number(-1)))

@@ -1,0 +1,127 @@
+"""States a flight starts from: read, checked, broadcast; what the flow wants to know of them; a mass at rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import Expression, Number
+from singimpact.algebra.numbers import as_float, constant, float_array, sign_of
+from singimpact.flights.kernel import Kernel, turn
+from singimpact.flights.limits import LIMITS
+from singimpact.flights.phase import reduced
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
+from singimpact.oscillator.model import Oscillator
+
+
+@dataclass(frozen=True)
+class States:
+    """Launch states, flat, with the shape they came in; `exact_tau`, `exact_v` give what was written.
+
+    Examples
+    --------
+    >>> states = States.read(["pi/2", 1], 0.5)
+    >>> states.shape, str(states.exact_tau(0))
+    ((2,), '0.5*pi')
+    """
+
+    tau: np.ndarray[Any, Any]
+    v: np.ndarray[Any, Any]
+    shape: tuple[int, ...]
+    written: tuple[Any, Any]
+
+    @staticmethod
+    def read(tau: Any, v: Any) -> States:
+        """Check and broadcast a caller's tau and v."""
+        raw = _raw("tau", tau), _raw("v", v)
+        try:
+            written = np.broadcast_arrays(*raw)
+        except ValueError:
+            raise InputError(
+                f"tau of shape {raw[0].shape} and v of shape {raw[1].shape} do not broadcast: give shapes that do"
+            ) from None
+        shape = written[0].shape
+        times, speeds = (
+            np.broadcast_to(float_array(name, part), shape).ravel()
+            for name, part in zip(("tau", "v"), raw, strict=True)
+        )
+        if np.any(speeds < 0):
+            raise refuse("v", float(speeds[speeds < 0][0]), "velocities >= 0, just after an impact")
+        return States(times, speeds, shape, (written[0].ravel(), written[1].ravel()))
+
+    def exact_tau(self, index: int) -> Expression:
+        """tau as it was written."""
+        return constant("tau", self.written[0][index])
+
+    def exact_v(self, index: int) -> Expression:
+        """v as it was written."""
+        return constant("v", self.written[1][index])
+
+
+def _raw(name: str, value: Any) -> np.ndarray[Any, Any]:
+    from singimpact.algebra.expressions import Call, Name, Pi, Power, Product, Sum
+
+    if isinstance(value, Number | Pi | Name | Sum | Product | Power | Call):
+        boxed = np.empty((), dtype=object)
+        boxed[()] = value
+        return boxed
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise refuse(name, value, "a number or an array of numbers") from None
+    if array.dtype.kind in "USc" or (array.dtype.kind == "O" and isinstance(value, list | tuple)):
+        # numpy turns a list of text and numbers into text of numbers, and a float written out is not that float
+        array = np.array(value, dtype=object)
+    return array
+
+
+def launches(osc: Oscillator, kernel: Kernel, tau: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """What the kernel wants to know of every launch: its time, or cosine and sine of every harmonic's phase."""
+    if kernel.form is None:
+        return (tau if osc.period is None else reduced(tau, osc.period))[:, None]
+    columns = []
+    for wave in kernel.form.harmonics:
+        angle = as_float(wave.rate) * reduced(tau, turn(wave.rate)) + as_float(wave.phase)
+        columns += [np.cos(angle), np.sin(angle)]
+    return np.stack(columns, axis=1) if columns else np.zeros((tau.size, 1))
+
+
+def known_accelerations(osc: Oscillator, states: States) -> np.ndarray[Any, Any]:
+    """a_c at every launch, to full relative accuracy."""
+    return acceleration(osc, states.tau)
+
+
+def at_rest(osc: Oscillator, tau: Expression) -> tuple[int, int]:
+    """(sign, order) of the first derivative of a_c that is not zero; sign 0: none was found.
+
+    Examples
+    --------
+    >>> at_rest(Oscillator("x", "sin(t)", 0, 1), constant("tau", 0))
+    (1, 1)
+    """
+    for order in range(LIMITS.derivatives_at_rest + 1):
+        sign = sign_of_acceleration(osc, tau, order)
+        if sign:
+            return sign, order
+    return 0, 0
+
+
+def horizon_of(osc: Oscillator, horizon: Any) -> float:
+    """The time at which a flight is given up."""
+    if horizon is not None:
+        tree = constant("horizon", horizon)
+        if sign_of(tree) <= 0:
+            raise refuse("horizon", horizon, "a positive time")
+        return as_float(tree)
+    if osc.period is None:
+        return LIMITS.horizon_time
+    return LIMITS.horizon_periods * as_float(osc.period)
+
+
+def exact_number(value: float) -> Number:
+    """A double as the rational it is."""
+    return Number(Fraction(value))

@@ -1,0 +1,48 @@
+"""Thresholds of the impact map, each with its reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Where a flight is cut, and how much rounding is allowed for.
+
+    Parameters
+    ----------
+    horizon_periods, horizon_time : default horizon with and without a period of g.
+    safety : rounding allowed for, in units of epsilon times the size of the terms; a Horner sum of 25 terms is
+        within 2.5 units in practice, a restart of the closed form within 3, so 8 covers both.
+    derivatives_at_rest : how many derivatives of a_c are tried for a mass at rest before it is called at rest for good.
+    settled : launches at most that double arithmetic leaves undecided and that are settled in many digits; a settled
+        launch costs about 20 ms, so a grid laid along a graze does not hang.
+    settling_digits : digits of the first and of the last attempt; a touch that 120 digits do not tell from a graze is
+        called a graze.
+    guard : digits beyond those asked for; half of the digits go in a square root at a graze, so agreement of two
+        runs is what is trusted, not this number.
+    """
+
+    horizon_periods: float = 1000.0
+    horizon_time: float = 1e4
+    safety: float = 8.0
+    derivatives_at_rest: int = 12
+    settled: int = 200
+    settling_digits: tuple[int, int] = (50, 120)
+    guard: int = 15
+
+
+LIMITS = Limits()
+
+
+def degree_for(epsilon: float) -> int:
+    """Degree of a Taylor step: the cheapest one for a step whose error is epsilon is near -log(epsilon)/1.5.
+
+    Examples
+    --------
+    >>> degree_for(2.0**-52), degree_for(1e-6)
+    (24, 9)
+    """
+    from math import ceil, log
+
+    return max(8, ceil(-log(epsilon) / 1.5) - 1)

@@ -1,0 +1,158 @@
+"""The impact map in mpmath arithmetic, from nothing but the exact state: the kernel's own text on mpf.
+
+Two runs at different precision must agree to the digits asked for, else the precision grows: half of the digits go in a
+square root at a graze, and no formula is trusted to know how near it is.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_mpf
+from singimpact.codegen.kernels import FUNCTIONS, plain
+from singimpact.flights.carriers import Flight, Step
+from singimpact.flights.kernel import Kernel, kernel_of
+from singimpact.flights.launch import States, at_rest
+from singimpact.flights.limits import LIMITS, degree_for
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+Outcome = tuple[int, tuple[Any, Any, Any, Any]]
+
+
+def flights(osc: Oscillator, states: States, digits: int, limit: float) -> Flight:
+    """First hits with `digits` digits."""
+    import mpmath
+
+    size = states.v.size
+    status = np.zeros(size, dtype=np.int8)
+    fields = [np.empty(size, dtype=object) for _ in range(5)]
+    for index in range(size):
+        status[index], numbers = agreed(osc, states, index, digits, limit)
+        with mpmath.workdps(digits):
+            for field, value in zip(fields, (*_shown(status[index], numbers), mpmath.nan), strict=True):
+                field[index] = +mpmath.mpf(value)
+    time, velocity, depth, bound, condition = fields
+    return Flight(time, velocity, status, depth, bound, condition)
+
+
+def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, Any, Any]:
+    import mpmath
+
+    time, velocity, depth, bound = numbers
+    nan = mpmath.nan
+    match status:
+        case Status.hit:
+            return time, velocity, nan, nan
+        case Status.no_return:
+            return mpmath.inf, nan, nan, nan
+        case Status.sticks:
+            return 0, 0, nan, nan
+        case Status.graze:
+            return time, 0, depth, bound
+    return nan, nan, depth, bound
+
+
+def step(osc: Oscillator, states: States, hit: Flight, digits: int) -> Step:
+    """The hit with the state after it."""
+    import mpmath
+
+    with mpmath.workdps(digits):
+        restitution = as_mpf(osc.restitution, mpmath.mp)
+        times, speeds = np.asarray(hit.flight_time, dtype=object), np.asarray(hit.velocity, dtype=object)
+        tau, v = np.empty(times.size, dtype=object), np.empty(times.size, dtype=object)
+        for index, (time, speed) in enumerate(zip(times.ravel(), speeds.ravel(), strict=True)):
+            tau[index] = as_mpf(states.exact_tau(index), mpmath.mp) + time
+            v[index] = abs(restitution * speed)
+    return Step(**vars(hit), tau=tau.reshape(states.shape)[()], v=v.reshape(states.shape)[()])
+
+
+def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome:
+    """One flight whose time and velocity two precisions agree on to `digits` digits."""
+    precision = digits + LIMITS.guard
+    outcome = flown(osc, states, index, precision, limit)
+    while precision < 4 * digits + 500:
+        precision = precision + max(LIMITS.guard, precision // 4)
+        again = flown(osc, states, index, precision, limit)
+        if outcome[0] == again[0] and outcome[0] != Status.unresolved and _close(outcome[1], again[1], digits):
+            return again
+        outcome = again
+    if outcome[0] == Status.unresolved and _touches(outcome[1]):
+        return int(Status.graze), outcome[1]
+    return outcome
+
+
+def _close(first: tuple[Any, ...], second: tuple[Any, ...], digits: int) -> bool:
+    import mpmath
+
+    with mpmath.workdps(digits + 5):
+        small = mpmath.mpf(10) ** (-digits - 1)
+        return all(abs(a - b) <= small * abs(b) for a, b in zip(first[:2], second[:2], strict=True))
+
+
+def _touches(numbers: tuple[Any, Any, Any, Any]) -> bool:
+    depth, bound = numbers[2:]
+    return bool(abs(depth) <= 10 * bound)
+
+
+def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[int, list[float]] | None:
+    """One flight that doubles left open, as doubles; None when many digits do not settle it either."""
+    for digits in LIMITS.settling_digits:
+        code, numbers = flown(osc, states, index, digits, limit)
+        if code != Status.unresolved:
+            return code, [float(value) for value in numbers]
+    if _touches(numbers):
+        return int(Status.graze), [float(value) for value in numbers]
+    return None
+
+
+def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome:
+    """One flight in `digits` digits, rounding errors included in what is undecided."""
+    import mpmath
+
+    with mpmath.workdps(digits):
+        v = as_mpf(states.exact_v(index), mpmath.mp)
+        removed = 1
+        if v == 0:
+            sign, order = at_rest(osc, states.exact_tau(index))
+            if sign <= 0:
+                return int(Status.sticks), (v, v, v, v)
+            removed = order + 2
+        try:
+            return _march(osc, states, index, v, removed, limit)
+        except (ArithmeticError, ValueError, TypeError):  # log or a root left its domain on the way
+            return int(Status.unresolved), (mpmath.nan,) * 4
+
+
+def _march(osc: Oscillator, states: States, index: int, v: Any, removed: int, limit: float) -> Outcome:
+    import mpmath
+
+    kernel = kernel_of(osc, exact_restart=False)
+    space = plain(kernel.text, {name: getattr(mpmath.mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
+    order = degree_for(float(mpmath.eps)) if mpmath.mp.prec < 1000 else int(mpmath.mp.prec / 2.15)
+    order += removed - 1
+    p = np.array([as_mpf(tree, mpmath.mp) for tree in kernel.constants], dtype=object)
+    shapes = (order + 2,), (kernel.rows, order + 2), (order + 2,)
+    work = [np.full(shape, mpmath.mpf(0), dtype=object) for shape in shapes]
+    code, *numbers = space["march"](
+        launch(osc, kernel, states, index), v, removed, mpmath.nan, order, mpmath.mpf(limit), 8 * mpmath.eps, p, *work
+    )
+    return int(code), (numbers[0], numbers[1], numbers[2], numbers[3])
+
+
+def launch(osc: Oscillator, kernel: Kernel, states: States, index: int) -> list[Any]:
+    """What the kernel wants to know of a launch, at the working precision whatever the size of tau."""
+    import mpmath
+
+    extra = max(int(mpmath.log(abs(states.tau[index]) + 1, 2)), 0) + 10
+    with mpmath.workprec(mpmath.mp.prec + extra):
+        tau = as_mpf(states.exact_tau(index), mpmath.mp)
+        if kernel.form is None:
+            if osc.period is None:
+                return [tau]
+            period = as_mpf(osc.period, mpmath.mp)
+            return [tau - period * mpmath.nint(tau / period)]
+        angles = [as_mpf(w.rate, mpmath.mp) * tau + as_mpf(w.phase, mpmath.mp) for w in kernel.form.harmonics]
+        return [value for angle in angles for value in (mpmath.cos(angle), mpmath.sin(angle))]

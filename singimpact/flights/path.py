@@ -1,0 +1,60 @@
+"""x and x' along one flight."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float, float_array
+from singimpact.codegen.kernels import compiled
+from singimpact.flights.hits import EPSILON, doubles
+from singimpact.flights.kernel import kernel_of
+from singimpact.flights.launch import States, launches
+from singimpact.flights.limits import LIMITS, degree_for
+from singimpact.inputs import InputError
+from singimpact.oscillator.model import Oscillator
+
+
+class Path(NamedTuple):
+    """x and x' at the times asked for; nan where the solution does not reach."""
+
+    x: Any
+    xdot: Any
+
+
+def path(osc: Oscillator, tau: Any, v: Any, t: Any) -> Path:
+    """x and x' at the times t after (negative: before) the launch from (c, v) at tau; the obstacle is not felt.
+
+    Parameters
+    ----------
+    osc : the model. tau, v : one launch. t : times since the launch, any shape.
+
+    Examples
+    --------
+    >>> place = path(Oscillator("0", "-2", "0.5", 1), 0, 3, [0, 1, 3])
+    >>> place.x.tolist(), place.xdot.tolist()
+    ([0.5, 2.5, 0.5], [3.0, 1.0, -3.0])
+    """
+    states = States.read(tau, v)
+    if states.shape:
+        raise InputError(f"tau and v have shape {states.shape}: one launch at a time has a path, give two numbers")
+    times = float_array("t", t)
+    flat, out = times.ravel(), np.full((times.size, 2), np.nan)
+    for side in (flat >= 0, flat < 0):
+        chosen = np.flatnonzero(side)
+        chosen = chosen[np.argsort(np.abs(flat[chosen]), kind="stable")]
+        if chosen.size:
+            out[chosen] = _followed(osc, states, flat[chosen])
+    x, xdot = out[:, 0] + as_float(osc.clearance), out[:, 1]
+    return Path(x.reshape(times.shape)[()], xdot.reshape(times.shape)[()])
+
+
+def _followed(osc: Oscillator, states: States, times: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    kernel, order = kernel_of(osc), degree_for(EPSILON)
+    out = np.full((times.size, 2), np.nan)
+    compiled(kernel.text, kernel.names)["follow"](
+        launches(osc, kernel, states.tau)[0], float(states.v[0]), times, order, LIMITS.safety * EPSILON,
+        doubles(kernel), np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), out,
+    )  # fmt: skip
+    return out

@@ -1,0 +1,49 @@
+"""The phase of a launch, reduced without loss: tau is an exact number, however large."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+from math import frexp
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import Expression
+
+
+def reduced(tau: np.ndarray[Any, Any], period: Expression) -> np.ndarray[Any, Any]:
+    """tau minus the nearest multiple of the period, each to half a unit in the last place.
+
+    Parameters
+    ----------
+    tau : doubles, taken exactly; within one period of zero they are left alone, since -1e-20 plus a period is lost.
+    period : constant tree, > 0.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.numbers import constant
+    >>> reduced(np.array([1e22, -1e-20]), constant("period", "2*pi")).tolist()
+    [-1.020177392559087, -1e-20]
+    """
+    size = float(_scaled(period, 64)) / 2.0**64
+    result = np.array(tau, dtype=float)
+    for index in np.flatnonzero(np.abs(result) > size):
+        result[index] = _reduced(float(result[index]), period)
+    return result
+
+
+def _reduced(tau: float, period: Expression) -> float:
+    bits = 64 * (3 + max(frexp(tau)[1], 0) // 64) + 64
+    scaled, exact = _scaled(period, bits), int(Fraction(tau) * 2**bits) if bits > 1074 else Fraction(tau) * 2**bits
+    turns = round(Fraction(exact) / scaled)
+    return float(Fraction(exact - turns * scaled) / 2**bits)
+
+
+@lru_cache(maxsize=1024)
+def _scaled(period: Expression, bits: int) -> int:
+    """The integer nearest to period * 2^bits."""
+    from singimpact.algebra.balls import Balls, as_rational
+
+    scaled: int = round(as_rational(Balls(bits + 80).evaluate(period, {})) * 2**bits)
+    return scaled

@@ -1,0 +1,155 @@
+"""What a user holds: `ImpactOscillator`, the model with methods, each one call into the room that does the work."""
+
+from __future__ import annotations
+
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import compare, constant, float_array
+from singimpact.inputs import refuse
+from singimpact.oscillator.files import read_fields, to_toml
+from singimpact.oscillator.model import Oscillator
+
+if TYPE_CHECKING:
+    from singimpact.dynamics.orbit import Orbit
+    from singimpact.flights.carriers import Flight, Step
+    from singimpact.flights.path import Path
+
+
+class ImpactOscillator(Oscillator):
+    """x'' + f(x, x') = g(t), x >= clearance, v -> -restitution v; parameters as in `Oscillator`.
+
+    Examples
+    --------
+    >>> osc = ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", 0.3, 0.6, {"omega": 1.7})
+    >>> step = osc.impact_map(1.5, 1e-3)
+    >>> print(f"{step.v:.12f}", step.status)
+    0.000600256662 0
+    """
+
+    __slots__ = ()
+
+    def first_hit(
+        self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None
+    ) -> Flight:
+        """The first hit F of flights from (tau, v): see `singimpact.flights.hits.first_hit`.
+
+        Examples
+        --------
+        >>> import mpmath
+        >>> hit = linear(2, "0.3", "0.5").first_hit("1.2", "1e-100", digits=30)
+        >>> print(mpmath.nstr(hit.flight_time, 30))
+        1.92790834380226439414926125583e-100
+        """
+        from singimpact.flights.hits import first_hit
+
+        return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon)
+
+    def impact_map(
+        self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None
+    ) -> Step:
+        """The impact map G(tau, v): see `singimpact.flights.hits.impact_map`.
+
+        Examples
+        --------
+        >>> step = linear(2, "0.3", "0.5").impact_map([0, 2.9], [1, 0.5])
+        >>> step.tau.round(12).tolist()
+        [2.333796858489, 5.260348355721]
+        """
+        from singimpact.flights.hits import impact_map
+
+        return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon)
+
+    def flight(self, tau: Any, v: Any, t: Any) -> Path:
+        """x and x' at times t along one flight: see `singimpact.flights.path.path`."""
+        from singimpact.flights.path import path
+
+        return path(self, tau, v, t)
+
+    def acceleration(self, tau: Any, order: int = 0) -> Any:
+        """a_c(tau) = g(tau) - f(c, 0), or its derivative of an order.
+
+        Examples
+        --------
+        >>> linear(2, 0, 1).acceleration([0, 1e3], order=1).tolist()
+        [0.0, -1.860079008832274]
+        """
+        from singimpact.oscillator.acceleration import acceleration
+
+        if isinstance(order, bool) or not isinstance(order, int) or not 0 <= order <= 60:
+            raise refuse("order", order, "a whole number from 0 to 60")
+        times = float_array("tau", tau)
+        return acceleration(self, np.atleast_1d(times).ravel(), order).reshape(times.shape)[()]
+
+    def orbit(self, tau: Any, v: Any, impacts: int = 200) -> Orbit:
+        """Impacts, chatter and rest in order: see `singimpact.dynamics.orbit.orbit`."""
+        from singimpact.dynamics.orbit import orbit
+
+        return orbit(self, tau, v, impacts)
+
+    def to_toml(self) -> str:
+        """The model as the text of a model file.
+
+        Examples
+        --------
+        >>> print(linear(2, "0.3", "0.5").to_toml(), end="")
+        f = "x"
+        g = "cos(omega*t)"
+        clearance = "0.3"
+        restitution = "0.5"
+        <BLANKLINE>
+        [parameters]
+        omega = "2"
+        """
+        return to_toml(self.to_dict())
+
+
+def linear(
+    omega: Any,
+    clearance: Any,
+    restitution: Any,
+    damping: Any = 0,
+    stiffness: Any = 1,
+    amplitude: Any = 1,
+    phase: Any = 0,
+) -> ImpactOscillator:
+    """x'' + damping x' + stiffness x = amplitude cos(omega t + phase); terms at their defaults are left out.
+
+    Parameters
+    ----------
+    omega, clearance, restitution, damping, stiffness, amplitude, phase : numbers; omega > 0.
+
+    Examples
+    --------
+    >>> linear("2.8", 0, "0.8", damping="0.1")
+    ImpactOscillator(f='x + damping*xdot', g='cos(omega*t)', clearance='0', restitution='0.8', parameters={'damping': '0.1', 'omega': '2.8'})
+    """  # noqa: E501
+    if compare(constant("omega", omega), 0) <= 0:
+        raise refuse("omega", omega, "a number > 0")
+    given = {"damping": (damping, 0), "stiffness": (stiffness, 1), "amplitude": (amplitude, 1), "phase": (phase, 0)}
+    changed = {name: value for name, (value, usual) in given.items() if compare(constant(name, value), usual)}
+    force = ("stiffness*x" if "stiffness" in changed else "x") + (" + damping*xdot" if "damping" in changed else "")
+    wave = "cos(omega*t + phase)" if "phase" in changed else "cos(omega*t)"
+    forcing = f"amplitude*{wave}" if "amplitude" in changed else wave
+    return ImpactOscillator(force, forcing, clearance, restitution, {"omega": omega, **changed})
+
+
+def universal(kappa: Any, restitution: Any) -> ImpactOscillator:
+    """x'' = 12 kappa (t^2 - 1), c = 0: the unfolded swan, positive for kappa > 0, negative for kappa < 0.
+
+    Examples
+    --------
+    >>> step = universal(-1, "0.5").impact_map(-1, 0)
+    >>> float(step.tau), float(step.v)
+    (3.0, 32.0)
+    """
+    if not compare(constant("kappa", kappa), 0):
+        raise refuse("kappa", kappa, "a number other than 0")
+    return ImpactOscillator("0", "12*kappa*(t**2 - 1)", 0, restitution, {"kappa": kappa})
+
+
+def read_model(path: str | FilePath) -> ImpactOscillator:
+    """The model in a TOML file with f, g, clearance, restitution and perhaps parameters and period."""
+    return ImpactOscillator(**read_fields(path))

@@ -1,0 +1,106 @@
+"""x(t) of an orbit: flights, impacts, rest on the obstacle, chatter that was summed up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.dynamics.orbit import Orbit
+from singimpact.flights.path import path
+
+
+@dataclass(frozen=True)
+class OrbitStyle:
+    """How an orbit looks; told apart by shape, width and lightness, so that it survives grey-scale.
+
+    Parameters
+    ----------
+    points : points of a whole picture, shared out by length; a flight gets at least `fewest`.
+    tail : how far a last flight without return, or a rest for ever, is drawn, as a part of what came before.
+    many : above this number of impacts their marks get small.
+    """
+
+    flight: str = "#0072B2"
+    rest: str = "#D55E00"
+    obstacle: str = "#4D4D4D"
+    points: int = 4000
+    fewest: int = 24
+    tail: float = 0.15
+    many: int = 40
+
+
+STYLE = OrbitStyle()
+
+
+def draw_orbit(orbit: Orbit, axes: Any, style: OrbitStyle = STYLE) -> Any:
+    """Draw x(t) of an orbit on axes."""
+    clearance = as_float(orbit.oscillator.clearance)
+    end = _end(orbit, style)
+    times, places = _curve(orbit, end, style)
+    axes.plot(times, places, color=style.flight, linewidth=1.1, label="flight $x(t)$", zorder=3)
+    axes.axhline(clearance, color=style.obstacle, linewidth=0.8, label="obstacle $x = c$", zorder=1)
+    _marks(orbit, axes, clearance, style)
+    _rests(orbit, axes, clearance, end, style)
+    axes.set_xlabel("time $t$")
+    axes.set_ylabel("displacement $x$")
+    axes.set_xlim(orbit.tau[0], end)
+    high = axes.get_ylim()[1]
+    axes.set_ylim(clearance - 0.12 * (high - clearance), high)
+    axes.axhspan(axes.get_ylim()[0], clearance, facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0, zorder=0)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize="small")
+    return axes
+
+
+def _end(orbit: Orbit, style: OrbitStyle) -> float:
+    """The right edge: the last event, and a tail when something goes on after it."""
+    first, last = float(orbit.tau[0]), float(orbit.tau[-1])
+    open_ended = bool(orbit.phases) and not orbit.phases[-1][2] <= last
+    period = orbit.oscillator.period
+    usual = as_float(period) if period is not None else 1.0
+    if not open_ended:
+        return last if last > first else first + usual
+    return last + max(style.tail * (last - first), 0.25 * usual)
+
+
+def _curve(orbit: Orbit, end: float, style: OrbitStyle) -> tuple[Any, Any]:
+    times: list[Any] = []
+    places: list[Any] = []
+    begin = dict(zip(orbit.tau.tolist(), orbit.v.tolist(), strict=True))
+    for kind, start, stop in orbit.phases:
+        if kind not in ("flight", "no_return"):
+            continue
+        stop = min(stop, end)
+        count = max(style.fewest, int(style.points * (stop - start) / (end - orbit.tau[0])))
+        inside = np.linspace(0.0, stop - start, count)
+        times += [start + inside, [np.nan]]
+        places += [path(orbit.oscillator, start, begin[start], inside).x, [np.nan]]
+    return (np.concatenate(times), np.concatenate(places)) if times else ([], [])
+
+
+def _marks(orbit: Orbit, axes: Any, clearance: float, style: OrbitStyle) -> None:
+    looks = {
+        "impact": ("o", "impact", "white"),
+        "graze": ("^", "graze", "white"),
+        "complete": ("X", "end of chatter (summed)", style.rest),
+        "release": (">", "lifts off", style.rest),
+    }
+    for kind, (marker, label, face) in looks.items():
+        times = orbit.tau[orbit.kind == kind]
+        if not times.size:
+            continue
+        small = kind == "impact" and times.size > style.many
+        axes.plot(times, np.full(times.size, clearance), linestyle="none", marker=marker, label=label, zorder=5,
+                  markersize=2.5 if small else 5.5, markerfacecolor=face, markeredgecolor="black",
+                  markeredgewidth=0.4 if small else 0.8, clip_on=False)  # fmt: skip
+
+
+def _rests(orbit: Orbit, axes: Any, clearance: float, end: float, style: OrbitStyle) -> None:
+    label: str | None = "at rest on the obstacle"
+    for kind, start, stop in orbit.phases:
+        if kind == "sticking":
+            axes.plot([start, min(stop, end)], [clearance, clearance], color=style.rest, linewidth=4.0, label=label,
+                      solid_capstyle="butt", zorder=4)  # fmt: skip
+            label = None

@@ -1,0 +1,71 @@
+"""Every reference state: nothing missed, nothing invented, full accuracy away from grazes."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+from singimpact.bench.problems import Problem, states
+from singimpact.status import Status
+
+ALLOWED = {"generic": 1e-12, "chatter": 1e-12, "long": 1e-12, "graze": 1e-8}
+"""In a graze T keeps about 11 digits at 1e-10 from the outline: that is conditioning, reached by every method."""
+
+
+def errors(problem: Problem) -> tuple[int, float, float, float]:
+    step = problem.model().impact_map(problem.tau, problem.v)
+    with mpmath.workdps(40):
+        time, speed = mpmath.mpf(problem.flight_time), mpmath.mpf(problem.v_next)
+        in_time, in_speed = float(abs(step.flight_time / time - 1)), float(abs(step.v / speed - 1))
+    return int(step.status), in_time, in_speed, float(step.condition)
+
+
+@pytest.mark.parametrize("family", ["linear", "duffing"])
+def test_no_impact_is_wrong(family: str) -> None:
+    for problem in states(family):
+        status, in_time, _, condition = errors(problem)
+        assert status == Status.hit, problem
+        assert in_time < ALLOWED[problem.regime], problem
+        if family == "linear":
+            assert in_time < max(1e-14, 10 * condition * 2.0**-52), problem
+
+
+def test_forty_digits() -> None:
+    # every 40th state here; all 2000 take minutes
+    for problem in states("linear")[::60]:
+        step = problem.model().impact_map(problem.tau, problem.v, digits=40)
+        with mpmath.workdps(45):
+            truth = mpmath.mpf(problem.flight_time), mpmath.mpf(problem.v_next)
+            # the table itself holds 40 digits less what v = 1e-12 took from its 60
+            assert abs(step.flight_time / truth[0] - 1) < 1e-37
+            assert abs(step.v / truth[1] - 1) < 1e-37
+
+
+def test_forty_digits_hold_without_the_table() -> None:
+    for problem in states("linear")[7::250]:
+        model = problem.model()
+        first = model.impact_map(problem.tau, problem.v, digits=40)
+        more = model.impact_map(problem.tau, problem.v, digits=60)
+        with mpmath.workdps(70):
+            assert abs(first.flight_time / more.flight_time - 1) < mpmath.mpf(10) ** -40
+            assert abs(first.v / more.v - 1) < mpmath.mpf(10) ** -40
+
+
+def test_digits_of_a_nonlinear_model() -> None:
+    for problem in states("duffing")[::70]:
+        step = problem.model().impact_map(problem.tau, problem.v, digits=20)
+        with mpmath.workdps(25):
+            assert abs(step.flight_time / mpmath.mpf(problem.flight_time) - 1) < 3e-16
+
+
+def test_arrays_give_what_scalars_give() -> None:
+    problem = states("linear")[0]
+    tau, v = np.linspace(0, 3, 7)[:, None], np.array([0.0, 1e-200, 1e-3, 2.0])
+    grid = problem.model().impact_map(tau, v)
+    assert grid.status.shape == (7, 4)
+    assert grid.status.dtype == np.int8
+    for index in np.ndindex(7, 4):
+        one = problem.model().impact_map(tau[index[0], 0], v[index[1]])
+        assert one.status == grid.status[index]
+        assert np.array_equal([one.tau, one.v], [grid.tau[index], grid.v[index]], equal_nan=True)
