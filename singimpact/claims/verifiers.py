@@ -14,18 +14,29 @@ _SAMPLES = [Fraction(n, d) for n, d in ((3, 5), (7, 4), (2, 9), (11, 6), (5, 13)
 
 
 def is_zero(expression: Any) -> bool:
-    """Whether an expression with rational coefficients and square roots vanishes identically, decided exactly."""
+    """Whether an expression with rational coefficients and one square root vanishes identically, decided exactly.
+
+    Raises
+    ------
+    ArithmeticError : two roots whose radicands are not in the ratio of two rational squares.
+    """
     expression = sympy.together(sympy.sympify(expression))
     roots = sorted((p for p in expression.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2), key=str)
-    bases = list(dict.fromkeys(root.base for root in roots))
-    if not bases:
+    if not roots:
         return bool(sympy.cancel(expression) == 0)
-    if len(bases) > 1:
-        raise ArithmeticError(f"more than one radical in {expression}")
-    w = sympy.Dummy("w")
-    replaced = expression.subs({root: w ** (2 * root.exp) for root in roots})
+    w, base = sympy.Dummy("w"), sympy.expand(roots[0].base)
+    replaced = expression.subs({root: (w * _root_ratio(root.base, base)) ** (2 * root.exp) for root in roots})
     numerator = sympy.fraction(sympy.cancel(replaced))[0]
-    return bool(sympy.cancel(sympy.rem(numerator, w**2 - bases[0], w)) == 0)
+    below, above = sympy.fraction(sympy.cancel(base))[::-1]
+    return bool(sympy.cancel(sympy.rem(numerator, below * w**2 - above, w)) == 0)
+
+
+def _root_ratio(radicand: Any, base: Any) -> Any:
+    """sqrt(radicand)/sqrt(base), when it is a positive rational."""
+    ratio = sympy.sqrt(sympy.cancel(radicand / base))
+    if not ratio.is_Rational:
+        raise ArithmeticError(f"more than one radical: {radicand} and {base}")
+    return ratio
 
 
 def parts_of(value: Any) -> list[Any]:
@@ -58,7 +69,7 @@ def identity(truth: Callable[[], Any], what: str = "derived from the equation of
 
 def sample(stated: Any, derived: Any) -> dict[str, str]:
     """Numbers at which two expressions differ."""
-    symbols = sorted((stated - derived).free_symbols, key=str)
+    symbols = sorted(stated.free_symbols | derived.free_symbols, key=str)
     for shift in range(len(_SAMPLES)):
         point = {
             symbol: sympy.Rational(*_SAMPLES[(n + shift) % len(_SAMPLES)].as_integer_ratio())
