@@ -200,4 +200,4 @@ def test_two_flows_that_share_no_restart_agree_on_random_models(seed: int) -> No
     one, two = (osc.first_hit(tau, v, horizon=200) for osc in (closed, series))
     assert np.array_equal(one.status, two.status)
     hit = one.status == Status.hit
-    assert np.all(np.abs(one.flight_time / two.flight_time - 1)[hit] < 1e-9)
+    assert np.allclose(one.flight_time[hit], two.flight_time[hit], rtol=1e-9, atol=0)
