@@ -173,3 +173,31 @@ def test_tolerance_makes_a_shorter_kernel_that_is_as_good_as_it_says() -> None:
     rough, fine = osc.first_hit(0.4, 0.7, tolerance=1e-6), osc.first_hit(0.4, 0.7)
     assert rough.flight_time != fine.flight_time
     assert rough.flight_time == pytest.approx(fine.flight_time, rel=1e-4)
+
+
+def test_what_is_left_open_shows_how_near_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    from dataclasses import replace
+
+    from singimpact.flights import hits
+
+    monkeypatch.setattr(hits, "LIMITS", replace(hits.LIMITS, settled=0))
+    step = ImpactOscillator("0", "6*t - 12", 0, "0.5").impact_map(0, [9.0, 1.0])
+    assert step.status.tolist() == [Status.unresolved, Status.hit]
+    assert np.isnan([step.flight_time[0], step.velocity[0], step.tau[0], step.v[0]]).all()
+    assert abs(step.depth[0]) <= 10 * step.bound[0] < 1e-12
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_two_flows_that_share_no_restart_agree_on_random_models(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    omega, clearance = float(rng.choice([1.0, 2.8, 1 + 1e-12, 0.3])), float(rng.choice([0, 1, -1, 0.999, 1.001, 0.3]))
+    damping, stiffness = float(rng.choice([0, 0.1, 2])), float(rng.choice([0, 1, 3]))
+    closed = linear(omega, clearance, "0.5", damping=damping, stiffness=stiffness)
+    values = {"k": stiffness, "d": damping, "w": omega, "q": 0}
+    series = ImpactOscillator("k*x + d*xdot + q*x**3", "cos(w*t)", clearance, "0.5", values)
+    tau = rng.uniform(-10, 10, 400)
+    v = np.concatenate([10 ** rng.uniform(-300, -3, 200), 10 ** rng.uniform(-4, 1, 200)])
+    one, two = (osc.first_hit(tau, v, horizon=200) for osc in (closed, series))
+    assert np.array_equal(one.status, two.status)
+    hit = one.status == Status.hit
+    assert np.allclose(one.flight_time[hit], two.flight_time[hit], rtol=1e-9, atol=0)
