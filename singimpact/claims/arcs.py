@@ -18,7 +18,7 @@ from singimpact.theory.homogeneous import eigenvalues_on_gamma, lambda_
 
 @dataclass(frozen=True)
 class Place:
-    """A model at its tangency with a' > 0: `slope` is a'(tau_*), `coefficient` that of sigma^2 on gamma by the theory."""
+    """A model at its tangency with a' > 0: `slope` is a'(tau_*), `coefficient` that of sigma^2 on gamma."""
 
     name: str
     model: ImpactOscillator
@@ -44,7 +44,7 @@ def places() -> tuple[Place, ...]:
 
 @dataclass(frozen=True)
 class JumpCase:
-    """Jumps of the flight time on lines sigma = const: how many on each, and v/(a' sigma^2) there, extrapolated to 0."""
+    """Jumps of the flight time on lines sigma = const: how many on each, v/(a' sigma^2) there as sigma -> 0."""
 
     name: str
     side: int
@@ -137,7 +137,7 @@ def _fate(place: Place, factor: float, impacts: int = 400) -> tuple[str, int]:
 
 @lru_cache(maxsize=1)
 def leaves_gamma() -> float:
-    """Factor by which an orbit started 1e-3 beside gamma (v off by that part) has left it when sigma has shrunk 100-fold."""
+    """Factor by which an orbit started beside gamma (v off by 1e-3) has left it once sigma has shrunk 30-fold."""
     growth = []
     for place in places():
         sigma, v = _on_gamma(place)
@@ -202,7 +202,7 @@ LIFT_OFF = {
 
 @lru_cache(maxsize=1)
 def lift_off() -> tuple[tuple[str, float], ...]:
-    """(model, flight time) of the first hit from (tau_*, 0): models with c = 0, for which tau_* = 0 is a double exactly."""
+    """(model, flight time) of the first hit from (tau_*, 0), on models for which tau_* = 0 is a double exactly."""
     found = []
     for name, (f, g) in LIFT_OFF.items():
         step = ImpactOscillator(f, g, 0, "0.5").impact_map(0.0, 0.0)

@@ -44,7 +44,7 @@ class Claim:
     id : the claim's name; the paper's equation label where it has one.
     section : where it stands. title : the statement in our words, one line.
     printed : as printed. verify : decides any statement of this form; also shown the mutants.
-    corrected : makes the statement that holds instead, from what was derived; None when the printed one is expected to hold.
+    corrected : makes the statement that holds instead, from what was derived; None if the printed one should hold.
     mutants : wrong statements that the verifier must reject.
     rests_on : ids of the claims that the verifier uses.
     """

@@ -67,7 +67,7 @@ class Setting:
 
 
 def setting(name: str, j: int) -> Setting:
-    """A model of `true_orbits.MODELS` at a regular point, at its tangency, or at its own swan (at tau = 0 for a cosine)."""
+    """A model of `true_orbits.MODELS` at a regular point, at its tangency, or at its own swan (tau = 0)."""
     model = true_orbits.MODELS[name]
     if j == 0:
         return Setting(name, model, 0, 1.2, Fraction(6, 5))
@@ -170,7 +170,7 @@ def _numeric(jet: Jet, sigma: Any, t: Any) -> Any:
 def measured(series: Sheet, flow: true_orbits.Flow, quantity: str, steps: list[Any]) -> float:
     """The order of the remainder along RAY as h falls: the slope between the two smallest h.
 
-    v_c: the flight launched with the truncated v_c misses c after t by t y, and dy/dv = 1 + O(h), so y is the remainder.
+    v_c: a flight launched with the truncated v_c misses c after t by t y, and dy/dv = 1 + O(h), so y is the remainder.
     phi: the launch velocity is first made true, then the impact velocity is compared.
     """
     misses = []
@@ -199,7 +199,7 @@ def _true_launch(flow: true_orbits.Flow, sigma: Any, v: Any, t: Any) -> Any:
 
 @lru_cache(maxsize=16)
 def remainders(j: int | str, order: int) -> tuple[RemainderCase, ...]:
-    """Remainders of v_c (which is p) and of phi on both models by DOP853, and on the linear one with 40 digits and more."""
+    """Remainders of v_c (which is p) and of phi on both models by DOP853, on the linear one in many digits too."""
     j = contact_order(j)
     cases = []
     for name in true_orbits.MODELS:
@@ -227,8 +227,11 @@ def _with_digits(j: int, order: int) -> tuple[RemainderCase, ...]:
     steps = [context.mpf(10) ** power for power in DIGIT_STEPS]
     return tuple(
         RemainderCase(
-            "linear, closed form, 40 digits and more", quantity, order, first_omitted(place, order, quantity),
+            "linear, closed form, 40 digits and more",
+            quantity,
+            order,
+            first_omitted(place, order, quantity),
             measured(series, flow, quantity, steps),
         )
         for quantity in ("v_c", "phi")
-    )  # fmt: skip
+    )

@@ -78,9 +78,19 @@ def decide(claim: Claim, known: dict[str, Verdict]) -> Verdict:
     below = [known[name].effective for name in claim.rests_on if name in known]
     effective = min([strength, *below], key=lambda name: STRENGTH[name])
     return Verdict(
-        claim.id, claim.section, claim.title, kind, effective, claim.printed.latex, corrected, corrected_kind,
-        None if check.holds else check.witness, evidence, claim.rests_on, time.process_time() - started,
-    )  # fmt: skip
+        claim.id,
+        claim.section,
+        claim.title,
+        kind,
+        effective,
+        claim.printed.latex,
+        corrected,
+        corrected_kind,
+        None if check.holds else check.witness,
+        evidence,
+        claim.rests_on,
+        time.process_time() - started,
+    )
 
 
 def _corrected(claim: Claim, failed: Check) -> tuple[str, str | None, str | None, str]:

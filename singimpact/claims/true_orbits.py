@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from itertools import pairwise
 from math import sqrt
 from typing import Any
 
@@ -37,7 +38,7 @@ class WitnessTolerances:
     relative : of DOP853; near the smallest it accepts (2.3e-14).
     noise : rounding of the acceleration, a difference of numbers of size 1; DOP853 halves its step for ever below it.
     newton : a step below this part of t ends the search. stalled : or one below this part that no longer shrinks.
-    start : |sigma| where a backward orbit begins in doubles, at a tangency and at a swan: a_c is there well above the noise.
+    start : |sigma| where a backward orbit begins in doubles, at a tangency and at a swan; a_c is above the noise there.
     digits : guard and working digits of the closed form; y loses as many as sigma has, here at most 3 x 25.
     """
 
@@ -181,7 +182,7 @@ class GammaCase:
 
     Attributes
     ----------
-    name : model, contact and flow. expected : by the theory. found : on true orbits. ratio : sigma'/sigma near the point.
+    name : model, contact and flow. expected, multiplier : by the theory. found, ratio (of sigma) : on true orbits.
     """
 
     name: str
@@ -237,9 +238,7 @@ def lambda_of(r: float, j: int) -> float:
     return (low + high) / 2
 
 
-def gamma_case(
-    name: str, model: Oscillator, tau: Any, a_j: float, j: int, flow: Flow, start: Any, accuracy: Any
-) -> GammaCase:
+def gamma_case(name: str, model: Oscillator, a_j: float, j: int, flow: Flow, start: Any, accuracy: Any) -> GammaCase:
     """Follow G backwards from a point beside gamma, and read off the leading coefficient."""
     r = as_fraction(model.restitution)
     if r is None:
@@ -248,13 +247,18 @@ def gamma_case(
     p = sum((j + 1 - i) * rate**i for i in range(j + 1))
     expected = a_j * (1 - rate) * p / ((j + 1) * (j + 2))
     one = start / start
-    orbit = backwards(flow, one * r.numerator / r.denominator, -start, abs(start) ** (j + 1) * 0.9 * abs(expected), rate,
-                      3e-2, accuracy)  # fmt: skip
+    orbit = backwards(
+        flow,
+        one * r.numerator / r.denominator,
+        -start,
+        abs(start) ** (j + 1) * 0.9 * abs(expected),
+        rate,
+        3e-2,
+        accuracy,
+    )
     tail = orbit[-5:]
     found = float(extrapolated([(s, v / s ** (j + 1)) for s, v in tail]))
-    ratio = float(
-        extrapolated([(before[0], after[0] / before[0]) for after, before in zip(tail[:-1], tail[1:], strict=True)])
-    )
+    ratio = float(extrapolated([(before[0], after[0] / before[0]) for after, before in pairwise(tail)]))
     return GammaCase(name, j, expected, found, rate, ratio)
 
 
@@ -267,22 +271,31 @@ def gamma_cases(j: int) -> tuple[GammaCase, ...]:
         at, tau = contact_model(model, j)
         a_j = _jet(at, tau, j)
         cases.append(
-            gamma_case(f"{name}, {where}, DOP853", at, tau, a_j, j, scipy_flow(at, tau), SETTINGS.start[j - 1], None)
+            gamma_case(f"{name}, {where}, DOP853", at, a_j, j, scipy_flow(at, tau), SETTINGS.start[j - 1], None)
         )
     context, origin, clearance = many_digits(j)
     flow = closed_flow(Fraction(2), clearance, origin, context)
     a_j = 2 * sqrt(1 - 0.09) if j == 1 else -2.0
     start = context.mpf(10) ** -25
-    cases.append(gamma_case(f"linear, {where}, closed form in 40 digits and more", LINEAR, origin, a_j, j, flow, start,
-                            context.mpf(10) ** -40))  # fmt: skip
+    cases.append(
+        gamma_case(
+            f"linear, {where}, closed form in 40 digits and more",
+            LINEAR,
+            a_j,
+            j,
+            flow,
+            start,
+            context.mpf(10) ** -40,
+        )
+    )
     return tuple(cases)
 
 
 def many_digits(j: int) -> tuple[Any, Any, Fraction]:
     """(mpmath context, tau_*, clearance) of the linear model at a regular point, its tangency or its swan."""
-    import mpmath
+    from mpmath.ctx_mp import MPContext
 
-    context = mpmath.MPContext()
+    context = MPContext()
     context.dps = SETTINGS.digits
     if j == 0:
         return context, context.mpf(6) / 5, Fraction(3, 10)

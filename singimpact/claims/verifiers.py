@@ -43,7 +43,7 @@ def parts_of(value: Any) -> list[Any]:
     """The scalar parts of an expression, a tuple (nested or not) or a matrix."""
     if isinstance(value, tuple | list):
         return [part for item in value for part in parts_of(item)]
-    return list(value) if isinstance(value, sympy.MatrixBase) else [sympy.sympify(value)]
+    return list(value.flat()) if isinstance(value, sympy.MatrixBase) else [sympy.sympify(value)]
 
 
 def identity(truth: Callable[[], Any], what: str = "derived from the equation of motion") -> Callable[[Any], Check]:
@@ -93,7 +93,8 @@ def every(
 
     Parameters
     ----------
-    checks : (what was tested, whether it passed). witness : numbers for a failure; else the parts that failed are named.
+    checks : (what was tested, whether it passed).
+    witness : numbers for a failure; without it the parts that failed are named.
     """
     failed = [name for name, passed in checks if not passed]
     if not failed:

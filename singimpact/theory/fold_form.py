@@ -1,7 +1,7 @@
 """The fold form of p at a tangency point to any order, with the changes of source and target that reach it.
 
-eta -> the true fold coordinate eta sqrt(E), where v_c - P(sigma) = -k eta^2 E and E(0, 0) = 1: P is the outline, and eta
-is counted from the true horizon.  Lengths are measured in units of k = a'/6 (x -> x/k scales the jets of f with it), so
+eta -> the true fold coordinate eta sqrt(E), where v_c - P(sigma) = -k eta^2 E, E(0, 0) = 1: P is the outline, eta
+counted from the true horizon.  Lengths are measured in units of k = a'/6 (x -> x/k scales the jets of f with it), so
 that everything is a polynomial in the jets.
 """
 
@@ -21,7 +21,7 @@ from singimpact.theory.sheet import generic_sheet
 
 @dataclass(frozen=True)
 class FoldForm:
-    """psi o p = (sigma, -w^2), in units of k, with w = source(sigma, eta), eta = t + 3 sigma/2, and psi(u, v) = (u, v - outline(u)).
+    """psi o p = (sigma, -w^2) in units of k: w = source(sigma, eta), psi(u, v) = (u, v - outline(u)).
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ def fold_form(order: int) -> FoldForm:
         normal=(sigma, sympy.expand(k * (residual - E**2).as_expr())),
         residual_vanishes=not residual,
         invertible=source.coeff(E) == 1 and source.coeff(S) == 0 and outline.coeff(S) == 0,
-        identity_order=min(sum(key) for key in (source - E).keys()) - 1,
+        identity_order=min(sum(key) for key in source - E) - 1,
     )
 
 

@@ -74,10 +74,10 @@ def leading_coefficient(j: int) -> Any:
 
 @lru_cache(maxsize=8)
 def DG_on_ray(j: int) -> Any:
-    """DG of the homogeneous model on its invariant ray, at sigma = 1 on it, as a matrix in (tau, v) and a function of lambda.
+    """DG of the homogeneous model at sigma = 1 on its invariant ray, in (tau, v), as a function of lambda.
 
-    G takes (s, nu(s, e)) to (e, -r nu(e, s)).  At the point sigma of the ray the entries scale with powers of sigma that
-    leave trace and determinant alone, so the eigenvalues are the same all along gamma to leading order.
+    G takes (s, nu(s, e)) to (e, -r nu(e, s)).  At the point sigma of the ray the entries scale with powers of sigma
+    that leave trace and determinant alone, so the eigenvalues are the same all along gamma to leading order.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def DG_on_ray(j: int) -> Any:
 
 @lru_cache(maxsize=8)
 def eigenvalues_on_gamma(j: int) -> tuple[Any, Any]:
-    """(larger, smaller) eigenvalue of DG at points of gamma, in the limit at the contact point, as functions of lambda."""
+    """(larger, smaller) eigenvalue of DG(w) as w tends to the contact point along gamma, in lambda."""
     matrix = DG_on_ray(j)
     trace, determinant = sympy.cancel(matrix.trace()), sympy.cancel(matrix.det())
     root = sympy.sqrt(sympy.factor(trace**2 - 4 * determinant))

@@ -11,8 +11,20 @@ from singimpact.claims.sections import (
     section4a_arc,
     section4a_blowup,
     section4a_fold,
+    section4a_multipliers,
+    section4a_rays,
     section5,
 )
 
-_SECTIONS = (section2, section3, section4, section4a_arc, section4a_fold, section4a_blowup, section5)
+_SECTIONS = (
+    section2,
+    section3,
+    section4,
+    section4a_arc,
+    section4a_fold,
+    section4a_blowup,
+    section4a_rays,
+    section4a_multipliers,
+    section5,
+)
 CLAIMS: dict[str, Claim] = {claim.id: claim for section in _SECTIONS for claim in section.CLAIMS}

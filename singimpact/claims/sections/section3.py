@@ -60,14 +60,18 @@ def _slope_sign(stated: Any) -> Check:
         [
             ("the direction is the eigenvector of DG for r", good),
             ("0 < r < 1 contracts across Pi_0, on which G is the identity (Hirsch, Pugh, Shub)", contracting),
-            (f"true orbits on {len(found)} models reach Pi_0 along it, worst relative error {worst:.1e}", stated_worst < 1e-4),
+            (
+                f"true orbits on {len(found)} models reach Pi_0 along it, worst relative error {worst:.1e}",
+                stated_worst < 1e-4,
+            ),
         ],
         kind="supported",
         witness=lambda: {
-            "model": found[0].name, "found slope": f"{found[0].found:.10f}",
+            "model": found[0].name,
+            "found slope": f"{found[0].found:.10f}",
             "stated": f"{float((stated[1] / stated[0]).subs({a: found[0].a, r: found[0].r})):.10f}",
         },
-    )  # fmt: skip
+    )
 
 
 def _smooth_foliation(stated: int) -> Check:

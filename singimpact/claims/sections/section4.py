@@ -41,14 +41,22 @@ def _vtaylor(name: str, where: tuple[tuple[int, int], ...], printed: Statement, 
 
     def corrected() -> Statement:
         values = tuple(_coefficient_of(route.v_c(3), *pair) for pair in where)
-        return Statement(r",\quad ".join(rf"[{_monomial(*p)}]\,v_c={latex(x)}" for p, x in zip(where, values, strict=True)),
-                         values)  # fmt: skip
+        return Statement(
+            r",\quad ".join(rf"[{_monomial(*p)}]\,v_c={latex(x)}" for p, x in zip(where, values, strict=True)), values
+        )
 
     return Claim(
-        id=name, section="4", title=f"the coefficient of {shown} in v_c, b = d(x'')/dv", printed=printed,
-        verify=identity(lambda: tuple(_coefficient(*pair) for pair in where), "the solution of the boundary value problem"),
-        corrected=corrected, mutants=mutants, rests_on=("e:yeq", "e3"),
-    )  # fmt: skip
+        id=name,
+        section="4",
+        title=f"the coefficient of {shown} in v_c, b = d(x'')/dv",
+        printed=printed,
+        verify=identity(
+            lambda: tuple(_coefficient(*pair) for pair in where), "the solution of the boundary value problem"
+        ),
+        corrected=corrected,
+        mutants=mutants,
+        rests_on=("e:yeq", "e3"),
+    )
 
 
 def _monomial(i: int, j: int) -> str:
@@ -72,7 +80,7 @@ def _linear_model(stated: tuple[Any, Any]) -> Check:
 
 
 def _phi(time: Any) -> Check:
-    """The second component of phi_c is x-dot_c(tau, v_c; time), compared with the launch velocity after the involution."""
+    """x-dot_c(tau, v_c; time), the second component of phi_c, against the launch velocity after the involution."""
     velocity = sympy.diff(t * route.y_c(3), t).subs(t, time)
     taken = route.cut(velocity.subs(v, route.v_c(3)), 3, sigma, t)
     sheet = generic_sheet(0, 3)
@@ -90,9 +98,11 @@ def _depends_on_c(stated: tuple[Any, Any]) -> Check:
     derived = (a2 * rate, a_symbol(3) * rate)
     check = identity(lambda: derived, "derived by following the zero tau_*(c) of a_c")(stated)
     return Check(
-        check.holds and not any(is_zero(part) for part in derived), check.kind,
-        f"{check.evidence}; tau_* is read as the zero of a_c, since at a fixed time a_c' = g' is free of c", check.witness,
-    )  # fmt: skip
+        check.holds and not any(is_zero(part) for part in derived),
+        check.kind,
+        f"{check.evidence}; tau_* is read as the zero of a_c, since at a fixed time a_c' = g' is free of c",
+        check.witness,
+    )
 
 
 def _leading(j: int, order: int) -> Any:
@@ -133,10 +143,12 @@ def _saddle(stated: int) -> Check:
     return every(
         [
             ("the gradient vanishes", all(is_zero(part) for part in gradient)),
-            (f"the Hessian determinant {determinant} has the stated sign for a' != 0",
-             square.is_Rational and sympy.sign(square) == stated),
+            (
+                f"the Hessian determinant {determinant} has the stated sign for a' != 0",
+                square.is_Rational and sympy.sign(square) == stated,
+            ),
         ]
-    )  # fmt: skip
+    )
 
 
 CLAIMS = (

@@ -22,7 +22,7 @@ REACHED = 1e-3  # relative error to which DOP853 finds a leading coefficient of 
 
 
 def _discontinuity(stated: tuple[Any, int]) -> Check:
-    """Jumps of the first-hit map on true flights: on v = coefficient a' sigma^2 on one side of tau_*, and nowhere else."""
+    """Jumps of F on true flights: on v = coefficient a' sigma^2 on one side of tau_*, and nowhere else."""
     coefficient, side = stated
     found = arcs.jumps()
     near = [case for case in found if case.side == side]
@@ -30,17 +30,19 @@ def _discontinuity(stated: tuple[Any, int]) -> Check:
     good = [case for case in near if case.count == 1 and abs(case.coefficient - float(coefficient)) < 1e-3]
     return every(
         [
-            (f"one jump on each line sigma = const < 0, at v/(a' sigma^2) -> {near[0].coefficient:.6f} on {len(near)} models",
-             bool(near) and len(good) == len(near)),
+            (
+                f"one jump on each line sigma = const < 0, at v/(a' sigma^2) -> {near[0].coefficient:.6f} on {len(near)} models",
+                bool(near) and len(good) == len(near),
+            ),
             ("no jump on the other side", all(case.count == 0 for case in far) and bool(far)),
         ],
         kind="supported",
         witness=lambda: {"model": found[0].name, "v/(a' sigma^2) at the jump": f"{found[0].coefficient:.9f}"},
-    )  # fmt: skip
+    )
 
 
 def _exists(stated: tuple[int, int]) -> Check:
-    """gamma: tangency of the stated order from the stated side; a hyperbolic saddle for every r, and found on true orbits."""
+    """gamma has the stated tangency, from the stated side: a hyperbolic saddle for every r, found on true orbits."""
     power, side = stated
     coefficient = leading_coefficient(1)  # beside a' sigma^2
     cases = true_orbits.gamma_cases(1)
@@ -49,15 +51,22 @@ def _exists(stated: tuple[int, int]) -> Check:
     rate = r_of_lambda(1)
     return every(
         [
-            ("h' has a hyperbolic saddle on s = 0 for every r in (0, 1) (its stable manifold is gamma)",
-             _interval_map(rate) and negative_on(_transverse(), lambda_, 0, 1)),
-            ("gamma lies between Pi_0 and P_*: 0 < coefficient < 3/8",
-             positive_on(coefficient, lambda_, 0, 1) and positive_on(sympy.Rational(3, 8) - coefficient, lambda_, 0, 1)),
-            (f"quadratic, from sigma < 0, found on true orbits: {cases[0].line()}; worst relative error {worst:.0e}",
-             curved and side == -1 and worst < REACHED),
+            (
+                "h' has a hyperbolic saddle on s = 0 for every r in (0, 1) (its stable manifold is gamma)",
+                _interval_map(rate) and negative_on(_transverse(), lambda_, 0, 1),
+            ),
+            (
+                "gamma lies between Pi_0 and P_*: 0 < coefficient < 3/8",
+                positive_on(coefficient, lambda_, 0, 1)
+                and positive_on(sympy.Rational(3, 8) - coefficient, lambda_, 0, 1),
+            ),
+            (
+                f"quadratic, from sigma < 0, found on true orbits: {cases[0].line()}; worst relative error {worst:.0e}",
+                curved and side == -1 and worst < REACHED,
+            ),
         ],
         kind="supported",
-    )  # fmt: skip
+    )
 
 
 def _interval_map(rate: Any) -> bool:
@@ -72,7 +81,7 @@ def _transverse() -> Any:
 
 
 def _unique(stated: tuple[str, int]) -> Check:
-    """The number of invariant directions at w_* within v >= 0 or v > 0: fixed rays m > 1/2 of h' with |m| <= or < 3/2."""
+    """The number of invariant directions at w_* within a region: fixed rays m > 1/2 of h', |m| <= 3/2 or < 3/2."""
     region, count = stated
     cubic = fold.fixed_point_factors()[1]
     inside = [fold.r_of_m().subs(m, end) for end in (HALF, THREE_HALVES)]
@@ -85,14 +94,24 @@ def _unique(stated: tuple[str, int]) -> Check:
     leaving = arcs.leaves_gamma()
     return every(
         [
-            ("exactly one fixed ray m3 in (1/2, 3/2) for every r in (0, 1), a hyperbolic saddle: one invariant arc", one),
-            ("Pi_0 (the ray m = 3/2, points at rest) is invariant too and ends at w_*" if region == "v >= 0"
-             else "Pi_0 is left out", found == count),
-            (f"orbits beside gamma leave it on both models (v/gamma off by 1e-3 grows {leaving:.3g}-fold)", leaving > 10),
+            (
+                "exactly one fixed ray m3 in (1/2, 3/2) for every r in (0, 1), a hyperbolic saddle: one invariant arc",
+                one,
+            ),
+            (
+                "Pi_0 (the ray m = 3/2, points at rest) is invariant too and ends at w_*"
+                if region == "v >= 0"
+                else "Pi_0 is left out",
+                found == count,
+            ),
+            (
+                f"orbits beside gamma leave it on both models (v/gamma off by 1e-3 grows {leaving:.3g}-fold)",
+                leaving > 10,
+            ),
         ],
         kind="supported",
         witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(found)},
-    )  # fmt: skip
+    )
 
 
 def _attracting(stated: tuple[int, int]) -> Check:
@@ -123,12 +142,14 @@ def _repelling(stated: int) -> Check:
     count = 1 if negative_on(at_one, lambda_, 0, 1) and positive_on(matrix.det(), lambda_, 0, 1) else 0
     return every(
         [
-            ("the characteristic polynomial is negative at 1 and positive at 0 and at infinity for every r in (0, 1)",
-             count == 1 and _interval_map(r_of_lambda(1))),
+            (
+                "the characteristic polynomial is negative at 1 and positive at 0 and at infinity for every r in (0, 1)",
+                count == 1 and _interval_map(r_of_lambda(1)),
+            ),
             ("so one eigenvalue is > 1", count == stated),
             ("the tangent of gamma is no eigenvector, so its direction is transverse", off),
         ]
-    )  # fmt: skip
+    )
 
 
 def _at_rest(stated: str) -> Check:
@@ -154,8 +175,11 @@ def _sides(stated: tuple[str, str]) -> Check:
     found = arcs.sides()
     good = all((case.below, case.above) == stated for case in found)
     shown = "; ".join(f"{case.name}: {case.line()}" for case in found)
-    return every([(f"on true orbits, {shown}", good)], kind="supported",
-                 witness=lambda: {"model": found[0].name, "below": found[0].below, "above": found[0].above})  # fmt: skip
+    return every(
+        [(f"on true orbits, {shown}", good)],
+        kind="supported",
+        witness=lambda: {"model": found[0].name, "below": found[0].below, "above": found[0].above},
+    )
 
 
 def _limit(stated: Any) -> Check:
@@ -168,11 +192,17 @@ def _limit(stated: Any) -> Check:
     return every(
         [
             ("it is a root of the characteristic polynomial of DG on gamma for every r", is_zero(residual)),
-            (f"true orbits give {cases[0].found:.8f} at r = {cases[0].r} ({cases[0].name}), error {worst:.0e}", worst < REACHED),
+            (
+                f"true orbits give {cases[0].found:.8f} at r = {cases[0].r} ({cases[0].name}), error {worst:.0e}",
+                worst < REACHED,
+            ),
         ],
-        witness=lambda: {"r": "1/2", "limit of the eigenvalue": str(sympy.N(larger.subs(lambda_, _lambda_half()), 20)),
-                         "found on true orbits": f"{cases[0].found:.8f}"},
-    )  # fmt: skip
+        witness=lambda: {
+            "r": "1/2",
+            "limit of the eigenvalue": str(sympy.N(larger.subs(lambda_, _lambda_half()), 20)),
+            "found on true orbits": f"{cases[0].found:.8f}",
+        },
+    )
 
 
 def _lambda_half() -> Any:

@@ -70,11 +70,13 @@ def _fold_form(stated: Any) -> Check:
         [
             (check.evidence, check.holds),
             ("psi o p composed with the changes leaves no term up to order 5", form.residual_vanishes),
-            ("the changes are invertible: d(eta)/dt = 1 and the target change is the identity to first order",
-             form.invertible),
+            (
+                "the changes are invertible: d(eta)/dt = 1 and the target change is the identity to first order",
+                form.invertible,
+            ),
         ],
         witness=lambda: dict(check.witness or {"fails": "the residual"}),
-    )  # fmt: skip
+    )
 
 
 def _h(stated: tuple[Any, Any]) -> Check:
@@ -92,12 +94,17 @@ def _h(stated: tuple[Any, Any]) -> Check:
     return every(
         [
             ("psi o p(h) = psi o q to second order", all(is_zero(part) for part in closes)),
-            ("from the visible point sigma = -1, eta = -11/10 at r = 1/2 it lands on the visible part eta' < 0, sigma' < 0",
-             launched),
+            (
+                "from the visible point sigma = -1, eta = -11/10 at r = 1/2 it lands on the visible part eta' < 0, sigma' < 0",
+                launched,
+            ),
         ],
-        witness=lambda: {"sigma": "-1", "eta": "-11/10", "r": "1/2"} | {key: str(sympy.N(x, 15)) for key, x in landed.items()}
-        | {"why": "a first hit comes before the horizon, where eta < 0"},
-    )  # fmt: skip
+        witness=lambda: (
+            {"sigma": "-1", "eta": "-11/10", "r": "1/2"}
+            | {key: str(sympy.N(x, 15)) for key, x in landed.items()}
+            | {"why": "a first hit comes before the horizon, where eta < 0"}
+        ),
+    )
 
 
 CLAIMS = (
@@ -194,7 +201,7 @@ CLAIMS = (
         title="h = p^{-1} o q on the visible part; there the root is the negative one",
         printed=Statement(
             r"h=\bigl(\eta-\tfrac12\sigma,\sqrt{Q_r(\sigma,\eta)+O(3)}\,\bigr)",
-            (eta - sigma / 2, sympy.sqrt(fold.r * (2 * eta**2 - 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2)),
+            (eta - sigma / 2, sympy.sqrt(r * (2 * eta**2 - 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2)),
         ),
         verify=_h,
         corrected=lambda: Statement(
