@@ -13,6 +13,7 @@ from singimpact.oscillator.files import read_fields, to_toml
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
+    from singimpact.contact.points import TangencyPoints
     from singimpact.dynamics.orbit import Orbit
     from singimpact.flights.carriers import Flight, Step
     from singimpact.flights.path import Path
@@ -153,3 +154,17 @@ def universal(kappa: Any, restitution: Any) -> ImpactOscillator:
 def read_model(path: str | FilePath) -> ImpactOscillator:
     """The model in a TOML file with f, g, clearance, restitution and perhaps parameters and period."""
     return ImpactOscillator(**read_fields(path))
+
+
+def tangency_points(oscillator: Oscillator) -> TangencyPoints:
+    """The zeros of a_c over one period, or all real ones when g is a polynomial: see `singimpact.contact.points`.
+
+    Examples
+    --------
+    >>> points = tangency_points(linear(2, "0.3", "0.5"))
+    >>> points.kind, points.tau.round(6).tolist()
+    (('foliation', 'gamma'), [0.633052, 2.508541])
+    """
+    from singimpact.contact.points import tangency_points as found
+
+    return found(oscillator)

@@ -18,6 +18,7 @@ COMMANDS = {
     "derive": "write the derivations as LaTeX, PDF, Markdown or JSON",
     "map": "fly from an impact to the next one",
     "orbit": "fly many impacts; -o draws x(t)",
+    "fixed-points": "fixed points and multipliers, certified, to any digits",
 }
 
 

@@ -1,0 +1,51 @@
+"""Real roots of polynomials with rational coefficients: isolated by flint, refined to any precision by Newton's method."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cmp_to_key
+from typing import Any
+
+from singimpact.algebra.balls import Balls
+
+TURNS = 8  # of Newton's method at one precision: each doubles the bits, three are enough
+FIRST_BITS = 128
+
+
+def real_roots(coefficients: Sequence[Fraction], balls: Balls) -> list[Any]:
+    """The real roots in increasing order, each in a ball that contains no other root.
+
+    Parameters
+    ----------
+    coefficients : from the constant one up; a polynomial without multiple real roots.
+
+    Examples
+    --------
+    >>> [float(root.mid()) for root in real_roots([Fraction(-2), Fraction(0), Fraction(1)], Balls(80))]
+    [-1.4142135623730951, 1.4142135623730951]
+    """
+    import flint
+
+    poly = flint.fmpq_poly([flint.fmpq(c.numerator, c.denominator) for c in coefficients]).numer()
+    isolated = [root.real for root, _ in poly.complex_roots() if root.imag == 0]
+    ordered = sorted(isolated, key=cmp_to_key(lambda left, right: -1 if left < right else 1))
+    return [refined(poly, root, balls.bits) for root in ordered]
+
+
+def refined(poly: Any, isolated: Any, bits: int) -> Any:
+    """The one root of an integer polynomial in an isolating ball, to about `bits` bits relative to its size."""
+    import flint
+
+    root, work, slope = isolated, min(FIRST_BITS, bits + 32), poly.derivative()
+    while True:
+        with flint.ctx.workprec(work):
+            for _ in range(TURNS):
+                middle = root.mid()
+                closer = (middle - poly(middle) / slope(root)).intersection(root)
+                if closer.rad() * 2 > root.rad():
+                    break
+                root = closer
+        if work == bits + 32:
+            return root
+        work = min(2 * work, bits + 32)

@@ -1,0 +1,27 @@
+"""`singimpact fixed-points`: the fixed points of the blown-up maps and their multipliers."""
+
+from __future__ import annotations
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.output import as_json_text, emit, output_options
+
+
+@click.command(short_help="fixed points and multipliers, certified, to any digits")
+@click.argument("place", metavar="tangency|swan", type=click.Choice(["tangency", "swan"]))
+@click.option("--r", "restitution", metavar="NUMBER", required=True, help="Restitution, a rational in (0, 1).")
+@click.option("--digits", type=int, default=50, show_default=True, help="Significant digits.")
+@output_options
+def command(place: str, restitution: str, digits: int, as_json: bool, output: str | None) -> None:
+    """Fixed points at a tangency or at a swan, each with a radius within which the true value lies."""
+    from singimpact.theory import fixed_points
+
+    points = getattr(fixed_points, place)(restitution, digits)
+    found = fixed_points.as_dict(points)
+    if as_json:
+        emit(as_json_text(found), output)
+    else:
+        emit(
+            columns(["name", "value", "radius"], [[name, x["value"], x["radius"]] for name, x in found.items()]), output
+        )

@@ -1,0 +1,258 @@
+"""Fixed points of the blown-up maps and their multipliers, as numbers with a certified radius, to any number of digits.
+
+Everything follows from lambda, the root in (0, 1) of lambda^(j+1) P_j - r Q_j, and from u = 1 - lambda, the root of
+the same polynomial shifted to 1: so nothing is lost as r -> 0 or as r -> 1.  Isolation is `algebra.roots`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.numbers import as_fraction, constant
+from singimpact.algebra.roots import real_roots
+from singimpact.inputs import InputError, refuse
+
+GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
+MOST_DIGITS = 100_000
+
+
+@dataclass(frozen=True)
+class Certified:
+    """A real number known to lie within `radius` of `value`.
+
+    Attributes
+    ----------
+    value, radius : mpmath numbers. digits : how many significant digits were asked for.
+    """
+
+    value: Any
+    radius: Any
+    digits: int
+
+    def __str__(self) -> str:
+        return _text(self.value, self.digits)
+
+    def as_dict(self) -> dict[str, str]:
+        """value and radius as decimal text; the radius covers the rounding of the text, which has two more digits."""
+        import mpmath
+
+        with mpmath.workprec(64):
+            radius = 1.01 * (self.radius + abs(self.value) * mpmath.mpf(10) ** (-self.digits - 1))
+            return {"value": _text(self.value, self.digits + 2), "radius": _text(radius, 3)}
+
+
+def _text(value: Any, digits: int) -> str:
+    import mpmath
+
+    return str(mpmath.nstr(value, digits, strip_zeros=False))
+
+
+@dataclass(frozen=True)
+class TangencyFixedPoints:
+    """At a tangency: solutions of the cubic, multipliers at m3, zeros of Q_r(1, m)."""
+
+    m1: Certified
+    m2: Certified
+    m3: Certified
+    lambda_: Certified
+    mu: Certified
+    m_minus: Certified
+    m_plus: Certified
+    one_minus_lambda: Certified
+    mu_minus_one: Certified
+
+
+@dataclass(frozen=True)
+class SwanFixedPoints:
+    """At a swan: the fixed point m_* in (-1, 0) and its multipliers."""
+
+    m_star: Certified
+    lambda_: Certified
+    mu: Certified
+    one_minus_lambda: Certified
+    mu_minus_one: Certified
+
+
+def as_dict(points: TangencyFixedPoints | SwanFixedPoints) -> dict[str, dict[str, str]]:
+    """Names as on the paper's page -> value and radius as text."""
+    return {field.name.rstrip("_"): getattr(points, field.name).as_dict() for field in fields(points)}
+
+
+def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:
+    """m1, m2, m3, lambda, mu, m_minus, m_plus at a tangency point [e:meq, e:fixm].
+
+    Parameters
+    ----------
+    r : restitution, a rational number in (0, 1): text, int, Fraction, or a float for its binary value.
+    digits : significant digits, 1 to 100000; radius <= 10^-digits |value|.
+
+    Examples
+    --------
+    >>> print(tangency("1/2", digits=20).m3)
+    1.1604422497237431884
+    """
+    rate, asked = _restitution(r), _digits(digits)
+
+    def enclosures(balls: Balls) -> dict[str, Any]:
+        half = Fraction(1, 2)
+        found = _multipliers(1, rate, balls)
+        low, middle, _ = real_roots(_shifted(_fixed_polynomial(1, rate), -half), balls)  # in m = lambda + 1/2
+        minus, plus = real_roots(_shifted(_q_polynomial(rate), -half), balls)
+        found |= {"m1": low, "m2": middle, "m3": found["lambda_"] + balls.rational(half)}
+        return found | {"m_minus": minus, "m_plus": plus}
+
+    return TangencyFixedPoints(**_certified(enclosures, asked))
+
+
+def swan(r: Any, digits: int = 50) -> SwanFixedPoints:
+    """m_*, lambda and mu at a swan point [s5-jacobian].
+
+    Parameters as in `tangency`.
+
+    Examples
+    --------
+    >>> print(swan("0.5", digits=20).m_star)
+    -0.25629759628453099805
+    """
+    rate, asked = _restitution(r), _digits(digits)
+
+    def enclosures(balls: Balls) -> dict[str, Any]:
+        found = _multipliers(2, rate, balls)
+        return found | {"m_star": -found["one_minus_lambda"]}
+
+    return SwanFixedPoints(**_certified(enclosures, asked))
+
+
+def _restitution(value: Any) -> Fraction:
+    accepted = "a rational number with 0 < r < 1, such as '1/2', '0.7' or 0.5"
+    try:
+        rate = as_fraction(constant("r", value))
+    except InputError:
+        raise refuse("r", value, accepted) from None
+    if rate is None or not 0 < rate < 1:
+        raise refuse("r", value, accepted)
+    return rate
+
+
+def _digits(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_DIGITS:
+        raise refuse("digits", value, f"a whole number from 1 to {MOST_DIGITS}")
+    return value
+
+
+@cache
+def numerator_coefficients(j: int) -> tuple[int, ...]:
+    """P_j = sum (j+1-i) lambda^i by its coefficients; Q_j is its reversal."""
+    return tuple(j + 1 - i for i in range(j + 1))
+
+
+def _fixed_polynomial(j: int, rate: Fraction) -> list[Fraction]:
+    """lambda^(j+1) P_j - r Q_j, coefficients from the constant one."""
+    p = numerator_coefficients(j)
+    low = [-rate * value for value in reversed(p)]
+    return low + [Fraction(value) for value in p]
+
+
+def _q_polynomial(rate: Fraction) -> list[Fraction]:
+    """Q_r(1, y + 1/2) = r (2y + 1)(y - 1) + (9/4) y^2."""
+    return [-rate, -rate, 2 * rate + Fraction(9, 4)]
+
+
+def _shifted(coefficients: list[Fraction], by: Fraction) -> list[Fraction]:
+    """The polynomial at x + by, by Horner's rule."""
+    result = list(coefficients)
+    for start in range(len(result) - 1):
+        for n in range(len(result) - 2, start - 1, -1):
+            result[n] += by * result[n + 1]
+    return result
+
+
+def _multipliers(j: int, rate: Fraction, balls: Balls) -> dict[str, Any]:
+    """lambda, 1 - lambda, mu, mu - 1 at contact order j, each without cancellation."""
+    polynomial = _fixed_polynomial(j, rate)
+    multiplier = _positive_root(polynomial, balls)
+    flipped = [value * (-1) ** n for n, value in enumerate(_shifted(polynomial, Fraction(1)))]  # in u = 1 - lambda
+    gap = _least_positive(flipped, balls)
+    p, q = numerator_coefficients(j), numerator_coefficients(j)[::-1]
+    above, below = _value(p, multiplier, balls), _value(q, multiplier, balls)
+    rest = _value(_quotient(j), multiplier, balls)
+    return {
+        "lambda_": multiplier,
+        "one_minus_lambda": gap,
+        "mu": (above / below) ** 2 / multiplier,
+        "mu_minus_one": gap * rest / (multiplier * below**2),
+    }
+
+
+@cache
+def _quotient(j: int) -> tuple[int, ...]:
+    """(P_j^2 - lambda Q_j^2)/(1 - lambda): all its coefficients are positive."""
+    p, q = numerator_coefficients(j), numerator_coefficients(j)[::-1]
+    size = 2 * j + 2
+    difference = [0] * size
+    for i in range(j + 1):
+        for n in range(j + 1):
+            difference[i + n] += p[i] * p[n]
+            difference[i + n + 1] -= q[i] * q[n]
+    quotient, carry = [], 0
+    for value in difference[:-1]:
+        carry += value
+        quotient.append(carry)
+    if carry + difference[-1]:
+        raise ArithmeticError("P^2 - lambda Q^2 is not divisible by 1 - lambda")
+    return tuple(quotient)
+
+
+def _value(coefficients: tuple[int, ...], at: Any, balls: Balls) -> Any:
+    total = balls.rational(Fraction(0))
+    for value in reversed(coefficients):
+        total = total * at + value
+    return total
+
+
+def _positive_root(coefficients: list[Fraction], balls: Balls) -> Any:
+    """The only positive root (one change of sign)."""
+    (root,) = [root for root in real_roots(coefficients, balls) if root > 0]
+    return root
+
+
+def _least_positive(coefficients: list[Fraction], balls: Balls) -> Any:
+    """The only root in (0, 1)."""
+    (root,) = [root for root in real_roots(coefficients, balls) if root > 0 and root < 1]
+    return root
+
+
+def _certified(enclosures: Any, digits: int) -> dict[str, Certified]:
+    """Balls at growing precision until each is narrow enough."""
+    import flint
+
+    bits = int(digits * 3.3219281) + GUARD_BITS
+    while True:
+        with flint.ctx.workprec(bits):
+            found = enclosures(Balls(bits))
+        results = {name: _as_certified(ball, digits) for name, ball in found.items()}
+        if all(result is not None for result in results.values()):
+            return {name: result for name, result in results.items() if result is not None}
+        bits += bits // 4 + GUARD_BITS
+
+
+def _as_certified(ball: Any, digits: int) -> Certified | None:
+    value, radius = _exact(ball.mid()), _exact(ball.rad())
+    import mpmath
+
+    with mpmath.workprec(64):
+        narrow = value != 0 and radius * mpmath.mpf(10) ** digits * 2 <= abs(value)
+    return Certified(value, radius, digits) if narrow else None
+
+
+def _exact(number: Any) -> Any:
+    """The mpmath number that an exact ball is, with all its bits."""
+    import mpmath
+
+    mantissa, exponent = number.man_exp()
+    with mpmath.workprec(int(mantissa).bit_length() + 8):
+        return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))
