@@ -7,6 +7,7 @@ import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
 
 from singimpact.inputs import InputError, shown
@@ -62,6 +63,32 @@ def folder(path: str | Path) -> Path:
     except (OSError, ValueError) as error:
         raise _unwritable(path, error) from None
     return Path(path)
+
+
+def cache_folder() -> Path:
+    """Where results that do not change are kept: `SINGIMPACT_CACHE`, else the user's cache folder.
+
+    Notes
+    -----
+    `SINGIMPACT_CACHE=off` gives a folder that lasts as long as the process.
+    """
+    named = os.environ.get("SINGIMPACT_CACHE", "")
+    if named == "off":
+        return passing_folder()
+    if named:
+        return Path(named)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "singimpact"
+
+
+@lru_cache(maxsize=1)
+def passing_folder() -> Path:
+    """A folder of this process, removed when it ends."""
+    import atexit
+    import shutil
+
+    place = tempfile.mkdtemp(prefix="singimpact-")
+    atexit.register(shutil.rmtree, place, ignore_errors=True)
+    return Path(place)
 
 
 def _target(path: str | Path) -> tuple[Path, bool]:

@@ -8,50 +8,32 @@ from __future__ import annotations
 
 import hashlib
 import math
-import os
 import sys
-import tempfile
 import types
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from singimpact.inputs import InputError
+from singimpact.store import cache_folder, folder, passing_folder, write_text
+
 FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "tanh", "atan")
 
 
-@lru_cache(maxsize=1)
-def _temporary_folder() -> str:
-    return tempfile.mkdtemp(prefix="singimpact-")
-
-
-def cache_folder() -> Path:
-    """Where kernels are kept: `SINGIMPACT_CACHE`, else the user's cache folder; `off` gives a temporary one."""
-    named = os.environ.get("SINGIMPACT_CACHE", "")
-    if named == "off":
-        return Path(_temporary_folder())
-    if named:
-        return Path(named)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "singimpact"
-
-
-def written(text: str) -> Path:
-    """The file that holds a kernel's text; written whole or not at all, so that two processes may race."""
-    folder = cache_folder() / "kernels"
-    path = folder / f"kernel_{hashlib.sha256(text.encode()).hexdigest()[:24]}.py"
+def filed(text: str) -> Path:
+    """The file that holds a kernel's text; it is there whole or not at all, so two processes may race."""
+    name = f"kernel_{hashlib.sha256(text.encode()).hexdigest()[:24]}.py"
     try:
-        return _placed(path, text)
-    except OSError:  # a read-only home must not stop a computation
-        return _placed(Path(_temporary_folder()) / path.name, text)
+        return _placed(cache_folder() / "kernels", name, text)
+    except InputError:  # a read-only home must not stop a computation
+        return _placed(passing_folder(), name, text)
 
 
-def _placed(path: Path, text: str) -> Path:
-    if path.exists() and path.read_text(encoding="utf-8") == text:
-        return path
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, partial = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    with os.fdopen(handle, "w", encoding="utf-8") as stream:
-        stream.write(text)
-    os.replace(partial, path)
+def _placed(place: Path, name: str, text: str) -> Path:
+    path = folder(place) / name
+    # an equal file stays: numba's disk cache looks at its time
+    if not path.is_file() or path.read_text(encoding="utf-8") != text:
+        write_text(path, text)
     return path
 
 
@@ -66,9 +48,10 @@ def compiled(text: str, names: tuple[str, ...]) -> dict[str, Any]:
     """
     import numba
 
-    path = written(text)
+    path = filed(text)
     module = types.ModuleType(f"singimpact_{path.stem}")
-    # numba's disk cache looks the module of a function up by its name
+    module.__file__ = str(path)
+    # code from numba's disk cache looks for the module of its function by name, in a process that never ran its text
     sys.modules[module.__name__] = module
     space = vars(module)
     space.update({name: getattr(math, name) for name in FUNCTIONS})

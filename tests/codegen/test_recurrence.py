@@ -8,8 +8,9 @@ import mpmath
 import numpy as np
 import pytest
 
+from singimpact import store
 from singimpact.algebra.parsing import parse
-from singimpact.codegen.kernels import FUNCTIONS, cache_folder, compiled, plain, written
+from singimpact.codegen.kernels import FUNCTIONS, compiled, filed, plain
 from singimpact.codegen.recurrence import recurrence
 from singimpact.flights.kernel import kernel_of
 from singimpact.impact_oscillator import ImpactOscillator
@@ -54,13 +55,13 @@ def test_models_of_one_structure_share_a_text() -> None:
 
 def test_the_cache_folder_is_the_named_one(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path / "here"))
-    path = written("x = 1\n")
+    path = filed("x = 1\n")
     assert path.is_relative_to(tmp_path / "here")
     assert path.read_text() == "x = 1\n"
     path.write_text("damaged")
-    assert written("x = 1\n").read_text() == "x = 1\n"
+    assert filed("x = 1\n").read_text() == "x = 1\n"
     monkeypatch.setenv("SINGIMPACT_CACHE", "off")
-    assert not cache_folder().is_relative_to(tmp_path)
+    assert not store.cache_folder().is_relative_to(tmp_path)
 
 
 def test_the_disk_cache_serves_a_new_process() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from singimpact.impact_oscillator import linear
 from singimpact.inputs import InputError
-from singimpact.scenes.plot import plot
+from singimpact.scenes import plot
 
 
 def test_everything_that_happened_is_labelled() -> None:
