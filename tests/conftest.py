@@ -9,3 +9,11 @@ def singimpact():
     from singimpact.cli import main
 
     return lambda *args: CliRunner().invoke(main, [str(arg) for arg in args])
+
+
+@pytest.fixture(scope="session")
+def reference():
+    """The table of reference values: name -> digits."""
+    from singimpact.bench.problems import values
+
+    return values()

@@ -40,7 +40,8 @@ class Limits:
 
 LIMITS = Limits()
 _TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<sign>\*\*|[-+*/(),^.]))"
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<sign>\*\*|[-+*/(),^.]))",
+    re.ASCII,
 )
 _LANGUAGE = "numbers, + - * / **, pi and " + " ".join(FUNCTIONS)
 

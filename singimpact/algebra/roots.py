@@ -1,4 +1,4 @@
-"""Real roots of polynomials with rational coefficients: isolated by flint, refined to any precision by Newton's method."""
+"""Real roots of polynomials with rational coefficients: isolated by flint, refined by Newton's method on balls."""
 
 from __future__ import annotations
 
@@ -27,10 +27,14 @@ def real_roots(coefficients: Sequence[Fraction], balls: Balls) -> list[Any]:
     """
     import flint
 
-    poly = flint.fmpq_poly([flint.fmpq(c.numerator, c.denominator) for c in coefficients]).numer()
-    isolated = [root.real for root, _ in poly.complex_roots() if root.imag == 0]
-    ordered = sorted(isolated, key=cmp_to_key(lambda left, right: -1 if left < right else 1))
+    poly: Any = flint.fmpq_poly([flint.fmpq(c.numerator, c.denominator) for c in coefficients]).numer()
+    isolated: list[Any] = [root.real for root, _ in poly.complex_roots() if root.imag == 0]
+    ordered = sorted(isolated, key=cmp_to_key(_order))
     return [refined(poly, root, balls.bits) for root in ordered]
+
+
+def _order(left: Any, right: Any) -> int:
+    return -1 if left < right else 1
 
 
 def refined(poly: Any, isolated: Any, bits: int) -> Any:

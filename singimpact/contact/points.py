@@ -15,7 +15,7 @@ from singimpact.algebra.expressions import Call, Expression, Power, children, ev
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import acceleration
-from singimpact.contact.zeros import Zero, derivatives, isolate, refined
+from singimpact.contact.zeros import Zero, derivatives, isolate, refined, sign_at
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 
@@ -71,6 +71,9 @@ class TangencyPoints(tuple[TangencyPoint, ...]):
         return tuple(point.kind for point in self)
 
 
+KINDS = {1: "gamma", -1: "foliation"}
+
+
 def tangency_points(oscillator: Oscillator) -> TangencyPoints:
     """The zeros of a_c over one period [0, T), or all real zeros when g is a polynomial.
 
@@ -90,9 +93,7 @@ def tangency_points(oscillator: Oscillator) -> TangencyPoints:
     low, high = _window(oscillator, function)
     points = []
     for zero in isolate(function, "t", low, high):
-        kind = {1: "gamma", -1: "foliation"}.get(zero.slope) or _degenerate(function, zero)
-        if kind:
-            points.append(TangencyPoint(function, zero, kind))
+        points += [TangencyPoint(function, zero, KINDS[zero.slope])] if zero.slope else _decided(function, zero)
     return TangencyPoints(_within(points, oscillator))
 
 
@@ -125,22 +126,30 @@ def _root_bound(function: Expression) -> Fraction:
     return size + Fraction(98, 97)
 
 
-def _degenerate(function: Expression, zero: Zero) -> str:
-    """Decide an undecided piece: no zero, or a zero of a_c and a_c' together."""
+def _decided(function: Expression, zero: Zero) -> list[TangencyPoint]:
+    """An undecided piece: a_c at the zero of a_c' on it tells whether it holds no zero, two, or a double one."""
     import flint
 
-    inner = [piece for piece in isolate(function, "t", zero.low, zero.high, order=1) if piece.slope]
-    if not inner:
-        raise InputError(
-            f"a_c has zeros near t = {float(zero.low):.6g} of contact order 3 or more: they are not classified"
-        )
+    turns = [piece for piece in isolate(function, "t", zero.low, zero.high, order=1) if piece.slope]
+    if not turns:
+        place = f"{float(zero.low):.6g}"
+        raise InputError(f"a_c has zeros near t = {place} of contact order 3 or more: they are not classified")
+    turn = turns[0]
     for bits in (256, 2048):
-        ball = refined(function, "t", inner[0], bits, order=1)
+        ball = refined(function, "t", turn, bits, order=1)
         with flint.ctx.workprec(bits):
             value = derivatives(function, "t", ball, 0, Balls(bits))[0]
-            if not value.contains(0):
-                return ""
-    return "degenerate"
+            if value > 0 or value < 0:
+                return _beside(function, zero, as_rational(ball), turn.slope)
+    return [TangencyPoint(function, turn, "degenerate")]
+
+
+def _beside(function: Expression, zero: Zero, turn: Fraction, slope: int) -> list[TangencyPoint]:
+    """The zeros of a piece on the two sides of an extremum, by signs; `slope` is that of the derivative after it."""
+    low, middle, high = (sign_at(function, "t", end, 0) for end in (zero.low, turn, zero.high))
+    left = [Zero(zero.low, turn, -slope)] if low * -slope <= 0 < middle * -slope else []
+    right = [Zero(turn, zero.high, slope)] if middle * slope <= 0 < high * slope else []
+    return [TangencyPoint(function, piece, KINDS[piece.slope]) for piece in left + right]
 
 
 def _within(points: list[TangencyPoint], oscillator: Oscillator) -> list[TangencyPoint]:

@@ -65,7 +65,7 @@ def isolate(tree: Expression, variable: str, low: Fraction, high: Fraction, orde
                 continue
             if slope > 0 or slope < 0:
                 rising = 1 if slope > 0 else -1
-                if _sign(tree, variable, left, order) * rising <= 0 < _sign(tree, variable, right, order) * rising:
+                if sign_at(tree, variable, left, order) * rising <= 0 < sign_at(tree, variable, right, order) * rising:
                     found.append(Zero(left, right, rising))
                 continue
             if right - left < least:
@@ -76,7 +76,7 @@ def isolate(tree: Expression, variable: str, low: Fraction, high: Fraction, orde
     return _merged(found)
 
 
-def _sign(tree: Expression, variable: str, at: Fraction, order: int) -> int:
+def sign_at(tree: Expression, variable: str, at: Fraction, order: int) -> int:
     """The sign of a derivative at an exact point; 0 when 2048 bits do not tell it from zero."""
     import flint
 
@@ -104,7 +104,7 @@ def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int =
     """A ball of about this many bits around the simple zero in a piece, by interval Newton steps."""
     import flint
 
-    low, high = zero.low, zero.high
+    low, high = _monotone(tree, variable, zero, order)
     work = 64
     while True:
         work = min(2 * work, bits + 64)
@@ -122,6 +122,19 @@ def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int =
         if work == bits + 64:
             return enclosure
         low, high = _ends(enclosure)
+
+
+def _monotone(tree: Expression, variable: str, zero: Zero, order: int) -> tuple[Fraction, Fraction]:
+    """The piece halved by signs until the derivative keeps one sign on it."""
+    low, high, balls = zero.low, zero.high, Balls(BITS)
+    while True:
+        window = balls.interval(low, high)
+        slope = derivatives(tree, variable, window, order + 1, balls)[order + 1]
+        if slope > 0 or slope < 0:
+            return low, high
+        middle = (low + high) / 2
+        beyond = sign_at(tree, variable, middle, order) * zero.slope > 0
+        low, high = (low, middle) if beyond else (middle, high)
 
 
 def _ends(ball: Any) -> tuple[Fraction, Fraction]:

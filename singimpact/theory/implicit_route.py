@@ -7,7 +7,7 @@ f_10, f_01, ... (derivatives of f at (c, 0)); r.
 
 from __future__ import annotations
 
-from math import factorial
+from math import comb, factorial
 from typing import Any
 
 import sympy
@@ -27,13 +27,6 @@ def a_symbol(order: int) -> Any:
 def f_symbol(i: int, k: int) -> Any:
     """The symbol of the derivative of f, i times by x and k times by x', at (c, 0)."""
     return sympy.Symbol(f"f_{i}{k}")
-
-
-def cut(expression: Any, order: int, *variables: Any) -> Any:
-    """The part of a polynomial of total degree <= order in the variables."""
-    poly = sympy.Poly(sympy.expand(expression), *variables)
-    kept = [(key, value) for key, value in poly.terms() if sum(key) <= order]
-    return sympy.Add(*(value * sympy.prod(x**n for x, n in zip(variables, key, strict=True)) for key, value in kept))
 
 
 def _field_jets(order: int) -> tuple[list[Any], dict[tuple[int, int], Any]]:
@@ -63,13 +56,8 @@ def y_c(order: int = 3) -> Any:
     domain, *gens = ring(["sigma", "v", *names], sympy.QQ)
     S, V = gens[:2]
 
-    def short(poly: Any, degree: int) -> Any:
-        return domain.from_dict({key: value for key, value in poly.items() if key[0] + key[1] <= degree})
-
     forcing = [
-        short(
-            sum((_binomial(n + k, n) * domain.from_expr(a[n + k]) * S**k for k in range(order - n)), domain.zero), order
-        )
+        sum((comb(n + k, n) * domain.from_expr(a[n + k]) * S**k for k in range(order - n)), domain.zero)
         for n in range(order)
     ]
     x = [domain.zero, V]
@@ -78,12 +66,13 @@ def y_c(order: int = 3) -> Any:
             (domain.from_expr(value) * _power_coefficient(x, i, k, n, domain) for (i, k), value in f.items()),
             domain.zero,
         )
-        x.append(short(pushed, order - n - 1) / ((n + 1) * (n + 2)))
+        x.append(_short(pushed, domain, order - n - 1) / ((n + 1) * (n + 2)))
     return sympy.expand(sum(poly.as_expr() * t ** (n - 1) for n, poly in enumerate(x) if n))
 
 
-def _binomial(n: int, k: int) -> int:
-    return factorial(n) // (factorial(k) * factorial(n - k))
+def _short(poly: Any, domain: Any, degree: int) -> Any:
+    """The part of total degree <= `degree` in the first two variables."""
+    return domain.from_dict({key: value for key, value in poly.items() if key[0] + key[1] <= degree})
 
 
 def _power_coefficient(x: list[Any], i: int, k: int, n: int, domain: Any) -> Any:
@@ -110,8 +99,23 @@ def v_c(order: int = 3) -> Any:
     rest = sympy.expand(v - y_c(order))  # dy_c/dv = 1 on Pi_0, so v = rest(v) gains one degree a turn
     solution: Any = sympy.Integer(0)
     for degree in range(1, order + 1):
-        solution = cut(rest.subs(v, solution), degree, sigma, t)
+        solution = composed(rest, solution, degree)
     return solution
+
+
+def composed(expression: Any, velocity: Any, order: int) -> Any:
+    """A polynomial in (sigma, t, v) with v replaced, cut after total degree `order` in (sigma, t)."""
+    names = sorted((expression.free_symbols | velocity.free_symbols) - {sigma, t, v}, key=str)
+    domain = ring([sigma, t, *names], sympy.QQ)[0]
+    inner, value = domain.from_expr(velocity), domain.zero
+    for part in sympy.Poly(expression, v).all_coeffs():
+        value = _short(value * inner + domain.from_expr(part), domain, order)
+    return value.as_expr()
+
+
+def at_launch(expression: Any, order: int) -> Any:
+    """A polynomial in (sigma, t, v) on the sheet v = v_c, to total degree `order`."""
+    return composed(expression, v_c(order), order)
 
 
 @equation("e:acc")
@@ -132,8 +136,7 @@ def phi_c(order: int = 3) -> tuple[Any, Any]:
 
     The impact velocity is found the long way, by differentiating x_c = c + t y_c and putting v = v_c.
     """
-    velocity = sympy.diff(t * y_c(order), t)
-    return sigma + t, cut(velocity.subs(v, v_c(order)), order, sigma, t)
+    return sigma + t, at_launch(sympy.diff(t * y_c(order), t), order)
 
 
 @equation("s3-Dp")

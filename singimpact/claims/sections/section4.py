@@ -81,8 +81,7 @@ def _linear_model(stated: tuple[Any, Any]) -> Check:
 
 def _phi(time: Any) -> Check:
     """x-dot_c(tau, v_c; time), the second component of phi_c, against the launch velocity after the involution."""
-    velocity = sympy.diff(t * route.y_c(3), t).subs(t, time)
-    taken = route.cut(velocity.subs(v, route.v_c(3)), 3, sigma, t)
+    taken = route.at_launch(sympy.diff(t * route.y_c(3), t).subs(t, time), 3)
     sheet = generic_sheet(0, 3)
     return identity(lambda: sheet.to_sympy(sheet.xdot), "the launch velocity after the involution")(taken)
 

@@ -1,0 +1,150 @@
+"""The whitelist parser: what it reads, and that every refusal is one line, at once, without running anything."""
+
+import time
+from fractions import Fraction
+
+import pytest
+import sympy
+from hypothesis import given
+from hypothesis import strategies as st
+
+from singimpact.algebra.expressions import Number, evaluate
+from singimpact.algebra.numbers import as_float, compare, constant, exact, float_array
+from singimpact.algebra.parsing import from_sympy, parse
+from singimpact.algebra.rings import DOUBLES, EXACT, to_sympy
+from singimpact.inputs import InputError
+
+HOSTILE = [
+    "__import__('os')",
+    "().__class__",
+    "x.real",
+    "x.__class__",
+    "open('a')",
+    "lambda: 1",
+    "eval('1')",
+    "x if x else 1",
+    "[x]",
+    "x[0]",
+    "{x}",
+    "x;x",
+    "x=1",
+    "x==1",
+    "x@x",
+    "x//2",
+    "x^2",
+    "sin",
+    "sin x",
+    "sin()",
+    "sin(x, x)",
+    "(",
+    ")",
+    "x)",
+    "",
+    "   ",
+    "x +",
+    "* x",
+    "1..2",
+    "0x10",
+    "1e999999999",
+    "9**9**9**9",
+    "9**(9**9)",
+    "2**-1e9",
+    "1/0",
+    "x/(1-1)",
+    "x" * 10_000_000,
+    "(" * 100_000,
+    "x**" * 5_000 + "x",
+    "-" * 5_000 + "y",
+    "nan",
+    "inf",
+    "1j",
+    "\x00",
+    "x\n\nimport os",
+    "\u0665",
+    "gamma(x)",
+]
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=lambda text: text[:20])
+def test_hostile_text_is_one_line_at_once(text):
+    started = time.process_time()
+    with pytest.raises(InputError) as refusal:
+        parse(text, ["x"], "f")
+    assert time.process_time() - started < 0.5
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 400
+    assert str(refusal.value).startswith("f ")
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1/3 + 0.1", Fraction(13, 30)),
+        ("-x**2", Fraction(-9)),
+        ("2**-2", Fraction(1, 4)),
+        ("x/2/3", Fraction(1, 2)),
+        ("x - 1 - 1", Fraction(1)),
+        ("2**3**2", Fraction(512)),
+        ("--x", Fraction(3)),
+        ("1.5e1*x", Fraction(45)),
+        (".5", Fraction(1, 2)),
+        ("abs(-x)", Fraction(3)),
+    ],
+)
+def test_value_is_exact(text, value):
+    assert evaluate(parse(text, ["x"]), {"x": Fraction(3)}, EXACT) == value
+
+
+numbers = st.fractions(max_denominator=50).map(lambda q: f"({q})")
+trees = st.recursive(
+    st.one_of(numbers, st.sampled_from(["x", "y", "pi"])),
+    lambda inner: st.one_of(
+        st.tuples(inner, st.sampled_from(["+", "-", "*"]), inner).map(lambda t: f"({t[0]}){t[1]}({t[2]})"),
+        inner.map(lambda t: f"sin({t})"),
+        inner.map(lambda t: f"-({t})"),
+        st.tuples(inner, st.integers(1, 3)).map(lambda t: f"({t[0]})**{t[1]}"),
+    ),
+    max_leaves=8,
+)
+
+
+@given(trees)
+def test_text_of_a_tree_parses_to_the_same_tree(text):
+    tree = parse(text, ["x", "y"])
+    assert parse(str(tree), ["x", "y"]) == tree
+
+
+@given(trees)
+def test_tree_agrees_with_sympy(text):
+    tree = parse(text, ["x", "y"])
+    there = from_sympy(to_sympy(tree), ["x", "y"])
+    at = {"x": 0.3, "y": -1.1}
+    left, right = evaluate(tree, at, DOUBLES), evaluate(there, at, DOUBLES)
+    assert left == pytest.approx(right, rel=1e-9, abs=1e-9)
+
+
+def test_sympy_objects_pass_the_same_whitelist():
+    x = sympy.Symbol("x")
+    assert str(from_sympy(x**2 / 2 + sympy.sin(x), ["x"])) == str(parse("0.5*x**2 + sin(x)", ["x"]))
+    with pytest.raises(InputError, match="'gamma' is not one of"):
+        from_sympy(sympy.gamma(x), ["x"])
+    with pytest.raises(InputError, match="'z' has no value"):
+        from_sympy(sympy.Symbol("z"), ["x"])
+    assert from_sympy(sympy.Float(0.1), []) == Number(Fraction(0.1))
+
+
+def test_numbers_mean_what_is_written():
+    assert exact("r", 0.1) == Fraction(0.1) != Fraction(1, 10)
+    assert constant("r", "0.1") == Number(Fraction(1, 10))
+    assert constant("r", sympy.Rational(1, 3)) == Number(Fraction(1, 3))
+    assert as_float(constant("tau", "pi/2.8")) == 1.121997376282069
+    assert float_array("tau", ["pi", Fraction(1, 2), 2]).tolist() == [3.141592653589793, 0.5, 2.0]
+    assert compare(constant("a", "sqrt(2)"), constant("b", "1.41421356237309504880")) == 1
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), None, True, "x", [1], object(), "1/0", "log(0)"])
+def test_what_is_not_a_number_is_refused(value):
+    with pytest.raises(InputError) as refusal:
+        constant("tau", value)
+    assert "\n" not in str(refusal.value)
+    assert "tau" in str(refusal.value)

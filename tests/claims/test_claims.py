@@ -1,0 +1,102 @@
+"""Every claim has a verdict that is computed, and every verifier rejects what is wrong."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from singimpact.claims import CLAIMS, run, select
+from singimpact.claims.claim import Check, Claim, Statement
+from singimpact.inputs import InputError
+
+MISPRINTED = {
+    "e:phi", "e:phinew", "e:hdef", "e:fixm-converse", "e:vtaylor-t2", "e:vtaylor-st2", "e:vtaylor-t3", "s3-dvdt",
+    "s4-normal-id2", "s4-Er-closed", "s4-m32-r1", "s4-m2-sign", "s4-Nr-3-all", "s4-beta-tangent", "t:t2-unique",
+    "t:t2-fixed", "t:t2-eigenvalue-limit",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def verdicts():
+    return {verdict.id: verdict for verdict in run(select())}
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_claim_has_a_verdict(name, verdicts):
+    verdict = verdicts[name]
+    assert verdict.kind in {"proved", "certified", "supported", "cited", "corrected"}, verdict.evidence
+    assert verdict.kind != "cited" or name == "s3-takens"
+    assert (verdict.kind == "corrected") == (name in MISPRINTED), verdict.evidence
+    assert verdict.printed
+    assert verdict.evidence
+    if verdict.kind == "corrected":
+        assert verdict.corrected != verdict.printed
+        assert verdict.witness
+        assert verdict.corrected_kind in {"proved", "certified", "supported"}
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_verifier_rejects_every_mutant(name):
+    claim = CLAIMS[name]
+    assert claim.mutants
+    for mutant in claim.mutants:
+        check = claim.verify(mutant)
+        assert not check.holds, f"{name} accepts {mutant}"
+        assert check.evidence
+
+
+def test_every_claim_rests_on_claims_before_it():
+    seen = set()
+    for claim in select():
+        assert set(claim.rests_on) <= seen
+        seen.add(claim.id)
+
+
+def test_selection_brings_what_it_rests_on():
+    names = [claim.id for claim in select(["e:meq", "e:qdef"])]
+    assert {"e:yeq", "e:degen", "e:phinew", "e:defq", "e:qdef", "e:fixm", "e:meq"} <= set(names)
+    assert "t:t1" not in names
+
+
+def test_effective_verdict_is_the_weakest_below(verdicts):
+    assert verdicts["s3-slope"].kind == "proved"
+    assert verdicts["s3-slope"].effective == "supported"
+
+
+def test_unknown_id_names_the_nearest():
+    with pytest.raises(InputError, match="unknown claim 'e:mex': the nearest known are e:meq"):
+        select(["e:mex"])
+
+
+def _claim(verify, corrected=None):
+    return Claim("test", "0", "a test", Statement("x", 1), verify, (0,), corrected)
+
+
+def test_a_verifier_that_raises_is_an_error():
+    def fails(value):
+        raise RuntimeError(f"no {value}")
+
+    (verdict,) = run([_claim(fails)])
+    assert (verdict.kind, verdict.evidence) == ("error", "RuntimeError: no 1")
+
+
+def test_a_failure_without_a_statement_that_holds_is_an_error():
+    fails = lambda value: Check(False, "proved", f"{value} is wrong", {"x": "1"})  # noqa: E731
+    assert run([_claim(fails)])[0].kind == "error"
+    assert run([_claim(fails, lambda: Statement("y", 2))])[0].kind == "error"
+
+
+def test_a_correction_needs_a_witness():
+    verify = lambda value: Check(value == 2, "proved", "compared")  # noqa: E731
+    assert run([_claim(verify, lambda: Statement("y", 2))])[0].kind == "error"
+
+
+def test_verify_from_the_command_line():
+    command = [sys.executable, "-m", "singimpact", "verify", "e:meq", "s3-dvdt", "--json"]
+    found = subprocess.run(command, capture_output=True, text=True, check=True)
+    claims = {claim["id"]: claim for claim in json.loads(found.stdout)["claims"]}
+    assert claims["e:meq"]["verdict"] == "proved"
+    assert claims["s3-dvdt"]["verdict"] == "corrected"
+    assert claims["s3-dvdt"]["witness"] == {"at": "a = 3/5", "stated": "3/10", "derived": "-3/10"}
+    assert {"id", "verdict", "printed", "corrected", "witness", "seconds"} <= set(claims["e:meq"])
