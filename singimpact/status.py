@@ -28,6 +28,7 @@ class Status(IntEnum):
     unresolved = 5
     complete = 6
     lifts_off = 7
+    no_rebound = 8
 
     @property
     def sentence(self) -> str:
@@ -44,5 +45,7 @@ _SENTENCES = {
     Status.unresolved: "a near graze that this precision cannot decide; values are nan, "
     "depth and its bound say how near: ask with digits=",
     Status.complete: "infinitely many impacts accumulate; the mass comes to rest at the accumulation time",
+    Status.no_rebound: "the obstacle is hit, and rho gives no positive velocity there; v is nan: "
+    "give a restitution that is positive at such velocities",
     Status.lifts_off: "contact is lost before the impacts accumulate",
 }

@@ -8,11 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.rings import DOUBLES
 from singimpact.codegen.kernels import compiled
 from singimpact.flights import manydigits
 from singimpact.flights.carriers import Flight, Step
 from singimpact.flights.condition import condition
+from singimpact.flights.escape import never_returns
 from singimpact.flights.kernel import Kernel, kernel_of
 from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
 from singimpact.flights.limits import LIMITS, degree_for
@@ -64,7 +67,8 @@ def impact_map(
 
     Notes
     -----
-    At `no_return` tau is inf and v nan; at `unresolved` both are nan; at `sticks` and `graze` v is 0.
+    At `no_return` and `escaped` tau is inf and v nan; at `unresolved` both are nan; at `sticks` and `graze` v is 0; at
+    `no_rebound` v is nan.
 
     Examples
     --------
@@ -76,10 +80,20 @@ def impact_map(
     hit = first_hit(osc, tau, v, digits=digits, tolerance=tolerance, horizon=horizon)
     if digits is not None:
         return manydigits.step(osc, states, hit, digits)
-    start = states.tau.reshape(states.shape)
-    bounce = np.abs(as_float(osc.restitution) * hit.velocity)
-    values = (start + hit.flight_time, bounce) if states.shape else (start[()] + hit.flight_time, bounce)
-    return Step(**vars(hit), tau=values[0], v=values[1])
+    landed = states.tau.reshape(states.shape) + hit.flight_time
+    bounce = rebound(osc, np.asarray(hit.velocity))
+    dead = (np.asarray(hit.status) == Status.hit) & np.isnan(bounce)
+    status = np.where(dead, np.int8(Status.no_rebound), hit.status).astype(np.int8)
+    return Step(**(vars(hit) | {"status": status[()]}), tau=landed[()], v=bounce[()])
+
+
+def rebound(osc: Oscillator, velocity: Array) -> Array:
+    """rho(velocity) for velocities <= 0; nan where it is not positive for a velocity that is not 0."""
+    if not names_in(osc.restitution):
+        return np.abs(as_float(osc.restitution) * velocity)
+    with np.errstate(all="ignore"):
+        bounce = np.asarray(evaluate(osc.rho(), {"v": velocity}, DOUBLES), dtype=float)
+    return np.where(velocity == 0, 0.0, np.where((bounce > 0) & np.isfinite(bounce), bounce, np.nan))
 
 
 def checked_digits(digits: Any) -> int:
@@ -110,8 +124,19 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     removed = _removed(osc, states, status)
     numbers = _flown(osc, kernel, states, removed, status, limit, epsilon)
     _settle(osc, states, limit, status, numbers)
+    if kernel.form is not None:
+        _escapes(osc, kernel.form, states, status, numbers)
     flight = flight_of(status, numbers)
     return flight if kernel.form is None else replace(flight, condition=_conditions(osc, kernel.form, states, flight))
+
+
+def _escapes(osc: Oscillator, form: LinearForm, states: States, status: Array, numbers: Array) -> None:
+    """What has not returned is asked whether it ever can."""
+    # a flight that left the range of doubles was followed without impact too
+    gone = np.flatnonzero((status == Status.no_return) | (numbers[:, 2] > LIMITS.far))
+    if gone.size:
+        time, speed, place, _ = numbers[gone].T
+        status[gone[never_returns(osc, form, states.tau[gone], time, place, speed)]] = Status.escaped
 
 
 def _conditions(osc: Oscillator, form: LinearForm, states: States, flight: Flight) -> Array:

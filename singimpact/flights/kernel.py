@@ -11,13 +11,15 @@ from typing import Any
 
 from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power
 from singimpact.algebra.numbers import as_float, sign_of
-from singimpact.flights import first_root, march
-from singimpact.flights.flow import closed_form, taylor
+from singimpact.flights import first_root, march, strides
+from singimpact.flights.flow import closed_form, table, taylor
 from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 
 COMMON = (first_root.safe_step, first_root.polished, first_root.first_root,
           march.advanced, march.march, march.run, march.follow)  # fmt: skip
+STRIDES = (table.tabulate, table.bounds, strides.series, strides.launched, strides.first_stride,
+           strides.inner_stride, strides.stride, strides.stride_all)  # fmt: skip
 HEAD = '''"""Written by singimpact from the text of its own functions and from f and g: edit those, not this file."""
 
 from __future__ import annotations
@@ -54,13 +56,15 @@ def kernel_of(osc: Oscillator, exact_restart: bool = True) -> Kernel:
         text = _joined(emitted.source, parts)
         return Kernel(text, ("coefficients", *_names(parts)), emitted.rows, tuple(taylor.constants(osc)), None)
     text, names = _linear_text(exact_restart)
-    return Kernel(text, names, max(2 * len(form.harmonics), 1), linear_constants(osc, form), form)
+    return Kernel(text, names, max(4 * len(form.harmonics), 1), linear_constants(osc, form), form)
 
 
 @lru_cache(maxsize=2)
 def _linear_text(exact_restart: bool) -> tuple[str, tuple[str, ...]]:
     restart = (closed_form.pair, closed_form.triple, closed_form.restart) if exact_restart else (taylor.restart,)
-    parts = (closed_form.coefficients, closed_form.step_size, *restart, *COMMON)
+    parts: tuple[Callable[..., Any], ...] = (closed_form.coefficients, closed_form.step_size, *restart, *COMMON)
+    if exact_restart:
+        parts += STRIDES
     return _joined("", parts), _names(parts)
 
 

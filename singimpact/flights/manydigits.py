@@ -10,12 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_mpf
+from singimpact.algebra.rings import Multiprecision
 from singimpact.codegen.kernels import FUNCTIONS, plain
 from singimpact.flights.carriers import Flight, Step
+from singimpact.flights.escape import never_returns
 from singimpact.flights.kernel import Kernel, kernel_of
 from singimpact.flights.launch import States, at_rest
 from singimpact.flights.limits import LIMITS, degree_for
+from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
@@ -46,7 +50,7 @@ def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, A
     match status:
         case Status.hit:
             return time, velocity, nan, nan
-        case Status.no_return:
+        case Status.no_return | Status.escaped:
             return mpmath.inf, nan, nan, nan
         case Status.sticks:
             return 0, 0, nan, nan
@@ -59,14 +63,26 @@ def step(osc: Oscillator, states: States, hit: Flight, digits: int) -> Step:
     """The hit with the state after it."""
     import mpmath
 
+    times, speeds = np.asarray(hit.flight_time, dtype=object), np.asarray(hit.velocity, dtype=object)
+    status = np.array(hit.status, dtype=np.int8).ravel()
+    tau, v = np.empty(times.size, dtype=object), np.empty(times.size, dtype=object)
     with mpmath.workdps(digits):
-        restitution = as_mpf(osc.restitution, mpmath.mp)
-        times, speeds = np.asarray(hit.flight_time, dtype=object), np.asarray(hit.velocity, dtype=object)
-        tau, v = np.empty(times.size, dtype=object), np.empty(times.size, dtype=object)
         for index, (time, speed) in enumerate(zip(times.ravel(), speeds.ravel(), strict=True)):
-            tau[index] = as_mpf(states.exact_tau(index), mpmath.mp) + time
-            v[index] = abs(restitution * speed)
-    return Step(**vars(hit), tau=tau.reshape(states.shape)[()], v=v.reshape(states.shape)[()])
+            tau[index], v[index] = as_mpf(states.exact_tau(index), mpmath.mp) + time, rebound(osc, speed)
+            if status[index] == Status.hit and not v[index] > 0:
+                status[index], v[index] = Status.no_rebound, mpmath.nan
+    shape = states.shape
+    fields = vars(hit) | {"status": status.reshape(shape)[()]}
+    return Step(**fields, tau=tau.reshape(shape)[()], v=v.reshape(shape)[()])
+
+
+def rebound(osc: Oscillator, velocity: Any) -> Any:
+    """rho(velocity) at the working precision."""
+    import mpmath
+
+    if not names_in(osc.restitution):
+        return abs(as_mpf(osc.restitution, mpmath.mp) * velocity)
+    return mpmath.re(evaluate(osc.rho(), {"v": velocity}, Multiprecision(mpmath.mp)))
 
 
 def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome:
@@ -76,12 +92,24 @@ def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: floa
     while precision < 4 * digits + 500:
         precision = precision + max(LIMITS.guard, precision // 4)
         again = flown(osc, states, index, precision, limit)
-        if outcome[0] == again[0] and outcome[0] != Status.unresolved and _close(outcome[1], again[1], digits):
-            return again
+        if outcome[0] == again[0] == Status.no_return or min(outcome[1][2], again[1][2]) > LIMITS.far:
+            return _escaping(osc, states, index, again)
+        if outcome[0] == again[0] and outcome[0] != Status.unresolved:
+            if _close(outcome[1], again[1], digits):
+                return again
         outcome = again
     if outcome[0] == Status.unresolved and _touches(outcome[1]):
         return int(Status.graze), outcome[1]
     return outcome
+
+
+def _escaping(osc: Oscillator, states: States, index: int, outcome: Outcome) -> Outcome:
+    """`escaped` in place of `no_return` where the bounds of `flights.escape` prove it; doubles are enough for them."""
+    form, numbers = linear_form(osc), outcome[1]
+    time, speed, place = (np.array([float(value)]) for value in numbers[:3])
+    if form is None or not never_returns(osc, form, states.tau[[index]], time, place, speed)[0]:
+        return outcome
+    return int(Status.escaped), numbers
 
 
 def _close(first: tuple[Any, ...], second: tuple[Any, ...], digits: int) -> bool:

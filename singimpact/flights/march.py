@@ -24,6 +24,10 @@ def march(
     acceleration : a_c at the launch when it is known better than the flow computes it, else nan.
     order, ulp : degree of a step; relative rounding error allowed for.
     p : numbers of the model. X, W, q : work arrays.
+
+    Notes
+    -----
+    Without a hit the state some time before the horizon is given, for `flights.escape`: time, x', x - c, its bound.
     """
     zero = 0 * v
     time, z, u, noise, shift = zero, zero, v, zero, zero
@@ -51,10 +55,10 @@ def march(
             if code == 2:
                 return 5, time + s, slope * raised, depth * raised, bound * raised
             if time + s > horizon:
-                return 3, horizon, zero, zero, zero
+                return 3, time, u, z, noise
             return 0, time + s, slope * raised, zero, zero
         if time + h >= horizon:
-            return 3, horizon, zero, zero, zero
+            return 3, time, u, z, noise
         z, u, size = advanced(X, z, order, h)
         time += h
         z, u, noise = restart(launch, v, time, z, u, noise + ulp * size, ulp, p)

@@ -1,5 +1,6 @@
 """The oscillator x'' + f(x, x') = g(t), x >= c, v -> -r v as data: expressions, exact numbers, a period, a digest.
 
 Not here: points of the tau-axis (`contact`), motion (`flights`), a user's methods (`impact_oscillator`).
-Files: `model` (the data), `period` (of g), `linear` (linear models), `acceleration` (a_c), `files` (TOML).
+Files: `model` (the data), `period` (of g), `rebound` (rho), `linear` (linear models), `acceleration` (a_c),
+`files` (TOML).
 """

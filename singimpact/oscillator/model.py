@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in, substitute, walk
-from singimpact.algebra.numbers import compare, constant
+from singimpact.algebra.numbers import constant
 from singimpact.algebra.parsing import tree_of
 from singimpact.inputs import InputError, refuse, shown, unknown
+from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, period_of
 
 STATE = ("x", "xdot")
@@ -17,14 +18,15 @@ RESERVED = {*STATE, "t", "v", "pi", *FUNCTIONS}
 
 
 class Oscillator:
-    """x'' + f(x, x') = g(t), x >= clearance, v -> -restitution v.
+    """x'' + f(x, x') = g(t), x >= clearance, v -> -restitution v, or v -> rho(v).
 
     Parameters
     ----------
     f : expression in x, xdot and the parameters; text, sympy or a number.
     g : expression in t and the parameters.
     clearance : number, the obstacle's place; finite.
-    restitution : number in (0, 1].
+    restitution : number r in (0, 1], for v -> -r v; or an expression rho in the velocity v before the impact and the
+        parameters, with rho(0) = 0 and rho'(0) in [-1, 0), for v -> rho(v).
     parameters : name -> number.
     period : number, optional; a period of g. Found from g when it can be; needed only where a task asks for one.
 
@@ -57,12 +59,12 @@ class Oscillator:
         self.parameters: dict[str, Expression] = values
         self.f = tree_of(f, (*STATE, *values), "f")
         self.g = tree_of(g, ("t", *values), "g")
-        used = names_in(self.f) | names_in(self.g)
+        self.restitution = rebound.read(restitution, values)
+        used = names_in(self.f) | names_in(self.g) | names_in(self.restitution)
         for name in values:
             if name not in used:
-                raise unknown("parameter", name, sorted((used | {name}) - {*STATE, "t", name}))
+                raise unknown("parameter", name, sorted((used | {name}) - {*STATE, "t", "v", name}))
         self.clearance = constant("clearance", clearance)
-        self.restitution = _restitution(restitution)
         found = period_of(self.forcing())
         self._period = found if period is None else checked_period(self.forcing(), period, found)
         self._texts = (str(self.f), str(self.g), str(self.clearance), str(self.restitution),
@@ -86,6 +88,20 @@ class Oscillator:
     def forcing(self) -> Expression:
         """g with the parameters' values put in."""
         return substitute(self.g, self.parameters)
+
+    def rho(self) -> Expression:
+        """The restitution as a tree in v with the parameters' values put in."""
+        return substitute(rebound.rho_of(self.restitution), self.parameters)
+
+    def slope_at_rest(self) -> Expression:
+        """r = -rho'(0).
+
+        Examples
+        --------
+        >>> print(Oscillator("x", "cos(t)", 0, "-0.8*v + b*v**2", {"b": 1}).slope_at_rest())
+        0.8
+        """
+        return rebound.slope_at_rest(self.restitution, tuple(sorted(self.parameters.items())))
 
     def replace(self, **changes: Any) -> Oscillator:
         """The same model with some fields changed; a parameter is changed by its own name.
@@ -141,17 +157,6 @@ def _parameters(given: Mapping[str, Any]) -> dict[str, Expression]:
         if not isinstance(name, str) or not name.isidentifier() or name in RESERVED:
             raise refuse("parameter name", name, f"a plain name other than {', '.join(sorted(RESERVED))}")
     return {name: constant(name, value) for name, value in given.items()}
-
-
-def _restitution(value: Any) -> Expression:
-    accepted = "a number in (0, 1]"
-    try:
-        tree = constant("restitution", value)
-    except InputError:
-        raise refuse("restitution", value, accepted) from None
-    if compare(tree, 0) <= 0 or compare(tree, 1) > 0:
-        raise refuse("restitution", value, accepted)
-    return tree
 
 
 def require_smooth_text(tree: Expression, what: str) -> None:

@@ -46,7 +46,7 @@ def test_path_agrees_with_an_independent_integrator(name: str) -> None:
 def test_first_hit_is_a_zero_and_the_first_one(name: str) -> None:
     hit = first_hit(MODELS[name], 0.4, [1e-9, 0.02, 0.7], horizon=60)
     for v, time, velocity, status in zip([1e-9, 0.02, 0.7], hit.flight_time, hit.velocity, hit.status, strict=True):
-        assert status in (Status.hit, Status.no_return)
+        assert status in (Status.hit, Status.no_return, Status.escaped)
         end = time if status == Status.hit else 60.0
         inside = MODELS[name].flight(0.4, v, end * np.linspace(0, 1, 400)[1:-1])
         clearance = MODELS[name].flight(0.4, v, 0.0).x
@@ -105,13 +105,63 @@ def test_lift_off_of_the_negative_swan_is_exact() -> None:
 
 
 def test_no_return_and_horizon() -> None:
-    away = ImpactOscillator("0", "1", 0, 1).impact_map(0, [0, 1])
+    away = ImpactOscillator("x**3", "2 + t", 0, 1).impact_map(0, [0, 1], horizon=3)
     assert away.status.tolist() == [Status.no_return] * 2
     assert np.all(np.isinf(away.flight_time))
     assert np.all(np.isnan(away.v))
     high = ImpactOscillator("0", "-2", 0, 1)
     assert high.first_hit(0, 5, horizon=4.9).status == Status.no_return
     assert high.first_hit(0, 5, horizon=5.1).status == Status.hit
+
+
+ESCAPES = {
+    "lifted": ("0", "1 + 3*cos(2*t)", 0, 20.0),
+    "damped, lifted": ("0.2*xdot", "1 + cos(t)", 0, 30.0),
+    "damped to a place above": ("x + 0.2*xdot", "0.1*cos(2*t)", -1, 0.1),
+    "repelled": ("-x", "0.1*cos(t)", 1, 0.1),
+    "repelled beyond the range of doubles": ("-x", "2", 1, 0.1),
+    "drifting": ("0", "cos(t)/9", 0, 9.0),
+}
+
+
+@pytest.mark.parametrize("name", ESCAPES)
+@pytest.mark.parametrize("digits", [None, 20])
+def test_escape_is_proved_for_linear_models(name: str, digits: int | None) -> None:
+    force, forcing, clearance, v = ESCAPES[name]
+    step = ImpactOscillator(force, forcing, clearance, 1).impact_map(0, v, digits=digits, horizon=1000)
+    assert step.status == Status.escaped
+    assert float(step.flight_time) == np.inf
+    assert np.isnan(float(step.v))
+
+
+def test_escape_is_not_claimed_where_the_mass_comes_back() -> None:
+    for force, forcing, v in (
+        ("0", "-0.01", 3.0),
+        ("x", "cos(2.8*t)", 1.0),
+        ("-x", "-2", 0.5),
+        ("0.1*xdot", "-1", 9.0),
+    ):
+        osc = ImpactOscillator(force, forcing, 0 if force != "-x" else 1, 1)
+        short, long = osc.first_hit(0, v, horizon=0.1), osc.first_hit(0, v, horizon=1e4)
+        assert short.status == Status.no_return
+        assert long.status == Status.hit
+
+
+def test_a_rebound_that_is_not_positive_is_a_status() -> None:
+    osc = ImpactOscillator("0", "-2", 0, "-v/2 - v**2/8")
+    for digits in (None, 20):
+        step = osc.impact_map([0, 0], [1, 5], digits=digits)
+        assert step.status.tolist() == [Status.hit, Status.no_rebound]
+        assert float(step.v[0]) == 0.375
+        assert np.isnan(float(step.v[1]))
+        assert float(step.tau[1]) == 5.0
+
+
+def test_restitution_by_expression_is_the_number_where_it_is_one() -> None:
+    told, plain = ImpactOscillator("x", "cos(2*t)", 0, "-k*v", {"k": "0.7"}), linear(2, 0, "0.7")
+    v = np.geomspace(1e-12, 3, 20)
+    assert np.allclose(told.impact_map(0.4, v).v, plain.impact_map(0.4, v).v, rtol=4e-16, atol=0)
+    assert told == ImpactOscillator(**told.to_dict())
 
 
 @pytest.mark.parametrize("gap", [1e-4, 1e-9, 1e-13])
@@ -135,7 +185,7 @@ def test_an_exact_touch_is_a_graze() -> None:
     assert touch.velocity == 0
     assert abs(touch.depth) <= 10 * touch.bound
     assert osc.first_hit(0, np.nextafter(9.0, 0)).status == Status.hit
-    assert osc.first_hit(0, np.nextafter(9.0, 10)).status == Status.no_return
+    assert osc.first_hit(0, np.nextafter(9.0, 10)).status in (Status.no_return, Status.escaped)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,83 @@
+"""A linear model's closed form at multiples of one step, as kernel text: a launch is flown by sums of products.
+
+    x - c = z_0 G + u_0 F + h D_0 + sum_j cos(theta_j) Zc_j + sin(theta_j) Zs_j
+
+is linear in what the launch gives; the columns are the same for all launches of a model, and no error grows along a
+flight.  p as in `flow.closed_form`.
+"""
+# mypy: disable-error-code="name-defined"
+# ruff: noqa: F821
+
+from __future__ import annotations
+
+from cmath import exp as complex_exp
+from cmath import sqrt as complex_sqrt
+from math import cos, sin
+from typing import Any
+
+FIXED = 8
+"""Columns before the waves: G, F, h D_0, their derivatives, and the sizes that rounding is relative to."""
+
+EACH = 8
+"""Columns of a wave: its part in x (cosine, sine), in x', in x'' (without what x and x' add), cosine and sine of its
+turn."""
+
+
+def tabulate(p: Any, step: float, table: Any) -> None:
+    """Fill table[m] for the time m step."""
+    root = complex_sqrt(complex(p[1] * p[1] / 4 - p[2]))
+    a, b = -p[1] / 2 + root, -p[1] / 2 - root
+    for m in range(len(table)):
+        time, row = m * step, table[m]
+        free = pair(a, b, time)
+        slope = complex_exp(a * time) + b * free
+        steady = p[3] * triple(a, b, 0j, time)
+        row[0], row[1], row[2] = slope.real + p[1] * free.real, free.real, steady.real
+        row[3], row[4], row[5] = -p[2] * free.real, slope.real, p[3] * free.real
+        row[6], row[7] = abs(row[0]), abs(row[2])
+        for j in range((len(p) - 5) // 3):
+            rate = p[5 + 3 * j]
+            wave = complex(p[6 + 3 * j], -p[7 + 3 * j])
+            forced = wave * triple(a, b, 1j * rate, time)
+            moved = wave * free + 1j * rate * forced
+            turn_c, turn_s = cos(rate * time), sin(rate * time)
+            at = 8 + 8 * j
+            row[at], row[at + 1], row[at + 2], row[at + 3] = forced.real, -forced.imag, moved.real, -moved.imag
+            row[at + 4] = p[6 + 3 * j] * turn_c + p[7 + 3 * j] * turn_s
+            row[at + 5] = p[7 + 3 * j] * turn_c - p[6 + 3 * j] * turn_s
+            row[at + 6], row[at + 7] = turn_c, turn_s
+            row[7] += abs(forced)
+
+
+def bounds(p: Any, step: float, out: Any) -> None:
+    """out = (alpha, beta, gamma, ...): |x^(n)| <= alpha |x - c| + beta |x'| + gamma on a step, for n = 4 and n = 6.
+
+    The same equation with |damping| and |stiffness| majorises the flight; its solution grows, so its value at the end
+    of the step bounds the whole step.
+    """
+    d, k = abs(p[1]), abs(p[2])
+    for source in range(3):
+        value, slope = 1.0 * (source == 0), 1.0 * (source == 1)
+        force = abs(p[3]) if source == 2 else 0.0
+        wave = 0.0
+        for j in range((len(p) - 5) // 3):
+            if source == 2:
+                wave += abs(p[6 + 3 * j]) + abs(p[7 + 3 * j])
+        force += wave
+        # Taylor sums of value and slope at the end of the step
+        first, second = value, slope
+        total, speed, power = first, second, 1.0
+        for n in range(2, 40):
+            third = (d * second * (n - 1) + k * first + (force if n == 2 else 0.0)) / (n * (n - 1))
+            power *= step
+            total += second * power
+            speed += n * third * power
+            first, second = second, third
+        high = [total, speed, 0.0, 0.0, 0.0, 0.0, 0.0]
+        for n in range(2, 7):
+            pull = abs(p[3]) if source == 2 and n == 2 else 0.0
+            for j in range((len(p) - 5) // 3):
+                if source == 2:
+                    pull += (abs(p[6 + 3 * j]) + abs(p[7 + 3 * j])) * abs(p[5 + 3 * j]) ** (n - 2)
+            high[n] = d * high[n - 1] + k * high[n - 2] + pull
+        out[source], out[3 + source] = high[4], high[6]

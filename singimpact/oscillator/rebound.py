@@ -1,0 +1,69 @@
+"""The restitution v -> rho(v): a number r for rho = -r v, or an expression in the velocity v < 0 before the impact."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.expressions import Expression, Name, evaluate, multiply, names_in, number, substitute
+from singimpact.algebra.numbers import compare, constant
+from singimpact.algebra.parsing import tree_of
+from singimpact.algebra.rings import EXACT
+from singimpact.inputs import InputError, refuse
+
+ACCEPTED = "a number in (0, 1], or an expression rho in v with rho(0) = 0 and -1 <= rho'(0) < 0, such as -0.8*v + v**2"
+
+
+def read(value: Any, parameters: dict[str, Expression]) -> Expression:
+    """A restitution as a constant tree or a tree in v, checked at v = 0.
+
+    Examples
+    --------
+    >>> print(read("-0.8*v + b*v**2", {"b": number(1)}))
+    -0.8*v + b*v**2
+    """
+    try:
+        tree = tree_of(value, ("v", *parameters), "restitution")
+        if "v" not in names_in(tree):
+            tree = constant("restitution", value)
+    except InputError as error:
+        if isinstance(value, str) and "v" in value:
+            raise
+        raise refuse("restitution", value, ACCEPTED) from error
+    _check(value, substitute(rho_of(tree), parameters))
+    return tree
+
+
+def rho_of(restitution: Expression) -> Expression:
+    """rho as a tree in v."""
+    return restitution if "v" in names_in(restitution) else multiply(number(-1), restitution, Name("v"))
+
+
+def _check(value: Any, rho: Expression) -> None:
+    rest = {"v": number(0)}
+    try:
+        start, slope = _value(substitute(rho, rest)), _value(substitute(derivative(rho, "v"), rest))
+        good = compare(start, 0) == 0 and compare(slope, 0) < 0 <= compare(slope, -1)
+    except (ArithmeticError, ValueError):
+        good = False
+    if not good:
+        raise refuse("restitution", value, ACCEPTED)
+
+
+def _value(tree: Expression) -> Expression:
+    """A constant as a rational when it is one: products with 0 and sin(0) stand unevaluated in a tree."""
+    try:
+        return number(Fraction(evaluate(tree, {}, EXACT)))
+    except ArithmeticError:
+        return tree
+
+
+@lru_cache(maxsize=256)
+def slope_at_rest(restitution: Expression, parameters: tuple[tuple[str, Expression], ...]) -> Expression:
+    """-rho'(0), the r of an impact that is slow enough."""
+    if not names_in(restitution):
+        return restitution
+    slope = substitute(derivative(restitution, "v"), {"v": number(0), **dict(parameters)})
+    return multiply(number(-1), _value(slope))
