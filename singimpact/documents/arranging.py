@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.documents.formulas import joined, latex
+from singimpact.documents.formulas import first_positive, joined, latex, parenthesised
 
 
 def by_degree(expression: Any, *variables: Any) -> list[str]:
@@ -40,6 +40,9 @@ def _beside(coefficient: Any, monomial: Any) -> str:
     """A coefficient before its monomial: a sum in it stays in front, unlike in a product."""
     if not coefficient.has(sympy.Add):
         return latex(coefficient * monomial)
+    if coefficient.is_Add:
+        turned, sign = first_positive(coefficient, sympy.Integer(1), 1)
+        return f"{'-' if sign < 0 else ''}{parenthesised(turned)} {latex(monomial)}"
     return f"{latex(coefficient)} {latex(monomial)}"
 
 

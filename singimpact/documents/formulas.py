@@ -10,12 +10,12 @@ from typing import Any
 
 import sympy
 
-_NAMES = {"mbar": r"\bar m", "ell": r"\ell", "Qr": r"Q_r(\sigma,\eta)", "Qdot": "Q'"}
+_NAMES = {"mbar": r"\bar m", "ell": r"\ell", "Qrest": r"Q_r(\sigma, \eta) + O(3)", "Qdot": "Q'"}
 _GREEK = {"sigma", "tau", "eta", "lambda", "mu", "omega"}
 SMALL = ("v", "eta", "sigma", "s", "t")
 _FALLING = ("mbar", "m", "lambda", "r")
 _FIRST = ("r", "k", "ell")
-_LAST = ("lambda", "mbar", "m", "v", "sigma", "eta", "s", "t")
+_LAST = ("lambda", "v", "sigma", "eta", "s", "t", "mbar", "m")
 
 
 def latex(value: Any) -> str:
@@ -30,8 +30,11 @@ def latex(value: Any) -> str:
     if isinstance(value, tuple):
         return r"\bigl(" + r",\ ".join(latex(part) for part in value) + r"\bigr)"
     if isinstance(value, sympy.MatrixBase):
-        rows = (" & ".join(latex(part) for part in value.row(n)) for n in range(value.rows))
-        return r"\begin{pmatrix}" + r"\\ ".join(rows) + r"\end{pmatrix}"
+        rows = [
+            " & ".join(latex(part).replace(r"\frac", r"\dfrac") for part in value.row(n)) for n in range(value.rows)
+        ]
+        between = r"\\[0.6em] " if any(r"\dfrac" in row for row in rows) else r"\\ "
+        return r"\begin{pmatrix}" + between.join(rows) + r"\end{pmatrix}"
     value = sympy.sympify(value)
     if value.is_Symbol:
         return name_of(value)
@@ -105,7 +108,7 @@ def _product(value: Any) -> str:
     below: list[tuple[Any, Any]] = []
     for factor in sympy.Mul.make_args(rest):
         base, power = factor.as_base_exp()
-        base, turned = _first_positive(base, power, sign)
+        base, turned = first_positive(base, power, sign)
         sign *= turned
         if base != 1:
             (below if power.is_negative else above).append((base, abs(power)))
@@ -113,7 +116,7 @@ def _product(value: Any) -> str:
     return ("-" if sign < 0 else "") + _fraction(abs(number), top, bottom)
 
 
-def _first_positive(base: Any, power: Any, sign: int) -> tuple[Any, int]:
+def first_positive(base: Any, power: Any, sign: int) -> tuple[Any, int]:
     """A sum turned so that its first term is positive, and the sign that this costs; 1 - x rather than -(x - 1)."""
     if not base.is_Add or not power.is_Integer or power % 2 == 0:
         return base, 1
@@ -153,8 +156,8 @@ def _factor_key(base: Any, power: Any) -> tuple[Any, ...]:
     name = str(base)
     place = _FIRST.index(name) if name in _FIRST else len(_FIRST)
     return (
-        not base.is_Symbol,
         not power.is_Integer,
+        not base.is_Symbol,
         _LAST.index(name) + 1 if name in _LAST else 0,
         place,
         -power if base.is_Add else 0,
@@ -166,14 +169,21 @@ def _factor_key(base: Any, power: Any) -> tuple[Any, ...]:
 def _power(base: Any, power: Any) -> str:
     if power.is_Rational and power.q == 2:
         root = rf"\sqrt{{{latex(base)}}}"
-        return root if power.p == 1 else rf"{_parenthesised(base)}^{{{power.p}/2}}"
-    shown = _parenthesised(base)
+        return root if power.p == 1 else rf"{parenthesised(base)}^{{{power.p}/2}}"
+    shown = parenthesised(base)
     if power == 1:
         return shown
     return rf"{{{shown}}}^{{{power}}}" if "'" in shown else rf"{shown}^{{{power}}}"
 
 
-def _parenthesised(base: Any) -> str:
+def parenthesised(base: Any) -> str:
+    """An expression as a factor: a sum stands in parentheses.
+
+    Examples
+    --------
+    >>> print(parenthesised(sympy.Symbol("m") - sympy.Rational(1, 2)))
+    \\bigl(m - \\tfrac{1}{2}\\bigr)
+    """
     shown = latex(base)
     if not base.is_Add:
         return shown

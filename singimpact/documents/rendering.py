@@ -73,16 +73,16 @@ def display(step: Step, marks: Marks) -> str:
     body = lines[0] if len(lines) == 1 else _split(lines)
     if not step.label:
         return f"\\begin{{equation*}}\n{body}\n\\end{{equation*}}"
-    found = ", ".join(dict.fromkeys(marks[claim].verdict for claim in step.claims))
+    found = marks[step.label].text if step.label in step.claims else ""
     tag = rf"\tag*{{\beside{{{escape.latex(step.label)}}}{{{found}}}}}\label{{{step.label}}}"
     return f"\\begin{{equation}}{tag}\n{body}\n\\end{{equation}}"
 
 
-def notes(step: Step, marks: Marks) -> list[tuple[str, Mark]]:
-    """What is said below an equation: each claim, unless there is one that has the label's name and holds as printed."""
-    if step.claims == (step.label,) and not marks[step.label].printed:
-        return []
-    return [(claim, marks[claim]) for claim in step.claims]
+def notes(step: Step, marks: Marks) -> list[tuple[str, str, str]]:
+    """What is said below an equation: (claim, verdict, printed), without what already stands beside it."""
+    own = [("", "", marks[claim].printed) for claim in step.claims if claim == step.label and marks[claim].printed]
+    others = [(claim, marks[claim].text, marks[claim].printed) for claim in step.claims if claim != step.label]
+    return own + sorted(others, key=lambda note: bool(note[2]))
 
 
 def _split(lines: list[str]) -> str:

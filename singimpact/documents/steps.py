@@ -62,6 +62,11 @@ class Mark:
     stands: str = ""
     printed: str = ""
 
+    @property
+    def text(self) -> str:
+        """The verdict in words: ``corrected, proved`` where what holds instead is proved."""
+        return f"{self.verdict}, {self.stands}" if self.stands else self.verdict
+
 
 def claims_of(sections: Iterable[Section]) -> tuple[str, ...]:
     """The claims that sections show, each once, in order."""

@@ -6,6 +6,7 @@ from typing import Any
 
 import sympy
 
+from singimpact.documents.breaking import PAGE, lines_of, width
 from singimpact.theory.implicit_route import f_symbol
 
 
@@ -22,8 +23,12 @@ def rows(left: str, parts: list[str], remainder: int | None = None) -> tuple[str
     >>> rows("v", ["a", "-b"], 3)
     ('v ={}& a', '& - b + O(3)')
     """
-    lines = [f"{left} ={{}}& {parts[0]}"]
-    lines += [f"& - {part[1:]}" if part.startswith("-") else f"& + {part}" for part in parts[1:]]
+    first, *rest = parts
+    signed = [first, *(f"- {part[1:]}" if part.startswith("-") else f"+ {part}" for part in rest)]
     if remainder is not None:
-        lines[-1] += f" + O({remainder})"
-    return tuple(lines)
+        signed[-1] += f" + O({remainder})"
+    room = PAGE.line - width(left) - PAGE.sign
+    lines = [
+        rf"& \quad {line}" if at else f"& {line}" for part in signed for at, line in enumerate(lines_of(part, room))
+    ]
+    return (f"{left} ={{}}{lines[0]}", *lines[1:])

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from singimpact.documents.arranging import by_degree, factored
-from singimpact.documents.formulas import latex
+from singimpact.documents.arranging import by_degree
+from singimpact.documents.formulas import joined, latex
 from singimpact.documents.sections.letters import rows, with_b
 from singimpact.documents.steps import Section, Step
 from singimpact.theory import implicit_route as route
@@ -12,17 +12,17 @@ from singimpact.theory.implicit_route import sigma, t, v
 
 def told() -> Section:
     """The steps of section 2."""
-    return Section("section2", "The impact surface near the launches at rest", (*_flight(), *_sheet(), *_maps()))
+    return Section("section2", "2. The impact surface near the launches at rest", (*_flight(), *_sheet(), *_maps()))
 
 
 def _flight() -> tuple[Step, ...]:
     parts = by_degree(with_b(route.y_c(3)), v, sigma, t)
     return (
         Step(
-            "Let $x_c(\\tau, v; t)$ be the height at time $\\tau + t$ of the mass launched at $(\\tau, v)$. The equation of motion "
-            "fixes its Taylor coefficients in $t$ one after the other: the first two are $c$ and $v$, and each further one comes "
-            "from the earlier ones put into $g - f$. So $x_c - c$ can be divided by $t$: $x_c = c + t y_c$, and the quotient "
-            "is smooth.",
+            "Let $x_c(\\tau, v; t)$ be the height at time $\\tau + t$ of the mass launched at $(\\tau, v)$. The "
+            "equation of motion fixes its Taylor coefficients in $t$ one after the other: the first two are $c$ and "
+            "$v$, and each further one comes from the earlier ones put into $g - f$. So $x_c - c$ can be divided by "
+            "$t$: $x_c = c + t y_c$, and the quotient is smooth.",
             rows(r"y_c(\tau_* + \sigma, v; t)", parts, 4),
             "e:yeq",
             ("e:yeq",),
@@ -33,15 +33,16 @@ def _flight() -> tuple[Step, ...]:
 def _sheet() -> tuple[Step, ...]:
     return (
         Step(
-            "The division has removed the launch itself, $t = 0$, from the zeros of $x_c - c$; what is left of the impact surface "
-            "is the set $y_c = 0$. On $t = 0$ the series reduces to one term:",
+            "The division has removed the launch itself, $t = 0$, from the zeros of $x_c - c$; what is left of the "
+            "impact surface is the set $y_c = 0$. On $t = 0$ the series reduces to one term:",
             rf"y_c(\tau, v; 0) = {latex(route.y_c(3).subs(t, 0))}",
             "e3",
             ("e3",),
         ),
         Step(
-            "Hence $\\partial y_c/\\partial v = 1$ there, and by the implicit function theorem $y_c = 0$ is the graph of a smooth "
-            "$v = v_c(\\tau, t)$. Solving degree by degree, with one new degree gained at every turn of $v \\leftarrow v - y_c$:",
+            "Hence $\\partial y_c/\\partial v = 1$ there, and by the implicit function theorem $y_c = 0$ is the "
+            "graph of a smooth $v = v_c(\\tau, t)$. Solving degree by degree, with one new degree gained at every "
+            "turn of $v \\leftarrow v - y_c$:",
             rows(r"v_c(\tau_* + \sigma, t)", by_degree(with_b(route.v_c(2)), sigma, t), 3),
             "e:imp",
         ),
@@ -55,29 +56,26 @@ def _sheet() -> tuple[Step, ...]:
 
 
 def _maps() -> tuple[Step, ...]:
-    _, launch = route.p_c(2)
-    when, impact = route.phi_c(2)
+    launch, impact = (joined(by_degree(with_b(images[1]), sigma, t)) for images in (route.p_c(2), route.phi_c(2)))
+    when = route.phi_c(2)[0]
     return (
         Step(
-            "A point $(\\tau, t)$ of the sheet is a flight between two impacts. Two maps read off where it begins and how it ends. "
-            "The first gives launch phase and launch velocity:",
-            rf"p_c : (\sigma, t) \mapsto \bigl({latex(sigma)},\ {' '.join(_signed(by_degree(with_b(launch), sigma, t)))} + O(3)\bigr)",
+            "A point $(\\tau, t)$ of the sheet is a flight between two impacts. Two maps read off where it begins "
+            "and how it ends. The first gives launch phase and launch velocity:",
+            rf"p_c : (\sigma, t) \mapsto \bigl({latex(sigma)},\ {launch} + O(3)\bigr)",
             "e:proj",
         ),
         Step(
-            "The second gives impact phase and impact velocity, the derivative of $c + t y_c$ by $t$ taken at $v = v_c$. Read "
-            "backwards in time the same flight is launched at $\\tau + t$ and lasts $-t$, so the velocity is also $v_c$ after the "
-            "exchange $(\\sigma, t) \\to (\\sigma + t, -t)$; the verdict rests on both ways giving one series.",
-            rf"\phi_c : (\sigma, t) \mapsto \bigl({factored(when)},\ {' '.join(_signed(by_degree(with_b(impact), sigma, t)))} + O(3)\bigr)",
+            "The second gives impact phase and impact velocity, the derivative of $c + t y_c$ by $t$ taken at $v = "
+            "v_c$. Read backwards in time the same flight is launched at $\\tau + t$ and lasts $-t$, so the velocity "
+            "is also $v_c$ after the exchange $(\\sigma, t) \\to (\\sigma + t, -t)$; the verdict rests on both ways "
+            "giving one series.",
+            rf"\phi_c : (\sigma, t) \mapsto \bigl({latex(when)},\ {impact} + O(3)\bigr)",
             "e:phi",
             ("e:phi",),
         ),
         Step(
-            "With the bounce $R : (\\tau, v) \\mapsto (\\tau, -r v)$ the dynamics is $G_c$, defined by $G_c \\circ p_c = R \\circ \\phi_c$ "
-            "on the flights whose landing is the first one."
+            "With the bounce $R : (\\tau, v) \\mapsto (\\tau, -r v)$ the dynamics is $G_c$, defined by $G_c \\circ "
+            "p_c = R \\circ \\phi_c$ on the flights whose landing is the first one."
         ),
     )
-
-
-def _signed(parts: list[str]) -> list[str]:
-    return [parts[0], *(part if part.startswith("-") else f"+ {part}" for part in parts[1:])]

@@ -18,14 +18,14 @@ u, w = sympy.symbols("u w")
 
 def told() -> Section:
     """The steps of section 4."""
-    return Section("section4", "Tangency points", (*_sheet(), *_fold(), *_return(), *blow_up(), *in_lambda()))
+    return Section("section4", "4. Tangency points", (*_sheet(), *_fold(), *_return(), *blow_up(), *in_lambda()))
 
 
 def _sheet() -> tuple[Step, ...]:
     return (
         Step(
-            "The implicit equation $y_c = 0$ is solved to third order, which is enough for the first two kinds of degenerate point. "
-            "Each line is one degree in $(\\sigma, t)$:",
+            "The implicit equation $y_c = 0$ is solved to third order, which is enough for the first two kinds of "
+            "degenerate point. Each line is one degree in $(\\sigma, t)$:",
             rows(r"v_c(\tau_* + \sigma, t)", by_degree(with_b(route.v_c(3)), sigma, t), 4),
             "e:vtaylor",
             ("e:vtaylor-st", "e:vtaylor-t2", "e:vtaylor-st2", "e:vtaylor-t3"),
@@ -51,7 +51,8 @@ def _fold() -> tuple[Step, ...]:
     determinant = sympy.factor(sympy.hessian(route.v_c_tangency(2), (sigma, t)).det())
     return (
         Step(
-            "From here to the end of the section $\\tau_*$ is a tangency point and $k = a'/6$. The surface has a saddle there:",
+            "From here to the end of the section $\\tau_*$ is a tangency point, and $k = a'/6$. The surface has a "
+            "saddle there:",
             rf"\det D^2 v_c(0, 0) = {latex(determinant)}",
             "s4-saddle",
             ("s4-saddle",),
@@ -69,8 +70,8 @@ def _fold() -> tuple[Step, ...]:
             ("e:phinew",),
         ),
         Step(
-            "The map $p$ is singular on the horizon, where $\\partial v_c/\\partial t = 0$: flights that touch the wall with velocity "
-            "zero when they land. To first order it is a line, and its image under $p$ a parabola:",
+            "The map $p$ is singular on the horizon, where $\\partial v_c/\\partial t = 0$: flights that touch the "
+            "wall with velocity zero when they land. To first order it is a line, and its image under $p$ a parabola:",
             (rf"t &= {latex(line)} + O(2)\,,", rf"v &= {latex(outline)} + O(3)\,."),
             "s4-horizon-line",
             ("s4-horizon-line",),
@@ -92,8 +93,9 @@ def _fold() -> tuple[Step, ...]:
             "s4-psi",
         ),
         Step(
-            "after which only the square is left. Terms of higher order can be removed by further changes of source and target; these "
-            "agree with the identity to first order only, as quadratic terms are needed to remove cubic ones.",
+            "after which only the square is left. Terms of higher order can be removed by further changes of source "
+            "and target; these agree with the identity to first order only, as quadratic terms are needed to remove "
+            "cubic ones.",
             rf"\psi \circ p : (\sigma, \eta) \mapsto {latex(fold.psi_p())}",
             "e:pdef",
             ("e:pdef", "s4-normal-id2"),
@@ -103,7 +105,7 @@ def _fold() -> tuple[Step, ...]:
 
 def _return() -> tuple[Step, ...]:
     first, second = fold.psi_q()
-    root = fold.h()[1].subs(fold.Q_r(), sympy.Symbol("Qr"))
+    root = fold.h()[1].subs(fold.Q_r(), sympy.Symbol("Qrest"))
     return (
         Step(
             "The state after the impact is $q = R \\circ \\phi$, in the same coordinates of source and target:",
@@ -112,16 +114,16 @@ def _return() -> tuple[Step, ...]:
             ("e:defq",),
         ),
         Step(
-            "One impact is the map $h = p^{-1} \\circ q$ of the surface into itself: the next flight $(\\bar\\sigma, \\bar\\eta)$ starts "
-            "where this one ends, $\\psi \\circ p\\, (\\bar\\sigma, \\bar\\eta) = \\psi \\circ q\\, (\\sigma, \\eta)$. The second components give "
-            "$\\bar\\eta^2 = Q_r(\\sigma, \\eta) + O(3)$, with",
+            "One impact is the map $h = p^{-1} \\circ q$ of the surface into itself: the next flight $(\\bar\\sigma, "
+            "\\bar\\eta)$ starts where this one ends, $\\psi \\circ p\\, (\\bar\\sigma, \\bar\\eta) = \\psi \\circ "
+            "q\\, (\\sigma, \\eta)$. The second components give $\\bar\\eta^2 = Q_r(\\sigma, \\eta) + O(3)$, with",
             rf"Q_r(\sigma, \eta) = {in_powers(fold.Q_r(), r)}",
             "e:qdef",
             ("e:qdef",),
         ),
         Step(
             "Of the two roots the first return is the one before the horizon, and $\\eta$ is negative there:",
-            rf"h(\sigma, \eta) = \bigl({latex(fold.h()[0])},\ {latex(root)}\,\bigr) + \ldots\,, \qquad \sigma < 0",
+            rf"h(\sigma, \eta) = \bigl({latex(fold.h()[0])},\ {latex(root)}\,\bigr)\,, \qquad \sigma < 0",
             "e:hdef",
             ("e:hdef",),
         ),
