@@ -46,7 +46,7 @@ def test_latex_has_words_labels_and_verdicts():
     assert r"\section*{Energy of $x'' + x = 0$ \& 100\% of it}" in text
     assert r"\#1 of \{two\} steps\_." in text
     assert r"\tag*{\beside{e:meq}{proved}}\label{e:meq}" in text
-    assert r"\found{p:odd}{corrected, proved}\printed{a = -\frac{b}{2}}\par" in text
+    assert r"\found{p:odd}{corrected, proved}\printed{a = -\frac{b}{2}}" in text
     assert r"\found{e:meq}" not in text
 
 
