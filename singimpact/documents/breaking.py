@@ -10,6 +10,8 @@ import re
 from dataclasses import dataclass
 
 _TOKEN = re.compile(r"\\left\s*\\?.|\\right\s*\\?.|\\[a-zA-Z]+\*?|\\.|\s+|.", re.DOTALL)
+_OPEN, _CLOSE = ("{", r"\left"), ("}", r"\right")
+_PARENTHESES = ("(", "["), (")", "]")
 _STACKED = re.compile(r"\\[dt]?frac\s*")
 
 
@@ -27,7 +29,7 @@ PAGE = Page()
 
 
 def lines_of(formula: str, limit: float = PAGE.line) -> list[str]:
-    """The formula as lines, each narrower than the limit where its breaks allow it.
+    """The formula as lines, each narrower than the limit where its breaks allow it; parentheses are broken last.
 
     Examples
     --------
@@ -36,7 +38,7 @@ def lines_of(formula: str, limit: float = PAGE.line) -> list[str]:
     """
     lines: list[str] = []
     current = ""
-    for piece in _pieces(formula):
+    for piece in _fitting(formula, limit - PAGE.indent):
         room = limit - (PAGE.indent if lines else 0)
         if current.strip() and width(current + piece) > room:
             lines.append(current.strip())
@@ -45,13 +47,19 @@ def lines_of(formula: str, limit: float = PAGE.line) -> list[str]:
     return [*lines, current.strip()]
 
 
-def _pieces(formula: str) -> list[str]:
-    """The formula cut at the places where a line may begin."""
+def _fitting(formula: str, room: float) -> list[str]:
+    """The formula cut outside parentheses, and inside them where a piece is too wide by itself."""
+    whole = _pieces(formula, _OPEN + _PARENTHESES[0], _CLOSE + _PARENTHESES[1])
+    return [part for piece in whole for part in ([piece] if width(piece) <= room else _pieces(piece, _OPEN, _CLOSE))]
+
+
+def _pieces(formula: str, opening: tuple[str, ...], closing: tuple[str, ...]) -> list[str]:
+    """The formula cut at the places where a line may begin: before a sign that no pair encloses."""
     pieces, depth, previous = [""], 0, ""
     for token in _TOKEN.findall(formula):
         if depth == 0 and token in "+-" and token and previous not in ("", "=", "(", "["):
             pieces.append("")
-        depth += (token == "{" or token.startswith(r"\left")) - (token == "}" or token.startswith(r"\right"))
+        depth += token.startswith(opening) - token.startswith(closing)
         pieces[-1] += token
         previous = previous if token.isspace() else token
     return pieces

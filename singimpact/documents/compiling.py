@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,8 +38,12 @@ class Compiled:
         return [float(points) for points in re.findall(r"Overfull \\hbox \(([\d.]+)pt too wide\)", self.log)]
 
 
-def compiled(source: str) -> Compiled:
+def compiled(source: str, beside: Mapping[str, str] | None = None) -> Compiled:
     """The PDF of a LaTeX document.
+
+    Parameters
+    ----------
+    source : the document. beside : file name -> text of what it takes in.
 
     Raises
     ------
@@ -48,7 +53,8 @@ def compiled(source: str) -> Compiled:
     if shutil.which("latexmk") is None:
         raise InputError("format = 'pdf' needs the program latexmk, which is not found: give latex, or install it")
     with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "document.tex").write_text(source, encoding="utf-8")
+        for name, text in {**(beside or {}), "document.tex": source}.items():
+            (Path(folder) / name).write_text(text, encoding="utf-8")
         _run(folder)
         log = (Path(folder) / "document.log").read_text(encoding="utf-8", errors="replace")
         return Compiled((Path(folder) / "document.pdf").read_bytes(), log)

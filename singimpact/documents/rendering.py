@@ -2,64 +2,87 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from singimpact.documents import escape
 from singimpact.documents.breaking import lines_of
-from singimpact.documents.steps import Section
+from singimpact.documents.steps import Mark, Section, Step
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-LATEX, MARKDOWN = "section.tex", "section.md"
+PIECE, DOCUMENT, MARKDOWN = "section.tex", "document.tex", "section.md"
+MASTER = "derivations"
+Marks = Mapping[str, Mark]
 
 
-def as_latex(section: Section, verdicts: Mapping[str, str]) -> str:
-    """A section as a LaTeX document that compiles by itself.
+def as_latex(sections: Sequence[Section], marks: Marks) -> str:
+    """Sections as one LaTeX document that compiles by itself.
 
     Parameters
     ----------
-    section : what is told.
-    verdicts : claim id -> verdict, for every claim that the section shows.
+    sections : what is told, in order.
+    marks : claim id -> what was found, for every claim that the sections show.
     """
-    return _filled(LATEX, section, verdicts)
+    return _filled(DOCUMENT, bodies=[as_piece(section, marks) for section in sections])
 
 
-def as_markdown(section: Section, verdicts: Mapping[str, str]) -> str:
+def as_piece(section: Section, marks: Marks) -> str:
+    """A section as LaTeX for a document that takes it in by ``\\input``."""
+    return _filled(PIECE, section=section, marks=marks)
+
+
+def as_master(sections: Sequence[Section]) -> str:
+    """The document that takes in the files of sections."""
+    return _filled(DOCUMENT, bodies=[rf"\input{{{section.name}}}" + "\n" for section in sections])
+
+
+def as_markdown(section: Section, marks: Marks) -> str:
     """A section as Markdown with formulas between dollar signs."""
-    return _filled(MARKDOWN, section, verdicts)
+    return _filled(MARKDOWN, section=section, marks=marks)
 
 
-def as_data(section: Section, verdicts: Mapping[str, str]) -> dict[str, Any]:
+def as_data(section: Section, marks: Marks) -> dict[str, Any]:
     """A section as data for JSON."""
     steps = [
         {
             "text": step.text,
-            "equation": step.equation,
+            "equation": step.formula,
             "label": step.label,
-            "claims": {claim: verdicts[claim] for claim in step.claims},
+            "claims": {claim: asdict(marks[claim]) for claim in step.claims},
         }
         for step in section.steps
     ]
     return {"name": section.name, "title": section.title, "steps": steps}
 
 
-def display(equation: str, label: str = "") -> str:
-    """A displayed equation with its label, broken into lines where it is too wide for the page.
+def display(step: Step, marks: Marks) -> str:
+    """A displayed equation with its label and verdicts at the right, broken where it is too wide for the page.
 
     Examples
     --------
-    >>> print(display("v = a", "e:demo"))
-    \\begin{equation}\\label{e:demo}
+    >>> print(display(Step("", "v = a", "e:demo", ("e:demo",)), {"e:demo": Mark("proved")}))
+    \\begin{equation}\\tag*{\\beside{e:demo}{proved}}\\label{e:demo}
     v = a
     \\end{equation}
     """
-    lines = lines_of(equation)
+    lines = lines_of(step.formula) if isinstance(step.equation, str) else [step.formula]
     body = lines[0] if len(lines) == 1 else _split(lines)
-    head = rf"\begin{{equation}}\label{{{label}}}" if label else r"\begin{equation*}"
-    return f"{head}\n{body}\n" + (r"\end{equation}" if label else r"\end{equation*}")
+    if not step.label:
+        return f"\\begin{{equation*}}\n{body}\n\\end{{equation*}}"
+    found = marks[step.label].text if step.label in step.claims else ""
+    tag = rf"\tag*{{\beside{{{escape.latex(step.label)}}}{{{found}}}}}\label{{{step.label}}}"
+    return f"\\begin{{equation}}{tag}\n{body}\n\\end{{equation}}"
+
+
+def notes(step: Step, marks: Marks) -> list[tuple[str, str, str]]:
+    """What is said below an equation: (claim, verdict, printed), without what already stands beside it."""
+    own = [("", "", marks[claim].printed) for claim in step.claims if claim == step.label and marks[claim].printed]
+    others = [(claim, marks[claim].text, marks[claim].printed) for claim in step.claims if claim != step.label]
+    return own + sorted(others, key=lambda note: bool(note[2]))
 
 
 def _split(lines: list[str]) -> str:
@@ -67,8 +90,8 @@ def _split(lines: list[str]) -> str:
     return "\\begin{split}\n&" + "\\\\\n&\\quad{}".join([first, *rest]) + "\n\\end{split}"
 
 
-def _filled(template: str, section: Section, verdicts: Mapping[str, str]) -> str:
-    return str(_environment().get_template(f"{template}.j2").render(section=section, verdicts=verdicts))
+def _filled(template: str, **values: Any) -> str:
+    return str(_environment().get_template(f"{template}.j2").render(**values))
 
 
 @cache
@@ -94,10 +117,11 @@ def _environment() -> Environment:
     return environment
 
 
-_FILTERS: dict[str, Callable[..., str]] = {
+_FILTERS: dict[str, Callable[..., Any]] = {
     "latex": escape.latex,
     "latex_words": escape.latex_words,
     "markdown": escape.markdown,
     "markdown_words": escape.markdown_words,
     "display": display,
+    "notes": notes,
 }

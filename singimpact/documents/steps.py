@@ -13,20 +13,28 @@ class Step:
     Parameters
     ----------
     text : words; formulas in them stand between dollar signs, everything else is plain text.
-    equation : LaTeX of the displayed equation, without an environment; empty when the step is words alone.
-    label : the paper's label of the equation, e.g. ``e:meq``; empty when the paper gives it none.
+    equation : LaTeX of the displayed equation, without an environment; several lines, aligned at their ``&``, are a
+        tuple; empty when the step is words alone.
+    label : the label of the equation, the paper's where it has one, e.g. ``e:meq``; what the golden files know it by.
     claims : ids of the claims whose verdicts stand beside the equation.
     """
 
     text: str
-    equation: str = ""
+    equation: str | tuple[str, ...] = ""
     label: str = ""
     claims: tuple[str, ...] = ()
+
+    @property
+    def formula(self) -> str:
+        """The equation as one piece of LaTeX, its lines in an ``aligned``."""
+        if isinstance(self.equation, str):
+            return self.equation
+        return "\\begin{aligned}\n" + " \\\\\n".join(self.equation) + "\n\\end{aligned}"
 
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the derivation, written as one document.
+    """A part of the derivation, written as one file.
 
     Examples
     --------
@@ -40,6 +48,37 @@ class Section:
     steps: tuple[Step, ...]
 
 
+@dataclass(frozen=True)
+class Mark:
+    """What stands beside an equation for one claim.
+
+    Attributes
+    ----------
+    verdict : its kind. stands : the verdict on what holds instead, where it is corrected.
+    printed : the paper's formula in LaTeX, where it is corrected.
+    """
+
+    verdict: str
+    stands: str = ""
+    printed: str = ""
+
+    @property
+    def text(self) -> str:
+        """The verdict in words: ``corrected, proved`` where what holds instead is proved."""
+        return f"{self.verdict}, {self.stands}" if self.stands else self.verdict
+
+
 def claims_of(sections: Iterable[Section]) -> tuple[str, ...]:
     """The claims that sections show, each once, in order."""
     return tuple(dict.fromkeys(claim for section in sections for step in section.steps for claim in step.claims))
+
+
+def equations_of(sections: Iterable[Section]) -> dict[str, str]:
+    """Label -> LaTeX of every displayed equation, in order.
+
+    Examples
+    --------
+    >>> equations_of([Section("demo", "", (Step("", "1 + 1 = 2", "e:two"),))])
+    {'e:two': '1 + 1 = 2'}
+    """
+    return {step.label: step.formula for section in sections for step in section.steps if step.equation}

@@ -16,8 +16,8 @@ from singimpact.documents.compiling import CompileError, compiled
 from singimpact.documents.derivations import sections
 from singimpact.documents.escape import latex
 from singimpact.documents.rendering import as_data, as_latex, as_markdown
-from singimpact.documents.sections import SECTIONS
-from singimpact.documents.steps import Section, Step
+from singimpact.documents.sections import NOTATION, SECTIONS
+from singimpact.documents.steps import Mark, Section, Step
 
 LONG = "v = " + " + ".join(
     rf"\frac{{{k} a_{{{k}}}}}{{{k + 1}}} \sigma^{{{k}}} \left(1 - \lambda_{{{k}}}\right)" for k in range(1, 30)
@@ -31,7 +31,8 @@ DEMO = Section(
         Step("A long sum:", LONG, "", ("e:qdef",)),
     ),
 )
-VERDICTS = {"e:meq": "proved", "p:odd": "corrected", "e:qdef": "proved"}
+PRINTED = r"a = -\frac{b}{2}"
+MARKS = {"e:meq": Mark("proved"), "p:odd": Mark("corrected", "proved", PRINTED), "e:qdef": Mark("proved")}
 
 
 @pytest.fixture
@@ -41,23 +42,25 @@ def demo(monkeypatch):
 
 
 def test_latex_has_words_labels_and_verdicts():
-    text = as_latex(DEMO, VERDICTS)
+    text = as_latex([DEMO], MARKS)
     assert r"\section*{Energy of $x'' + x = 0$ \& 100\% of it}" in text
     assert r"\#1 of \{two\} steps\_." in text
-    assert r"\label{e:meq}" in text
-    assert r"\verdict{p:odd}{corrected}" in text
+    assert r"\tag*{\beside{e:meq}{proved}}\label{e:meq}" in text
+    assert r"\found{p:odd}{corrected, proved}\printed{a = -\frac{b}{2}}" in text
+    assert r"\found{e:meq}" not in text
 
 
 def test_a_claim_without_a_verdict_is_an_error():
-    from jinja2 import UndefinedError
-
-    with pytest.raises(UndefinedError):
-        as_latex(DEMO, {})
+    with pytest.raises(KeyError):
+        as_latex([DEMO], {})
 
 
 def test_markdown_and_data():
-    assert "$$\n" + LONG + "\n$$" in as_markdown(DEMO, VERDICTS)
-    assert as_data(DEMO, VERDICTS)["steps"][1]["claims"] == {"e:meq": "proved", "p:odd": "corrected"}
+    assert "$$\n" + LONG + "\n$$" in as_markdown(DEMO, MARKS)
+    assert as_data(DEMO, MARKS)["steps"][1]["claims"] == {
+        "e:meq": {"verdict": "proved", "stands": "", "printed": ""},
+        "p:odd": {"verdict": "corrected", "stands": "proved", "printed": PRINTED},
+    }
 
 
 def test_broken_formula_is_the_same_formula():
@@ -90,7 +93,7 @@ def test_escaped_text_has_no_sign_with_a_meaning(text):
 
 
 def test_same_bytes_under_two_hash_seeds(clone):
-    program = "from test_sections import *; import sys; sys.stdout.write(as_latex(DEMO, VERDICTS))"
+    program = "from test_sections import *; import sys; sys.stdout.write(as_latex([DEMO], MARKS))"
     texts = [
         subprocess.run(
             [sys.executable, "-c", program],
@@ -100,13 +103,13 @@ def test_same_bytes_under_two_hash_seeds(clone):
         ).stdout
         for seed in ("0", "12345")
     ]
-    assert texts[0] == texts[1] == as_latex(DEMO, VERDICTS).encode()
+    assert texts[0] == texts[1] == as_latex([DEMO], MARKS).encode()
 
 
 @pytest.mark.slow
 def test_pdf_compiles_with_nothing_sticking_out():
     assert shutil.which("latexmk"), "CI installs latexmk"
-    done = compiled(as_latex(DEMO, VERDICTS))
+    done = compiled(as_latex([DEMO], MARKS))
     assert done.pdf.startswith(b"%PDF")
     assert max(done.overfull, default=0) <= 20
 
@@ -119,10 +122,14 @@ def test_latex_that_fails_says_where():
 
 @pytest.mark.usefixtures("demo")
 def test_command_prints_or_writes(singimpact, tmp_path):
-    assert singimpact("derive", "demo").stdout == as_latex(DEMO, VERDICTS)
-    assert [s["name"] for s in json.loads(singimpact("derive", "--json", "demo").stdout)["sections"]] == ["demo"]
+    assert singimpact("derive", "demo").stdout == as_latex([NOTATION, DEMO], MARKS)
+    names = [section["name"] for section in json.loads(singimpact("derive", "--json", "demo").stdout)["sections"]]
+    assert names == ["notation", "demo"]
     assert singimpact("derive", "demo", "--format", "markdown", "-o", tmp_path / "new").exit_code == 0
-    assert (tmp_path / "new" / "demo.md").read_text() == as_markdown(DEMO, VERDICTS)
+    assert (tmp_path / "new" / "demo.md").read_text() == as_markdown(DEMO, MARKS)
+    assert singimpact("derive", "demo", "-o", tmp_path / "tex").exit_code == 0
+    assert {path.name for path in (tmp_path / "tex").iterdir()} == {"notation.tex", "demo.tex", "derivations.tex"}
+    assert r"\input{demo}" in (tmp_path / "tex" / "derivations.tex").read_text()
 
 
 @pytest.mark.usefixtures("demo")
@@ -134,9 +141,14 @@ def test_pdf_needs_a_folder_and_latexmk(singimpact, tmp_path, monkeypatch):
     assert "needs the program latexmk" in result.stderr
 
 
-@pytest.mark.usefixtures("demo")
-def test_unknown_section():
-    from singimpact import InputError
+@pytest.mark.parametrize("name", ["4", "section4", "tangency"])
+def test_one_section_has_three_names(name):
+    assert [section.name for section in sections([name])] == ["notation", "section4"]
 
-    with pytest.raises(InputError, match="unknown section 'dmeo': the nearest known are demo"):
-        sections(["dmeo"])
+
+@pytest.mark.parametrize(("name", "nearest"), [("tangncy", "tangency"), ("section7", "section")])
+def test_unknown_section(singimpact, name, nearest):
+    result = singimpact("derive", name)
+    assert result.exit_code == 2
+    assert f"unknown section '{name}': the nearest known are {nearest}" in result.stderr
+    assert len(result.stderr.splitlines()) == 1

@@ -1,0 +1,46 @@
+"""Write what this folder holds, and the golden equations of the suite: `python derivations/freeze.py`.
+
+The same as `singimpact derive -o derivations`, and from the same sections the LaTeX of each displayed equation, which
+the suite compares; the words around the equations may change freely.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from singimpact.documents.derivations import as_files, marks_of, sections
+from singimpact.documents.rendering import Marks
+from singimpact.documents.steps import Section, equations_of
+from singimpact.store import folder, written
+
+HERE = Path(__file__).parent
+GOLDEN = HERE.parent / "tests" / "documents" / "golden"
+
+
+def derivations(told: list[Section], marks: Marks) -> dict[Path, bytes]:
+    """Every file of this folder that is generated, with its content."""
+    return {HERE / name: content for name, content in as_files(told, marks, "latex").items()}
+
+
+def golden(told: list[Section]) -> dict[Path, bytes]:
+    """One file a section: label -> LaTeX."""
+    shown = [section for section in told if equations_of([section])]
+    return {
+        GOLDEN / f"{section.name}.json": (json.dumps(equations_of([section]), indent=2) + "\n").encode()
+        for section in shown
+    }
+
+
+def main() -> None:
+    """Write them all."""
+    told = sections()
+    folder(GOLDEN)
+    for path, content in {**derivations(told, marks_of(told)), **golden(told)}.items():
+        with written(path) as draft:
+            draft.write_bytes(content)
+        print(path.relative_to(HERE.parent))
+
+
+if __name__ == "__main__":
+    main()
