@@ -6,6 +6,7 @@ Not here: how they are run (`claims.engine`).  A statement is encoded as printed
 from singimpact.claims.claim import Claim
 from singimpact.claims.sections import (
     section2,
+    section2_maps,
     section3,
     section4,
     section4a_arc,
@@ -13,11 +14,13 @@ from singimpact.claims.sections import (
     section4a_fold,
     section4a_multipliers,
     section4a_rays,
+    section4b,
     section5,
 )
 
 _SECTIONS = (
     section2,
+    section2_maps,
     section3,
     section4,
     section4a_arc,
@@ -25,6 +28,7 @@ _SECTIONS = (
     section4a_blowup,
     section4a_rays,
     section4a_multipliers,
+    section4b,
     section5,
 )
 CLAIMS: dict[str, Claim] = {claim.id: claim for section in _SECTIONS for claim in section.CLAIMS}
