@@ -82,12 +82,12 @@ def cusp_conditions(point: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
 def shadow() -> Any:
     """t_1 of the next hit behind a graze (sigma, t_0): x - c = kappa (..)(u - t_0)^2 u (u - t_1), so the roots add up."""
     u = sympy.Symbol("u")
-    quartic = sympy.Poly(sympy.expand(_height(u)), u)
+    quartic = sympy.Poly(sympy.expand(height(u)), u)
     total = -sympy.cancel(quartic.nth(3) / quartic.nth(4))  # of the roots 0, t_0, t_0, t_1
     return sympy.expand(total - 2 * t)
 
 
-def _height(u: Any) -> Any:
+def height(u: Any) -> Any:
     """x - c at u of the flight (sigma, t)."""
     v = launch_velocity()
     poly = sympy.Poly(acceleration().subs(sigma, sigma + s), s)

@@ -16,6 +16,8 @@ from singimpact.claims.sections import (
     section4a_rays,
     section4b,
     section5,
+    section6,
+    section6_negative,
 )
 
 _SECTIONS = (
@@ -30,5 +32,7 @@ _SECTIONS = (
     section4a_multipliers,
     section4b,
     section5,
+    section6,
+    section6_negative,
 )
 CLAIMS: dict[str, Claim] = {claim.id: claim for section in _SECTIONS for claim in section.CLAIMS}

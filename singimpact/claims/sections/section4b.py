@@ -84,9 +84,8 @@ def _image_bounds(bound: Any) -> Check:
     edge = ratio.subs(slope, sympy.Rational(3, 2))
     return every(
         [
-            (f"v/(k s^2) = {ratio}, s = sigma + t", True),
             (
-                "it increases on 0 <= p <= 3/2, the sector",
+                f"v/(k s^2) = {ratio}, s = sigma + t, increases on 0 <= p <= 3/2, the sector",
                 positive_on(sympy.diff(ratio, slope), slope, 0, sympy.Rational(3, 2)),
             ),
             (
