@@ -6,6 +6,8 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 
 from singimpact.claims.claim import STRENGTH, Check, Claim, Verdict
+from singimpact.claims.keys import key_of
+from singimpact.claims.memory import keep, recall
 from singimpact.claims.sections import CLAIMS
 from singimpact.inputs import unknown
 
@@ -43,6 +45,8 @@ def run(
     claims: Iterable[Claim],
     on_start: Callable[[Claim, int, int], None] | None = None,
     on_end: Callable[[Verdict, int, int], None] | None = None,
+    *,
+    kept: bool = False,
 ) -> list[Verdict]:
     """Decide claims in the order given.
 
@@ -50,13 +54,19 @@ def run(
     ----------
     claims : as `select` returns them.
     on_start, on_end : called with the claim or its verdict, its index and the number of claims.
+    kept : use verdicts kept from earlier runs while nothing they depend on has changed, and keep new ones.
     """
     chosen = list(claims)
     done: dict[str, Verdict] = {}
+    keys: dict[str, str] = {}
     for index, claim in enumerate(chosen):
         if on_start is not None:
             on_start(claim, index, len(chosen))
-        done[claim.id] = decide(claim, done)
+        keys[claim.id] = key_of(claim, keys) if kept else ""
+        found = recall(claim.id, keys[claim.id]) if kept else None
+        done[claim.id] = found or decide(claim, done)
+        if kept and found is None:
+            keep(done[claim.id], keys[claim.id])
         if on_end is not None:
             on_end(done[claim.id], index, len(chosen))
     return list(done.values())

@@ -45,7 +45,7 @@ def verify(
 
     wanted = [ids] if isinstance(ids, str) else None if ids is None else list(ids)
     claims = select(wanted)
-    return VerdictTable(claims, run(claims, on_start=on_start))
+    return VerdictTable(claims, run(claims, on_start=on_start, kept=True))
 
 
 @dataclass(frozen=True, repr=False)

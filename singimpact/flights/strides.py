@@ -89,9 +89,7 @@ def first_stride(
     return code, s, slope * s, depth * s, error * s
 
 
-def launched(
-    v: float, acceleration: float, order: int, h: float, ulp: float, p: Any, X: Any, W: Any, q: Any
-) -> Any:
+def launched(v: float, acceleration: float, order: int, h: float, ulp: float, p: Any, X: Any, W: Any, q: Any) -> Any:
     """`first_root` of v + X_2 t + X_3 t^2 + ... on (0, h]."""
     waves = (len(p) - 5) // 3
     strength = abs(p[3]) + (p[4] + p[4] * p[4] * h) * v

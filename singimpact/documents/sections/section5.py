@@ -38,6 +38,7 @@ def _blow_up() -> tuple[Step, ...]:
             "and the impact, by the same substitution in $\\phi$, is",
             rf"\phi : (s, m) \mapsto \bigl({latex(phi_first)},\ {latex(phi_second)} + O(s^4)\bigr)",
             "s5-phi",
+            ("s5-phi", "s5-coordinates"),
         ),
         Step(
             "The next flight starts at $\\bar s = (m + 1) s$ with the velocity $-r$ times the one of the impact, and "
@@ -45,6 +46,7 @@ def _blow_up() -> tuple[Step, ...]:
             "s^3$ leaves an equation on $s = 0$:",
             rf"\bar h(m, \bar m) = {in_powers(swan.h_bar(), r)} = 0",
             "s5-hbar",
+            ("s5-hbar",),
         ),
         Step(
             "The two unknowns separate: $\\bar h = 0$ is $f(m) = g(\\bar m)$ with one function for the impact,",
@@ -63,12 +65,14 @@ def _fixed_point() -> tuple[Step, ...]:
             "which stands for $\\Pi_0$, is divided out:",
             rf"{in_powers(swan.fixed_point_polynomial(), r, rising=True)} = 0",
             "s5-fixed",
+            ("s5-unique",),
         ),
         Step(
             "This is linear in $r$, which is therefore a rational function of the root. The root in $(-1, 0)$ is "
             "called $m_*$:",
             rf"r = {latex(swan.r_of_m())}\,,\qquad m = m_*",
             "s5-r-of-m",
+            ("s5-mstar-place",),
         ),
     )
 
@@ -80,11 +84,13 @@ def _multipliers() -> tuple[Step, ...]:
             "depends on the terms of fourth order in $v_c$ and has no part in the eigenvalues:",
             rf"D\bar h(0, m_*) = {latex(swan.Dh_bar())}",
             "s5-jacobian",
+            ("s5-jacobian", "s5-slopes"),
         ),
         Step(
             "With $r$ eliminated by the equation of the fixed point the second eigenvalue is",
             rf"\mu = {latex(swan.mu_of_m())}\,,\qquad m = m_*",
             "s5-mu",
+            ("s5-saddle",),
         ),
     )
 
@@ -107,5 +113,6 @@ def _in_lambda() -> tuple[Step, ...]:
             "For $a'' < 0$ this is a saddle for every $r$ in $(0, 1)$, and the curve that it carries begins with",
             rf"\gamma : \ v = {latex(curve)}\, {latex(sigma**3)} + O(4)",
             "s5-gamma-leading",
+            ("t:t3", "t:t3-unique", "t:t3-eigenvalue-limit"),
         ),
     )

@@ -1,0 +1,46 @@
+"""Verdicts kept in the user's cache folder, one JSON file a claim, under the claim's canonical key."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+from singimpact.claims.claim import KINDS, Verdict
+from singimpact.inputs import InputError
+from singimpact.store import cache_folder, folder, write_text
+
+
+def _place(name: str) -> Path:
+    return cache_folder() / "verdicts" / f"{name.replace(':', '_')}.json"
+
+
+def recall(name: str, key: str) -> Verdict | None:
+    """The kept verdict of a claim, or None when there is none for this key or the file is damaged."""
+    try:
+        data = json.loads(_place(name).read_text(encoding="utf-8"))
+        return _verdict(data["verdict"]) if data["key"] == key else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _verdict(data: dict[str, Any]) -> Verdict:
+    if set(data) != {field.name for field in fields(Verdict)} or data["kind"] not in KINDS:
+        raise ValueError("not a verdict")
+    return Verdict(**(data | {"rests_on": tuple(data["rests_on"])}))
+
+
+def keep(verdict: Verdict, key: str) -> None:
+    """Keep a verdict that was reached; one that ended in an error is tried again next time.
+
+    A cache that cannot be written is no reason to fail: the verdict stands, it is only not kept.
+    """
+    if verdict.kind == "error":
+        return
+    try:
+        place = _place(verdict.id)
+        folder(place.parent)
+        write_text(place, json.dumps({"key": key, "verdict": asdict(verdict)}))
+    except (InputError, OSError):
+        return
