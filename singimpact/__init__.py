@@ -11,6 +11,7 @@ from singimpact.status import Status as Status
 if TYPE_CHECKING:
     from singimpact import claims as claims
     from singimpact import theory as theory
+    from singimpact.documents.errata import errata as errata
     from singimpact.documents.verdicts import verify as verify
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
     from singimpact.impact_oscillator import linear as linear
@@ -35,6 +36,7 @@ _HOMES = {
     "tangency_points": "singimpact.impact_oscillator",
     "plot": "singimpact.scenes",
     "verify": "singimpact.documents.verdicts",
+    "errata": "singimpact.documents.errata",
 }
 _PUBLIC = sorted(["InputError", "Status", *_ROOMS, *_HOMES])
 

@@ -18,6 +18,8 @@ COMMANDS = {
     "derive": "write the derivations as LaTeX, PDF, Markdown or JSON",
     "map": "fly from an impact to the next one",
     "orbit": "fly many impacts; -o draws x(t)",
+    "errata": "what is misprinted, what holds instead, and why",
+    "claims": "the claims: list, show, graph, impact",
     "fixed-points": "fixed points and multipliers, certified, to any digits",
 }
 

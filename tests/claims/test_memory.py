@@ -36,7 +36,9 @@ def test_a_changed_claim_runs_with_its_dependants_only(decided):
     run(claims, kept=True)
     decided.clear()
     changed = [
-        dataclasses.replace(claim, verify=lambda value, verify=claim.verify: verify(value)) if claim.id == "s3-DG" else claim
+        dataclasses.replace(claim, verify=lambda value, verify=claim.verify: verify(value))
+        if claim.id == "s3-DG"
+        else claim
         for claim in claims
     ]
     run(changed, kept=True)

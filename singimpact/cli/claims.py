@@ -1,0 +1,89 @@
+"""`singimpact claims`: the list of claims, one of them, the graph of what rests on what, what falls with one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.output import as_json_text, emit, output_options
+
+
+@click.group(short_help="the claims: list, show, graph, impact")
+def command() -> None:
+    """The statements of the paper as claims."""
+
+
+@command.command("list")
+@output_options
+def listed(as_json: bool, output: str | None) -> None:
+    """Every claim: id, section, statement."""
+    from singimpact.claims import CLAIMS
+
+    rows = [[claim.id, claim.section, claim.title] for claim in CLAIMS.values()]
+    names = ("id", "section", "title")
+    emit(as_json_text({"claims": [dict(zip(names, row, strict=True)) for row in rows]}) if as_json
+         else columns(list(names), rows), output)  # fmt: skip
+
+
+@command.command()
+@click.argument("name", metavar="ID")
+@output_options
+def show(name: str, as_json: bool, output: str | None) -> None:
+    """One claim: what is printed, its verdict, its evidence, what it rests on and what rests on it."""
+    from singimpact.claims import CLAIMS, run, select
+    from singimpact.claims.graph import dependants
+
+    verdict = run(select([name]), kept=True)[-1]
+    data: dict[str, Any] = verdict.as_dict() | {
+        "mutants": len(CLAIMS[name].mutants),
+        "rested_on_by": [other for other, claim in CLAIMS.items() if name in claim.rests_on],
+        "falls_with_it": dependants(CLAIMS, name),
+    }
+    emit(
+        as_json_text(data) if as_json else "\n".join(f"{key:14} {_told(value)}" for key, value in data.items()), output
+    )
+
+
+def _told(value: Any) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{key} = {item}" for key, item in value.items()) or "-"
+    return (" ".join(map(str, value)) or "-") if isinstance(value, list) else "-" if value is None else str(value)
+
+
+@command.command()
+@click.option("--svg", is_flag=True, help="Draw it.")
+@output_options
+def graph(svg: bool, as_json: bool, output: str | None) -> None:
+    """What each claim rests on, as text, as JSON or as an SVG picture."""
+    from singimpact.claims import CLAIMS
+    from singimpact.claims.graph import as_svg, as_text
+
+    if as_json:
+        emit(as_json_text({name: list(claim.rests_on) for name, claim in CLAIMS.items()}), output)
+    elif svg:
+        emit(as_svg(CLAIMS, _kinds()), output)
+    else:
+        emit(as_text(CLAIMS), output)
+
+
+def _kinds() -> dict[str, str]:
+    from singimpact.claims import run, select
+
+    return {verdict.id: verdict.kind for verdict in run(select(), kept=True)}
+
+
+@command.command()
+@click.argument("name", metavar="ID")
+@output_options
+def impact(name: str, as_json: bool, output: str | None) -> None:
+    """What falls if a claim falls."""
+    from singimpact.claims import CLAIMS, select
+    from singimpact.claims.graph import dependants
+
+    select([name])  # an unknown id is refused with the nearest known ones
+    found = dependants(CLAIMS, name)
+    rows = [[other, CLAIMS[other].title] for other in found]
+    emit(as_json_text({"id": name, "falls": found}) if as_json
+         else columns(["id", "statement"], rows) if rows else f"nothing rests on {name}", output)  # fmt: skip

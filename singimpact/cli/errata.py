@@ -1,0 +1,50 @@
+"""`singimpact errata`: what is misprinted, what holds instead, and why."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from singimpact.cli.output import as_json_text, emit
+from singimpact.inputs import InputError
+from singimpact.progress import ProgressLine
+from singimpact.store import require_writable, written
+
+FORMATS = ("text", "markdown", "latex", "pdf", "json")
+
+
+@click.command(short_help="what is misprinted, what holds instead, and why")
+@click.option("--format", "form", type=click.Choice(FORMATS), default="text", show_default=True, help="What to write.")
+@click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
+@click.option("-o", "--output", metavar="FILE", help="Write there instead of standard output.")
+def command(form: str, as_json: bool, output: str | None) -> None:
+    """Every statement that fails as printed, with the corrected one, its witness and what survives downstream."""
+    from singimpact.documents.errata import errata
+
+    form = "json" if as_json else form
+    if form == "pdf" and output is None:
+        raise InputError("--format pdf goes to a file only: give its name with -o")
+    if output is not None:
+        require_writable(output)
+    with ProgressLine() as line:
+        done = iter(range(1, sys.maxsize))
+        found = errata(lambda claim, _, total: line.show(next(done), total, claim.id))
+    if form == "pdf":
+        _write_pdf(found.latex(), str(output))
+    elif form == "json":
+        emit(as_json_text(found.as_dict()), output)
+    else:
+        emit(getattr(found, form)(), output)
+
+
+def _write_pdf(source: str, output: str) -> None:
+    from singimpact.documents.compiling import CompileError, compiled
+
+    try:
+        pdf = compiled(source).pdf
+    except CompileError as error:
+        raise click.ClickException(str(error)) from None
+    with written(output) as draft:
+        Path(draft).write_bytes(pdf)

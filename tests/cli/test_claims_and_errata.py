@@ -1,0 +1,105 @@
+"""`singimpact claims`, `errata` and `fixed-points` on the real claims."""
+
+import json
+import shutil
+from xml.etree import ElementTree
+
+import pytest
+
+import singimpact as si
+
+
+def test_list_and_show(singimpact):
+    listed = json.loads(singimpact("claims", "list", "--json").stdout)["claims"]
+    assert len(listed) == len(si.claims) == 131
+    shown = json.loads(singimpact("claims", "show", "s3-dvdt", "--json").stdout)
+    assert (shown["verdict"], shown["corrected_kind"]) == ("corrected", "proved")
+    assert shown["mutants"] == 2
+    assert "corrected" in singimpact("claims", "show", "s3-dvdt").stdout
+
+
+def test_impact_is_what_rests_on_it(singimpact):
+    falls = json.loads(singimpact("claims", "impact", "s3-DG", "--json").stdout)["falls"]
+    assert {"s3-eigenvectors", "s3-slope-r", "t:t1"} <= set(falls)
+    assert "e:yeq" not in falls
+    assert "nothing rests on s7-loops" in singimpact("claims", "impact", "s7-loops").stdout
+
+
+def test_graph_as_text_and_svg(singimpact):
+    told = json.loads(singimpact("claims", "graph", "--json").stdout)
+    assert told["s3-DG"] == ["s3-Dp", "s3-Dphi"]
+    assert len(singimpact("claims", "graph").stdout.splitlines()) == 131
+    from singimpact.claims import CLAIMS
+    from singimpact.claims.graph import as_svg
+
+    picture = ElementTree.fromstring(as_svg(CLAIMS, {"e:yeq": "proved"}))
+    names = [element.text for element in picture.iter() if element.tag.endswith("}text")]
+    assert sorted(names) == sorted(CLAIMS)
+
+
+@pytest.mark.parametrize("command", ["show", "impact"])
+def test_unknown_id_is_one_line(singimpact, command):
+    result = singimpact("claims", command, "e:mex")
+    assert result.exit_code == 2
+    assert result.stderr == "singimpact: unknown claim 'e:mex': the nearest known are e:meq, e:yeq, e:qdef\n"
+
+
+@pytest.fixture(scope="module")
+def errata():
+    return si.errata()
+
+
+def test_every_erratum_is_whole(errata):
+    assert len(errata) > 30
+    for entry in errata:
+        told = entry.as_dict()
+        assert told["printed"] != told["corrected"]
+        assert told["corrected_kind"] in {"proved", "certified", "supported"}
+        assert told["witness"]
+        assert told["evidence"]
+
+
+def test_what_survives_is_told(errata):
+    (entry,) = [entry for entry in errata if entry.verdict.id == "e:phinew"]
+    assert entry.dependants["e:defq"] == "proved"
+    assert "e:defq (proved)" in errata.text()
+
+
+def test_markdown_has_all_of_them(errata):
+    assert errata.markdown().count("\n## ") == len(errata)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("latexmk") is None, reason="needs latexmk")
+def test_latex_compiles_without_overfull_lines(errata):
+    from singimpact.documents.compiling import compiled
+
+    assert max(compiled(errata.latex()).overfull, default=0) <= 20
+
+
+def test_errata_from_the_command_line(singimpact, tmp_path):
+    assert singimpact("errata", "-o", tmp_path / "errata.txt").exit_code == 0
+    assert "s3-dvdt" in (tmp_path / "errata.txt").read_text()
+    assert singimpact("errata", "--format", "pdf").stderr.startswith("singimpact: --format pdf goes to a file only")
+
+
+def test_fixed_points(singimpact):
+    found = json.loads(singimpact("fixed-points", "tangency", "--r", "0.7", "--digits", "60", "--json").stdout)
+    assert found["m3"]["value"].startswith("1.3074609292042235624")
+    assert float(found["m3"]["radius"]) < 2e-60
+    assert "mu_minus_one" in singimpact("fixed-points", "swan", "--r", "1/2").stdout
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--r", "0"),
+        ("--r", "1.2"),
+        ("--r", "x"),
+        ("--r", "1/2", "--digits", "0"),
+        ("--r", "1/2", "--digits", "1000000000"),
+    ],
+)
+def test_fixed_points_refuse_in_one_line(singimpact, arguments):
+    result = singimpact("fixed-points", "tangency", *arguments)
+    assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
