@@ -1,4 +1,4 @@
-"""The unfolded swan in its universal form: x'' = 12 kappa (s^2 - 1), c = 0, in which every curve of section 6 is algebraic.
+"""The unfolded swan in its universal form: x'' = 12 kappa (s^2 - 1), c = 0, where the curves of section 6 are algebraic.
 
 Time is measured from the swan in half the distance of the two zeros A, B of a; kappa > 0 is a positive swan, < 0 a
 negative one.  A flight from sigma lands after t; nothing is cut, the model has no higher terms.
@@ -80,7 +80,7 @@ def cusp_conditions(point: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
 
 @equation("s6-shadow")
 def shadow() -> Any:
-    """t_1 of the next hit behind a graze (sigma, t_0): x - c = kappa (..)(u - t_0)^2 u (u - t_1), so the roots add up."""
+    """t_1 of the next hit behind a graze (sigma, t_0): x - c has the roots 0, t_0, t_0, t_1, whose sum is known."""
     u = sympy.Symbol("u")
     quartic = sympy.Poly(sympy.expand(height(u)), u)
     total = -sympy.cancel(quartic.nth(3) / quartic.nth(4))  # of the roots 0, t_0, t_0, t_1

@@ -1,0 +1,176 @@
+"""lambda, mu and the fixed points as functions of r: exactly in lambda, as series at both ends, as algebraic functions.
+
+At contact order j, r = lambda^(j+1) P_j/Q_j.  At r = 0 the variable is w = (r/(j+1))^(1/(j+1)), at r = 1 it is 1 - r;
+all series have rational coefficients.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import sympy
+
+from singimpact.contact.contact import contact_order
+from singimpact.inputs import refuse
+from singimpact.theory.fixed_points import numerator_coefficients
+from singimpact.theory.homogeneous import lambda_, mu_of_lambda, r_of_lambda
+
+Series = list[Fraction]
+OFFSETS = {"m3": Fraction(1, 2), "m_star": Fraction(-1), "lambda": Fraction(0)}
+
+
+def of_m(at: str | int = "tangency") -> dict[str, Any]:
+    """r, lambda and mu as rational functions of m: m3 = lambda + 1/2 at a tangency, m_* = lambda - 1 elsewhere.
+
+    Examples
+    --------
+    >>> of_m("tangency")["r"]
+    (2*m - 1)**2*(2*m + 3)/(16*m)
+    """
+    j = _order(at)
+    m = sympy.Symbol("m")
+    rate = m - (sympy.Rational(1, 2) if j == 1 else -1)
+    functions = {"r": r_of_lambda(j), "lambda": lambda_, "mu": mu_of_lambda(j)}
+    return {name: sympy.factor(value.subs(lambda_, rate)) for name, value in functions.items()}
+
+
+def minimal_polynomial(quantity: str, at: str | int = "tangency") -> Any:
+    """The minimal polynomial over Q(r) of lambda or mu, in x and r.
+
+    Examples
+    --------
+    >>> minimal_polynomial("lambda", "tangency")
+    Poly(x**3 + 2*x**2 - 2*x*r - r, x, r, domain='ZZ')
+    """
+    j = _order(at)
+    x, r = sympy.symbols("x r")
+    above = sympy.fraction(sympy.together(r_of_lambda(j) - r))[0]
+    if quantity == "lambda":
+        return sympy.Poly(above.subs(lambda_, x), x, r)
+    if quantity != "mu":
+        raise refuse("quantity", quantity, "'lambda' or 'mu'")
+    numerator, denominator = sympy.fraction(mu_of_lambda(j))
+    found = sympy.resultant(above, sympy.expand(x * denominator - numerator), lambda_)
+    factors = [factor for factor, _ in sympy.factor_list(found, x, r)[1] if factor.has(x) and factor.has(r)]
+    half = sympy.Rational(1, 2)
+    root = next(z for z in sympy.Poly(above.subs(r, half), lambda_).nroots(n=30) if z.is_real and 0 < z < 1)
+    value = mu_of_lambda(j).subs(lambda_, root)
+    (factor,) = [f for f in factors if abs(f.subs({r: half, x: value})) < 1e-15]
+    return sympy.Poly(factor, x, r)
+
+
+def series(quantity: str, end: int, order: int, at: str | int = "tangency") -> Series:
+    """Coefficients of a power series of lambda, m3, m_star or mu at an end of 0 < r < 1.
+
+    Parameters
+    ----------
+    quantity : "lambda", "m3" (tangency), "m_star" (other contacts), or "mu"; at r = 0 mu has a pole, and the series
+        is that of w mu.
+    end : 0 for powers of w = (r/(j+1))^(1/(j+1)), 1 for powers of 1 - r. order : the last power.
+
+    Examples
+    --------
+    >>> [str(c) for c in series("lambda", 1, 2)]
+    ['1', '-3/5', '-3/25']
+    """
+    j = _order(at)
+    if end not in (0, 1):
+        raise refuse("end", end, "0 or 1")
+    if isinstance(order, bool) or not isinstance(order, int) or not 0 <= order <= 200:
+        raise refuse("order", order, "a whole number from 0 to 200")
+    if quantity not in (*OFFSETS, "mu") or (quantity == "m3") > (j == 1) or (quantity == "m_star") > (j != 1):
+        raise refuse("quantity", quantity, "'lambda', 'mu', 'm3' at a tangency or 'm_star' elsewhere")
+    rate = (_at_zero if end == 0 else _at_one)(j, order + 1)
+    if quantity == "mu":
+        return _mu(j, rate, end)[: order + 1]
+    return [value + (OFFSETS[quantity] if n == 0 else 0) for n, value in enumerate(rate[: order + 1])]
+
+
+def _order(at: str | int) -> int:
+    j = contact_order(at)
+    if j < 1:
+        raise refuse("at", at, "'tangency', 'swan' or a contact order from 1 on")
+    return j
+
+
+def _at_zero(j: int, order: int) -> Series:
+    """lambda in powers of w, from lambda ((P/Q)/(j+1))^(1/(j+1)) = w."""
+    p = [Fraction(value, j + 1) for value in numerator_coefficients(j)]
+    q = [Fraction(value) for value in reversed(numerator_coefficients(j))]
+    ratio = _times(_padded(p, order), _inverse(_padded(q, order)))
+    root = _power(ratio, Fraction(1, j + 1))
+    return _reversed([Fraction(0), *root[:order]])
+
+
+def _at_one(j: int, order: int) -> Series:
+    """lambda in powers of 1 - r: 1 - u with 1 - r(1 - u) a series in u that begins with a linear term."""
+    low = [Fraction(0)] * (j + 1) + [Fraction(value) for value in numerator_coefficients(j)]
+    p = _padded(_mirrored(low), order)
+    q = _padded(_mirrored([Fraction(value) for value in reversed(numerator_coefficients(j))]), order)
+    rate = _times(p, _inverse(q))
+    gap = _reversed([Fraction(0)] + [-value for value in rate[1:]])
+    return [Fraction(1) - gap[0], *(-value for value in gap[1:])]
+
+
+def _mu(j: int, rate: Series, end: int) -> Series:
+    """(P/Q)^2/lambda along a series of lambda; at r = 0 times w."""
+    p, q = ([Fraction(v) for v in values] for values in (numerator_coefficients(j), numerator_coefficients(j)[::-1]))
+    square = _power(_times(_along(p, rate), _inverse(_along(q, rate))), Fraction(2))
+    below = rate[1:] if end == 0 else rate
+    return _times(square[: len(below)], _inverse(below))
+
+
+def _padded(values: Sequence[Fraction], order: int) -> Series:
+    return (list(values) + [Fraction(0)] * (order + 1))[: order + 1]
+
+
+def _times(left: Series, right: Series) -> Series:
+    return [sum((left[k] * right[n - k] for k in range(n + 1)), Fraction(0)) for n in range(min(len(left), len(right)))]
+
+
+def _inverse(values: Series) -> Series:
+    return _power(values, Fraction(-1))
+
+
+def _power(values: Series, exponent: Fraction) -> Series:
+    """values ** exponent, by its differential equation; a constant term other than 1 needs a whole exponent."""
+    start = values[0]
+    first = start**exponent.numerator if exponent.denominator == 1 else Fraction(1)
+    if exponent.denominator != 1 and start != 1:
+        raise ArithmeticError("a root of a series needs the constant term 1")
+    result = [first]
+    for n in range(1, len(values)):
+        total = sum(((exponent * k - (n - k)) * values[k] * result[n - k] for k in range(1, n + 1)), Fraction(0))
+        result.append(total / (n * start))
+    return result
+
+
+def _reversed(values: Series) -> Series:
+    """The inverse function of a series without constant term, by Lagrange's formula."""
+    order = len(values) - 1
+    ratio = _inverse(values[1:])  # z/f(z)
+    found, power = [Fraction(0)], _padded([Fraction(1)], order - 1)
+    for n in range(1, order + 1):
+        power = _times(power, ratio)
+        found.append(power[n - 1] / n)
+    return found
+
+
+def _along(polynomial: Series, inner: Series) -> Series:
+    """A polynomial of a series."""
+    total = [Fraction(0)] * len(inner)
+    for value in reversed(polynomial):
+        total = _times(total, inner)
+        total[0] += value
+    return total
+
+
+def _mirrored(polynomial: Series) -> Series:
+    """The polynomial at 1 - u, in powers of u."""
+    total = [Fraction(0)]
+    for value in reversed(polynomial):
+        total = [a + b for a, b in zip([*total, Fraction(0)], [Fraction(0), *(-x for x in total)], strict=True)]
+        total[0] += value
+    return total
