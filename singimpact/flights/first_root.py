@@ -40,13 +40,14 @@ def first_root(q: Any, n: int, h: Any, base: Any, ulp: Any) -> Any:
     third = 0 * h
     for k in range(1, n + 1):
         if k >= 3:
-            third += k * (k - 1) * (k - 2) * abs(q[k]) * power / (h * h)
+            third += k * (k - 1) * (k - 2) * abs(q[k]) * power
         power *= h
         if q[k] < 0:
             least += q[k] * power
         least -= ulp * abs(q[k]) * power
     if least > ulp * q[0]:
         return 0, h, h, h, h
+    third /= h * h
     s = 0 * h
     for _ in range(400):
         a0, a1, a2, size = q[n], 0 * h, 0 * h, abs(q[n])

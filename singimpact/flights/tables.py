@@ -62,7 +62,7 @@ def _laid(kernel: Kernel, numbers: bytes) -> Table | None:
     fraction, exponent = frexp(STRIDES.reach / rate)
     step = ldexp(int(ldexp(fraction, STRIDES.bits)), exponent - STRIDES.bits)
     space = compiled(kernel.text, kernel.names)
-    rows, bound = np.zeros((STRIDES.rows, FIXED + EACH * ((p.size - 5) // 3))), np.zeros(6)
+    rows, bound = np.zeros((STRIDES.rows, FIXED + EACH * ((p.size - 5) // 3))), np.zeros(6 + STRIDES.order + 1)
     space["tabulate"](p.copy(), step, rows)
     space["bounds"](p.copy(), step, bound)
     return Table(step, rows, bound)
