@@ -12,13 +12,14 @@ from typing import Any
 
 
 def stride(
-    launch: Any, v: float, acceleration: float, order: int, horizon: float, ulp: float, p: Any,
+    launch: Any, v: float, acceleration: float, order: int, terms: int, horizon: float, ulp: float, p: Any,
     step: float, table: Any, bound: Any, X: Any, W: Any, q: Any,
 ) -> Any:  # fmt: skip
     """(status, flight time, velocity, depth, bound), as `march` for v > 0.
 
     Parameters
     ----------
+    order, terms : degree of a Taylor step here, and in `march`, whose steps are longer.
     step, table : the step of the table and the table.
     bound : bounds of the fourth and the sixth derivative over a step, then 1/k!.
     """
@@ -60,10 +61,14 @@ def stride(
         time = start + m * step
         if not (min(min(b1, b2), min(b3, b4)) > room and z1 > room and (z > room or time == 0.0)):
             code, s, slope = 2, 0.0, 0.0
+            bend = fourth * (bound[0] * abs(z) + bound[1] * abs(u) + bound[2])
             if time == 0.0:
-                code, s, slope = first_stride(v, acceleration, order, step, ulp, p, bound, X, W, q)
+                # upwards and convex, or concave and above the obstacle at the end: no root
+                if min(e, e1) > bend or (z1 > room and max(e, e1) < -bend):
+                    code = 0
+                else:
+                    code, s, slope = first_stride(v, acceleration, order, step, ulp, p, bound, X, W, q)
             else:
-                bend = fourth * (bound[0] * abs(z) + bound[1] * abs(u) + bound[2])
                 if z > room and abs(z1) > room:
                     code, s, slope = bent_stride(
                         z, u, e, z1, u1, e1, bend, error + noise, table, m, order, step, p, bound, X, W
@@ -71,7 +76,7 @@ def stride(
                 if code == 2:
                     code, s, slope = inner_stride(z, u, table, m, order, step, noise, ulp, p, bound, W, q)
             if code == 2:
-                return march(launch, v, 1, acceleration, order + 4, horizon, ulp, p, X, W, q)
+                return march(launch, v, 1, acceleration, terms, horizon, ulp, p, X, W, q)
             if code == 1:
                 if time + s > horizon:
                     return 3, time, u, z, noise
@@ -140,13 +145,14 @@ def bent_stride(
     z: float, u: float, e: float, z1: float, u1: float, e1: float, bend: float, noise: float, table: Any, m: int,
     order: int, step: float, p: Any, bound: Any, X: Any, W: Any,
 ) -> Any:  # fmt: skip
-    """The first root on a step on which x'' keeps its sign; 2 where it may not, or where rounding decides.
+    """The first root on a step on which x' or x'' keeps its sign; 2 where neither may, or where rounding decides.
 
-    `bend` bounds the distance of x'' from the line through its ends.  A concave flight crosses once or not at all; a
-    convex one is decided by its lowest point.
+    `bend` bounds the distance of x'' from the line through its ends.  A falling or concave flight crosses once or not
+    at all; a convex one is decided by its lowest point.
     """
     convex = min(e, e1) > bend
-    if not convex and not max(e, e1) < -bend:
+    falls = u + u1 + step * (max(abs(e), abs(e1)) + bend) < 0
+    if not convex and not falls and not max(e, e1) < -bend:
         return 2, 0.0, 0.0
     if z1 > 0 and (not convex or u1 <= 0 or u >= 0):
         return 0, step, 0.0
@@ -214,7 +220,7 @@ def newton(X: Any, n: int, s: float, step: float) -> Any:
 
 
 def place(X: Any, n: int, s: float) -> Any:
-    """x - c, x', x'' of a Taylor sum of even degree n; even and odd terms apart, so that six short chains run abreast."""
+    """x - c, x', x'' of a Taylor sum of even degree n, as `sums`."""
     x = s * s
     e0, e1, e2 = X[n], 0.0, 0.0
     o0, o1, o2 = 0.0, 0.0, 0.0
@@ -255,18 +261,18 @@ def series(z: float, u: float, n: int, p: Any, bound: Any, X: Any, W: Any, top: 
 
 
 def stride_all(
-    launch: Any, v: Any, removed: Any, acceleration: Any, order: int, horizon: float, ulp: float, p: Any,
+    launch: Any, v: Any, removed: Any, acceleration: Any, order: int, terms: int, horizon: float, ulp: float, p: Any,
     step: float, table: Any, bound: Any, X: Any, W: Any, q: Any, status: Any, numbers: Any,
 ) -> None:  # fmt: skip
     """`stride` for every launch; numbers[i] = flight time, velocity, depth, bound."""
     for i in range(len(v)):
         if removed[i] > 1:
             code, time, velocity, depth, error = march(
-                launch[i], v[i], removed[i], acceleration[i], order + 3 + removed[i], horizon, ulp, p, X, W, q
+                launch[i], v[i], removed[i], acceleration[i], terms - 1 + removed[i], horizon, ulp, p, X, W, q
             )
         else:
             code, time, velocity, depth, error = stride(
-                launch[i], v[i], acceleration[i], order, horizon, ulp, p, step, table, bound, X, W, q
+                launch[i], v[i], acceleration[i], order, terms, horizon, ulp, p, step, table, bound, X, W, q
             )
         status[i] = code
         numbers[i, 0], numbers[i, 1], numbers[i, 2], numbers[i, 3] = time, velocity, depth, error

@@ -29,8 +29,8 @@ class Strides:
     bits : of the step, so that a row's time is exact.
     """
 
-    reach: float = 1.0
-    order: int = 20
+    reach: float = 0.6
+    order: int = 16
     rows: int = 200
     bits: int = 24
 

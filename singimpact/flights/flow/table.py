@@ -50,8 +50,9 @@ def tabulate(p: Any, step: float, table: Any) -> None:
 
 
 def bounds(p: Any, step: float, out: Any) -> None:
-    """out = (alpha, beta, gamma, ..., 1/0!, 1/1!, ...): |x^(n)| <= alpha |x - c| + beta |x'| + gamma on a step, for n = 4 and n = 6.
+    """out = (alpha, beta, gamma, ..., 1/0!, 1/1!, ...): |x^(n)| <= alpha |x - c| + beta |x'| + gamma over a step.
 
+    The first three are for n = 4, the next for n = 6.
     The same equation with |damping| and |stiffness| majorises the flight; its solution grows, so its value at the end
     of the step bounds the whole step.
     """
