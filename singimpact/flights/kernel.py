@@ -18,7 +18,8 @@ from singimpact.oscillator.model import Oscillator
 
 COMMON = (first_root.sums, first_root.safe_step, first_root.polished, first_root.first_root,
           march.advanced, march.march, march.run, march.follow)  # fmt: skip
-STRIDES = (table.tabulate, table.bounds, strides.series, strides.launched, strides.first_stride, strides.turned,
+STRIDES = (table.tabulate, table.bounds, strides.series, strides.falling, strides.launched,
+           strides.turned,
            strides.inner_stride, strides.place, strides.newton, strides.lowest, strides.crossing,
            strides.bent_stride, strides.stride, strides.stride_all)  # fmt: skip
 HEAD = '''"""Written by singimpact from the text of its own functions and from f and g: edit those, not this file."""

@@ -81,6 +81,8 @@ def sequence(osc: Oscillator, tau: float, v: float, count: int, slow: float = 0.
             table.step, table.rows, table.bound, *work, out,
         )  # fmt: skip
     else:
-        flown, status = compiled(text, names)[loop](start, v, count, slow, w, np.zeros(1), order, limit, ulp, p, *work, out)
+        flown, status = compiled(text, names)[loop](
+            start, v, count, slow, w, np.zeros(1), order, limit, ulp, p, *work, out
+        )
     since, speed, time, velocity, acceleration = out[:flown].T
     return Sequence(tau + since, speed, time, velocity, acceleration, int(status))

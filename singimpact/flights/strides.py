@@ -28,6 +28,11 @@ def stride(
     start, z0, u0, base = 0.0, 0.0, v, 0.0
     for j in range(waves):
         W[2 * j, 0], W[2 * j + 1, 0] = launch[2 * j], launch[2 * j + 1]
+    if acceleration < 0 and -16 * v > acceleration * step:
+        # a low velocity is looked for near 2 v/|a|, with few terms
+        code, s, slope = launched(v, acceleration, order, -4 * v / acceleration, ulp, p, bound, X, W, q)
+        if code == 1 and s <= horizon:
+            return 0, s, slope * s, 0.0, 0.0
     h2 = step * step / 20.0
     fourth, sixth = step * step / 8.0, step * step * step * step * step * step / 46080.0
     z, u, e, noise = 0.0, v, acceleration - p[1] * v, 0.0
@@ -67,7 +72,8 @@ def stride(
                 if min(e, e1) > bend or (z1 > room and max(e, e1) < -bend):
                     code = 0
                 else:
-                    code, s, slope = first_stride(v, acceleration, order, step, ulp, p, bound, X, W, q)
+                    code, s, slope = launched(v, acceleration, order, step * 17 / 16, ulp, p, bound, X, W, q)
+                    slope *= s
             else:
                 if z > room and abs(z1) > room:
                     code, s, slope = bent_stride(
@@ -87,20 +93,6 @@ def stride(
         m += 1
 
 
-def first_stride(
-    v: float, acceleration: float, order: int, step: float, ulp: float, p: Any, bound: Any, X: Any, W: Any, q: Any
-) -> Any:
-    """The first root of (x - c)/t on the first step; a low velocity is looked for near 2 v/|a| with few terms."""
-    if acceleration < 0:
-        near = -4 * v / acceleration
-        if near < step / 4:
-            code, s, slope = launched(v, acceleration, order, near, ulp, p, bound, X, W, q)
-            if code != 0:
-                return code, s, slope * s
-    code, s, slope = launched(v, acceleration, order, step * 17 / 16, ulp, p, bound, X, W, q)
-    return code, s, slope * s
-
-
 def launched(
     v: float, acceleration: float, order: int, h: float, ulp: float, p: Any, bound: Any, X: Any, W: Any, q: Any
 ) -> Any:
@@ -115,10 +107,37 @@ def launched(
         term *= ratio * bound[6 + n] / bound[5 + n]
     series(0.0, v, n, p, bound, X, W, 0)
     X[2] = (acceleration - p[1] * v) / 2
+    X[0] = 0.0
+    against, power = 0.0, 1.0
+    for k in range(3, n + 1):
+        power *= h
+        against += (k - 1) * abs(X[k]) * power
+    if 2 * against < -X[2]:
+        code, s, slope = falling(X, n, v, h)
+        if code != 2:
+            return code, s, slope
     for k in range(n):
         q[k] = X[k + 1]
     code, s, slope, _depth, _bound = first_root(q, n - 1, h, 0.0, ulp)
     return code, s, slope
+
+
+def falling(X: Any, n: int, v: float, h: float) -> Any:
+    """The root on (0, h] of v + X_2 t + ... + X_n t^(n - 1), which falls there by at least |X_2|/2 a unit of time."""
+    s = -v / X[2]
+    for _ in range(20):
+        value, slope, bend = X[n], 0.0, 0.0
+        for k in range(n - 1, 0, -1):
+            bend = bend * s + slope
+            slope = slope * s + value
+            value = value * s + X[k]
+        change = -value / slope
+        s += change
+        if s > h:
+            return 2, s, slope
+        if abs(change) < 1e-9 * s:
+            return 1, s, slope + 2 * bend * change
+    return 2, s, 0.0
 
 
 def turned(table: Any, m: int, p: Any, W: Any) -> int:
