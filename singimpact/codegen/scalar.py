@@ -16,7 +16,7 @@ def scalar(tree: Expression, variable: str, name: str) -> tuple[str, tuple[Expre
     >>> text, constants = scalar(parse("-r*v + 3*v**2", ["r", "v"]), "v", "rho")
     >>> print(text, *constants)
     def rho(v, w):
-        return w[0] * w[1] * v + w[2] * v**2
+        return w[0] * w[1] * v + w[2] * (v**2)
      -1 r 3
     """
     constants: list[Expression] = []

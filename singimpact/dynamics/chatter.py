@@ -12,6 +12,7 @@ from singimpact.algebra.numbers import as_float, as_mpf, compare
 from singimpact.algebra.rings import DOUBLES, Multiprecision
 from singimpact.dynamics.completion import completion
 from singimpact.flights.hits import checked_digits, derivative, impact_map
+from singimpact.flights.kernel import kernel_of
 from singimpact.flights.launch import States
 from singimpact.flights.sequences import Sequence, sequence
 from singimpact.inputs import InputError
@@ -73,7 +74,7 @@ def chatter_limit(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = Non
     Examples
     --------
     >>> end = chatter_limit(Oscillator("x", "cos(2.8*t)", 0, "0.8"), "0.9", "0.005")
-    >>> print(f"{end.tau:.14f}", Status(end.status).name, end.error < 1e-14)
+    >>> print(f"{end.tau:.14f}", Status(end.status).name, bool(end.error < 1e-13))
     0.95935923442208 complete True
     """
     states = States.read(tau, v)
@@ -91,7 +92,7 @@ def summed(osc: Oscillator, tau: float, v: float, resolution: float) -> float | 
     if _quick(osc, tau, v) is None:
         return None
     left, error = _rest(osc, tau, v, ENDING.order)
-    return left if error < resolution else None
+    return left if error <= resolution else None
 
 
 def _slow(osc: Oscillator, tau: float) -> float:
@@ -99,11 +100,15 @@ def _slow(osc: Oscillator, tau: float) -> float:
     place = np.array([tau])
     a, slope = float(acceleration(osc, place)[0]), float(acceleration(osc, place, 1)[0])
     rate = abs(slope / a) if a else np.inf
-    return ENDING.near / (rate + _pace(osc)) if np.isfinite(rate) else 0.0
+    total = rate + _pace(osc)
+    return ENDING.near / total if total > 0 else np.inf
 
 
 def _pace(osc: Oscillator) -> float:
-    """How fast the model moves: the forcing's frequency, or 1."""
+    """How fast the model moves: the largest rate of a linear one, else the forcing's frequency, or 1."""
+    kernel = kernel_of(osc)
+    if kernel.form is not None:
+        return as_float(kernel.constants[4])
     return 1.0 if osc.period is None else 2 * np.pi / as_float(osc.period)
 
 
@@ -151,7 +156,7 @@ class _Flown:
                     return self._ended(tau + left, error, Status.complete)
                 status = self._fly(self._more(error, tau), 0.0)
             else:
-                status = self._fly(256, _slow(self.osc, tau) * lost if a < 0 else 0.0)
+                status = self._fly(256, min(_slow(self.osc, tau) * lost, 1e300) if a < 0 else 0.0)
             if len(self.times) > ENDING.impacts:
                 status = Status.unresolved
         return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status))
