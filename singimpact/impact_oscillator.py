@@ -13,9 +13,14 @@ from singimpact.oscillator.files import read_fields, to_toml
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from singimpact.contact.points import TangencyPoints
+    from singimpact.dynamics.chatter import ChatterLimit
     from singimpact.dynamics.orbit import Orbit
-    from singimpact.flights.carriers import Flight, Step
+    from singimpact.dynamics.periodic import PeriodicOrbit
+    from singimpact.dynamics.threshold import Threshold
+    from singimpact.flights.carriers import Derivative, Flight, Step
     from singimpact.flights.path import Path
 
 
@@ -83,6 +88,39 @@ class ImpactOscillator(Oscillator):
             raise refuse("order", order, "a whole number from 0 to 60")
         times = float_array("tau", tau)
         return acceleration(self, np.atleast_1d(times).ravel(), order).reshape(times.shape)[()]
+
+    def derivative(self, tau: Any, v: Any, *, horizon: Any = None) -> Derivative:
+        """D G at states, from the variational equation: see `singimpact.flights.hits.derivative`."""
+        from singimpact.flights.hits import derivative
+
+        return derivative(self, tau, v, horizon=horizon)
+
+    def inverse_map(self, tau: Any, v: Any, *, digits: int | None = None, horizon: Any = None) -> Step:
+        """G^{-1}: see `singimpact.flights.inverse.inverse_map`.
+
+        Examples
+        --------
+        >>> osc = linear(2, "0.3", "0.5")
+        >>> step = osc.impact_map(0, 1)
+        >>> before = osc.inverse_map(step.tau, step.v)
+        >>> abs(before.tau) < 1e-15, round(float(before.v), 14)
+        (np.True_, 1.0)
+        """
+        from singimpact.flights.inverse import inverse_map
+
+        return inverse_map(self, tau, v, digits=digits, horizon=horizon)
+
+    def chatter_limit(self, tau: Any, v: Any, *, digits: int | None = None) -> ChatterLimit:
+        """Where infinitely many impacts accumulate: see `singimpact.dynamics.chatter.chatter_limit`."""
+        from singimpact.dynamics.chatter import chatter_limit
+
+        return chatter_limit(self, tau, v, digits=digits)
+
+    def periodic(self, n: int, k: int, *, digits: int | None = None) -> list[PeriodicOrbit]:
+        """Orbits of n impacts in k periods: see `singimpact.dynamics.periodic.periodic`."""
+        from singimpact.dynamics.periodic import periodic
+
+        return periodic(self, n, k, digits=digits)
 
     def orbit(self, tau: Any, v: Any, impacts: int = 200) -> Orbit:
         """Impacts, chatter and rest in order: see `singimpact.dynamics.orbit.orbit`."""
@@ -168,3 +206,23 @@ def tangency_points(oscillator: Oscillator) -> TangencyPoints:
     from singimpact.contact.points import tangency_points as found
 
     return found(oscillator)
+
+
+def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None) -> Threshold:
+    """The v on gamma over tau: see `singimpact.dynamics.threshold.threshold`.
+
+    Examples
+    --------
+    >>> print(f"{threshold(linear('2.8', 0, '0.5'), 'pi/2.8').v:.12f}")
+    0.100869991269
+    """
+    from singimpact.dynamics.threshold import threshold
+
+    return threshold(osc, tau, digits=digits)
+
+
+def sweep(function: Any, cases: Any, executor: Executor | None = None, output: str | FilePath | None = None) -> Any:
+    """function(case) for every case, on an executor, kept in a file: see `singimpact.cases.sweep`."""
+    from singimpact.cases import sweep
+
+    return sweep(function, cases, executor, output)

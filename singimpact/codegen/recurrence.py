@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import (
     Call,
     Expression,
@@ -75,14 +76,12 @@ class _Writer:
     def emit(self, *lines: str) -> None:
         self.lines.extend(lines)
 
-    def dot(self, left: _Series, right: _Series, first: str, last: str, weight: str = "") -> None:
-        """s = sum of [weight] left[i] right[k - i] for i in first..last."""
-        step = f"    s += {weight}{left('i')} * {right('k - i')}"
-        self.emit("s = 0.0", f"for i in range({first}, {last} + 1):", step)
-
     def product(self, left: _Series, right: _Series) -> _Series:
-        target = self.row()
-        self.dot(left, right, "0", "k")
+        """The sum from both ends inwards: two sums run abreast, and a square needs one of them."""
+        target, same = self.row(), left is right
+        self.emit("i, j, s, s1 = 0, k, zero, zero", "while i < j:", f"    s += {left('i')} * {right('j')}")
+        self.emit(*([] if same else [f"    s1 += {left('j')} * {right('i')}"]), "    i += 1", "    j -= 1")
+        self.emit("s = 2 * s" if same else "s += s1", "if i == j:", f"    s += {left('i')} * {right('i')}")
         self.emit(f"{target('k')} = s")
         return target
 
@@ -109,20 +108,67 @@ def recurrence(force: Expression, forcing: Expression) -> Recurrence:
     (['3'], 2)
     """
     writer = _Writer()
-    pulls = _terms(writer, forcing, "") + _terms(writer, force, "-")
-    body = [*writer.lines, "total = 0.0", *pulls]
-    body += ["X[k + 2] = total / ((k + 1) * (k + 2))", "if k == 0:", "    X[2] += shift"]
-    head = ["def coefficients(launch, time, z, u, shift, n, p, X, W):", "    t = launch[0] + time",
-            "    X[0] = p[0] + z", "    X[1] = u", "    for k in range(n - 1):"]  # fmt: skip
-    source = "\n".join([*head, *(f"        {line}" for line in body)]) + "\n"
+    body = _motion(writer, force, forcing)
+    source = _function("coefficients(launch, time, z, u, shift, n, p, X, W)", body)
     return Recurrence(source, tuple(writer.constants), max(writer.rows, 1))
 
 
-def _terms(writer: _Writer, tree: Expression, sign: str) -> list[str]:
+def variation(force: Expression, forcing: Expression) -> Recurrence:
+    """The recurrence of a flight with its derivatives Y by the launch velocity and Z by the launch time.
+
+    Notes
+    -----
+    Y and Z hold coefficients of Y'' = -f_x Y - f_x' Y' and Z'' = -f_x Z - f_x' Z' + g'; entries 0 and 1 are given.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> variation(parse("x**2", ["x"]), parse("t", ["t"])).source.splitlines()[0]
+    'def variations(launch, time, z, u, shift, n, p, X, W, Y, Z):'
+    """
+    writer = _Writer()
+    body = _motion(writer, force, forcing)
+    writer.lines.clear()
+    pushes = _terms(writer, derivative(forcing, "t"), "", "by_tau")
+    pulls = _linear_pull(writer, derivative(force, "x"), "{0}[{1}]")
+    pulls += _linear_pull(writer, derivative(force, "xdot"), "({1} + 1) * {0}[{1} + 1]")
+    body += [*writer.lines, "by_v, by_tau = zero, zero", *pushes, *pulls, "part = one / ((k + 1) * (k + 2))",
+             "Y[k + 2], Z[k + 2] = by_v * part, by_tau * part"]  # fmt: skip
+    source = _function("variations(launch, time, z, u, shift, n, p, X, W, Y, Z)", body)
+    return Recurrence(source, tuple(writer.constants), max(writer.rows, 1))
+
+
+def _motion(writer: _Writer, force: Expression, forcing: Expression) -> list[str]:
+    pulls = _terms(writer, forcing, "") + _terms(writer, force, "-")
+    return [*writer.lines, "total = 0.0", *pulls, "X[k + 2] = total * (one / ((k + 1) * (k + 2)))", "if k == 0:",
+            "    X[2] += shift"]  # fmt: skip
+
+
+def _function(head: str, body: list[str]) -> str:
+    lines = [f"def {head}:", "    t = launch[0] + time", "    X[0] = p[0] + z", "    X[1] = u"]
+    lines += ["    zero = 0 * (p[0] + z + u)", "    one = 1 + zero"]
+    lines += ["    for k in range(n - 1):", "        part = one / max(k, 1)"]
+    return "\n".join([*lines, *(f"        {line}" for line in body)]) + "\n"
+
+
+def _linear_pull(writer: _Writer, slope: Expression, part: str) -> list[str]:
+    """Lines that take slope times Y (Z), or times Y' (Z'), from the sums."""
+    if slope == number(0):
+        return []
+    names = (("by_v", "Y"), ("by_tau", "Z"))
+    if not names_in(slope) & MOVING:
+        factor = writer.constant(slope)
+        return [f"{total} -= {factor} * {part.format(array, 'k')}" for total, array in names]
+    series = _series(writer, slope)
+    steps = [f"    {total} -= {series('i')} * {part.format(array, '(k - i)')}" for total, array in names]
+    return ["for i in range(0, k + 1):", *steps]
+
+
+def _terms(writer: _Writer, tree: Expression, sign: str, total: str = "total") -> list[str]:
     steady, moving = _parted(tree)
-    lines = [f"total {sign or '+'}= {_series(writer, part)('k')}" for part in moving]
+    lines = [f"{total} {sign or '+'}= {_series(writer, part)('k')}" for part in moving]
     if steady != number(0):
-        lines += ["if k == 0:", f"    total {sign or '+'}= {writer.constant(steady)}"]
+        lines += ["if k == 0:", f"    {total} {sign or '+'}= {writer.constant(steady)}"]
     return lines
 
 
@@ -221,9 +267,9 @@ def _general_power(writer: _Writer, base: _Series, exponent: Expression) -> _Ser
 def _driven(target: _Series, inner: _Series, slope: _Series, sign: str = "") -> tuple[str, ...]:
     """Lines for target' = [sign] slope inner'; an affine inner function needs no sum."""
     if inner.affine:
-        return (f"{target('k')} = {sign}{inner('1')} * {slope('k - 1')} / k",)
+        return (f"{target('k')} = {sign}{inner('1')} * {slope('k - 1')} * part",)
     return ("s = 0.0", "for i in range(1, k + 1):", f"    s += i * {inner('i')} * {slope('k - i')}",
-            f"{target('k')} = {sign}s / k")  # fmt: skip
+            f"{target('k')} = {sign}s * part")  # fmt: skip
 
 
 def _exp(writer: _Writer, argument: Expression) -> _Series:
@@ -267,7 +313,7 @@ def _riccati(writer: _Writer, argument: Expression, function: str, sign: str) ->
     writer.starts(target, f"{function}({inner('0')})", "s = 0.0", "for i in range(1, k + 1):",
                   f"    s += i * {inner('i')} * {square('k - i')}",
                   f"{target('k')} = {inner('k')} {sign} s / k")  # fmt: skip
-    writer.dot(target, target, "0", "k")
+    writer.emit("s = 0.0", "for i in range(0, k + 1):", f"    s += {target('i')} * {target('k - i')}")
     writer.emit(f"{square('k')} = s")
     return target
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.dynamics.chatter import remaining
+from singimpact.dynamics.chatter import summed
 from singimpact.dynamics.rest import release
 from singimpact.flights.hits import impact_map
 from singimpact.flights.launch import States, horizon_of
@@ -90,7 +90,7 @@ def _advance(osc: Oscillator, record: _Record, given: tuple[Any, Any] | None) ->
     tau, v, _ = record.events[-1]
     if v > 0:
         begun = record.events[0][0]
-        left = remaining(osc, tau, v, EPSILON * max(abs(tau), tau - begun))
+        left = summed(osc, tau, v, EPSILON * max(abs(tau), tau - begun))
         if left is not None:
             record.go("chatter", tau + left, 0.0, "complete")
             return _rested(osc, record)

@@ -17,8 +17,7 @@ class Flight:
     status : int8, see `singimpact.status.Status`.
     depth : nan, or beside `unresolved` and `graze` the least x - c near the graze.
     bound : rounding bound of `depth`.
-    condition : relative condition number kappa of the flight time; nan when there is no hit, and where it is not
-        computed: models that are not linear, and digits=.
+    condition : relative condition number kappa of the flight time; nan when there is no hit, and with digits=.
     """
 
     flight_time: Any
@@ -35,3 +34,11 @@ class Step(Flight):
 
     tau: Any
     v: Any
+
+
+@dataclass(frozen=True)
+class Derivative:
+    """D G of the impact map: `matrix` of shape (..., 2, 2) and the `status` of the flight."""
+
+    matrix: Any
+    status: Any

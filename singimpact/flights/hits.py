@@ -12,14 +12,15 @@ from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.algebra.rings import DOUBLES
 from singimpact.codegen.kernels import compiled
-from singimpact.flights import manydigits
-from singimpact.flights.carriers import Flight, Step
-from singimpact.flights.condition import condition
+from singimpact.flights import edges, manydigits
+from singimpact.flights.carriers import Derivative, Flight, Step
 from singimpact.flights.escape import never_returns
 from singimpact.flights.kernel import Kernel, kernel_of
 from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
+from singimpact.flights.tables import STRIDES, table_of
+from singimpact.flights.tangent import rebound_slope, response
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.linear import LinearForm
 from singimpact.oscillator.model import Oscillator
@@ -87,6 +88,34 @@ def impact_map(
     return Step(**(vars(hit) | {"status": status[()]}), tau=landed[()], v=bounce[()])
 
 
+def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Derivative:
+    """D G at states, from the variational equation.
+
+    Parameters
+    ----------
+    osc : the model. tau, v : states, v >= 0; they broadcast. horizon : time after which a flight is given up.
+
+    Returns
+    -------
+    Derivative : matrix[..., 0, :] = d tau'/d(tau, v), matrix[..., 1, :] = d v'/d(tau, v), and the status of the flight.
+        Without an impact it is nan.  At `graze` (infinite) and `sticks` it is one-sided, from the side that hits.
+
+    Examples
+    --------
+    >>> (derivative(Oscillator("0", "-2", 0, "1/2"), 0, 1).matrix + 0).tolist()
+    [[1.0, 1.0], [0.0, 0.5]]
+    """
+    states = States.read(tau, v)
+    step = impact_map(osc, tau, v, horizon=horizon)
+    time, velocity, status = (np.ravel(part) for part in (step.flight_time, step.velocity, step.status))
+    answers = response(osc, states.tau, states.v, time, velocity)
+    slope = rebound_slope(osc, velocity)
+    rows = [1 + answers.time_by_tau, answers.time_by_v, slope * answers.velocity_by_tau, slope * answers.velocity_by_v]
+    matrix = np.stack(rows, axis=-1).reshape(-1, 2, 2)
+    edges.fill(osc, states, time, status, matrix)
+    return Derivative(matrix.reshape(*states.shape, 2, 2), step.status)
+
+
 def rebound(osc: Oscillator, velocity: Array) -> Array:
     """rho(velocity) for velocities <= 0; nan where it is not positive for a velocity that is not 0."""
     if not names_in(osc.restitution):
@@ -126,8 +155,13 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     _settle(osc, states, limit, status, numbers)
     if kernel.form is not None:
         _escapes(osc, kernel.form, states, status, numbers)
-    flight = flight_of(status, numbers)
-    return flight if kernel.form is None else replace(flight, condition=_conditions(osc, kernel.form, states, flight))
+    return _conditioned(osc, states, flight_of(status, numbers))
+
+
+def _conditioned(osc: Oscillator, states: States, flight: Flight) -> Flight:
+    answers = response(osc, states.tau, states.v, flight.flight_time, flight.velocity)
+    tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
+    return replace(flight, condition=answers.condition(tau, states.v, flight.flight_time))
 
 
 def _escapes(osc: Oscillator, form: LinearForm, states: States, status: Array, numbers: Array) -> None:
@@ -137,11 +171,6 @@ def _escapes(osc: Oscillator, form: LinearForm, states: States, status: Array, n
     if gone.size:
         time, speed, place, _ = numbers[gone].T
         status[gone[never_returns(osc, form, states.tau[gone], time, place, speed)]] = Status.escaped
-
-
-def _conditions(osc: Oscillator, form: LinearForm, states: States, flight: Flight) -> Array:
-    tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
-    return condition(form, tau, states.v, known_accelerations(osc, states), flight.flight_time, flight.velocity)
 
 
 def _removed(osc: Oscillator, states: States, status: Array) -> Array:
@@ -157,18 +186,22 @@ def _removed(osc: Oscillator, states: States, status: Array) -> Array:
 def _flown(
     osc: Oscillator, kernel: Kernel, states: States, removed: Array, status: Array, limit: float, epsilon: float
 ) -> Array:
-    order = degree_for(epsilon) + int(removed.max(initial=1)) - 1
+    order = degree_for(EPSILON if kernel.form else epsilon) + int(removed.max(initial=1)) - 1
     numbers = np.zeros((states.v.size, 4))
     moving = np.flatnonzero(status == Status.hit)
     if not moving.size:
         return numbers
-    p = doubles(kernel)
+    p, table = doubles(kernel), table_of(kernel, doubles(kernel))
     part, flown = np.empty(moving.size, dtype=np.int8), np.empty((moving.size, 4))
     work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
-    compiled(kernel.text, kernel.names)["run"](
-        launches(osc, kernel, states.tau)[moving], states.v[moving], removed[moving],
-        known_accelerations(osc, states)[moving], order, limit, LIMITS.safety * epsilon, p, *work, part, flown,
-    )  # fmt: skip
+    space = compiled(kernel.text, kernel.names)
+    given = (launches(osc, kernel, states.tau)[moving], states.v[moving], removed[moving],
+             known_accelerations(osc, states)[moving])  # fmt: skip
+    if table is None:
+        space["run"](*given, order, limit, LIMITS.safety * epsilon, p, *work, part, flown)
+    else:
+        space["stride_all"](*given, STRIDES.order, degree_for(EPSILON), limit, LIMITS.safety * EPSILON, p,
+                            table.step, table.rows, table.bound, *work, part, flown)  # fmt: skip
     status[moving], numbers[moving] = part, flown
     return numbers
 

@@ -16,16 +16,19 @@ from singimpact.flights.flow import closed_form, table, taylor
 from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 
-COMMON = (first_root.safe_step, first_root.polished, first_root.first_root,
+COMMON = (first_root.sums, first_root.safe_step, first_root.polished, first_root.first_root,
           march.advanced, march.march, march.run, march.follow)  # fmt: skip
-STRIDES = (table.tabulate, table.bounds, strides.series, strides.launched, strides.first_stride,
-           strides.inner_stride, strides.stride, strides.stride_all)  # fmt: skip
+STRIDES = (table.tabulate, table.bounds, strides.series, strides.falling, strides.launched,
+           strides.turned,
+           strides.inner_stride, strides.place, strides.newton, strides.lowest, strides.crossing,
+           strides.bent_stride, strides.stride, strides.stride_all)  # fmt: skip
 HEAD = '''"""Written by singimpact from the text of its own functions and from f and g: edit those, not this file."""
 
 from __future__ import annotations
 
 from cmath import exp as complex_exp
 from cmath import sqrt as complex_sqrt
+from math import nan
 from typing import Any
 '''
 
@@ -53,7 +56,7 @@ def kernel_of(osc: Oscillator, exact_restart: bool = True) -> Kernel:
     if form is None:
         emitted = taylor.recurrence_of(osc)
         parts: tuple[Callable[..., Any], ...] = (taylor.step_size, taylor.restart, *COMMON)
-        text = _joined(emitted.source, parts)
+        text = joined(emitted.source, parts)
         return Kernel(text, ("coefficients", *_names(parts)), emitted.rows, tuple(taylor.constants(osc)), None)
     text, names = _linear_text(exact_restart)
     return Kernel(text, names, max(4 * len(form.harmonics), 1), linear_constants(osc, form), form)
@@ -64,20 +67,22 @@ def _linear_text(exact_restart: bool) -> tuple[str, tuple[str, ...]]:
     restart = (closed_form.pair, closed_form.triple, closed_form.restart) if exact_restart else (taylor.restart,)
     parts: tuple[Callable[..., Any], ...] = (closed_form.coefficients, closed_form.step_size, *restart, *COMMON)
     if exact_restart:
-        parts += STRIDES
-    return _joined("", parts), _names(parts)
+        parts += (*STRIDES, closed_form.responses)
+    return joined("", parts), _names(parts)
 
 
 def _names(parts: tuple[Callable[..., Any], ...]) -> tuple[str, ...]:
     return tuple(part.__name__ for part in parts)
 
 
-def _joined(source: str, parts: tuple[Callable[..., Any], ...]) -> str:
-    return "\n\n".join([HEAD, source, *(_source(part) for part in parts)])
+def joined(emitted: str, parts: tuple[Callable[..., Any], ...]) -> str:
+    """The text of a kernel: an emitted source and the functions that go with it."""
+    return "\n\n".join([HEAD, emitted, *(source(part) for part in parts)])
 
 
 @lru_cache(maxsize=64)
-def _source(part: Callable[..., Any]) -> str:
+def source(part: Callable[..., Any]) -> str:
+    """The text of a function of this package."""
     return inspect.getsource(part)
 
 

@@ -94,9 +94,8 @@ def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: floa
         again = flown(osc, states, index, precision, limit)
         if outcome[0] == again[0] == Status.no_return or min(outcome[1][2], again[1][2]) > LIMITS.far:
             return _escaping(osc, states, index, again)
-        if outcome[0] == again[0] and outcome[0] != Status.unresolved:
-            if _close(outcome[1], again[1], digits):
-                return again
+        if outcome[0] == again[0] != Status.unresolved and _close(outcome[1], again[1], digits):
+            return again
         outcome = again
     if outcome[0] == Status.unresolved and _touches(outcome[1]):
         return int(Status.graze), outcome[1]

@@ -29,8 +29,8 @@ class Strides:
     bits : of the step, so that a row's time is exact.
     """
 
-    reach: float = 1.0
-    order: int = 20
+    reach: float = 0.6
+    order: int = 16
     rows: int = 200
     bits: int = 24
 
@@ -62,7 +62,7 @@ def _laid(kernel: Kernel, numbers: bytes) -> Table | None:
     fraction, exponent = frexp(STRIDES.reach / rate)
     step = ldexp(int(ldexp(fraction, STRIDES.bits)), exponent - STRIDES.bits)
     space = compiled(kernel.text, kernel.names)
-    rows, bound = np.zeros((STRIDES.rows, FIXED + EACH * ((p.size - 5) // 3))), np.zeros(6)
+    rows, bound = np.zeros((STRIDES.rows, FIXED + EACH * ((p.size - 5) // 3))), np.zeros(6 + STRIDES.order + 1)
     space["tabulate"](p.copy(), step, rows)
     space["bounds"](p.copy(), step, bound)
     return Table(step, rows, bound)

@@ -74,7 +74,7 @@ def test_the_disk_cache_serves_a_new_process() -> None:
         "from singimpact.codegen.kernels import compiled\n"
         "from singimpact.flights.kernel import kernel_of\n"
         "k = kernel_of(linear(2, 0, 1))\n"
-        "print(sum(compiled(k.text, k.names)['run'].stats.cache_hits.values()))\n"
+        "print(sum(compiled(k.text, k.names)['stride_all'].stats.cache_hits.values()))\n"
     )
     runs = [subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True) for _ in "ab"]
     assert runs[0].stdout.split()[0] == runs[1].stdout.split()[0]

@@ -50,8 +50,9 @@ def tabulate(p: Any, step: float, table: Any) -> None:
 
 
 def bounds(p: Any, step: float, out: Any) -> None:
-    """out = (alpha, beta, gamma, ...): |x^(n)| <= alpha |x - c| + beta |x'| + gamma on a step, for n = 4 and n = 6.
+    """out = (alpha, beta, gamma, ..., 1/0!, 1/1!, ...): |x^(n)| <= alpha |x - c| + beta |x'| + gamma over a step.
 
+    The first three are for n = 4, the next for n = 6.
     The same equation with |damping| and |stiffness| majorises the flight; its solution grows, so its value at the end
     of the step bounds the whole step.
     """
@@ -81,3 +82,7 @@ def bounds(p: Any, step: float, out: Any) -> None:
                     pull += (abs(p[6 + 3 * j]) + abs(p[7 + 3 * j])) * abs(p[5 + 3 * j]) ** (n - 2)
             high[n] = d * high[n - 1] + k * high[n - 2] + pull
         out[source], out[3 + source] = high[4], high[6]
+    factorial = 1.0
+    for n in range(6, len(out)):
+        factorial *= max(n - 6, 1)
+        out[n] = 1 / factorial

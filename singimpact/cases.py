@@ -1,0 +1,164 @@
+"""Many cases on any executor: results are kept in chunks, shown as they come, resumed after an interruption."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from singimpact.inputs import InputError, shown
+from singimpact.progress import ProgressLine
+from singimpact.store import require_writable, written
+
+
+@dataclass(frozen=True)
+class Portions:
+    """How cases are handed out.
+
+    Parameters
+    ----------
+    each : chunks a worker gets on the average: more even out unequal cases, fewer send less.
+    most : cases in a chunk; what an interruption can lose is a chunk a worker.
+    """
+
+    each: int = 8
+    most: int = 4096
+
+
+PORTIONS = Portions()
+
+
+def sweep(
+    function: Callable[[Any], Any],
+    cases: Iterable[Any],
+    executor: Executor | None = None,
+    output: str | Path | None = None,
+) -> np.ndarray[Any, Any]:
+    """function(case) for every case, in the order of the cases.
+
+    Parameters
+    ----------
+    function : of one case; it gives a number or an array of numbers of one shape, and can be pickled for the executor.
+    cases : whatever the function takes.
+    executor : any `concurrent.futures.Executor`; a process pool when it is not given.
+    output : an .npz file that takes every chunk as it comes. When it holds results of the same cases, only what is
+        missing is computed.
+
+    Returns
+    -------
+    array : results stacked along the first axis.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> with ThreadPoolExecutor(2) as pool:
+    ...     sweep(lambda x: x * x, [1.0, 2.0, 3.0], pool).tolist()
+    [1.0, 4.0, 9.0]
+    """
+    items = list(cases)
+    kept = _Kept(output, _key(function, items), len(items))
+    missing = [index for index in range(len(items)) if index not in kept.results]
+    with _executor(executor) as pool, ProgressLine() as line:
+        _run(function, items, missing, pool, kept, line)
+    return np.stack([kept.results[index] for index in range(len(items))]) if items else np.empty(0)
+
+
+def _run(
+    function: Callable[[Any], Any],
+    items: list[Any],
+    missing: list[int],
+    pool: Executor,
+    kept: _Kept,
+    line: ProgressLine,
+) -> None:
+    waiting: dict[Future[Any], list[int]] = {}
+    for part in _portions(missing, pool):
+        waiting[pool.submit(_portion, function, [items[index] for index in part])] = part
+    try:
+        for done in _completed(waiting):
+            kept.add(waiting[done], done.result())
+            line.show(len(kept.results), len(items), "cases")
+    finally:
+        for future in waiting:
+            future.cancel()
+
+
+def _completed(waiting: dict[Future[Any], list[int]]) -> Iterator[Future[Any]]:
+    """As they come; an executor beyond this machine brings futures of its own, which know when they are done."""
+    if all(isinstance(future, Future) for future in waiting):
+        yield from as_completed(waiting)
+    else:
+        yield from waiting
+
+
+def _portion(function: Callable[[Any], Any], items: list[Any]) -> list[Any]:
+    return [function(item) for item in items]
+
+
+def _portions(indices: list[int], pool: Executor) -> Iterator[list[int]]:
+    workers = getattr(pool, "_max_workers", None) or os.cpu_count() or 1
+    size = max(1, min(PORTIONS.most, len(indices) // (PORTIONS.each * workers)))
+    for start in range(0, len(indices), size):
+        yield indices[start : start + size]
+
+
+@contextmanager
+def _executor(given: Executor | None) -> Iterator[Executor]:
+    if given is not None:
+        yield given  # the caller's: the caller ends it
+        return
+    import multiprocessing
+
+    # a forked child shares locks of threads that it does not have
+    with ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn")) as pool:
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _key(function: Callable[[Any], Any], items: list[Any]) -> str:
+    """What a file of results must agree with: the function's name and the text of the cases."""
+    name = f"{getattr(function, '__module__', '')}.{getattr(function, '__qualname__', repr(function))}"
+    digest = hashlib.sha256(name.encode())
+    for item in items:
+        digest.update(b"\0" + (item.tobytes() if isinstance(item, np.ndarray) else repr(item).encode()))
+    return digest.hexdigest()
+
+
+class _Kept:
+    """Results by case, on disk after every chunk when there is a file."""
+
+    def __init__(self, output: str | Path | None, key: str, count: int) -> None:
+        self.path, self.key, self.results = None if output is None else Path(output), key, dict[int, Any]()
+        if self.path is not None:
+            require_writable(self.path)
+            self._read(self.path, count)
+
+    def _read(self, path: Path, count: int) -> None:
+        if not path.exists():
+            return
+        try:
+            with np.load(path) as found:
+                same = str(found["key"]) == self.key
+                pairs = list(zip(found["index"].tolist(), found["result"], strict=True))
+        except (OSError, ValueError, KeyError) as error:
+            raise InputError(f"output = {shown(str(path))} is not a file of results ({error}): name another") from None
+        if not same:
+            raise InputError(f"output = {shown(str(path))} holds results of other cases: name another file")
+        self.results.update((index, value) for index, value in pairs if index < count)
+
+    def add(self, part: list[int], values: list[Any]) -> None:
+        self.results.update(zip(part, (np.asarray(value) for value in values), strict=True))
+        if self.path is not None:
+            index = np.array(sorted(self.results))
+            with written(self.path) as draft, draft.open("wb") as stream:
+                np.savez(stream, key=self.key, index=index, result=np.stack([self.results[i] for i in index.tolist()]))

@@ -1,0 +1,116 @@
+"""The inverse of the impact map: the flight that ended in an impact, run backwards."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import Name, multiply, names_in, number, substitute
+from singimpact.algebra.numbers import as_float, as_mpf
+from singimpact.flights.carriers import Step
+from singimpact.flights.hits import first_hit, rebound
+from singimpact.flights.launch import States
+from singimpact.flights.tangent import rebound_slope
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+
+@lru_cache(maxsize=64)
+def backwards(osc: Oscillator) -> Oscillator:
+    """The model whose flights are those of `osc` run backwards: f(x, -x'), g(-t)."""
+    turned = {"xdot": multiply(number(-1), Name("xdot")), "t": multiply(number(-1), Name("t"))}
+    return Oscillator(
+        substitute(osc.force(), turned), substitute(osc.forcing(), turned), osc.clearance, 1, period=osc.period
+    )
+
+
+def inverse_map(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, horizon: Any = None) -> Step:
+    """The state whose next impact leaves (tau, v): G^{-1}.
+
+    Parameters
+    ----------
+    osc : the model. tau, v : states just after an impact, v >= 0. digits, horizon : as for the impact map.
+
+    Returns
+    -------
+    Step : tau and v before, flight_time > 0, velocity x' < 0 just before the impact at (tau, v); `no_rebound` where no
+        velocity rebounds to v.
+
+    Examples
+    --------
+    >>> before = inverse_map(Oscillator("0", "-2", 0, "1/2"), 4, 1.5)
+    >>> before.tau, before.v, before.status
+    (np.float64(1.0), np.float64(3.0), np.int8(0))
+    """
+    states = States.read(tau, v)
+    times, speeds = (np.empty(states.v.size, dtype=object) for _ in range(2))
+    dead = np.zeros(states.v.size, dtype=bool)
+    for index in range(states.v.size):
+        times[index] = multiply(number(-1), states.exact_tau(index))
+        speeds[index] = _before(osc, states, index, digits)
+        dead[index] = speeds[index] is None
+        speeds[index] = 0 if dead[index] else speeds[index]
+    hit = first_hit(backwards(osc), times, speeds, digits=digits, horizon=horizon)
+    return _step(states, hit, speeds, dead, digits)
+
+
+def _before(osc: Oscillator, states: States, index: int, digits: int | None) -> Any:
+    """-U with rho(U) = v, as an exact number where rho is -r v; None when Newton's method does not find one."""
+    if not names_in(osc.restitution):
+        return multiply(states.exact_v(index), _inverse(osc))
+    v = float(states.v[index])
+    u = -v / as_float(osc.slope_at_rest())
+    for _ in range(60):
+        change = (float(rebound(osc, np.array(u))) - v) / float(rebound_slope(osc, u))
+        u -= change
+        if not u <= 0:
+            return None
+        if abs(change) <= 1e-15 * abs(u):
+            return -u if digits is None else _sharper(osc, states, index, u, digits)
+    return None
+
+
+def _inverse(osc: Oscillator) -> Any:
+    from singimpact.algebra.expressions import power
+
+    return power(osc.restitution, number(-1))
+
+
+def _sharper(osc: Oscillator, states: States, index: int, u: float, digits: int) -> Any:
+    import mpmath
+
+    from singimpact.flights import manydigits
+
+    with mpmath.workdps(digits + 15):
+        v, place = as_mpf(states.exact_v(index), mpmath.mp), mpmath.mpf(u)
+        slope = float(rebound_slope(osc, u))
+        for _ in range(2 + digits // 8):
+            place -= (manydigits.rebound(osc, place) - v) / slope
+        return -place
+
+
+def _step(states: States, hit: Any, speeds: Any, dead: Any, digits: int | None) -> Step:
+    shape = states.shape
+    status = np.where(dead, np.int8(Status.no_rebound), np.ravel(hit.status)).astype(np.int8)
+    if digits is None:
+        start: Any = states.tau
+        before: Any = -np.array([as_float(s) if not isinstance(s, int | float) else float(s) for s in speeds])
+    else:
+        import mpmath
+
+        with mpmath.workdps(digits):
+            start = np.array([as_mpf(states.exact_tau(i), mpmath.mp) for i in range(speeds.size)] + [None])[:-1]
+            before = np.array([-_number(s) for s in speeds] + [None])[:-1]
+    fields = {"tau": start - np.ravel(hit.flight_time), "v": -np.ravel(hit.velocity) + 0, "velocity": before}
+    fields |= {name: getattr(hit, name) for name in ("flight_time", "depth", "bound", "condition")}
+    fields["v"] = np.where(dead, np.nan, fields["v"])
+    shaped = {name: np.reshape(value, shape)[()] for name, value in fields.items()}
+    return Step(**shaped, status=status.reshape(shape)[()])
+
+
+def _number(value: Any) -> Any:
+    import mpmath
+
+    return mpmath.mpf(value) if isinstance(value, int | float) or hasattr(value, "_mpf_") else as_mpf(value, mpmath.mp)
