@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
     from singimpact.impact_oscillator import linear as linear
     from singimpact.impact_oscillator import read_model as read_model
+    from singimpact.impact_oscillator import sweep as sweep
     from singimpact.impact_oscillator import tangency_points as tangency_points
+    from singimpact.impact_oscillator import threshold as threshold
     from singimpact.impact_oscillator import universal as universal
     from singimpact.scenes import plot as plot
     from singimpact.theory import fixed_points as fixed_points
@@ -34,6 +36,8 @@ _HOMES = {
     "universal": "singimpact.impact_oscillator",
     "read_model": "singimpact.impact_oscillator",
     "tangency_points": "singimpact.impact_oscillator",
+    "sweep": "singimpact.impact_oscillator",
+    "threshold": "singimpact.impact_oscillator",
     "plot": "singimpact.scenes",
     "verify": "singimpact.documents.verdicts",
     "errata": "singimpact.documents.errata",

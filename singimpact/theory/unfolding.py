@@ -1,4 +1,4 @@
-"""The unfolded swan in its universal form: x'' = 12 kappa (s^2 - 1), c = 0, where the curves of section 6 are algebraic.
+"""The unfolded swan in its universal form x'' = 12 kappa (s^2 - 1), c = 0: the curves of section 6 are algebraic.
 
 Time is measured from the swan in half the distance of the two zeros A, B of a; kappa > 0 is a positive swan, < 0 a
 negative one.  A flight from sigma lands after t; nothing is cut, the model has no higher terms.
