@@ -6,13 +6,14 @@ a constant expression tree, so ``pi/2.8`` and ``sqrt(2)`` are numbers too.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number
-from singimpact.algebra.parsing import tree_of
+from singimpact.algebra.parsing import from_sympy, parse
 from singimpact.inputs import InputError, refuse
 
 ACCEPTED = "a finite real number, or text such as '0.3', '1/3' or 'pi/2.8'"
@@ -41,6 +42,23 @@ def exact(name: str, value: Any) -> Fraction:
         if mantissa or not exponent:
             return (-1 if sign else 1) * Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     raise refuse(name, value, ACCEPTED)
+
+
+def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> Expression:
+    """A tree from text, a sympy object, a number or a tree already made.
+
+    Examples
+    --------
+    >>> tree_of(0.5) == tree_of("1/2")
+    True
+    """
+    if isinstance(value, str):
+        return parse(value, names, what)
+    if isinstance(value, Expression):
+        return value
+    if type(value).__module__.partition(".")[0] == "sympy" and hasattr(value, "args"):
+        return from_sympy(value, names, what)
+    return Number(exact(what, value))
 
 
 def constant(name: str, value: Any) -> Expression:

@@ -287,22 +287,3 @@ def _exact_float(value: Any) -> Fraction:
     sign, mantissa, exponent, _ = value._mpf_
     size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     return -size if sign else size
-
-
-def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> Expression:
-    """A tree from text, a sympy object, a number or a tree already made.
-
-    Examples
-    --------
-    >>> tree_of(0.5) == tree_of("1/2")
-    True
-    """
-    if isinstance(value, str):
-        return parse(value, names, what)
-    if isinstance(value, Expression):
-        return value
-    if type(value).__module__.partition(".")[0] == "sympy" and hasattr(value, "args"):
-        return from_sympy(value, names, what)
-    from singimpact.algebra.numbers import exact
-
-    return Number(exact(what, value))

@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in, substitute, walk
-from singimpact.algebra.numbers import constant
-from singimpact.algebra.parsing import tree_of
+from singimpact.algebra.numbers import constant, tree_of
 from singimpact.inputs import InputError, refuse, shown, unknown
 from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, period_of

@@ -8,8 +8,7 @@ from typing import Any
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Name, evaluate, multiply, names_in, number, substitute
-from singimpact.algebra.numbers import compare, constant
-from singimpact.algebra.parsing import tree_of
+from singimpact.algebra.numbers import compare, constant, tree_of
 from singimpact.algebra.rings import EXACT
 from singimpact.inputs import InputError, refuse
 
