@@ -180,7 +180,7 @@ def _infinitely(count: int) -> Check:
     return every(
         [
             (
-                f"W^s(X), X beyond tau_2, meets sigma = -1.02 {found.between} times in successive intervals between inverse images of delta",
+                f"read for the manifold through A (just after tau_* a > 0 and no point rests): W^s(X), X beyond tau_2, meets sigma = -1.02 {found.between} times in successive intervals between inverse images of delta",
                 all(number >= count for number in found.between) and count == 2,
             )
         ],
