@@ -64,6 +64,23 @@ class Claim:
         return self.id if self.id.startswith(("e:", "e3")) else None
 
 
+def in_section(section: str) -> Callable[..., Claim]:
+    """A maker of claims of one section: id, title, printed, verify, mutants, then rests_on and corrected if any."""
+
+    def claim(
+        name: str,
+        title: str,
+        printed: Statement,
+        verify: Callable[[Any], Check],
+        mutants: tuple[Any, ...],
+        rests_on: tuple[str, ...] = (),
+        corrected: Callable[[], Statement] | None = None,
+    ) -> Claim:
+        return Claim(name, section, title, printed, verify, mutants, corrected, rests_on)
+
+    return claim
+
+
 @dataclass(frozen=True)
 class Verdict:
     """The verdict on a claim, as computed.

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import sympy
 
 from singimpact.claims import surfaces
-from singimpact.claims.claim import Check, Claim, Statement
+from singimpact.claims.claim import Check, Statement, in_section
 from singimpact.claims.verifiers import every, identity, is_zero
 from singimpact.theory import implicit_route as route
 from singimpact.theory import unfolding as model
@@ -272,16 +270,7 @@ def _semiconjugacy(region: str) -> Check:
     )
 
 
-def _claim(
-    name: str,
-    title: str,
-    printed: Statement,
-    verify: Any,
-    mutants: tuple[Any, ...],
-    rests_on: tuple[str, ...] = (),
-    corrected: Any = None,
-) -> Claim:
-    return Claim(name, "2", title, printed, verify, mutants, corrected, rests_on)
+_claim = in_section("2")
 
 
 CLAIMS = (

@@ -8,7 +8,7 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_on
-from singimpact.claims.claim import Check, Claim, Statement
+from singimpact.claims.claim import Check, Statement, in_section
 from singimpact.claims.verifiers import every, identity, is_zero
 from singimpact.theory import fold_route as fold
 from singimpact.theory.fold_route import m
@@ -173,16 +173,7 @@ def _trivial_root(stated: str) -> Check:
     )
 
 
-def claim_4a(
-    name: str,
-    title: str,
-    printed: Statement,
-    verify: Any,
-    mutants: tuple[Any, ...],
-    rests_on: tuple[str, ...],
-    corrected: Any = None,
-) -> Claim:
-    return Claim(name, "4.1(a)", title, printed, verify, mutants, corrected, rests_on)
+claim_4a = in_section("4.1(a)")
 
 
 CLAIMS = (

@@ -9,7 +9,7 @@ import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_on
 from singimpact.claims import leaves
-from singimpact.claims.claim import Check, Claim, Statement
+from singimpact.claims.claim import Check, Statement, in_section
 from singimpact.claims.verifiers import every, identity, is_zero
 from singimpact.theory import fold_route as fold
 from singimpact.theory.fold_route import k
@@ -296,16 +296,7 @@ def _epsilon(stated: tuple[int, Any]) -> Check:
     )
 
 
-def _claim(
-    name: str,
-    title: str,
-    printed: Statement,
-    verify: Any,
-    mutants: tuple[Any, ...],
-    rests_on: tuple[str, ...] = (),
-    corrected: Any = None,
-) -> Claim:
-    return Claim(name, "4.1(b)", title, printed, verify, mutants, corrected, rests_on)
+_claim = in_section("4.1(b)")
 
 
 _P = -k * (3 * ell + ell**2)

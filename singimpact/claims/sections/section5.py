@@ -8,7 +8,7 @@ import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_on, roots_inside, value_at
 from singimpact.claims import swans, true_orbits
-from singimpact.claims.claim import Check, Claim, Statement
+from singimpact.claims.claim import Check, Statement, in_section
 from singimpact.claims.notation import latex
 from singimpact.claims.verifiers import every, identity, is_zero
 from singimpact.theory import swan_route as swan
@@ -288,16 +288,7 @@ def _no_impacts(stated: int) -> Check:
     )
 
 
-def _claim(
-    name: str,
-    title: str,
-    printed: Statement,
-    verify: Any,
-    mutants: tuple[Any, ...],
-    rests_on: tuple[str, ...] = (),
-    corrected: Any = None,
-) -> Claim:
-    return Claim(name, "5", title, printed, verify, mutants, corrected, rests_on)
+_claim = in_section("5")
 
 
 _LAUNCH, _IMPACT = 6 * m + 4 * m**2 + m**3, 6 * m + 8 * m**2 + 3 * m**3

@@ -7,7 +7,7 @@ from typing import Any
 import sympy
 
 from singimpact.claims import unfolded
-from singimpact.claims.claim import Check, Claim, Statement
+from singimpact.claims.claim import Check, Statement, in_section
 from singimpact.claims.verifiers import every, is_zero
 from singimpact.impact_oscillator import linear, tangency_points
 from singimpact.theory import unfolding as model
@@ -182,16 +182,7 @@ def _gamma(stated: tuple[float, float]) -> Check:
     )
 
 
-def claim_6(
-    name: str,
-    title: str,
-    printed: Statement,
-    verify: Any,
-    mutants: tuple[Any, ...],
-    rests_on: tuple[str, ...] = (),
-    corrected: Any = None,
-) -> Claim:
-    return Claim(name, "6", title, printed, verify, mutants, corrected, rests_on)
+claim_6 = in_section("6")
 
 
 CLAIMS = (
