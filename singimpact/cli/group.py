@@ -18,6 +18,10 @@ COMMANDS = {
     "derive": "write the derivations as LaTeX, PDF, Markdown or JSON",
     "map": "fly from an impact to the next one",
     "orbit": "fly many impacts; -o draws x(t)",
+    "chatter": "when infinitely many impacts accumulate",
+    "threshold": "the velocity that separates complete from incomplete chatter",
+    "sweep": "one question for many values of a number of the model",
+    "bench": "run time against error, beside other tools",
 }
 
 
