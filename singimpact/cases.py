@@ -127,7 +127,9 @@ def _executor(given: Executor | None) -> Iterator[Executor]:
 
 def _key(function: Callable[[Any], Any], items: list[Any]) -> str:
     """What a file of results must agree with: the function's name and the text of the cases."""
-    name = f"{getattr(function, '__module__', '')}.{getattr(function, '__qualname__', repr(function))}"
+    plain = getattr(function, "func", function)  # a partial is named by its function and its arguments
+    bound = (getattr(function, "args", ()), getattr(function, "keywords", {}))
+    name = f"{getattr(plain, '__module__', '')}.{getattr(plain, '__qualname__', repr(plain))}{bound}"
     digest = hashlib.sha256(name.encode())
     for item in items:
         digest.update(b"\0" + (item.tobytes() if isinstance(item, np.ndarray) else repr(item).encode()))

@@ -26,10 +26,11 @@ HEAD = '''"""Written by singimpact from the text of its own functions and from f
 
 from __future__ import annotations
 
-from cmath import exp as complex_exp
 from cmath import sqrt as complex_sqrt
 from math import nan
 from typing import Any
+
+from numpy import empty
 '''
 
 
@@ -64,7 +65,11 @@ def kernel_of(osc: Oscillator, exact_restart: bool = True) -> Kernel:
 
 @lru_cache(maxsize=2)
 def _linear_text(exact_restart: bool) -> tuple[str, tuple[str, ...]]:
-    restart = (closed_form.pair, closed_form.triple, closed_form.restart) if exact_restart else (taylor.restart,)
+    restart = (
+        (closed_form.complex_exp, closed_form.pair, closed_form.triple, closed_form.restart)
+        if exact_restart
+        else (taylor.restart,)
+    )
     parts: tuple[Callable[..., Any], ...] = (closed_form.coefficients, closed_form.step_size, *restart, *COMMON)
     if exact_restart:
         parts += (*STRIDES, closed_form.responses)

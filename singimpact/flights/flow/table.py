@@ -10,7 +10,6 @@ flight.  p as in `flow.closed_form`.
 
 from __future__ import annotations
 
-from cmath import exp as complex_exp
 from cmath import sqrt as complex_sqrt
 from math import cos, sin
 from typing import Any

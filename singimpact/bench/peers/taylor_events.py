@@ -1,0 +1,36 @@
+"""heyoka.py: adaptive Taylor integration with a terminal event x - c = 0 from above."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from singimpact.bench.problems import Problem
+from singimpact.inputs import InputError
+
+
+def stepper(family: str) -> Any:
+    """A function from a problem to its first event: time since the launch, velocity. The integrator is compiled here.
+
+    Raises
+    ------
+    InputError : heyoka is not installed.
+    """
+    try:
+        import heyoka
+    except ImportError:
+        raise InputError("heyoka is not installed: install the extra bench to compare with it") from None
+    x, u = heyoka.make_vars("x", "u")
+    force = x if family == "linear" else x + 0.1 * u + 0.3 * x**3
+    event = heyoka.t_event(x - heyoka.par[1], direction=heyoka.event_direction.negative)
+    field = [(x, u), (u, heyoka.cos(heyoka.par[0] * heyoka.time) - force)]
+    flow = heyoka.taylor_adaptive(field, [0.0, 0.0], pars=[1.0, 0.0], t_events=[event])
+
+    def fly(problem: Problem) -> tuple[float, float]:
+        flow.time = problem.tau
+        flow.state[:] = [problem.clearance, problem.v]
+        flow.pars[:] = [problem.omega, problem.clearance]
+        flow.reset_cooldowns()
+        flow.propagate_until(problem.tau + 1000.0)
+        return float(flow.time) - problem.tau, float(flow.state[1])
+
+    return fly

@@ -1,0 +1,40 @@
+"""`singimpact chatter`: when infinitely many impacts accumulate."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.model import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.status import Status
+
+
+@click.command(short_help="when infinitely many impacts accumulate")
+@model_options
+@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
+@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
+@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits; a double is given without it.")
+@output_options
+def command(tau: str, v: str, digits: int | None, as_json: bool, output: str | None, **options: Any) -> None:
+    """The accumulation time of a chatter sequence, its error, and the impacts flown before the rest was summed up."""
+    oscillator = take_model(options)
+    found = oscillator.chatter_limit(tau, v, digits=digits)
+    status = Status(int(found.status))
+    if as_json:
+        told = {"tau": number(found.tau, digits), "error": float(found.error), "impacts": found.impacts}
+        emit(as_json_text({"model": oscillator.to_dict(), **told, "status": status.name}), output)
+    else:
+        lines = [f"tau      {number(found.tau, digits)}", f"error    {float(found.error):.1e}",
+                 f"impacts  {found.impacts}", f"status   {status.name}: {status.sentence}"]  # fmt: skip
+        emit("\n".join(lines), output)
+
+
+def number(value: Any, digits: int | None) -> Any:
+    """A double, or the text of as many digits as were asked for."""
+    if digits is None:
+        return float(value)
+    from mpmath import nstr
+
+    return nstr(value, digits, strip_zeros=False)

@@ -1,0 +1,74 @@
+"""`singimpact sweep`: the last state after many impacts, for many values of one number of the model."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.model import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.inputs import InputError
+from singimpact.status import Status
+
+
+@click.command(short_help="one question for many values of a number of the model")
+@model_options
+@click.option("--over", metavar="NAME", required=True, help="clearance, restitution or a parameter.")
+@click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")
+@click.option("--to", "high", metavar="NUMBER", required=True, help="Its last value.")
+@click.option("--points", type=click.IntRange(2, 1_000_000), default=21, show_default=True, help="How many values.")
+@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
+@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
+@click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Impacts flown.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
+@click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
+@output_options
+def command(
+    over: str, low: str, high: str, points: int, tau: str, v: str, impacts: int, workers: int | None,
+    keep: str | None, as_json: bool, output: str | None, **options: Any,
+) -> None:  # fmt: skip
+    """The state after the last of many impacts, for values of one number of the model.
+
+    A model named by options needs the option of the swept number too.
+    """
+    import numpy as np
+
+    from singimpact.algebra.numbers import as_float, constant
+    from singimpact.impact_oscillator import sweep
+
+    oscillator = take_model(options)
+    if over not in {"clearance", "restitution", *oscillator.parameters}:
+        known = ", ".join(["clearance", "restitution", *oscillator.parameters])
+        raise InputError(f"--over {over} is not a number of the model: give one of {known}")
+    first, last = as_float(constant("--from", low)), as_float(constant("--to", high))
+    values = np.linspace(first, last, points).tolist()
+    ask = partial(last_state, oscillator.to_dict(), over, tau, v, impacts)
+    with _pool(workers) as pool:
+        found = sweep(ask, values, pool, keep)
+    rows = [[value, *map(float, row[:2]), Status(int(row[2])).name] for value, row in zip(values, found, strict=True)]
+    if as_json:
+        told = [dict(zip((over, "tau", "v", "status"), row, strict=True)) for row in rows]
+        emit(as_json_text({"model": oscillator.to_dict(), "impacts": impacts, "cases": told}), output)
+    else:
+        emit(columns([over, "tau", "v", "status"], [[str(cell) for cell in row] for row in rows]), output)
+
+
+def _pool(workers: int | None) -> Any:
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
+
+
+def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int, value: float) -> Any:
+    """tau, v and status after the last impact; a function of this module, so that another process can be sent it."""
+    import numpy as np
+
+    from singimpact.flights.grids import after
+    from singimpact.impact_oscillator import ImpactOscillator
+
+    ends = after(ImpactOscillator(**fields).replace(**{over: value}), tau, v, impacts)
+    return np.array([float(ends.tau), float(ends.v), float(ends.status)])

@@ -1,0 +1,31 @@
+"""`singimpact threshold`: the velocity that separates complete from incomplete chatter."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.chatter import number
+from singimpact.cli.model import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.status import Status
+
+
+@click.command(short_help="the velocity that separates complete from incomplete chatter")
+@model_options
+@click.option("--tau", metavar="NUMBER", required=True, help="A phase at which the mass is pressed, a_c < 0.")
+@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits; a double is given without it.")
+@output_options
+def command(tau: str, digits: int | None, as_json: bool, output: str | None, **options: Any) -> None:
+    """The v on gamma over tau: just below it chatter completes, just above it contact is lost before."""
+    oscillator = take_model(options)
+    from singimpact.impact_oscillator import threshold
+
+    found = threshold(oscillator, tau, digits=digits)
+    status = Status(int(found.status))
+    if as_json:
+        told = {"v": number(found.v, digits), "error": float(found.error), "status": status.name}
+        emit(as_json_text({"model": oscillator.to_dict(), **told}), output)
+    else:
+        emit(f"v       {number(found.v, digits)}\nerror   {float(found.error):.1e}\nstatus  {status.name}", output)

@@ -1,0 +1,33 @@
+"""chatter, threshold, sweep: what they print and what they refuse."""
+
+import json
+
+LINEAR = ["--omega", "2.8", "--clearance", "0", "--restitution", "1/2"]
+
+
+def test_chatter(singimpact):
+    done = singimpact("chatter", *LINEAR, "--tau", "0.9", "--v", "0.005", "--json")
+    told = json.loads(done.output)
+    assert (done.exit_code, told["status"]) == (0, "complete")
+    assert told["error"] < 1e-12
+    many = json.loads(singimpact("chatter", *LINEAR, "--tau", "0.9", "--v", "0.005", "--digits", "20", "--json").output)
+    assert abs(float(many["tau"]) - told["tau"]) <= told["error"]
+
+
+def test_threshold(singimpact):
+    told = json.loads(singimpact("threshold", *LINEAR, "--tau", "pi/2.8", "--json").output)
+    assert abs(told["v"] - 0.1008699912692559258909) < 1e-13
+    assert "0.100869991269" in singimpact("threshold", *LINEAR, "--tau", "pi/2.8").output
+    refused = singimpact("threshold", *LINEAR, "--tau", "0")
+    assert refused.exit_code == 2
+
+
+def test_sweep(singimpact, tmp_path):
+    given = [*LINEAR, "--over", "clearance", "--from", "-0.1", "--to", "0.1", "--points", "3"]
+    given += ["--tau", "0.3", "--v", "0.4"]
+    keep = ["--workers", "1", "--keep", tmp_path / "kept.npz"]
+    first, again = (singimpact("sweep", *given, *keep, "--json").output for _ in range(2))
+    assert first == again
+    assert [case["clearance"] for case in json.loads(first)["cases"]] == [-0.1, 0.0, 0.1]
+    refused = singimpact("sweep", *LINEAR, "--over", "mass", "--from", "1", "--to", "2", "--tau", "0", "--v", "1")
+    assert refused.exit_code == 2
