@@ -61,10 +61,16 @@ class PackedPolynomials:
         return {key: self._inner.from_dict(part) for key, part in parts.items()}
 
     def dot(self, pairs: Iterable[tuple[Any, Any]]) -> Any:
-        """The sum of the products of pairs."""
-        total = self._context.constant(0)
+        """The sum of the products of pairs, added like with like: a sum copies what it is added to."""
+        waiting: list[Any] = []
         for left, right in pairs:
-            total += left * right
+            product = left * right
+            while waiting and len(waiting[-1]) <= 2 * len(product):
+                product = waiting.pop() + product
+            waiting.append(product)
+        total = self._context.constant(0)
+        while waiting:
+            total = waiting.pop() + total
         return total
 
     def add(self, left: Any, right: Any) -> Any:
@@ -87,6 +93,11 @@ class PackedPolynomials:
     def at(self, poly: Any, index: int, value: Fraction) -> Any:
         """The polynomial with one variable set to a rational."""
         return poly.subs({self._variables[index]: _fmpq(value)})
+
+    def without(self, poly: Any, index: int, target: PackedPolynomials) -> Any:
+        """The polynomial, free of one variable, as one of `target`, which has the others."""
+        assert poly.degrees()[index] <= 0
+        return poly.project_to_context(target._context)
 
     def substituted(self, poly: Any, images: Sequence[Any], target: PackedPolynomials) -> Any:
         """The polynomial with its variables replaced by polynomials of `target`, over the same coefficients."""
@@ -178,6 +189,14 @@ class SparsePolynomials:
             term = coefficient if value == 1 else coefficient * self._ring.rational(value ** key[index])
             total[place] = total[place] + term if place in total else term
         return total
+
+    def without(
+        self, poly: Mapping[Exponents, Any], index: int, target: SparsePolynomials
+    ) -> dict[Exponents, Any]:
+        """The polynomial, free of one variable, as one of `target`, which has the others."""
+        assert target.size == self.size - 1
+        assert not any(key[index] for key in poly)
+        return {(*key[:index], *key[index + 1 :]): value for key, value in poly.items()}
 
     def substituted(self, poly: Mapping[Exponents, Any], images: Sequence[Any], target: SparsePolynomials) -> Any:
         """The polynomial with its variables replaced by polynomials of `target`, over the same coefficients."""

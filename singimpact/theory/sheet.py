@@ -76,41 +76,47 @@ def sheet(contact: Contact, order: int) -> Sheet:
     >>> print(tangency.to_sympy(tangency.v))
     -a_d1*sigma*t/2 - a_d1*t**2/6
     """
-    flight = _Flight(contact, order)
-    for degree in range(contact.order, order):
-        flight.extend(degree)
     space = JetSpace(("sigma", "t"), order, contact.ring)
-    sigma, t = space.polynomials.generators()
-    images = [space.polynomials.from_terms({}), sigma, t]
-    engine = flight.engine
-    launched = {d: engine.substituted(v, images, space.polynomials) for d, v in flight.launch.items()}
-    return Sheet(contact, order, space.of_parts(launched))
+    flight = _Flight(contact, space)
+    parts = {}
+    for degree in range(contact.order, order):
+        twice = flight.twice_integrated(degree)
+        launch = flight.launch(twice)
+        parts[degree + 1] = flight.engine.without(launch, 0, space.polynomials)
+        if degree + 1 < order:
+            flight.extend(degree, twice, launch)
+    return Sheet(contact, order, space.of_parts(parts))
 
 
 class _Flight:
     """Y on the unit interval, by parts of one degree in (sigma, t): X = t Y starts at j + 2, X' = Y' at j + 1."""
 
-    def __init__(self, contact: Contact, order: int) -> None:
-        space = JetSpace(("z", "sigma", "t"), order, contact.ring, (0, 1, 1))
-        self.contact, self.engine = contact, space.polynomials
-        z, sigma, self.t = self.engine.generators()
-        self._clock = self.engine.dot([(z, self.t), (sigma, self.engine.constant(contact.ring.rational(Fraction(1))))])
-        self._powers = [self.engine.constant(contact.ring.rational(Fraction(1)))]
+    def __init__(self, contact: Contact, space: JetSpace) -> None:
+        ring = contact.ring
+        self.contact = contact
+        self.engine = JetSpace(("z", "sigma", "t"), space.order, ring, (0, 1, 1)).polynomials
+        self.z, sigma, self.t = self.engine.generators()
+        self._clock = self.engine.add(self.engine.dot([(self.z, self.t)]), sigma)
+        self._powers = [self.engine.constant(ring.rational(Fraction(1)))]
+        self._minus = ring.rational(Fraction(-1))
         self._force = {pair: self.engine.constant(-value) for pair, value in contact.f.items()}
         self._products: dict[tuple[int, int, int], Any] = {}
         self.x: dict[int, Any] = {}
         self.xdot: dict[int, Any] = {}
-        self.launch: dict[int, Any] = {}
 
-    def extend(self, degree: int) -> None:
-        """From the right side of one degree to X of degree + 2, X' and v_c of degree + 1."""
-        engine, z = self.engine, self.engine.generators()[0]
-        twice = engine.integral(engine.integral(self._right_side(degree), 0), 0)
-        end = engine.scaled(engine.at(twice, 0, Fraction(1)), self.contact.ring.rational(Fraction(-1)))
-        y = engine.add(twice, engine.dot([(z, end)]))
-        self.launch[degree + 1] = end  # both integrals start from 0, so Y'(0) is the coefficient of z here
-        self.xdot[degree + 1] = engine.derivative(y, 0)
-        self.x[degree + 2] = engine.dot([(self.t, y)])
+    def twice_integrated(self, degree: int) -> Any:
+        """The right side of one degree, integrated twice from z = 0."""
+        return self.engine.integral(self.engine.integral(self._right_side(degree), 0), 0)
+
+    def launch(self, twice: Any) -> Any:
+        """The part of Y'(0): Y = twice - z twice(1), and both integrals start from 0."""
+        return self.engine.scaled(self.engine.at(twice, 0, Fraction(1)), self._minus)
+
+    def extend(self, degree: int, twice: Any, launch: Any) -> None:
+        """X of degree + 2 and X' of degree + 1, from the double integral of this degree."""
+        y = self.engine.add(twice, self.engine.dot([(self.z, launch)]))
+        self.xdot[degree + 1] = self.engine.derivative(y, 0)
+        self.x[degree + 2] = self.engine.dot([(self.t, y)])
 
     def _right_side(self, degree: int) -> Any:
         """The part of t [a - (f - f(c, 0))] that comes from the bracket of this degree."""
