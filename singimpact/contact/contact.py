@@ -11,6 +11,7 @@ from typing import Any
 from singimpact.algebra.expressions import Expression, evaluate, number, substitute, subtract
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.symbols import SymbolRing
+from singimpact.algebra.univariate import precision_of
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator, require_smooth_text
 
@@ -95,13 +96,15 @@ class Contact:
         """
         require_smooth_text(oscillator.force(), "f")
         require_smooth_text(oscillator.forcing(), "g")
-        a = acceleration_jet(oscillator, tau, max(order - 1, j), ring)
+        with precision_of(ring):
+            a = acceleration_jet(oscillator, tau, max(order - 1, j), ring)
+            f = force_jet(oscillator, j, order, ring)
         kept = {k: value for k, value in enumerate(a) if k >= j}
         if order > j and all(value == 0 for value in kept.values()):
             raise InputError(
                 f"the contact order at tau = {tau} is above {max(order - 1, j)}: a_c vanishes to that order"
             )
-        return cls(j, ring, kept, force_jet(oscillator, j, order, ring), tau)
+        return cls(j, ring, kept, f, tau)
 
 
 def _pairs(j: int, order: int) -> list[tuple[int, int]]:
