@@ -74,17 +74,22 @@ class Contact:
     tau: Expression | None = None
 
     @classmethod
-    def generic(cls, j: int, order: int) -> Contact:
-        """Symbols for all jets that the sheet to total order `order` contains."""
+    def generic(cls, j: int, order: int, unit: bool = False, more: tuple[str, ...] = ()) -> Contact:
+        """Symbols for all jets that the sheet to total order `order` contains.
+
+        Parameters
+        ----------
+        unit : lengths measured so that a_j = 1. more : names that the ring has beside the jets.
+        """
         powers = range(j, max(order, j + 1))
         pairs = _pairs(j, order)
-        names = [derivative_name(k) for k in powers] + [f"f_{i}{k}" for i, k in pairs]
-        ring = SymbolRing(tuple(names))
-        a = {k: ring.symbol(derivative_name(k)) * ring.rational(Fraction(1, factorial(k))) for k in powers}
+        free = [k for k in powers if k > j or not unit]
+        ring = SymbolRing((*(derivative_name(k) for k in free), *(f"f_{i}{k}" for i, k in pairs), *more))
+        a = {k: ring.symbol(derivative_name(k)) * ring.rational(Fraction(1, factorial(k))) for k in free}
         f = {
             (i, k): ring.symbol(f"f_{i}{k}") * ring.rational(Fraction(1, factorial(i) * factorial(k))) for i, k in pairs
         }
-        return cls(j, ring, a, f)
+        return cls(j, ring, {j: ring.rational(Fraction(1)), **a} if unit else a, f)
 
     @classmethod
     def of(cls, oscillator: Oscillator, tau: Any, j: int, order: int, ring: Any) -> Contact:
