@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from singimpact.algebra.polynomials import Exponents
@@ -80,6 +81,7 @@ def _sizes(
     return sizes[::-1]
 
 
+@lru_cache(maxsize=4096)
 def _weight(key: Exponents) -> int:
     """One combination of all monomials shows the degree of the highest: unlike weights, so that nothing cancels."""
     return 1 + sum((2 * place + 3) ** exponent for place, exponent in enumerate(key) if exponent)

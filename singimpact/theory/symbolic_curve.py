@@ -36,17 +36,21 @@ class SymbolicCurve:
 
     def to_sympy(self, coefficient: RationalCoefficients, of_length: int) -> Any:
         """A coefficient as a sympy expression in lambda and the jets; `of_length` 1 in the graph, 0 in the motion."""
-        import sympy
+        return in_length(coefficient, self.names, self.j, of_length)
 
-        symbols = [sympy.Symbol(name) for name in self.names]
-        weights = [length_weight(name) for name in self.names]
-        unit = sympy.Symbol(derivative_name(self.j)) / factorial(self.j)
-        total = []
-        for key, (above, below) in coefficient.terms.items():
-            power = of_length + sum(w * e for w, e in zip(weights, key, strict=True))
-            jets = sympy.prod(s**e for s, e in zip(symbols, key, strict=True))
-            total.append(factored(above) / factored(below) * jets * unit**power)
-        return sympy.Add(*total)
+
+def in_length(coefficient: RationalCoefficients, names: tuple[str, ...], j: int, of_length: int) -> Any:
+    """A coefficient found with a_j = 1 as a sympy expression, for any a_j: it scales as a length to `of_length`."""
+    import sympy
+
+    symbols, weights = [sympy.Symbol(name) for name in names], [length_weight(name) for name in names]
+    unit = sympy.Symbol(derivative_name(j)) / factorial(j)
+    total = []
+    for key, (above, below) in coefficient.terms.items():
+        power = of_length + sum(w * e for w, e in zip(weights, key, strict=True))
+        jets = sympy.prod(s**e for s, e in zip(symbols, key, strict=True))
+        total.append(factored(above) / factored(below) * jets * unit**power)
+    return sympy.Add(*total)
 
 
 def length_weight(name: str) -> int:
