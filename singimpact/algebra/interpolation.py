@@ -67,9 +67,7 @@ def interpolated(
     raise ArithmeticError("the denominators given are not those of the values")
 
 
-def _sizes(
-    nodes: Sequence[int], columns: Sequence[Sequence[Value]], denominators: Sequence[Any]
-) -> list[int] | None:
+def _sizes(nodes: Sequence[int], columns: Sequence[Sequence[Value]], denominators: Sequence[Any]) -> list[int] | None:
     """How many nodes each polynomial takes, or None when there are too few for one; the last takes the most."""
     sizes: list[int] = []
     for column, below in zip(reversed(columns), reversed(denominators), strict=True):
@@ -84,7 +82,7 @@ def _sizes(
 @lru_cache(maxsize=4096)
 def _weight(key: Exponents) -> int:
     """One combination of all monomials shows the degree of the highest: unlike weights, so that nothing cancels."""
-    return 1 + sum((2 * place + 3) ** exponent for place, exponent in enumerate(key) if exponent)
+    return 1 + sum(pow(2 * place + 3, int(exponent), 1 << 61) for place, exponent in enumerate(key) if exponent)
 
 
 def _scaled(nodes: Sequence[int], row: Sequence[Any], below: Any) -> list[Any]:

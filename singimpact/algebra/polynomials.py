@@ -1,4 +1,4 @@
-"""Polynomials that jets are made of: packed ones of python-flint for exact coefficients, sparse ones for every other ring.
+"""Polynomials that jets are made of: packed ones of python-flint for exact coefficients, sparse ones for others.
 
 A ring may bring its own by a method `polynomials(variables)`; what such an object must answer is what both classes
 here answer.  No polynomial is ever tested for being zero by a tolerance.
@@ -190,9 +190,7 @@ class SparsePolynomials:
             total[place] = total[place] + term if place in total else term
         return total
 
-    def without(
-        self, poly: Mapping[Exponents, Any], index: int, target: SparsePolynomials
-    ) -> dict[Exponents, Any]:
+    def without(self, poly: Mapping[Exponents, Any], index: int, target: SparsePolynomials) -> dict[Exponents, Any]:
         """The polynomial, free of one variable, as one of `target`, which has the others."""
         assert target.size == self.size - 1
         assert not any(key[index] for key in poly)

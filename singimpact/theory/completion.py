@@ -18,6 +18,7 @@ from typing import Any
 
 from singimpact.algebra.interpolation import RationalCoefficients, interpolated
 from singimpact.algebra.jets import Jet, JetSpace
+from singimpact.algebra.polynomials import Exponents
 from singimpact.contact.contact import Contact
 from singimpact.theory.sheet import Sheet, sheet
 from singimpact.theory.symbolic_curve import in_length, rho_names
@@ -46,7 +47,7 @@ def foliation(
 
 def leaves(
     made: Sheet, restitution: Any, inverse_gap: Callable[[int], Any], rho: Mapping[int, Any]
-) -> dict[tuple[int, int], Any]:
+) -> dict[Exponents, Any]:
     """The coefficients of K from the sheet: (i, n) -> that of sigma^i v^n."""
     contact, order, space = made.contact, made.order, made.v.space
     one = space.rational(Fraction(1))
@@ -54,7 +55,7 @@ def leaves(
     launch, rebound = _powers(made.v, order), _powers(_rebound(made, restitution, rho), order)
     before, after = _powers(sigma, order), _powers(sigma + t, order)
     step = contact.ring.power(contact.a[0], Fraction(-1)) * contact.ring.rational(Fraction(-2))
-    found: dict[tuple[int, int], Any] = {(1, 0): contact.ring.rational(Fraction(1))}
+    found: dict[Exponents, Any] = {(1, 0): contact.ring.rational(Fraction(1))}
     gap = t * one  # K after the impact less K before, for the K found so far
     for degree in range(1, order + 1):
         for n in range(1, degree + 1):

@@ -60,7 +60,7 @@ def contact_of_constants(model: Oscillator, tau: Expression, j: int, order: int)
 
     a = acceleration_jet(model, to_sympy(tau), max(order - 1, j), SYMBOLIC)
     f = force_jet(model, j, order, SYMBOLIC)
-    values = {("a", k): sympy.expand(value) for k, value in enumerate(a) if k >= j}
+    values: dict[Any, Any] = {("a", k): sympy.expand(value) for k, value in enumerate(a) if k >= j}
     values |= {pair: sympy.expand(value) for pair, value in f.items()}
     ring, convert = _ring_of(list(values.values()))
     kept = {key: convert(value) for key, value in values.items() if value != 0}

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from singimpact.algebra.balls import Balls, as_rational
-from singimpact.algebra.expressions import Expression, evaluate, number
+from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float, as_fraction, compare, constant
 from singimpact.algebra.rings import DOUBLES, EXACT, Doubles
@@ -135,10 +135,11 @@ def exact_contact(where: Place, order: int) -> Contact | None:
 
 
 def multiplier(j: int, r: Expression, bits: int | None = None) -> Any:
-    """lambda in (0, 1) with r = lambda^(j+1) P_j/Q_j: a rational, or None when it is not one; a ball when bits are given.
+    """lambda in (0, 1) with r = lambda^(j+1) P_j/Q_j: a rational or None; a ball when bits are given.
 
     Examples
     --------
+    >>> from singimpact.algebra.expressions import number
     >>> multiplier(1, number(Fraction(5, 16))), multiplier(1, number(Fraction(1, 3)))
     (Fraction(1, 2), None)
     """

@@ -17,8 +17,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from singimpact.algebra.jets import Jet, JetSpace
-from singimpact.contact.contact import Contact, contact_order
-from singimpact.inputs import refuse
+from singimpact.contact.contact import Contact
 from singimpact.theory.involution import after_iota
 
 
@@ -151,22 +150,3 @@ class _Flight:
 def generic_sheet(j: int, order: int) -> Sheet:
     """The sheet with symbols for all jets, at contact order j."""
     return sheet(Contact.generic(j, order), order)
-
-
-def v_c(order: int = 6, at: str | int = "generic") -> Any:
-    """v_c(tau_* + sigma, t) to total degree `order`, as a sympy expression [e:vtaylor, e:degen, e:swan].
-
-    Parameters
-    ----------
-    order : int >= 1, total degree in (sigma, t) of the last term.
-    at : "generic", "tangency", "swan" or a contact order.
-
-    Examples
-    --------
-    >>> v_c(order=1)
-    -a*t/2
-    """
-    if not isinstance(order, int) or isinstance(order, bool) or not 1 <= order <= 40:
-        raise refuse("order", order, "an integer from 1 to 40")
-    found = generic_sheet(contact_order(at), order)
-    return found.to_sympy(found.v)

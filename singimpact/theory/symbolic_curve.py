@@ -90,7 +90,7 @@ def divisor(j: int, level: int) -> Any:
     Q = sum((x**i * (i + 1) for i in range(j + 1)), x * 0)
     found = x ** (j + 1) * P * impact_tangent + Q * (launch * x**j * (j + 1) + launch_tangent * x ** (j + level + 1))
     for factor in (x, x - 1):
-        while found % factor == 0:
+        while (found % factor).is_zero():
             found = found // factor
     return found / found.leading_coefficient()
 
