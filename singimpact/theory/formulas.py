@@ -29,6 +29,7 @@ class OrderLimits:
     """The highest orders taken: what a minute of one core reaches, with room.
 
     sheet, sheet_numbers : of v_c for symbols and for a model. curve, curve_numbers : of gamma. completion, digits.
+    constants : of gamma in exact constants that are not rational; above it they fill pages, and numbers are given.
     """
 
     sheet: int = 16
@@ -36,6 +37,7 @@ class OrderLimits:
     curve: int = 12
     curve_numbers: int = 96
     completion: int = 8
+    constants: int = 6
     completion_numbers: int = 24
     digits: int = 2000
     bits: int = 1 << 16
@@ -202,11 +204,14 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
     where = place(model, j, tau)
     rough = getattr(_curve(where, top + TRUST.further, DOUBLES), part)
     further = {n: abs(float(value)) for n, value in rough.items() if n > order}
+
+    def numbers() -> Any:
+        return _with_digits(lambda ring: getattr(_curve(where, top, ring), part), digits, _mpfs)
+
     exact = _exact_curve(where, top, part)
     if exact is not None:
-        return PowerSeries("sigma", order, exact, further)
-    numbers = _with_digits(lambda ring: getattr(_curve(where, top, ring), part), digits, _mpfs)
-    return PowerSeries("sigma", order, numbers, further)
+        return PowerSeries("sigma", order, exact, further, numbers)
+    return PowerSeries("sigma", order, numbers(), further)
 
 
 def _curve(where: Place, order: int, ring: Any) -> InvariantCurve:
@@ -232,7 +237,7 @@ def _exact_curve(where: Place, order: int, part: str) -> dict[int, Any] | None:
     if contact.ring is EXACT:
         curve = invariant_curve(contact, lambda_, order, rho)
         return {n: _shown(value) for n, value in getattr(curve, part).items()}
-    return _through_symbols(contact, lambda_, order, part, rho)
+    return _through_symbols(contact, lambda_, order, part, rho) if order <= LIMITS.constants else None
 
 
 def _through_symbols(

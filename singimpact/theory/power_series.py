@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import inf
 from typing import Any
 
@@ -36,6 +37,7 @@ class PowerSeries:
     variable : the letter. order : the last power kept.
     coefficients : n -> sympy expression, or mpmath number for a model without exact numbers; zeros may be left out.
     further : sizes of the coefficients beyond the order, for `valid_within`; empty for a series with symbols.
+    numbers : gives the coefficients as mpmath numbers, when they are long exact expressions.
 
     Examples
     --------
@@ -49,6 +51,7 @@ class PowerSeries:
     order: int
     coefficients: Mapping[int, Any]
     further: Mapping[int, float] = field(default_factory=dict, repr=False)
+    numbers: Callable[[], Mapping[int, Any]] | None = field(default=None, repr=False, compare=False)
 
     def __getitem__(self, power: int) -> Any:
         if isinstance(power, bool) or not isinstance(power, int) or not 0 <= power <= self.order:
@@ -63,11 +66,17 @@ class PowerSeries:
         return self.order + 1
 
     def __call__(self, value: Any) -> Any:
-        """The value of the truncated series, by Horner's rule."""
+        """The value of the truncated series, by Horner's rule; at a sympy object exactly, at a number by numbers."""
+        exact = self.numbers is None or hasattr(value, "free_symbols")
+        known = self.coefficients if exact else self._numbers
         total = value * 0
         for power in range(self.order, -1, -1):
-            total = total * value + self.coefficients.get(power, 0)
+            total = total * value + known.get(power, 0)
         return total
+
+    @cached_property
+    def _numbers(self) -> Mapping[int, Any]:
+        return self.coefficients if self.numbers is None else self.numbers()
 
     def as_expr(self) -> Any:
         """The series as a sympy expression in its variable."""
@@ -96,14 +105,14 @@ class PowerSeries:
             raise refuse("tolerance", tolerance, "a number > 0")
         if not self.further:
             raise InputError("valid_within needs numbers: the coefficients of this series have symbols; give model=")
-        sizes = {n: abs(float(c)) for n, c in self.coefficients.items()}
+        sizes = {n: abs(float(c)) for n, c in self._numbers.items()}
         low, high = 0.0, TRUST.root * _radius({**sizes, **dict(self.further)})
         if high == inf:
             return inf
         for _ in range(200):
             middle = (low + high) / 2
             low, high = (middle, high) if self._good(middle, tolerance, sizes) else (low, middle)
-        return low
+        return float(low)
 
     def _good(self, radius: float, tolerance: float, sizes: Mapping[int, float]) -> bool:
         lead = min(n for n, size in sizes.items() if size)
