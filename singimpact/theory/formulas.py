@@ -167,10 +167,10 @@ def chatter_limit(order: int = 6, model: Any = None, tau: Any = None, digits: in
     further = {n: abs(c) for n, c in _completed(where, order + TRUST.further, DOUBLES).items() if n > order}
     try:
         numbers = _completed(where, order, EXACT)
-        return PowerSeries("v", order, {n: _shown(value) for n, value in numbers.items()}, further)
+        return PowerSeries("v", order, {n: _shown(value) for n, value in numbers.items()}, digits, further)
     except ArithmeticError:
         numbers = _with_digits(lambda ring: _completed(where, order, ring), digits, _mpfs)
-    return PowerSeries("v", order, numbers, further)
+    return PowerSeries("v", order, numbers, digits, further)
 
 
 def _completed(where: Place, order: int, ring: Any) -> dict[int, Any]:
@@ -210,8 +210,8 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
 
     exact = _exact_curve(where, top, part)
     if exact is not None:
-        return PowerSeries("sigma", order, exact, further, numbers)
-    return PowerSeries("sigma", order, numbers(), further)
+        return PowerSeries("sigma", order, exact, digits, further, numbers)
+    return PowerSeries("sigma", order, numbers(), digits, further)
 
 
 def _curve(where: Place, order: int, ring: Any) -> InvariantCurve:

@@ -36,6 +36,7 @@ class PowerSeries:
     ----------
     variable : the letter. order : the last power kept.
     coefficients : n -> sympy expression, or mpmath number for a model without exact numbers; zeros may be left out.
+    digits : of the numbers.
     further : sizes of the coefficients beyond the order, for `valid_within`; empty for a series with symbols.
     numbers : gives the coefficients as mpmath numbers, when they are long exact expressions.
 
@@ -50,6 +51,7 @@ class PowerSeries:
     variable: str
     order: int
     coefficients: Mapping[int, Any]
+    digits: int = 30
     further: Mapping[int, float] = field(default_factory=dict, repr=False)
     numbers: Callable[[], Mapping[int, Any]] | None = field(default=None, repr=False, compare=False)
 
@@ -83,7 +85,9 @@ class PowerSeries:
         import sympy
 
         letter = sympy.Symbol(self.variable)
-        return sympy.Add(*(sympy.sympify(value) * letter**power for power, value in self.coefficients.items()))
+        shown = {n: sympy.Float(c, self.digits) if hasattr(c, "_mpf_") and not hasattr(c, "free_symbols") else c
+                 for n, c in self.coefficients.items()}  # fmt: skip
+        return sympy.Add(*(value * letter**power for power, value in shown.items()))
 
     def valid_within(self, tolerance: float) -> float:
         """A radius within which the cut series is off by at most `tolerance`, and by `tolerance` times its value.
