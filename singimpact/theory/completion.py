@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from math import comb
 from typing import Any
 
 from singimpact.algebra.interpolation import RationalCoefficients, interpolated
@@ -58,12 +59,20 @@ def leaves(
     found: dict[Exponents, Any] = {(1, 0): contact.ring.rational(Fraction(1))}
     gap = t * one  # K after the impact less K before, for the K found so far
     for degree in range(1, order + 1):
+        missed = dict(gap.part(degree).terms)
         for n in range(1, degree + 1):
             i = degree - n
-            value = gap.part(degree).coefficient((i, n)) * step**n * inverse_gap(n)
-            found[(i, n)] = value
-            gap = gap + (after[i] * rebound[n] - before[i] * launch[n]).scaled(value)
-    return found
+            if (i, n) not in missed:
+                continue
+            lead = missed[(i, n)] * inverse_gap(n)  # the value times (-a_0/2)^n
+            found[(i, n)] = value = lead * step**n
+            for q in range(1, i + 1):  # what it adds beside later unknowns of this degree: r^n (sigma + t)^i t^n
+                key, more = (i - q, n + q), lead * restitution**n * contact.ring.rational(Fraction(comb(i, q)))
+                missed[key] = missed[key] + more if key in missed else more
+            if degree < order:
+                gap = gap + (after[i] * rebound[n] - before[i] * launch[n]).scaled(value)
+    zero = contact.ring.rational(Fraction(0))
+    return {(0, n): zero for n in range(1, order + 1)} | found
 
 
 def _powers(jet: Jet, order: int) -> list[Jet]:
