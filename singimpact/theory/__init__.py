@@ -15,6 +15,7 @@ from singimpact.theory.sheet import Sheet as Sheet
 
 if TYPE_CHECKING:
     from singimpact.theory.homogeneous import r_of_lambda as r_of_lambda
+    from singimpact.theory.normal_form import normal_form as normal_form
 
 
 def __getattr__(name: str) -> Any:
@@ -22,4 +23,8 @@ def __getattr__(name: str) -> Any:
         from singimpact.theory.homogeneous import r_of_lambda
 
         return r_of_lambda
+    if name == "normal_form":
+        from singimpact.theory.normal_form import normal_form
+
+        return normal_form
     raise AttributeError(f"module 'singimpact.theory' has no attribute {name!r}")

@@ -133,10 +133,10 @@ def symbolic_completion(order: int) -> SymbolicCompletion:
 
 
 def _denominator(power: int) -> Any:
-    """A multiple of the denominator of the coefficient of v^power."""
+    """A multiple of the denominator of the coefficient of v^power: roots of unity of order n count every n levels."""
     import flint
 
-    r, total = flint.fmpq_poly([0, 1]), flint.fmpq_poly([1])
+    total = flint.fmpq_poly([1])
     for n in range(1, power + 1):
-        total = total * (1 - r**n) ** (power // n)
+        total = total * flint.fmpq_poly(flint.fmpz_poly.cyclotomic(n)) ** (power // n)
     return total
