@@ -50,6 +50,7 @@ def restitution_of(j: int, lambda_: Any) -> Any:
 
     Examples
     --------
+    >>> from fractions import Fraction
     >>> restitution_of(1, Fraction(1, 2))
     Fraction(5, 16)
     """
@@ -84,6 +85,7 @@ def invariant_curve(
     Examples
     --------
     >>> from singimpact.algebra.rings import EXACT
+    >>> from fractions import Fraction
     >>> free = Contact(1, EXACT, {1: Fraction(6)}, {})
     >>> curve = invariant_curve(free, Fraction(1, 2), 4)
     >>> curve.graph[2], curve.graph[3], curve.restitution
