@@ -1,4 +1,4 @@
-"""Write what this folder holds, and the golden equations of the suite: `python derivations/freeze.py`.
+"""Write what this folder holds, the golden equations of the suite, and generated/: `python derivations/freeze.py`.
 
 The same as `singimpact derive -o derivations`, and from the same sections the LaTeX of each displayed equation, which
 the suite compares; the words around the equations may change freely.
@@ -15,6 +15,7 @@ from singimpact.documents.steps import Section, equations_of
 from singimpact.store import folder, written
 
 HERE = Path(__file__).parent
+GENERATED = HERE.parent / "singimpact" / "generated"
 GOLDEN = HERE.parent / "tests" / "documents" / "golden"
 
 
@@ -32,8 +33,19 @@ def golden(told: list[Section]) -> dict[Path, bytes]:
     }
 
 
+def generated() -> dict[Path, bytes]:
+    """The source under singimpact/generated: from theory and codegen alone, so it works with that folder emptied."""
+    from singimpact.theory.frozen import sheet_module
+
+    return {GENERATED / "sheets.py": sheet_module().encode()}
+
+
 def main() -> None:
     """Write them all."""
+    for path, content in generated().items():  # first: what follows may use them
+        with written(path) as draft:
+            draft.write_bytes(content)
+        print(path.relative_to(HERE.parent))
     told = sections()
     folder(GOLDEN)
     for path, content in {**derivations(told, marks_of(told)), **golden(told)}.items():

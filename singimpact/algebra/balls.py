@@ -23,6 +23,16 @@ class Balls:
 
     bits: int
 
+    def element(self, value: Any) -> Any:
+        """A ball, or a rational of Python."""
+        import flint
+
+        if isinstance(value, flint.arb):
+            return value
+        if isinstance(value, int | Fraction) and not isinstance(value, bool):
+            return self.rational(Fraction(value))
+        raise TypeError(f"{value!r} is not a ball")
+
     def evaluate(self, tree: Expression, values: Mapping[str, Any]) -> Any:
         """The ball of a tree; `values` are balls."""
         import flint

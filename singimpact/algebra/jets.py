@@ -1,7 +1,7 @@
 """Jets: polynomials in named variables cut at a weighted order, over any ring of coefficients.
 
-A `JetSpace` is immutable; jets of different spaces do not mix.  The coefficients may be rationals, doubles, mpmath
-numbers, balls, or polynomials in symbols: only + - * and the ring's own functions are used.
+A `JetSpace` is immutable; jets of different spaces do not mix, and a space has one ring.  A jet is kept by its parts of
+one weighted degree, so that a product makes no term that is cut away.  What loses order says so by its space.
 """
 
 from __future__ import annotations
@@ -9,17 +9,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.polynomials import Exponents, SparsePolynomials
 from singimpact.algebra.taylor import taylor_coefficients
-
-Exponents = tuple[int, ...]
 
 
 @dataclass(frozen=True)
 class JetSpace:
     """Polynomials in `variables` up to the weighted degree `order`, coefficients in `ring`.
+
+    Parameters
+    ----------
+    variables : names. order : int, the last weighted degree kept.
+    ring : of the coefficients. weights : one int >= 0 a variable, all 1 without; weight 0: kept to any power.
 
     Examples
     --------
@@ -39,22 +44,47 @@ class JetSpace:
         if not self.weights:
             object.__setattr__(self, "weights", (1,) * len(self.variables))
 
+    @cached_property
+    def polynomials(self) -> Any:
+        """What the parts of a jet are made of."""
+        own = getattr(self.ring, "polynomials", None)
+        return own(self.variables) if own is not None else SparsePolynomials(self.variables, self.ring)
+
     def degree(self, exponents: Exponents) -> int:
         """The weighted degree of a monomial."""
         return sum(weight * exponent for weight, exponent in zip(self.weights, exponents, strict=True))
 
     def jet(self, terms: Mapping[Exponents, Any]) -> Jet:
-        """The jet with these terms; terms beyond the order are dropped."""
-        return Jet(self, {key: value for key, value in terms.items() if self.degree(key) <= self.order})
+        """The jet with these terms; terms beyond the order are dropped.
+
+        Raises
+        ------
+        TypeError : a coefficient that is not of the ring.
+        """
+        graded: dict[int, dict[Exponents, Any]] = {}
+        for key, value in terms.items():
+            degree = self.degree(key)
+            if degree <= self.order:
+                graded.setdefault(degree, {})[key] = self.ring.element(value)
+        return self.of_parts({degree: self.polynomials.from_terms(part) for degree, part in graded.items()})
+
+    def of_parts(self, parts: Mapping[int, Any]) -> Jet:
+        """The jet with these homogeneous parts: degree -> polynomial."""
+        vanishes = self.polynomials.vanishes
+        return Jet(self, {d: part for d, part in parts.items() if d <= self.order and not vanishes(part)})
 
     def constant(self, value: Any) -> Jet:
         """A constant of the ring as a jet."""
-        return Jet(self, {(0,) * len(self.variables): value})
+        return self.jet({(0,) * len(self.variables): value})
 
     def generators(self) -> tuple[Jet, ...]:
         """The variables as jets."""
-        size, one = len(self.variables), self.ring.rational(Fraction(1))
-        return tuple(self.jet({tuple(int(i == j) for j in range(size)): one}) for i in range(size))
+        made = zip(self.weights, self.polynomials.generators(), strict=True)
+        return tuple(self.of_parts({weight: poly}) for weight, poly in made)
+
+    def to_order(self, order: int) -> JetSpace:
+        """The same space cut at another order."""
+        return self if order == self.order else JetSpace(self.variables, order, self.ring, self.weights)
 
     def evaluate(self, tree: Expression, values: Mapping[str, Jet]) -> Jet:
         """The jet of an expression; names not in `values` are an error.
@@ -94,10 +124,15 @@ class JetSpace:
 
 @dataclass(frozen=True, eq=False)
 class Jet:
-    """An element of a jet space: exponents -> coefficient."""
+    """An element of a jet space, by homogeneous parts: weighted degree -> polynomial."""
 
     space: JetSpace
-    terms: Mapping[Exponents, Any]
+    parts: Mapping[int, Any]
+
+    @cached_property
+    def terms(self) -> Mapping[Exponents, Any]:
+        """Exponents -> coefficient."""
+        return {key: value for part in self.parts.values() for key, value in self.space.polynomials.terms(part).items()}
 
     def constant_term(self) -> Any:
         """The coefficient of 1."""
@@ -114,30 +149,44 @@ class Jet:
 
     def __add__(self, other: Jet) -> Jet:
         self._same(other)
-        terms = dict(self.terms)
-        for key, value in other.terms.items():
-            terms[key] = terms[key] + value if key in terms else value
-        return Jet(self.space, terms)
+        parts, add = dict(self.parts), self.space.polynomials.add
+        for degree, part in other.parts.items():
+            parts[degree] = add(parts[degree], part) if degree in parts else part
+        return self.space.of_parts(parts)
 
     def __neg__(self) -> Jet:
-        return Jet(self.space, {key: -value for key, value in self.terms.items()})
+        return self.scaled(self.space.ring.rational(Fraction(-1)))
 
     def __sub__(self, other: Jet) -> Jet:
         return self + (-other)
 
     def __mul__(self, other: Jet) -> Jet:
         self._same(other)
-        space = self.space
-        terms: dict[Exponents, Any] = {}
-        right = [(key, space.degree(key), value) for key, value in other.terms.items()]
-        for key, value in self.terms.items():
-            room = space.order - space.degree(key)
-            for other_key, degree, other_value in right:
-                if degree <= room:
-                    total = tuple(i + j for i, j in zip(key, other_key, strict=True))
-                    product = value * other_value
-                    terms[total] = terms[total] + product if total in terms else product
-        return Jet(space, terms)
+        pairs: dict[int, list[tuple[Any, Any]]] = {}
+        for degree, part in self.parts.items():
+            for beside, factor in other.parts.items():
+                if degree + beside <= self.space.order:
+                    pairs.setdefault(degree + beside, []).append((part, factor))
+        dot = self.space.polynomials.dot
+        return self.space.of_parts({degree: dot(made) for degree, made in pairs.items()})
+
+    def __truediv__(self, other: Jet) -> Jet:
+        self._same(other)
+        return self * other.reciprocal()
+
+    def reciprocal(self) -> Jet:
+        """1/self, part by part; the constant term must have an inverse in the ring, and no variable weight 0."""
+        start, space = self.space.power(self._constant_part(), Fraction(-1)), self.space
+        found = start
+        for degree in range(1, space.order + 1):
+            rest = (self * found).part(degree)
+            found = found - rest * start
+        return found
+
+    def _constant_part(self) -> Jet:
+        if 0 in self.space.weights:
+            raise TypeError("a jet with a variable of weight 0 has no reciprocal")
+        return self.space.constant(self.constant_term())
 
     def __pow__(self, exponent: int) -> Jet:
         result, square = self.space.rational(Fraction(1)), self
@@ -149,13 +198,61 @@ class Jet:
                 square = square * square
         return result
 
+    def part(self, degree: int) -> Jet:
+        """The part of one weighted degree."""
+        return Jet(self.space, {degree: self.parts[degree]} if degree in self.parts else {})
+
+    def cut(self, order: int) -> Jet:
+        """The jet in the same variables, cut at an order that is not higher.
+
+        Raises
+        ------
+        TypeError : a higher order: what lies there is not known.
+        """
+        if order > self.space.order:
+            raise TypeError(f"a jet known to order {self.space.order} is not known to order {order}")
+        return self.space.to_order(order).of_parts(self.parts)
+
     def scaled(self, factor: Any) -> Jet:
         """The jet times a ring element."""
-        return Jet(self.space, {key: value * factor for key, value in self.terms.items()})
+        engine, value = self.space.polynomials, self.space.ring.element(factor)
+        return self.space.of_parts({degree: engine.scaled(part, value) for degree, part in self.parts.items()})
+
+    def derivative(self, variable: str) -> Jet:
+        """The derivative by a variable; the order falls by its weight."""
+        index = self.space.variables.index(variable)
+        weight, engine = self.space.weights[index], self.space.polynomials
+        parts = {degree - weight: engine.derivative(part, index) for degree, part in self.parts.items()}
+        return self.space.to_order(self.space.order - weight).of_parts(parts)
+
+    def integral(self, variable: str) -> Jet:
+        """The integral by a variable from 0; the order rises by its weight."""
+        index = self.space.variables.index(variable)
+        weight, engine = self.space.weights[index], self.space.polynomials
+        parts = {degree + weight: engine.integral(part, index) for degree, part in self.parts.items()}
+        return self.space.to_order(self.space.order + weight).of_parts(parts)
+
+    def at(self, variable: str, value: Fraction | int) -> Jet:
+        """The jet with a variable of weight 0 set to a rational, or any variable set to 0."""
+        index, engine = self.space.variables.index(variable), self.space.polynomials
+        if self.space.weights[index] and value:
+            raise TypeError(f"a jet is known near {variable} = 0 alone")
+        exact = Fraction(value)
+        return self.space.of_parts({degree: engine.at(part, index, exact) for degree, part in self.parts.items()})
 
     def compose(self, inner: Sequence[Jet]) -> Jet:
-        """The jet with its variables replaced by jets without constant term, of one space."""
+        """The jet with its variables replaced by jets without constant term, of one space.
+
+        The order is the lower of the two: what the outer jet does not know is not made up.
+        """
         target = inner[0].space
+        for jet in inner:
+            jet._same(inner[0])
+        if any(min(jet.parts, default=weight) < weight for jet, weight in zip(inner, self.space.weights, strict=True)):
+            raise TypeError("a jet is composed with jets of no lower degree than the weights of its variables")
+        order = min(self.space.order, target.order)
+        if all(set(jet.parts) <= {weight} for jet, weight in zip(inner, self.space.weights, strict=True)):
+            return self._substituted(inner).cut(order)
         powers = [[target.rational(Fraction(1))] for _ in inner]
         total = target.jet({})
         for key, value in self.terms.items():
@@ -165,7 +262,17 @@ class Jet:
                     powers[index].append(powers[index][-1] * inner[index])
                 term = term * powers[index][exponent] if exponent else term
             total = total + term
-        return total
+        return total.cut(order)
+
+    def _substituted(self, inner: Sequence[Jet]) -> Jet:
+        """A linear change: each part stays in its degree, so nothing is cut."""
+        target = inner[0].space
+        zero = target.polynomials.from_terms({})
+        images = [jet.parts.get(weight, zero) for jet, weight in zip(inner, self.space.weights, strict=True)]
+        engine = self.space.polynomials
+        return target.of_parts(
+            {d: engine.substituted(part, images, target.polynomials) for d, part in self.parts.items()}
+        )
 
     def __str__(self) -> str:
         shown = []

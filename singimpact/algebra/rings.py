@@ -12,10 +12,20 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.polynomials import PackedPolynomials
 
 
 class Exact:
     """Rationals; what is not rational raises."""
+
+    def element(self, value: Any) -> Fraction:
+        """A number that is of this ring; a float is not, whatever its value."""
+        if isinstance(value, int | Fraction) and not isinstance(value, bool):
+            return Fraction(value)
+        raise TypeError(f"{value!r} is not an exact rational")
+
+    def polynomials(self, variables: tuple[str, ...]) -> PackedPolynomials:
+        return PackedPolynomials(variables)
 
     def rational(self, value: Fraction) -> Fraction:
         return value
@@ -42,6 +52,14 @@ class Exact:
 class Doubles:
     """Python floats and numpy arrays."""
 
+    def element(self, value: Any) -> Any:
+        """A number that is of this ring, or a rational of Python."""
+        if isinstance(value, float | int | np.ndarray | np.floating | np.integer):
+            return value
+        if isinstance(value, Fraction):
+            return float(value)
+        raise TypeError(f"{value!r} is not a double")
+
     def rational(self, value: Fraction) -> float:
         return float(value)
 
@@ -63,6 +81,14 @@ class Multiprecision:
 
     context: Any
 
+    def element(self, value: Any) -> Any:
+        """A number that is of this ring, or a rational of Python."""
+        if isinstance(value, Fraction):
+            return self.rational(value)
+        if isinstance(value, int | self.context.mpf):
+            return value
+        raise TypeError(f"{value!r} is not a number of this mpmath context")
+
     def rational(self, value: Fraction) -> Any:
         return self.context.mpf(value.numerator) / value.denominator
 
@@ -82,6 +108,15 @@ class Multiprecision:
 
 class Symbolic:
     """sympy objects."""
+
+    def element(self, value: Any) -> Any:
+        """A sympy object without a float in it, or a rational of Python."""
+        import sympy
+
+        found = self.rational(value) if isinstance(value, Fraction) else sympy.sympify(value)
+        if found.has(sympy.Float):
+            raise TypeError(f"{value!r} is not exact")
+        return found
 
     def rational(self, value: Fraction) -> Any:
         import sympy

@@ -5,6 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
+from singimpact.algebra.polynomials import PackedPolynomials
+
 
 class SymbolRing:
     """The ring Q[names].
@@ -22,6 +24,25 @@ class SymbolRing:
         self.names = names
         self._context = flint.fmpq_mpoly_ctx.get(names, "degrevlex")
         self._symbols = dict(zip(names, self._context.gens(), strict=True))
+
+    def element(self, value: Any) -> Any:
+        """A polynomial of this ring, or a rational of Python; a float is refused."""
+        if isinstance(value, int | Fraction) and not isinstance(value, bool):
+            return self.rational(Fraction(value))
+        if getattr(value, "context", None) is None or value.context() is not self._context:
+            raise TypeError(f"{value!r} is not a polynomial in {', '.join(self.names)} over the rationals")
+        return value
+
+    def polynomials(self, variables: tuple[str, ...]) -> PackedPolynomials:
+        return PackedPolynomials(variables, self.names, self._context)
+
+    def power(self, base: Any, exponent: Fraction) -> Any:
+        """A power; a negative one of a constant alone."""
+        if exponent.denominator == 1 and exponent >= 0:
+            return base ** int(exponent)
+        if exponent.denominator == 1 and base.is_constant() and base != 0:
+            return self._context.constant(base.coeffs()[0] ** int(exponent))
+        raise ArithmeticError(f"({base})**({exponent}) is not a polynomial")
 
     def symbol(self, name: str) -> Any:
         """One of the names as a polynomial."""

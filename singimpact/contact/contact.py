@@ -11,6 +11,7 @@ from typing import Any
 from singimpact.algebra.expressions import Expression, evaluate, number, substitute, subtract
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.symbols import SymbolRing
+from singimpact.algebra.univariate import precision_of
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator, require_smooth_text
 
@@ -73,17 +74,22 @@ class Contact:
     tau: Expression | None = None
 
     @classmethod
-    def generic(cls, j: int, order: int) -> Contact:
-        """Symbols for all jets that the sheet to total order `order` contains."""
+    def generic(cls, j: int, order: int, unit: bool = False, more: tuple[str, ...] = ()) -> Contact:
+        """Symbols for all jets that the sheet to total order `order` contains.
+
+        Parameters
+        ----------
+        unit : lengths measured so that a_j = 1. more : names that the ring has beside the jets.
+        """
         powers = range(j, max(order, j + 1))
         pairs = _pairs(j, order)
-        names = [derivative_name(k) for k in powers] + [f"f_{i}{k}" for i, k in pairs]
-        ring = SymbolRing(tuple(names))
-        a = {k: ring.symbol(derivative_name(k)) * ring.rational(Fraction(1, factorial(k))) for k in powers}
+        free = [k for k in powers if k > j or not unit]
+        ring = SymbolRing((*(derivative_name(k) for k in free), *(f"f_{i}{k}" for i, k in pairs), *more))
+        a = {k: ring.symbol(derivative_name(k)) * ring.rational(Fraction(1, factorial(k))) for k in free}
         f = {
             (i, k): ring.symbol(f"f_{i}{k}") * ring.rational(Fraction(1, factorial(i) * factorial(k))) for i, k in pairs
         }
-        return cls(j, ring, a, f)
+        return cls(j, ring, {j: ring.rational(Fraction(1)), **a} if unit else a, f)
 
     @classmethod
     def of(cls, oscillator: Oscillator, tau: Any, j: int, order: int, ring: Any) -> Contact:
@@ -95,13 +101,15 @@ class Contact:
         """
         require_smooth_text(oscillator.force(), "f")
         require_smooth_text(oscillator.forcing(), "g")
-        a = acceleration_jet(oscillator, tau, max(order - 1, j), ring)
+        with precision_of(ring):
+            a = acceleration_jet(oscillator, tau, max(order - 1, j), ring)
+            f = force_jet(oscillator, j, order, ring)
         kept = {k: value for k, value in enumerate(a) if k >= j}
         if order > j and all(value == 0 for value in kept.values()):
             raise InputError(
                 f"the contact order at tau = {tau} is above {max(order - 1, j)}: a_c vanishes to that order"
             )
-        return cls(j, ring, kept, force_jet(oscillator, j, order, ring), tau)
+        return cls(j, ring, kept, f, tau)
 
 
 def _pairs(j: int, order: int) -> list[tuple[int, int]]:

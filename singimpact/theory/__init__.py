@@ -4,5 +4,27 @@ Not here: the points and their jets (`contact`), finite flights (`flights`), ver
 The paper's own steps, a second route in sympy: `implicit_route` (sections 2, 3), `fold_route` (4), `swan_route` (5).
 """
 
+from typing import TYPE_CHECKING, Any
+
+from singimpact.theory.formulas import chatter_limit as chatter_limit
+from singimpact.theory.formulas import dynamics_on_gamma as dynamics_on_gamma
+from singimpact.theory.formulas import fibre as fibre
+from singimpact.theory.formulas import gamma as gamma
+from singimpact.theory.formulas import v_c as v_c
 from singimpact.theory.sheet import Sheet as Sheet
-from singimpact.theory.sheet import v_c as v_c
+
+if TYPE_CHECKING:
+    from singimpact.theory.homogeneous import r_of_lambda as r_of_lambda
+    from singimpact.theory.normal_form import normal_form as normal_form
+
+
+def __getattr__(name: str) -> Any:
+    if name == "r_of_lambda":  # its room loads sympy
+        from singimpact.theory.homogeneous import r_of_lambda
+
+        return r_of_lambda
+    if name == "normal_form":
+        from singimpact.theory.normal_form import normal_form
+
+        return normal_form
+    raise AttributeError(f"module 'singimpact.theory' has no attribute {name!r}")

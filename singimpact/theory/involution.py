@@ -7,23 +7,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from singimpact.algebra.jets import Jet, JetSpace
+from singimpact.algebra.jets import Jet
 
 
-def exchanged(nu: Jet) -> Jet:
-    """A jet in (s, e) with its two variables exchanged: impact velocity from launch velocity."""
-    return Jet(nu.space, {(key[1], key[0]): value for key, value in nu.terms.items()})
-
-
-def in_flight_time(nu: Jet, order: int) -> Jet:
-    """A jet in (s, e) rewritten in (sigma, t), where s = sigma and e = sigma + t."""
-    space = JetSpace(("sigma", "t"), order, nu.space.ring)
-    sigma, t = space.generators()
-    return nu.compose((sigma, sigma + t))
+def after_iota(v: Jet) -> Jet:
+    """v o iota for a jet in (sigma, t): impact velocity from launch velocity."""
+    sigma, t = v.space.generators()
+    return v.compose(iota(sigma, t))
 
 
 def iota(sigma: Any, t: Any) -> tuple[Any, Any]:
-    """(sigma + t, -t), for numbers or sympy objects alike.
+    """(sigma + t, -t), for numbers, jets or sympy objects alike.
 
     Examples
     --------

@@ -1,9 +1,12 @@
 """The sheet V_c' as a power series: v_c at a point of any contact order, to any order, over any ring.
 
-No equation is solved by iteration: with launch time s and landing time e as coordinates, the flight X(u) is the
-solution of X'' = a - (f - f(c, 0)) with X(s) = X(e) = 0.  Term by term in the total degree of (u, s, e) the right side
-is known, and a Green's function that is a polynomial gives the next term.  Then v_c = X'(s), and the impact velocity
-X'(e) is the same series with s and e exchanged.
+No equation is solved by iteration.  The flight from sigma that lands after t is X = c + t Y(z) at the time sigma + z t,
+so the unit interval carries the boundary value problem
+
+    Y'' = t [a(sigma + z t) - (f(c + t Y, Y') - f(c, 0))],    Y(0) = Y(1) = 0.
+
+Part by part in the degree of (sigma, t) the right side is known, and two integrals in z give the next part.  Then
+v_c = Y'(0), and the impact velocity Y'(1) is v_c after the involution.
 """
 
 from __future__ import annotations
@@ -14,9 +17,8 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from singimpact.algebra.jets import Jet, JetSpace
-from singimpact.contact.contact import Contact, contact_order
-from singimpact.inputs import refuse
-from singimpact.theory.involution import exchanged, in_flight_time
+from singimpact.contact.contact import Contact
+from singimpact.theory.involution import after_iota
 
 
 @dataclass(frozen=True)
@@ -26,22 +28,28 @@ class Sheet:
     Attributes
     ----------
     contact : the jets it was made from. order : the last degree kept.
-    nu : launch velocity as a jet in (s, e), launch and landing time after tau_*.
+    v : v_c(tau_* + sigma, t), launch velocity of the flight that lands after t, a jet in (sigma, t) [e:vtaylor].
     """
 
     contact: Contact
     order: int
-    nu: Jet
-
-    @cached_property
-    def v(self) -> Jet:
-        """v_c(tau_* + sigma, t): launch velocity of the flight that lands after t [e:vtaylor]."""
-        return in_flight_time(self.nu, self.order)
+    v: Jet
 
     @cached_property
     def xdot(self) -> Jet:
         """Impact velocity of the same flight: v_c after the involution [e:phi]."""
-        return in_flight_time(exchanged(self.nu), self.order)
+        return after_iota(self.v)
+
+    @property
+    def p(self) -> tuple[Jet, Jet]:
+        """p_c: (sigma, t) -> (sigma, v_c) [e:proj]."""
+        return self.v.space.generators()[0], self.v
+
+    @property
+    def phi(self) -> tuple[Jet, Jet]:
+        """phi_c: (sigma, t) -> (sigma + t, impact velocity) [e:phi]."""
+        sigma, t = self.v.space.generators()
+        return sigma + t, self.xdot
 
     def to_sympy(self, jet: Jet) -> Any:
         """A jet of this sheet as a sympy expression in its variables."""
@@ -67,94 +75,78 @@ def sheet(contact: Contact, order: int) -> Sheet:
     >>> print(tangency.to_sympy(tangency.v))
     -a_d1*sigma*t/2 - a_d1*t**2/6
     """
-    space = JetSpace(("u", "s", "e"), order + 1, contact.ring)
+    space = JetSpace(("sigma", "t"), order, contact.ring)
     flight = _Flight(contact, space)
-    launch = JetSpace(("s", "e"), order, contact.ring)
-    terms: dict[tuple[int, ...], Any] = {}
+    parts = {}
     for degree in range(contact.order, order):
-        for (k, i, m), value in flight.next_velocity(degree).terms.items():
-            key = (k + i, m)  # u = s
-            terms[key] = terms[key] + value if key in terms else value
-    return Sheet(contact, order, launch.jet({key: value for key, value in terms.items() if value != 0}))
+        twice = flight.twice_integrated(degree)
+        launch = flight.launch(twice)
+        parts[degree + 1] = flight.engine.without(launch, 0, space.polynomials)
+        if degree + 1 < order:
+            flight.extend(degree, twice, launch)
+    return Sheet(contact, order, space.of_parts(parts))
 
 
 class _Flight:
-    """X(u) with X(s) = X(e) = 0, by homogeneous parts in (u, s, e)."""
+    """Y on the unit interval, by parts of one degree in (sigma, t): X = t Y starts at j + 2, X' = Y' at j + 1."""
 
     def __init__(self, contact: Contact, space: JetSpace) -> None:
-        self.contact, self.space = contact, space
-        self.x: dict[int, Jet] = {}
-        self.xdot: dict[int, Jet] = {}
-        self._products: dict[tuple[int, int, int], Jet] = {}
+        ring = contact.ring
+        self.contact = contact
+        self.engine = JetSpace(("z", "sigma", "t"), space.order, ring, (0, 1, 1)).polynomials
+        self.z, sigma, self.t = self.engine.generators()
+        self._clock = self.engine.add(self.engine.dot([(self.z, self.t)]), sigma)
+        self._powers = [self.engine.constant(ring.rational(Fraction(1)))]
+        self._minus = ring.rational(Fraction(-1))
+        self._force = {pair: self.engine.constant(-value) for pair, value in contact.f.items()}
+        self._products: dict[tuple[int, int, int], Any] = {}
+        self.x: dict[int, Any] = {}
+        self.xdot: dict[int, Any] = {}
 
-    def next_velocity(self, degree: int) -> Jet:
-        """Extend X by its part of degree `degree` + 2; returns X' of degree `degree` + 1."""
-        part = self._green(self._right_side(degree))
-        self.x[degree + 2] = part
-        rational = self.space.ring.rational
-        slope = {(k - 1, *ends): value * rational(Fraction(k)) for (k, *ends), value in part.terms.items() if k}
-        self.xdot[degree + 1] = self.space.jet(slope)
-        return self.xdot[degree + 1]
+    def twice_integrated(self, degree: int) -> Any:
+        """The right side of one degree, integrated twice from z = 0."""
+        return self.engine.integral(self.engine.integral(self._right_side(degree), 0), 0)
 
-    def _right_side(self, degree: int) -> Jet:
-        """The part of a - (f(c + X, X') - f(c, 0)) of one degree."""
-        zero = self.space.jet({})
-        total = self.space.jet({(degree, 0, 0): self.contact.a[degree]}) if degree in self.contact.a else zero
-        for (i, k), coefficient in self.contact.f.items():
-            total = total - self._product(i, k, degree).scaled(coefficient)
-        return total
+    def launch(self, twice: Any) -> Any:
+        """The part of Y'(0): Y = twice - z twice(1), and both integrals start from 0."""
+        return self.engine.scaled(self.engine.at(twice, 0, Fraction(1)), self._minus)
 
-    def _product(self, i: int, k: int, degree: int) -> Jet:
-        """The part of X^i X'^k of one degree."""
-        if i + k == 0:
-            return self.space.rational(Fraction(1)) if degree == 0 else self.space.jet({})
+    def extend(self, degree: int, twice: Any, launch: Any) -> None:
+        """X of degree + 2 and X' of degree + 1, from the double integral of this degree."""
+        y = self.engine.add(twice, self.engine.dot([(self.z, launch)]))
+        self.xdot[degree + 1] = self.engine.derivative(y, 0)
+        self.x[degree + 2] = self.engine.dot([(self.t, y)])
+
+    def _right_side(self, degree: int) -> Any:
+        """The part of t [a - (f - f(c, 0))] that comes from the bracket of this degree."""
+        while len(self._powers) <= degree:
+            self._powers.append(self.engine.dot([(self._powers[-1], self._clock)]))
+        pairs = []
+        if degree in self.contact.a:
+            pairs.append((self._powers[degree], self.engine.constant(self.contact.a[degree])))
+        for (i, k), coefficient in self._force.items():
+            product = self._product(i, k, degree)
+            if product is not None:
+                pairs.append((product, coefficient))
+        return self.engine.dot([(self.t, self.engine.dot(pairs))])
+
+    def _product(self, i: int, k: int, degree: int) -> Any:
+        """The part of X^i X'^k of one degree; None when there is none."""
+        j = self.contact.order
+        if degree < i * (j + 2) + k * (j + 1):
+            return None
+        if i + k == 1:
+            return (self.x if i else self.xdot).get(degree)
         key = (i, k, degree)
         if key not in self._products:
             parts, rest = (self.x, (i - 1, k)) if i else (self.xdot, (i, k - 1))
-            total = self.space.jet({})
-            for size, part in parts.items():
-                if size <= degree:
-                    total = total + part * self._product(*rest, degree - size)
-            self._products[key] = total
+            found = ((part, self._product(*rest, degree - size)) for size, part in parts.items() if size < degree)
+            pairs = [pair for pair in found if pair[1] is not None]
+            self._products[key] = self.engine.dot(pairs) if pairs else None
         return self._products[key]
-
-    def _green(self, right: Jet) -> Jet:
-        """Solve X'' = right, X(s) = X(e) = 0: u^k -> (u^(k+2) - u h_(k+1) + s e h_k)/((k+1)(k+2))."""
-        terms: dict[tuple[int, ...], Any] = {}
-
-        def put(key: tuple[int, ...], value: Any) -> None:
-            terms[key] = terms[key] + value if key in terms else value
-
-        for (k, i, m), value in right.terms.items():
-            scaled = value * self.space.ring.rational(Fraction(1, (k + 1) * (k + 2)))
-            put((k + 2, i, m), scaled)
-            for n in range(k + 2):
-                put((1, i + n, m + k + 1 - n), -scaled)
-            for n in range(k + 1):
-                put((0, i + n + 1, m + k - n + 1), scaled)
-        return Jet(self.space, terms)
 
 
 @lru_cache(maxsize=32)
 def generic_sheet(j: int, order: int) -> Sheet:
     """The sheet with symbols for all jets, at contact order j."""
     return sheet(Contact.generic(j, order), order)
-
-
-def v_c(order: int = 6, at: str | int = "generic") -> Any:
-    """v_c(tau_* + sigma, t) to total degree `order`, as a sympy expression [e:vtaylor, e:degen, e:swan].
-
-    Parameters
-    ----------
-    order : int >= 1, total degree in (sigma, t) of the last term.
-    at : "generic", "tangency", "swan" or a contact order.
-
-    Examples
-    --------
-    >>> v_c(order=1)
-    -a*t/2
-    """
-    if not isinstance(order, int) or isinstance(order, bool) or not 1 <= order <= 40:
-        raise refuse("order", order, "an integer from 1 to 40")
-    found = generic_sheet(contact_order(at), order)
-    return found.to_sympy(found.v)

@@ -25,7 +25,7 @@ def test_parity_raises_the_degree():
 def test_a_wrong_term_shows():
     place = crosscheck.setting("linear, omega 2", 1)
     right = sheet(Contact.of(place.model, place.tau, 1, 3, crosscheck.DOUBLES), 3)
-    wrong = Sheet(right.contact, 3, right.nu.scaled(1.01))
+    wrong = Sheet(right.contact, 3, right.v.scaled(1.01))
     flow = true_orbits.scipy_flow(place.model, float(place.tau))
     assert crosscheck.measured(right, flow, "v_c", list(crosscheck.STEPS)) > 3.8
     assert crosscheck.measured(wrong, flow, "v_c", list(crosscheck.STEPS)) < 2.2

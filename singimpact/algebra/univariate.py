@@ -1,0 +1,190 @@
+"""Polynomials in one variable for solvers that run level by level: each ring's fastest kind under one set of names.
+
+`number` is what scalars of the solver are made of, `poly` what its polynomials are; + - * of both are Python's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.rings import Doubles, Exact
+from singimpact.algebra.symbols import SymbolRing
+
+
+class ExactUnivariate:
+    """fmpq_poly over fmpq.
+
+    Examples
+    --------
+    >>> exact = ExactUnivariate()
+    >>> exact.at_one(exact.integral(exact.poly([1, 2, 3])))
+    3
+    """
+
+    def number(self, value: Any) -> Any:
+        """A scalar from a rational of Python or an element of the ring."""
+        import flint
+
+        return flint.fmpq(value.numerator, value.denominator) if isinstance(value, int | Fraction) else value
+
+    def poly(self, coefficients: Sequence[Any]) -> Any:
+        """The polynomial with these coefficients, from the constant one on."""
+        import flint
+
+        return flint.fmpq_poly([self.number(value) for value in coefficients])
+
+    def integral(self, poly: Any) -> Any:
+        """The integral from 0."""
+        return poly.integral()
+
+    def derivative(self, poly: Any) -> Any:
+        return poly.derivative()
+
+    def at_one(self, poly: Any) -> Any:
+        return poly(self.number(1))
+
+    def element(self, number: Any) -> Any:
+        """A scalar as an element of the ring."""
+        return Fraction(int(number.p), int(number.q))
+
+
+class BallUnivariate(ExactUnivariate):
+    """arb_poly over arb, at the precision that is set."""
+
+    def number(self, value: Any) -> Any:
+        import flint
+
+        if isinstance(value, int | Fraction):
+            return flint.arb(flint.fmpq(value.numerator, value.denominator))
+        return value
+
+    def poly(self, coefficients: Sequence[Any]) -> Any:
+        import flint
+
+        return flint.arb_poly([self.number(value) for value in coefficients])
+
+    def element(self, number: Any) -> Any:
+        return number
+
+
+class ArrayPoly:
+    """Coefficients in an array of doubles or of objects, from the constant one on."""
+
+    __slots__ = ("values",)
+
+    def __init__(self, values: np.ndarray[Any, Any]) -> None:
+        self.values = values
+
+    def __add__(self, other: ArrayPoly) -> ArrayPoly:
+        if len(self.values) < len(other.values):
+            return other + self
+        total = self.values.copy()
+        total[: len(other.values)] += other.values
+        return ArrayPoly(total)
+
+    def __mul__(self, other: Any) -> ArrayPoly:
+        if isinstance(other, ArrayPoly):
+            return ArrayPoly(np.convolve(self.values, other.values))
+        return ArrayPoly(self.values * other)
+
+
+class ArrayUnivariate:
+    """Doubles, or numbers of an mpmath context in arrays of objects."""
+
+    def __init__(self, ring: Any, kind: Any) -> None:
+        self._ring, self._kind = ring, kind
+
+    def number(self, value: Any) -> Any:
+        return self._ring.rational(Fraction(value)) if isinstance(value, int | Fraction) else value
+
+    def poly(self, coefficients: Sequence[Any]) -> ArrayPoly:
+        return ArrayPoly(np.array([self.number(value) for value in coefficients] or [self.number(0)], dtype=self._kind))
+
+    def integral(self, poly: ArrayPoly) -> ArrayPoly:
+        """The integral from 0."""
+        size = np.arange(1, len(poly.values) + 1)
+        return ArrayPoly(np.concatenate([np.zeros(1, self._kind), poly.values / size.astype(self._kind)]))
+
+    def derivative(self, poly: ArrayPoly) -> ArrayPoly:
+        return ArrayPoly((poly.values * np.arange(len(poly.values)))[1:])
+
+    def at_one(self, poly: ArrayPoly) -> Any:
+        return poly.values.sum()
+
+    def element(self, number: Any) -> Any:
+        return number if self._kind is object else float(number)
+
+
+class SymbolUnivariate:
+    """fmpq_mpoly in z and the names of a ring of symbols; scalars are kept there too."""
+
+    def __init__(self, ring: SymbolRing) -> None:
+        self._packed = ring.polynomials(("z",))
+        (self._z,) = self._packed.generators()
+        self._target = ring
+
+    def number(self, value: Any) -> Any:
+        import flint
+
+        if isinstance(value, int | Fraction):
+            return flint.fmpq(value.numerator, value.denominator)
+        return value if isinstance(value, flint.fmpq) else self._packed.constant(value)
+
+    def poly(self, coefficients: Sequence[Any]) -> Any:
+        total, power = self._packed.constant(0), self._packed.constant(1)
+        for value in coefficients:
+            total, power = total + power * self.number(value), power * self._z
+        return total
+
+    def integral(self, poly: Any) -> Any:
+        """The integral from 0."""
+        return self._packed.integral(poly, 0)
+
+    def derivative(self, poly: Any) -> Any:
+        return self._packed.derivative(poly, 0)
+
+    def at_one(self, poly: Any) -> Any:
+        return self._packed.at(poly, 0, Fraction(1))
+
+    def element(self, number: Any) -> Any:
+        import flint
+
+        if isinstance(number, flint.fmpq):
+            return self._target.rational(Fraction(int(number.p), int(number.q)))
+        return self._packed.terms(number).get((0,), self._target.rational(Fraction(0)))
+
+
+def univariate(ring: Any) -> Any:
+    """The polynomials in one variable over a ring.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.rings import DOUBLES
+    >>> univariate(DOUBLES).at_one(univariate(DOUBLES).poly([1, 2]))
+    np.float64(3.0)
+    """
+    if isinstance(ring, Exact):
+        return ExactUnivariate()
+    if isinstance(ring, Balls):
+        return BallUnivariate()
+    if isinstance(ring, SymbolRing):
+        return SymbolUnivariate(ring)
+    return ArrayUnivariate(ring, np.float64 if isinstance(ring, Doubles) else object)
+
+
+@contextmanager
+def precision_of(ring: Any) -> Iterator[None]:
+    """Arithmetic of balls at the precision of their ring; nothing for the other rings."""
+    if not isinstance(ring, Balls):
+        yield
+        return
+    import flint
+
+    with flint.ctx.workprec(ring.bits):
+        yield

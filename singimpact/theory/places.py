@@ -1,0 +1,192 @@
+"""A model at a contact point, in the best numbers there are: rationals, exact constants of sympy, or balls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.jets import JetSpace
+from singimpact.algebra.numbers import as_float, as_fraction, compare, constant
+from singimpact.algebra.rings import DOUBLES, EXACT, Doubles
+from singimpact.algebra.univariate import precision_of
+from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet
+from singimpact.contact.points import TangencyPoint, tangency_points
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.model import Oscillator
+
+NEAR = 1e-7  # a tau given as a double names the tangency point this close to it, in units of 1 + |tau|
+ZERO_BITS = 512  # a value whose ball of so many bits holds 0 is taken as the zero that the contact order asks for
+KINDS = {1: ("gamma", "a' > 0"), 2: ("degenerate", "a'' < 0")}
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point of contact order j of a model.
+
+    Attributes
+    ----------
+    model, j : as given. exact : tau_* as a constant tree, or None. point : the tangency point otherwise.
+    """
+
+    model: Oscillator
+    j: int
+    exact: Expression | None
+    point: TangencyPoint | None
+
+    @property
+    def tau(self) -> float:
+        """tau_* as a double."""
+        return as_float(self.exact) if self.exact is not None else self.point.tau  # type: ignore[union-attr]
+
+    def tau_in(self, ring: Any) -> Any:
+        """tau_* in a ring: of rationals when it is written as one, of balls always."""
+        if isinstance(ring, Doubles):
+            return self.tau
+        if self.exact is not None:
+            return evaluate(self.exact, {}, ring)
+        if isinstance(ring, Balls) and self.point is not None:
+            return self.point.ball(ring.bits)
+        raise ArithmeticError("tau_* is not rational")
+
+    def contact(self, order: int, ring: Any) -> Contact:
+        """The jets there, in a ring.
+
+        Raises
+        ------
+        ArithmeticError : they are not all in the ring.
+        """
+        with precision_of(ring):
+            return Contact.of(self.model, self.tau_in(ring), self.j, order, ring)
+
+    def restitution_in(self, ring: Any) -> Any:
+        """r = -rho'(0) in a ring."""
+        return evaluate(self.model.slope_at_rest(), {}, ring)
+
+    def rho(self, order: int, ring: Any) -> dict[int, Any]:
+        """k -> coefficient of v^k in rho, for k >= 2 and k (j + 1) <= order."""
+        top = order // (self.j + 1)
+        if top < 2:
+            return {}
+        with precision_of(ring):
+            space = JetSpace(("v",), top, ring)
+            jet = space.evaluate(self.model.rho(), {"v": space.generators()[0]})
+            return {k: value for k in range(2, top + 1) if (value := jet.coefficient((k,))) != 0}
+
+
+def place(model: Any, j: int, tau: Any) -> Place:
+    """The point of contact order j of a model that `tau` names, or its first with an invariant curve.
+
+    Raises
+    ------
+    InputError : not a model; no such point; a_c does not vanish there to this order.
+    """
+    if not isinstance(model, Oscillator):
+        raise refuse("model", model, "an ImpactOscillator")
+    if tau is None:
+        return Place(model, j, None, _first(model, j))
+    exact = constant("tau", tau)
+    if not j or _vanishes(model, exact, j):
+        return Place(model, j, exact, None)
+    near = [p for p in tangency_points(model) if abs(p.tau - as_float(exact)) <= NEAR * (1 + abs(p.tau))]
+    if not near or (near[0].kind == "degenerate") != (j > 1):
+        value = acceleration_jet(model, as_float(exact), max(j - 1, 0), DOUBLES)
+        raise InputError(f"tau = {exact} is not of contact order {j}: a_c and its derivatives there are {_told(value)}")
+    return Place(model, j, None, near[0])
+
+
+def _told(values: list[Any]) -> str:
+    return ", ".join(f"{float(value):.3g}" for value in values)
+
+
+def _first(model: Oscillator, j: int) -> TangencyPoint:
+    if j not in KINDS:
+        raise InputError(f"tau is needed at contact order {j}: give tau=")
+    kind, told = KINDS[j]
+    found = [point for point in tangency_points(model) if point.kind == kind]
+    if j == 2:
+        found = [point for point in found if acceleration_jet(model, point.tau, 2, DOUBLES)[2] < 0]
+    if not found:
+        name = next(name for name, order in NAMED_ORDERS.items() if order == j)
+        raise InputError(f"a_c of this model has no {name} point with {told}: give tau= or another clearance")
+    return found[0]
+
+
+def _vanishes(model: Oscillator, tau: Expression, j: int) -> bool:
+    """Whether a_c and its first j - 1 derivatives are zero at an exact tau: in rationals, or to ZERO_BITS."""
+    balls = Balls(ZERO_BITS)
+    with precision_of(balls):
+        jet = acceleration_jet(model, tau, j - 1, balls)
+        return all(bool(value.contains(0)) for value in jet)
+
+
+def exact_contact(where: Place, order: int) -> Contact | None:
+    """The jets as rationals, or as polynomials in exact constants of sympy; None when tau_* is not exact."""
+    try:
+        return where.contact(order, EXACT)
+    except ArithmeticError:
+        if where.exact is None:
+            return None
+    from singimpact.theory.constants import contact_of_constants
+
+    return contact_of_constants(where.model, where.exact, where.j, order)
+
+
+def multiplier(j: int, r: Expression, bits: int | None = None) -> Any:
+    """lambda in (0, 1) with r = lambda^(j+1) P_j/Q_j: a rational or None; a ball when bits are given.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.expressions import number
+    >>> multiplier(1, number(Fraction(5, 16))), multiplier(1, number(Fraction(1, 3)))
+    (Fraction(1, 2), None)
+    """
+    if compare(r, 1) >= 0:
+        raise refuse("restitution", r, "a number r < 1 here: at r = 1 no curve is invariant and attracting")
+    if bits is None:
+        return _rational_multiplier(j, as_fraction(r))
+    import flint
+
+    with flint.ctx.workprec(bits):
+        return _multiplier_ball(j, evaluate(r, {}, Balls(bits)), bits)
+
+
+def _equation(j: int) -> tuple[list[int], list[int]]:
+    """Coefficients of lambda^(j+1) P_j and of Q_j."""
+    return [0] * (j + 1) + [j + 1 - i for i in range(j + 1)], [i + 1 for i in range(j + 1)]
+
+
+def _rational_multiplier(j: int, r: Fraction | None) -> Fraction | None:
+    import flint
+
+    if r is None:
+        return None
+    above, below = _equation(j)
+    rate = flint.fmpq(r.numerator, r.denominator)
+    _, factors = (flint.fmpq_poly(above) - flint.fmpq_poly(below) * rate).factor()
+    for factor, _ in factors:
+        if factor.degree() == 1:
+            root = -factor[0] / factor[1]
+            if 0 < root < 1:
+                return Fraction(int(root.p), int(root.q))
+    return None
+
+
+def _multiplier_ball(j: int, r: Any, bits: int) -> Any:
+    """Halving to a short interval, then Newton's method on balls, which proves the root."""
+    import flint
+
+    above, below = (flint.arb_poly(part) for part in _equation(j))
+    poly = above - below * r
+    slope = poly.derivative()
+    low, high = Fraction(0), Fraction(1)
+    for _ in range(64):
+        middle = (low + high) / 2
+        low, high = (low, middle) if poly(Balls(bits).rational(middle)) > 0 else (middle, high)
+    ball = Balls(bits).interval(low, high)
+    for _ in range(bits.bit_length() + 4):
+        middle = Balls(bits).rational(as_rational(ball))
+        ball = (middle - poly(middle) / slope(ball)).intersection(ball)
+    return ball

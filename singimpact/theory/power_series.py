@@ -1,0 +1,135 @@
+"""A truncated power series in one variable: its coefficients, its value, and how far it may be trusted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import inf
+from typing import Any
+
+from singimpact.inputs import InputError, refuse
+
+
+@dataclass(frozen=True)
+class TrustSettings:
+    """How `valid_within` judges a tail that it does not know.
+
+    root : part of the radius seen in the last terms that is believed; 0.7 holds on the reference models with margin.
+    further : terms beyond the last one that are computed for the judgement; enough to see past zeros by parity.
+    tail : the share of the tolerance that the known terms of the tail may use.
+    """
+
+    root: float = 0.7
+    further: int = 12
+    tail: float = 0.5
+
+
+TRUST = TrustSettings()
+
+
+@dataclass(frozen=True)
+class PowerSeries:
+    """sum coefficients[n] variable^n for n up to `order`.
+
+    Attributes
+    ----------
+    variable : the letter. order : the last power kept.
+    coefficients : n -> sympy expression, or mpmath number for a model without exact numbers; zeros may be left out.
+    digits : of the numbers.
+    further : sizes of the coefficients beyond the order, for `valid_within`; empty for a series with symbols.
+    numbers : gives the coefficients as mpmath numbers, when they are long exact expressions.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> series = PowerSeries("sigma", 3, {1: sympy.Integer(2), 3: sympy.Rational(1, 2)})
+    >>> series.as_expr(), series[2]
+    (sigma**3/2 + 2*sigma, 0)
+    """
+
+    variable: str
+    order: int
+    coefficients: Mapping[int, Any]
+    digits: int = 30
+    further: Mapping[int, float] = field(default_factory=dict, repr=False)
+    numbers: Callable[[], Mapping[int, Any]] | None = field(default=None, repr=False, compare=False)
+
+    def __getitem__(self, power: int) -> Any:
+        if isinstance(power, bool) or not isinstance(power, int) or not 0 <= power <= self.order:
+            raise refuse("power", power, f"a whole number from 0 to {self.order}: the series is cut there")
+        if power in self.coefficients:
+            return self.coefficients[power]
+        import sympy
+
+        return sympy.Integer(0)
+
+    def __len__(self) -> int:
+        return self.order + 1
+
+    def __call__(self, value: Any) -> Any:
+        """The value of the truncated series, by Horner's rule; at a sympy object exactly, at a number by numbers."""
+        exact = self.numbers is None or hasattr(value, "free_symbols")
+        known = self.coefficients if exact else self._numbers
+        total = value * 0
+        for power in range(self.order, -1, -1):
+            total = total * value + known.get(power, 0)
+        return total
+
+    @cached_property
+    def _numbers(self) -> Mapping[int, Any]:
+        return self.coefficients if self.numbers is None else self.numbers()
+
+    def as_expr(self) -> Any:
+        """The series as a sympy expression in its variable."""
+        import sympy
+
+        letter = sympy.Symbol(self.variable)
+        shown = {n: sympy.Float(c, self.digits) if hasattr(c, "_mpf_") and not hasattr(c, "free_symbols") else c
+                 for n, c in self.coefficients.items()}  # fmt: skip
+        return sympy.Add(*(value * letter**power for power, value in shown.items()))
+
+    def valid_within(self, tolerance: float) -> float:
+        """A radius within which the cut series is off by at most `tolerance`, and by `tolerance` times its value.
+
+        Parameters
+        ----------
+        tolerance : > 0.
+
+        Raises
+        ------
+        InputError : the series has symbols, so it has no radius.
+
+        Notes
+        -----
+        An estimate from the terms that follow, not a proof: they are computed, and what lies beyond them is judged by
+        the radius of convergence that they show, less a margin.  The suite measures it against the true map.
+        """
+        if not isinstance(tolerance, int | float) or isinstance(tolerance, bool) or not 0 < tolerance < inf:
+            raise refuse("tolerance", tolerance, "a number > 0")
+        if not self.further:
+            raise InputError("valid_within needs numbers: the coefficients of this series have symbols; give model=")
+        sizes = {n: abs(float(c)) for n, c in self._numbers.items()}
+        low, high = 0.0, TRUST.root * _radius({**sizes, **dict(self.further)})
+        if high == inf:
+            return inf
+        for _ in range(200):
+            middle = (low + high) / 2
+            low, high = (middle, high) if self._good(middle, tolerance, sizes) else (low, middle)
+        return float(low)
+
+    def _good(self, radius: float, tolerance: float, sizes: Mapping[int, float]) -> bool:
+        lead = min(n for n, size in sizes.items() if size)
+        value = sizes[lead] * radius**lead - sum(size * radius**n for n, size in sizes.items() if n > lead)
+        tail = sum(size * radius**n for n, size in self.further.items())
+        last = max(self.further)
+        beyond = TRUST.root ** (last + 1) / (1 - TRUST.root) * max(
+            (size * (radius / TRUST.root) ** n for n, size in self.further.items()), default=0.0
+        )  # fmt: skip
+        return tail + beyond <= TRUST.tail * tolerance * min(1.0, value)
+
+
+def _radius(sizes: Mapping[int, float]) -> float:
+    """The radius of convergence that the last terms show, by roots: the least of them."""
+    shown = [size ** (-1 / n) for n, size in sizes.items() if size and n >= max(sizes) // 2]
+    return min(shown, default=inf)

@@ -1,0 +1,153 @@
+"""The public series: reference values, exact where they can be, honest radii, one line for what cannot be done."""
+
+from fractions import Fraction
+
+import mpmath
+import pytest
+import sympy
+
+import singimpact as si
+from singimpact.inputs import InputError
+from singimpact.theory.invariant_curve import restitution_of
+from singimpact.theory.places import multiplier
+
+DUFFING = ("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
+
+
+def linear(clearance="0.3", restitution="0.5"):
+    return si.linear(2, clearance, restitution)
+
+
+@pytest.mark.parametrize("rate", ["0.5", "0.9"])
+def test_gamma_of_the_linear_model(rate, reference):
+    series = si.theory.gamma(order=3, model=linear(restitution=rate), digits=40)
+    with mpmath.workdps(45):
+        for n in (2, 3):
+            expected = mpmath.mpf(reference[f"gamma.C{n}[linear w=2,c=0.3,r={rate}]"])
+            assert abs(series[n] - expected) < 1e-38
+
+
+def test_gamma_and_fibre_of_the_duffing_model(reference):
+    with mpmath.workdps(45):
+        series = si.theory.gamma(order=2, model=si.ImpactOscillator(*DUFFING), digits=40)
+        assert abs(series[2] - mpmath.mpf(reference["gamma.C2[duffing w=1.7,c=0.3,r=0.6,d=0.1,k3=0.3]"])) < 1e-38
+
+
+def test_generic_series_in_lambda():
+    lambda_, a1, a2, f_v = sympy.symbols("lambda a_d1 a_d2 f_01")
+    series = si.theory.gamma(order=3)
+    assert sympy.cancel(series[2] - a1 * (1 - lambda_) * (2 + lambda_) / 6) == 0
+    assert sympy.cancel(series[3] - (1 - lambda_) * (2 + lambda_) * (3 * a2 - a1 * f_v) / 48) == 0
+    assert series.as_expr().has(sympy.Symbol("sigma"))
+    assert si.theory.r_of_lambda(1).subs(lambda_, sympy.Rational(1, 2)) == sympy.Rational(5, 16)
+
+
+def test_chatter_limit_in_jets():
+    a, a1, f_v, rho2, r = sympy.symbols("a a_d1 f_01 rho_2 lambda")
+    series = si.theory.chatter_limit(order=2)
+    expected = -sympy.Rational(2, 3) / a**2 * (2 * a1 / a + f_v + 3 * a * rho2 / (1 + r)) / (1 - r) ** 2
+    assert sympy.cancel(series[1] + 2 / (a * (1 - r))) == 0
+    assert sympy.cancel(series[2] - expected) == 0
+
+
+def test_chatter_limit_of_a_model(reference):
+    """From (1.2, 0.01); the series converges slowly, with the distance of the tangency."""
+    series = si.theory.chatter_limit(order=20, model=linear(), tau="1.2", digits=40)
+    with mpmath.workdps(45):
+        found = mpmath.mpf("1.2") + series(mpmath.mpf("0.01"))
+        assert abs(found - mpmath.mpf(reference["chatter.tau_inf.linear[w=2,c=0.3,r=0.5](1.2,0.01)"])) < 1e-22
+    assert 0.004 < series.valid_within(1e-20) < 0.02
+
+
+def test_fibre_is_the_inverse_of_the_completion():
+    """Along the fibre through tau_* chatter ends at tau_*."""
+    model, tau = si.ImpactOscillator(*DUFFING), "1.5"
+    fibre = si.theory.fibre(order=10, model=model, tau=tau)
+    sigma = mpmath.mpf("-0.002")
+    v = fibre(sigma)
+    start = sympy.Rational(3, 2) + sympy.Rational("-0.002")
+    ends = si.theory.chatter_limit(order=10, model=model, tau=start)
+    assert abs(sigma + ends(v)) < 1e-19
+
+
+def test_exact_when_tau_and_lambda_are():
+    exact = linear(1, restitution_of(2, Fraction(1, 2)))
+    assert si.theory.gamma(order=5, at="swan", model=exact, tau=0).coefficients == {
+        3: sympy.Rational(-17, 48), 4: 0, 5: sympy.Rational(765, 10016)}  # fmt: skip
+    by_symbols = si.theory.gamma(order=4, model=linear(0, "5/16"), tau="3*pi/4")
+    assert by_symbols.coefficients == {2: sympy.Rational(5, 12), 3: 0, 4: sympy.Rational(-2245, 13248)}
+    assert si.theory.v_c(order=1, model=linear(), tau="6/5").has(sympy.cos(sympy.Rational(12, 5)))
+
+
+def test_exact_constants_agree_with_digits():
+    """sqrt(3) enters through tau = 5 pi/12: the exact route through symbols, and balls."""
+    model = si.ImpactOscillator("x + xdot/7 + x**2", "cos(2*t) + sqrt(3)/2", 0, "5/16")
+    exact = si.theory.gamma(order=5, model=model, tau="7*pi/12")
+    assert all(not value.has(sympy.Float) for value in exact.coefficients.values())
+    found = si.theory.gamma(order=5, model=model.replace(restitution="0.3125000000000000000000000000000001"))
+    with mpmath.workdps(40):
+        assert all(abs(mpmath.mpf(str(sympy.N(exact[n], 36))) - found[n]) < 1e-28 for n in range(2, 6))
+
+
+def test_tau_as_a_double_names_the_point():
+    model = linear()
+    near = si.tangency_points(model).tau[1]
+    assert (
+        si.theory.gamma(order=3, model=model, tau=near).coefficients
+        == si.theory.gamma(order=3, model=model).coefficients
+    )
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
+@pytest.mark.parametrize("model", [linear(), linear("0.3", "0.9"), si.ImpactOscillator(*DUFFING)])
+def test_radius_is_honest(model, tolerance):
+    """Against the series to a much higher order, where that one converges."""
+    series = si.theory.gamma(order=8, model=model)
+    long = si.theory.gamma(order=48, model=model)
+    radius = series.valid_within(tolerance)
+    assert radius > 0.02
+    for part in (1.0, 0.5):
+        sigma = mpmath.mpf(-radius * part)
+        error = abs(series(sigma) - long(sigma))
+        assert error <= tolerance * min(1, abs(long(sigma)))
+
+
+def test_multiplier_is_found_when_rational():
+    from singimpact.algebra.numbers import constant
+
+    assert multiplier(2, constant("r", restitution_of(2, Fraction(2, 7)))) == Fraction(2, 7)
+    assert multiplier(2, constant("r", "1/2")) is None
+    ball = multiplier(1, constant("r", "5/16"), 200)
+    assert ball.contains(0.5)
+    assert ball.rel_accuracy_bits() > 150
+
+
+REFUSED = [
+    (lambda: si.theory.gamma(order=1), "order = 1 is not accepted"),
+    (lambda: si.theory.gamma(order=-3), "order = -3 is not accepted"),
+    (lambda: si.theory.v_c(order=0, model=linear(), tau=1), "order = 0 is not accepted"),
+    (lambda: si.theory.gamma(at="generic"), "at = 'generic' is not accepted"),
+    (lambda: si.theory.gamma(model=linear(restitution=1)), "restitution = 1 is not accepted"),
+    (lambda: si.theory.gamma(at="swan", model=linear()), "has no swan point"),
+    (lambda: si.theory.v_c(model=linear()), "tau is needed"),
+    (lambda: si.theory.chatter_limit(model=linear()), "tau is needed"),
+    (lambda: si.theory.v_c(model=si.ImpactOscillator("abs(x)", "cos(t)", 0, "0.5"), tau=1), "not smooth"),
+    (lambda: si.theory.v_c(model=si.ImpactOscillator("sqrt(x)", "cos(t)", 0, "0.5"), tau=1), "must be smooth"),
+    (lambda: si.theory.v_c(model=si.ImpactOscillator("x", 0, 0, "0.5"), tau=1), "contact order at tau = 1 is above 5"),
+    (lambda: si.theory.v_c(at="tangency", model=linear(), tau=1), "not of contact order 1"),
+    (lambda: si.theory.v_c(at=13), "at = 13 is not accepted"),
+    (lambda: si.theory.v_c(model=3), "model = 3 is not accepted"),
+    (lambda: si.theory.v_c(tau=1), "tau = 1 is not accepted"),
+    (lambda: si.theory.gamma(order=3)[4], "power = 4 is not accepted"),
+    (lambda: si.theory.gamma(order=3).valid_within(0.1), "valid_within needs numbers"),
+    (lambda: si.theory.gamma(order=3, model=linear()).valid_within(0), "tolerance = 0 is not accepted"),
+    (lambda: si.theory.gamma(order=3, model=linear(), digits=0), "digits = 0 is not accepted"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("call", "told"), REFUSED)
+def test_refusals_are_one_line(call, told):
+    with pytest.raises(InputError) as refusal:
+        call()
+    assert told in str(refusal.value)
+    assert "\n" not in str(refusal.value)
