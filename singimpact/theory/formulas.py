@@ -34,7 +34,7 @@ class OrderLimits:
 
     sheet: int = 16
     sheet_numbers: int = 40
-    curve: int = 12
+    curve: int = 10
     curve_numbers: int = 96
     completion: int = 8
     constants: int = 6
