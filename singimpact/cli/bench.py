@@ -12,17 +12,28 @@ from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.inputs import unknown
 from singimpact.progress import ProgressLine
 
-GROUPS = ("map",)
+GROUPS = ("map", "series")
 
 
 @click.command(short_help="run time against error, beside other tools")
 @click.argument("groups", metavar="[GROUP]...", nargs=-1)
 @output_options
 def command(groups: tuple[str, ...], as_json: bool, output: str | None) -> None:
-    """Measure in one run: `map`, the impact map on the reference states. CPU time, compile time left out."""
+    """Measure in one run: `map`, the impact map on the reference states; `series`, the exact series. CPU time."""
     for group in groups:
         if group not in GROUPS:
             raise unknown("group", group, GROUPS)
+    told: dict[str, Any] = {}
+    texts = []
+    for group in dict.fromkeys(groups or GROUPS):
+        data, text = _map() if group == "map" else _series()
+        told |= data
+        texts.append(text)
+    emit(as_json_text(told) if as_json else "\n\n".join(texts), output)
+
+
+def _map() -> tuple[dict[str, Any], str]:
+    """The impact map, compile time left out."""
     from singimpact.bench.grid_speed import compare_grid
     from singimpact.bench.map_speed import compare, ratios
 
@@ -31,10 +42,6 @@ def command(groups: tuple[str, ...], as_json: bool, output: str | None) -> None:
         rows = compare(told=lambda text: line.show(next(done), 9, text))
         line.show(next(done), 9, "grid")
         grid = compare_grid()
-    if as_json:
-        told: dict[str, Any] = {"flights": [asdict(row) for row in rows], "grid": [asdict(row) for row in grid]}
-        emit(as_json_text(told), output)
-        return
     times = ratios(rows)
     header = ["family", "regime", "method", "microseconds", "wrong", "times singimpact"]
     cells = [
@@ -42,7 +49,21 @@ def command(groups: tuple[str, ...], as_json: bool, output: str | None) -> None:
          f"{times[row.family, row.regime, row.method]:.1f}" if (row.family, row.regime, row.method) in times else ""]
         for row in rows if row.of
     ]  # fmt: skip
-    emit(columns(header, cells) + "\n\n" + _grid_table(grid), output)
+    told = {"flights": [asdict(row) for row in rows], "grid": [asdict(row) for row in grid]}
+    return told, columns(header, cells) + "\n\n" + _grid_table(grid)
+
+
+def _series() -> tuple[dict[str, Any], str]:
+    """The exact series, each task in a process of its own."""
+    from singimpact.bench.series import TASKS, measured
+
+    with ProgressLine() as line:
+        found = []
+        for at, task in enumerate(TASKS, 1):
+            line.show(at, len(TASKS), task.name)
+            found.append(measured(task))
+    told = [{"task": x.task.name, "seconds": x.seconds, "megabytes": x.megabytes, "limit": x.task.limit} for x in found]
+    return {"series": told}, "\n".join(x.line() for x in found)
 
 
 def _grid_table(grid: list[Any]) -> str:

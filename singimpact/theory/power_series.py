@@ -103,7 +103,7 @@ class PowerSeries:
         Notes
         -----
         An estimate from the terms that follow, not a proof: they are computed, and what lies beyond them is judged by
-        the radius of convergence that they show, less a margin.  The suite measures it against the true map.
+        the radius of convergence that they show, less a margin.  The suite measures it against series of order 48.
         """
         if not isinstance(tolerance, int | float) or isinstance(tolerance, bool) or not 0 < tolerance < inf:
             raise refuse("tolerance", tolerance, "a number > 0")
