@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 LINEAR = ["--omega", "2.8", "--clearance", "0", "--restitution", "1/2"]
 
 
@@ -22,6 +24,7 @@ def test_threshold(singimpact):
     assert refused.exit_code == 2
 
 
+@pytest.mark.slow
 def test_sweep(singimpact, tmp_path):
     given = [*LINEAR, "--over", "clearance", "--from", "-0.1", "--to", "0.1", "--points", "3"]
     given += ["--tau", "0.3", "--v", "0.4"]

@@ -30,6 +30,7 @@ def files(cache):
     return {path.relative_to(cache): path.stat().st_mtime_ns for path in cache.rglob("*") if path.is_file()}
 
 
+@pytest.mark.slow
 def test_second_process_runs_what_the_first_compiled(tmp_path, clone):
     first = flown(tmp_path, clone)
     compiled = files(tmp_path)

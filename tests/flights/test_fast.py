@@ -29,6 +29,7 @@ TWO_WAVES = ImpactOscillator("2*x", "cos(t) + 0.4*sin(sqrt(2)*t)", 0, "-0.9*v + 
 MODELS = [linear("2.8", "-0.3", "0.8"), linear("1.3", "0.1", "0.6", damping="0.3"), TWO_WAVES]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS)
 def test_lanes_and_chains_follow_the_map(model: ImpactOscillator) -> None:
     tau, v = (part.ravel() for part in np.meshgrid(np.linspace(0, 3, 9), np.geomspace(1e-6, 2, 7)))
