@@ -75,6 +75,7 @@ def _horizon(included: str) -> Check:
                 included == "t != 0, or a = 0" and is_zero(at_rest + a / 2),
             ),
         ],
+        kind="supported",
         witness=lambda: {"point": "(tau, 0; 0) with a = 1", "x-dot": "0", "dv_c/dt": str(at_rest.subs(a, 1))},
     )
 
@@ -115,6 +116,7 @@ def _phi_singular(on_axis: str) -> Check:
                 is_zero(at_rest.subs(sigma, 0) - a / 2) and on_axis == "a = 0",
             ),
         ],
+        kind="supported",
         witness=lambda: {"point": "a tangency point (tau_*, 0; 0)", "det D phi": str(at_rest.subs({sigma: 0, a: 0}))},
     )
 
@@ -151,6 +153,7 @@ def _phi_cusp(extra: str) -> Check:
                 fails and extra == "x-dot != 0",
             ),
         ],
+        kind="supported",
         witness=lambda: {
             "model": "x'' = (t^3 (1-t)^2)'', c = 0",
             "point": "(0, 0; 1)",
@@ -174,6 +177,7 @@ def _lift_off(threshold: str) -> Check:
             ),
             ("so the level is c", threshold == "c"),
         ],
+        kind="supported",
         witness=lambda: {
             "c": f"{case.clearance:.3g}",
             "a": f"{case.acceleration:.6g}",

@@ -92,7 +92,8 @@ def _direction(stated: tuple[int, int]) -> Check:
 def _tangent(stated: tuple[Any, int]) -> Check:
     """chi(W^s) = {(s, s m(s))}, m(0) = m3: its tangent at 0 has slope m3, and eta has the sign of sigma."""
     slope, sign = stated
-    derived = sympy.Symbol("m_3")
+    s, start, bend = sympy.symbols("s m_3 c")
+    derived = sympy.diff(s * (start + bend * s), s).subs(s, 0)  # eta = s m(s) with m(s) = m_3 + c s + ...
     value = sympy.Poly(fold.fixed_point_factors()[1].subs(r, HALF), m).nroots(n=20)[2]
     positive = positive_on(m, m, HALF, THREE_HALVES)
     return every(

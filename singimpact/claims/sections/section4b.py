@@ -63,6 +63,7 @@ def _sector(stated: tuple[Any, Any]) -> Check:
     """F lands where v >= 0 and t >= 0: for k < 0 that is stated[0] sigma + t >= 0, t >= 0."""
     factor, least = stated
     launch = sympy.cancel(fold.p()[1] / (-k * t))
+    rise = sympy.cancel(sympy.diff(fold.p()[1], t) / -k)
     return every(
         [
             (
@@ -70,8 +71,8 @@ def _sector(stated: tuple[Any, Any]) -> Check:
                 is_zero(launch - (factor * sigma + t)) and least == 0,
             ),
             (
-                "there p is one to one for each sigma: dv/dt > 0 inside",
-                positive_on((3 + 2 * slope) * 1, slope, -1, sympy.oo),
+                f"dv/dt = -k ({launch} + t) > 0 inside, so there p is one to one for each sigma",
+                is_zero(rise - launch - t),
             ),
         ]
     )

@@ -41,6 +41,7 @@ def _side(stated: int) -> Check:
                 (below, above) == ((2, 0) if stated < 0 else (0, 2)),
             )
         ],
+        kind="supported",
         witness=lambda: {"omega": "2", "c": "1.01", "zeros of a_c": str(above), "zeros at c = 0.99": str(below)},
     )
 
