@@ -6,7 +6,7 @@ one weighted degree, so that a product makes no term that is cut away.  What los
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -273,6 +273,15 @@ class Jet:
         return target.of_parts(
             {d: engine.substituted(part, images, target.polynomials) for d, part in self.parts.items()}
         )
+
+    def to_sympy(self, number: Callable[[Any], Any] | None = None) -> Any:
+        """The jet as a sympy expression in its variables; `number` shows a coefficient, or else the ring does."""
+        import sympy
+
+        convert = number or getattr(self.space.ring, "to_sympy", sympy.sympify)
+        letters = [sympy.Symbol(name) for name in self.space.variables]
+        powers = (sympy.prod(s**e for s, e in zip(letters, key, strict=True)) for key in self.terms)
+        return sympy.Add(*(convert(value) * power for value, power in zip(self.terms.values(), powers, strict=True)))
 
     def __str__(self) -> str:
         shown = []

@@ -1,5 +1,5 @@
 """Germs of maps of the plane (u, t) -> (u, w(u, t)): recognised as fold, cusp, lips, beaks, swallowtail.
 
 Not here: jets (`algebra`), the maps p and phi whose germs these are (`theory`), curves of singular points (`surface`).
-The fold form of p with its witness is `theory.fold_form`, which has the jets of a contact as symbols.
+Files: `recognition`, `normal_form` (fold and cusp forms with the changes that reach them).
 """

@@ -1,22 +1,25 @@
 """The fold form of p at a tangency point to any order, with the changes of source and target that reach it.
 
-eta -> the true fold coordinate eta sqrt(E), where v_c - P(sigma) = -k eta^2 E, E(0, 0) = 1: P is the outline, eta
-counted from the true horizon.  Lengths are measured in units of k = a'/6 (x -> x/k scales the jets of f with it), so
-that everything is a polynomial in the jets.
+The true fold coordinate is T with v_c - P(sigma) = -k T^2: P is the outline, T = eta + ... vanishes on the horizon.
+Lengths are measured in units of k = a'/6 (x -> x/k scales the jets of f with it), so that everything is a polynomial
+in the jets.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 import sympy
-from sympy.polys.rings import ring
 
+from singimpact.algebra.jets import Jet
+from singimpact.contact.contact import Contact
+from singimpact.germs.normal_form import normal_form
 from singimpact.theory.fold_route import eta, k
-from singimpact.theory.implicit_route import a_symbol, sigma, t
-from singimpact.theory.sheet import generic_sheet
+from singimpact.theory.implicit_route import sigma, t
+from singimpact.theory.sheet import Sheet, sheet
 
 
 @dataclass(frozen=True)
@@ -39,15 +42,26 @@ class FoldForm:
     identity_order: int
 
 
-def _velocity(order: int) -> Any:
-    """v_c/k at a tangency to a total degree, in (sigma, eta), lengths in units of k."""
-    sheet = generic_sheet(1, order)
-    return sympy.expand(sheet.to_sympy(sheet.v).subs(a_symbol(1), 6).subs(t, eta - 3 * sigma / 2))
+def _sheet(order: int) -> Sheet:
+    """The sheet at a tangency to a total degree, lengths in units of k: a' = 6."""
+    contact = Contact.generic(1, order, unit=True)
+    return sheet(replace(contact, a={**contact.a, 1: contact.ring.rational(Fraction(6))}), order)
+
+
+def _in_eta(jet: Jet) -> Jet:
+    """A jet in (sigma, t) with t = eta - 3 sigma/2; its second variable is then eta."""
+    first, second = jet.space.generators()
+    return jet.compose((first, second - first.scaled(Fraction(3, 2))))
+
+
+def _shown(jet: Jet, made: Sheet) -> Any:
+    return made.to_sympy(jet).xreplace({t: eta})
 
 
 def cubic_terms() -> dict[tuple[int, int], Any]:
     """The terms of degree 3 of p in (sigma, eta), lengths in units of k: exponents -> coefficient."""
-    poly = sympy.Poly(_velocity(3), sigma, eta)
+    made = _sheet(3)
+    poly = sympy.Poly(_shown(_in_eta(made.v), made), sigma, eta)
     return {key: value for key, value in poly.terms() if sum(key) == 3}
 
 
@@ -60,45 +74,17 @@ def fold_form(order: int) -> FoldForm:
     >>> fold_form(4).normal, fold_form(4).residual_vanishes, fold_form(4).identity_order
     ((sigma, -eta**2*k), True, 1)
     """
-    velocity = _velocity(order)
-    names = sorted(velocity.free_symbols - {sigma, eta}, key=str)
-    domain, S, E = ring([sigma, eta], sympy.QQ[tuple(names)])
-
-    def cut(poly: Any, top: int) -> Any:
-        return domain.from_dict({key: value for key, value in poly.items() if sum(key) <= top})
-
-    v = domain.from_expr(velocity)
-    horizon = _horizon(v, E, cut, order)
-    outline = cut(v.compose(E, horizon), order)
-    shifted = cut(v.compose(E, E + horizon) - outline, order)  # eta from the true horizon
-    body = domain.from_dict({(i, j - 2): -value for (i, j), value in shifted.items()})
-    root = _square_root(body, cut, order - 2)
-    source = cut((E * root).compose(E, E - horizon), order - 1)
-    residual = cut(v - outline + source**2, order)
+    made = _sheet(order)
+    found = normal_form(made.v, 2)
+    source = _in_eta(found.source)
+    bent = source - source.space.generators()[1]
+    lead = made.contact.ring.to_sympy(found.lead)
     return FoldForm(
         order=order,
-        source=source.as_expr(),
-        outline=outline.as_expr(),
-        normal=(sigma, sympy.expand(k * (residual - E**2).as_expr())),
-        residual_vanishes=not residual,
-        invertible=source.coeff(E) == 1 and source.coeff(S) == 0 and outline.coeff(S) == 0,
-        identity_order=min(sum(key) for key in source - E) - 1,
+        source=_shown(source, made),
+        outline=made.to_sympy(found.offset),
+        normal=(sigma, sympy.expand(k * (made.to_sympy(found.residual) + lead * eta**2))),
+        residual_vanishes=found.reached,
+        invertible=found.invertible and found.offset.coefficient((1, 0)) == 0,
+        identity_order=min(bent.parts) - 1,
     )
-
-
-def _horizon(v: Any, E: Any, cut: Any, order: int) -> Any:
-    """eta on the horizon as a series in sigma: dv/deta = 0, whose linear part is -2 eta."""
-    slope = v.diff(E)
-    found = E * 0
-    for degree in range(2, order):
-        found = cut(found + slope.compose(E, found) / 2, degree)
-    return found
-
-
-def _square_root(body: Any, cut: Any, order: int) -> Any:
-    """The root of a series with constant term 1, by Newton's method for the inverse root."""
-    inverse, reach = body**0, 0
-    while reach < order:
-        reach = 2 * reach + 1
-        inverse = cut(inverse * (3 - cut(body * inverse**2, order)) / 2, order)
-    return cut(body * inverse, order)

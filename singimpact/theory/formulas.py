@@ -8,15 +8,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, factorial
+from math import factorial
 from typing import Any
 
-from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.balls import Balls
 from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.inputs import InputError, refuse
 from singimpact.theory.completion import leaves, symbolic_completion
+from singimpact.theory.digits import all_digits, sympy_digits, with_digits
 from singimpact.theory.invariant_curve import InvariantCurve, invariant_curve
 from singimpact.theory.places import Place, exact_contact, multiplier, place
 from singimpact.theory.power_series import TRUST, PowerSeries
@@ -28,7 +29,7 @@ from singimpact.theory.symbolic_curve import rho_names, symbolic_curve
 class OrderLimits:
     """The highest orders taken: what a minute of one core reaches, with room.
 
-    sheet, sheet_numbers : of v_c for symbols and for a model. curve, curve_numbers : of gamma. completion, digits.
+    sheet, sheet_numbers : of v_c for symbols and for a model. curve, curve_numbers : of gamma. completion.
     constants : of gamma in exact constants that are not rational; above it they fill pages, and numbers are given.
     """
 
@@ -39,8 +40,6 @@ class OrderLimits:
     completion: int = 8
     constants: int = 6
     completion_numbers: int = 24
-    digits: int = 2000
-    bits: int = 1 << 16
 
 
 LIMITS = OrderLimits()
@@ -87,14 +86,12 @@ def v_c(order: int = 6, at: str | int = "generic", model: Any = None, tau: Any =
     if exact is not None:
         found = sheet(exact, order)
         return found.to_sympy(found.v)
-    return _with_digits(lambda ring: sheet(where.contact(order, ring), order).v.terms, digits, _expression)
-
-
-def _expression(terms: Mapping[tuple[int, ...], Any], digits: int) -> Any:
-    import sympy
-
-    sigma, t = sympy.symbols("sigma t")
-    return sympy.Add(*(sympy.Float(_mpf(ball, digits), digits) * sigma**i * t**k for (i, k), ball in terms.items()))
+    return with_digits(
+        lambda ring: sheet(where.contact(order, ring), order).v,
+        digits,
+        lambda jet, digits: jet.to_sympy(lambda ball: sympy_digits(ball, digits)),
+        lambda jet: jet.terms.values(),
+    )
 
 
 def gamma(
@@ -169,7 +166,7 @@ def chatter_limit(order: int = 6, model: Any = None, tau: Any = None, digits: in
         numbers = _completed(where, order, EXACT)
         return PowerSeries("v", order, {n: _shown(value) for n, value in numbers.items()}, digits, further)
     except ArithmeticError:
-        numbers = _with_digits(lambda ring: _completed(where, order, ring), digits, _mpfs)
+        numbers = with_digits(lambda ring: _completed(where, order, ring), digits, all_digits)
     return PowerSeries("v", order, numbers, digits, further)
 
 
@@ -206,7 +203,7 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
     further = {n: abs(float(value)) for n, value in rough.items() if n > order}
 
     def numbers() -> Any:
-        return _with_digits(lambda ring: getattr(_curve(where, top, ring), part), digits, _mpfs)
+        return with_digits(lambda ring: getattr(_curve(where, top, ring), part), digits, all_digits)
 
     exact = _exact_curve(where, top, part)
     if exact is not None:
@@ -266,39 +263,3 @@ def _shown(value: Any) -> Any:
     import sympy
 
     return sympy.Rational(value.numerator, value.denominator)
-
-
-def _with_digits(compute: Any, digits: int, show: Any) -> Any:
-    """What `compute(ring)` gives in balls, at growing precision until each number has its digits."""
-    _checked("digits", digits, 1, LIMITS.digits)
-    bits = ceil(digits * 3.33) + 128
-    while bits <= LIMITS.bits:
-        with precision_of(Balls(bits)):
-            found = compute(Balls(bits))
-        if all(_good(ball, digits) for ball in found.values()):
-            return show(found, digits)
-        bits *= 2
-    raise InputError(f"{digits} digits are not reached with {LIMITS.bits} bits: ask for fewer, or a lower order")
-
-
-def _good(ball: Any, digits: int) -> bool:
-    """Digits relative to the value; what is not told from zero must be far below them."""
-    import flint
-
-    with flint.ctx.workprec(64):
-        radius, size = ball.rad(), abs(ball.mid())
-        least = flint.arb(10) ** -digits
-        return bool(ball.is_finite() and (radius < least * size or abs(ball).abs_upper() < least**2))
-
-
-def _mpfs(found: Mapping[int, Any], digits: int) -> dict[int, Any]:
-    return {n: _mpf(ball, digits) for n, ball in found.items()}
-
-
-def _mpf(ball: Any, digits: int) -> Any:
-    """A ball as an mpmath number with this many digits; zero when it holds zero, for then it is far below them."""
-    import mpmath
-
-    with mpmath.workdps(digits + 3):
-        value = Fraction(0) if ball.contains(0) else as_rational(ball)
-        return mpmath.mpf(value.numerator) / value.denominator

@@ -1,28 +1,153 @@
-"""Normal forms of p at a contact point, with the changes of source and target that reach them."""
+"""Normal forms of p and phi, with the changes of source and target that reach them, as sympy expressions.
+
+p is folded at a tangency point.  Its cusps lie off the tau-axis, where a flight lands on a tangency point at rest; the
+cusps of phi are their mirror images under the involution.  At a cusp the germ is given by its own jets.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.jets import JetSpace
+from singimpact.algebra.polynomials import Exponents
+from singimpact.algebra.rings import EXACT
+from singimpact.algebra.symbols import SymbolRing
 from singimpact.contact.contact import contact_order
-from singimpact.inputs import refuse
+from singimpact.germs.normal_form import NormalForm
+from singimpact.germs.normal_form import normal_form as reduced
+from singimpact.inputs import InputError, refuse
+from singimpact.theory.digits import sympy_digits, with_digits
 from singimpact.theory.fold_form import FoldForm, fold_form
+from singimpact.theory.places import exact_contact, place
+from singimpact.theory.sheet import sheet
 
-HIGHEST = 10  # of the fold form for generic jets: seconds; each order takes about four times the one before
+HIGHEST = {"tangency": 12, "cusp": 8}  # for symbols: seconds; each order takes about twice the one before
+HIGHEST_NUMBERS = 30
 
 
-def normal_form(order: int = 4, at: str | int = "tangency") -> FoldForm:
-    """The fold form of p at a tangency to total degree `order`: `.source`, `.outline` and what is left over.
+@dataclass(frozen=True)
+class ShownForm:
+    """psi o (u, w) = (u, T^2) or (A, T^3 + A T) up to the order; psi takes off the offset and divides by lead.
+
+    Attributes
+    ----------
+    kind : "fold" or "cusp". order : the last degree reached.
+    source : T(u, t). unfolding : A(u) at a cusp, else None. offset : B(u), the outline of p at a fold. lead : w_0m.
+    normal : the form reached. residual_vanishes, invertible : what was checked of it.
+    """
+
+    kind: str
+    order: int
+    source: Any
+    unfolding: Any
+    offset: Any
+    lead: Any
+    normal: tuple[Any, Any]
+    residual_vanishes: bool
+    invertible: bool
+
+
+def normal_form(
+    order: int = 4, at: str | int = "tangency", model: Any = None, tau: Any = None, digits: int = 30
+) -> FoldForm | ShownForm:
+    """The fold form of p at a tangency, or the cusp form of p or phi at a cusp, to total degree `order`.
 
     Parameters
     ----------
-    order : int >= 3. at : "tangency" or 1; p is a fold at no other contact order.
+    order : int >= 3. at : "tangency" (or 1) or "cusp".
+    model, tau, digits : at a tangency, as for `v_c`; the form is then in (sigma, t) with numbers.
+
+    Returns
+    -------
+    FoldForm for symbols at a tangency, in (sigma, eta); else ShownForm.  At a cusp the germ is (u, w(u, t)), where u
+    is what p or phi keeps, t runs along the kernel, and w_ik are the coefficients of w, in units of w_03.
 
     Examples
     --------
     >>> normal_form(order=3).normal
     (sigma, -eta**2*k)
+    >>> cusp = normal_form(order=3, at="cusp")
+    >>> cusp.normal, cusp.source
+    ((U, T**3 + T*U), t + u*w_12/3)
     """
-    if contact_order(at) != 1:
-        raise refuse("at", at, "'tangency': p is folded there alone")
-    if isinstance(order, bool) or not isinstance(order, int) or not 3 <= order <= HIGHEST:
-        raise refuse("order", order, f"an integer from 3 to {HIGHEST}")
-    return fold_form(order)
+    name = "cusp" if at == "cusp" else "tangency"
+    if name == "tangency" and contact_order(at) != 1:
+        raise refuse("at", at, "'tangency' or 'cusp': where p or phi has a normal form")
+    most = HIGHEST[name] if model is None else HIGHEST_NUMBERS
+    if isinstance(order, bool) or not isinstance(order, int) or not 3 <= order <= most:
+        raise refuse("order", order, f"an integer from 3 to {most}")
+    if model is not None:
+        if name == "cusp":
+            raise InputError("at = 'cusp' takes no model: the cusps of a model are among its singular points")
+        return _of_model(order, model, tau, digits)
+    if tau is not None:
+        raise refuse("tau", tau, "a model too: tau names a point of it")
+    return fold_form(order) if name == "tangency" else cusp_form(order)
+
+
+@lru_cache(maxsize=8)
+def cusp_form(order: int) -> ShownForm:
+    """The cusp form of a germ whose coefficients are symbols, w_03 = 1."""
+    keys = [(i, n - i) for n in range(1, order + 1) for i in range(n + 1) if (i, n - i) not in ((0, 1), (0, 2), (0, 3))]
+    ring = SymbolRing(tuple(f"w_{i}{k}" for i, k in keys))
+    space = JetSpace(("u", "t"), order, ring)
+    germ: dict[Exponents, Any] = {key: ring.symbol(name) for key, name in zip(keys, ring.names, strict=True)}
+    w = space.jet({(0, 3): ring.rational(Fraction(1)), **germ})
+    return shown_form(reduced(w, 3))
+
+
+def _of_model(order: int, model: Any, tau: Any, digits: int) -> ShownForm:
+    """The fold form of p at a tangency point of a model: exact where the jets are rational, else with digits."""
+    where = place(model, 1, tau)
+    contact = exact_contact(where, order)
+    if contact is not None and contact.ring is EXACT:
+        return shown_form(reduced(sheet(contact, order).v, 2))
+
+    def shown(found: NormalForm, digits: int) -> ShownForm:
+        return shown_form(found, lambda ball: sympy_digits(ball, digits))
+
+    return with_digits(  # type: ignore[no-any-return]
+        lambda ring: reduced(sheet(where.contact(order, ring), order).v, 2), digits, shown, _numbers
+    )
+
+
+def _numbers(found: NormalForm) -> list[Any]:
+    return [found.lead, *found.source.terms.values(), *found.offset.terms.values()]
+
+
+def shown_form(found: NormalForm, number: Callable[[Any], Any] | None = None) -> ShownForm:
+    """A normal form of `germs` in sympy.
+
+    Parameters
+    ----------
+    number : shows a coefficient; without it the ring's own way.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.rings import EXACT
+    >>> u, t = JetSpace(("u", "t"), 4, EXACT).generators()
+    >>> shown_form(reduced(t * t + u * t, 2)).offset
+    -u**2/4
+    """
+    jets = [found.source, found.offset, *found.unfolding.values(), found.residual]
+    source, offset, *unfolding, residual = (jet.to_sympy(number) for jet in jets)
+    lead = found.source.space.constant(found.lead).to_sympy(number)
+    T, U, u = sympy.Symbol("T"), sympy.Symbol("U"), sympy.Symbol(found.source.space.variables[0])
+    left = 0 if found.reached else residual / lead
+    return ShownForm(
+        kind={2: "fold", 3: "cusp"}[found.power],
+        order=found.residual.space.order,
+        source=source,
+        unfolding=unfolding[0] if unfolding else None,
+        offset=offset,
+        lead=lead,
+        normal=(U, T**3 + U * T + left) if unfolding else (u, T**2 + left),
+        residual_vanishes=found.reached,
+        invertible=found.invertible,
+    )

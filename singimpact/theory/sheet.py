@@ -53,16 +53,7 @@ class Sheet:
 
     def to_sympy(self, jet: Jet) -> Any:
         """A jet of this sheet as a sympy expression in its variables."""
-        import sympy
-
-        symbols = [sympy.Symbol(name) for name in jet.space.variables]
-        convert = getattr(self.contact.ring, "to_sympy", sympy.sympify)
-        return sympy.Add(
-            *(
-                convert(value) * sympy.prod(s**e for s, e in zip(symbols, key, strict=True))
-                for key, value in jet.terms.items()
-            )
-        )
+        return jet.to_sympy()
 
 
 def sheet(contact: Contact, order: int) -> Sheet:

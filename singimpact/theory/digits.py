@@ -1,0 +1,79 @@
+"""Certified digits: a computation in balls is done again with more bits until each result has its digits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil
+from typing import Any
+
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.univariate import precision_of
+from singimpact.inputs import InputError, refuse
+
+
+@dataclass(frozen=True)
+class DigitLimits:
+    """digits : the most that are given. bits : the most that are worked with, reached when a result cancels."""
+
+    digits: int = 2000
+    bits: int = 1 << 16
+
+
+LIMITS = DigitLimits()
+
+
+def with_digits(
+    compute: Callable[[Balls], Any],
+    digits: int,
+    show: Callable[[Any, int], Any],
+    balls_in: Callable[[Any], Iterable[Any]] = lambda found: found.values(),
+) -> Any:
+    """What `compute(ring)` gives in balls, at growing precision until each number has its digits.
+
+    Parameters
+    ----------
+    show : makes the result of what was computed and the digits. balls_in : its numbers.
+    """
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= LIMITS.digits:
+        raise refuse("digits", digits, f"an integer from 1 to {LIMITS.digits}")
+    bits = ceil(digits * 3.33) + 128
+    while bits <= LIMITS.bits:
+        with precision_of(Balls(bits)):
+            found = compute(Balls(bits))
+        if all(_good(ball, digits) for ball in balls_in(found)):
+            return show(found, digits)
+        bits *= 2
+    raise InputError(f"{digits} digits are not reached with {LIMITS.bits} bits: ask for fewer, or a lower order")
+
+
+def _good(ball: Any, digits: int) -> bool:
+    """Digits relative to the value; what is not told from zero must be far below them."""
+    import flint
+
+    with flint.ctx.workprec(64):
+        radius, size = ball.rad(), abs(ball.mid())
+        least = flint.arb(10) ** -digits
+        return bool(ball.is_finite() and (radius < least * size or abs(ball).abs_upper() < least**2))
+
+
+def all_digits(found: Mapping[int, Any], digits: int) -> dict[int, Any]:
+    """Every ball of a series as an mpmath number."""
+    return {n: as_digits(ball, digits) for n, ball in found.items()}
+
+
+def as_digits(ball: Any, digits: int) -> Any:
+    """A ball as an mpmath number with this many digits; zero when it holds zero, for then it is far below them."""
+    import mpmath
+
+    with mpmath.workdps(digits + 3):
+        value = Fraction(0) if ball.contains(0) else as_rational(ball)
+        return mpmath.mpf(value.numerator) / value.denominator
+
+
+def sympy_digits(ball: Any, digits: int) -> Any:
+    """A ball as a sympy Float with this many digits."""
+    import sympy
+
+    return sympy.Float(as_digits(ball, digits), digits)
