@@ -74,7 +74,7 @@ def normal_form(w: Jet, power: int) -> NormalForm:
     lead = w.coefficient((0, power))
     shape = w.scaled(ring.power(lead, Fraction(-1)))
     start = _root(_row(shape, 0)[power:], power, ring)  # T = t start(t) at u = 0
-    source = {(0, k + 1): value for k, value in enumerate(start)}
+    source: dict[Exponents, Any] = {(0, k + 1): value for k, value in enumerate(start)}
     powers = _powers([*start, *[ring.rational(Fraction(0))] * power], power, ring)
     parts: list[dict[Exponents, Any]] = [{} for _ in range(power - 1)]
     for n in range(top + 1):
