@@ -278,7 +278,7 @@ class Jet:
         """The jet as a sympy expression in its variables; `number` shows a coefficient, or else the ring does."""
         import sympy
 
-        convert: Callable[[Any], Any] = number or getattr(self.space.ring, "to_sympy", sympy.sympify)
+        convert: Any = number or getattr(self.space.ring, "to_sympy", sympy.sympify)
         letters = [sympy.Symbol(name) for name in self.space.variables]
         powers = (sympy.prod(s**e for s, e in zip(letters, key, strict=True)) for key in self.terms)
         return sympy.Add(*(convert(value) * power for value, power in zip(self.terms.values(), powers, strict=True)))

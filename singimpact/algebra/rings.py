@@ -109,6 +109,12 @@ class Multiprecision:
 class Symbolic:
     """sympy objects."""
 
+    def symbol(self, name: str) -> Any:
+        """A letter."""
+        import sympy
+
+        return sympy.Symbol(name)
+
     def element(self, value: Any) -> Any:
         """A sympy object without a float in it, or a rational of Python."""
         import sympy

@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 from singimpact.algebra.polynomials import PackedPolynomials
+from singimpact.algebra.rings import EXACT
 
 
 class SymbolRing:
@@ -53,11 +54,27 @@ class SymbolRing:
 
         return self._context.constant(flint.fmpq(value.numerator, value.denominator))
 
-    def to_sympy(self, value: Any) -> Any:
-        """A polynomial of the ring as a sympy expression in plain symbols."""
+    def pi(self) -> Any:
+        raise ArithmeticError("pi is not a polynomial")
+
+    def call(self, function: str, argument: Any) -> Any:
+        """A function of a constant polynomial whose value is rational; others are no polynomials."""
+        if argument.is_constant():
+            (start,) = argument.coeffs() or [0]
+            return self.rational(EXACT.call(function, Fraction(int(start.numerator), int(start.denominator))))
+        raise ArithmeticError(f"{function}({argument}) is not a polynomial")
+
+    def letters(self) -> list[Any]:
+        """What sympy shows for the names."""
         import sympy
 
-        symbols = [sympy.Symbol(name) for name in self.names]
+        return [sympy.Symbol(name) for name in self.names]
+
+    def to_sympy(self, value: Any) -> Any:
+        """A polynomial of the ring as a sympy expression."""
+        import sympy
+
+        symbols = self.letters()
         terms = []
         for exponents, coefficient in value.to_dict().items():
             term = sympy.Rational(int(coefficient.p), int(coefficient.q))

@@ -18,10 +18,12 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.theory import implicit_route
 from singimpact.theory.completion import symbolic_completion
 from singimpact.theory.invariant_curve import invariant_curve
+from singimpact.theory.letters import LetteredModel
 from singimpact.theory.sheet import sheet
 from singimpact.theory.symbolic_curve import symbolic_curve
 
 DUFFING = Oscillator("x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3", "0.3", "1/2")
+LETTERED = Oscillator("x + d*xdot + k*x**3", "cos(t)", "0.3", "1/2", {"d": "0.1", "k": "0.3"})
 
 def memory():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
@@ -52,6 +54,8 @@ TASKS = (
     Task("v_c, generic jets, order 12", "sheet(Contact.generic(0, 12), 12).xdot", 0.5),
     Task("v_c at a tangency, order 14", "sheet(Contact.generic(1, 14), 14).xdot", 1.0),
     Task("v_c, cubic Duffing model, order 12", "sheet(Contact.of(DUFFING, Fraction(1), 0, 12, EXACT), 12).xdot", 0.05),
+    Task("v_c, cubic Duffing model, its parameters letters, order 12",
+         'sheet(LetteredModel(LETTERED, ["d", "k"], 1).contact(12), 12).xdot', 0.05),
     Task("gamma, exact, order 32",
          "invariant_curve(Contact.of(DUFFING, Fraction(0), 1, 32, EXACT), Fraction(3, 5), 32)", 1.0),
     Task("gamma, 256-bit balls, order 64",
@@ -80,7 +84,7 @@ class Measured:
     def line(self) -> str:
         """One line of the table."""
         limit = "" if self.task.limit is None else f"  (limit {self.task.limit * 1e3:.0f} ms)"
-        return f"{self.task.name:50} {self.seconds * 1e3:9.1f} ms {self.megabytes:6.0f} MB{limit}"
+        return f"{self.task.name:60} {self.seconds * 1e3:9.1f} ms {self.megabytes:6.0f} MB{limit}"
 
 
 def measured(task: Task) -> Measured:

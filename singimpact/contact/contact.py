@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import factorial
@@ -18,15 +18,15 @@ from singimpact.oscillator.model import Oscillator, require_smooth_text
 NAMED_ORDERS = {"generic": 0, "regular": 0, "tangency": 1, "swan": 2}
 
 
-def acceleration(oscillator: Oscillator) -> Expression:
-    """a_c(t) = g(t) - f(c, 0) as a tree in t.
+def acceleration(oscillator: Oscillator, keep: Collection[str] = ()) -> Expression:
+    """a_c(t) = g(t) - f(c, 0) as a tree in t, and in the parameters in `keep`.
 
     Examples
     --------
     >>> print(acceleration(Oscillator("x", "cos(2*t)", "0.3", 1)))
     cos(2*t) - 0.3
     """
-    return rest_acceleration(oscillator.force(), oscillator.forcing(), oscillator.clearance)
+    return rest_acceleration(oscillator.force(keep), oscillator.forcing(keep), oscillator.clearance)
 
 
 def rest_acceleration(f: Expression, g: Expression, clearance: Expression) -> Expression:
@@ -117,16 +117,19 @@ def _pairs(j: int, order: int) -> list[tuple[int, int]]:
     return [(i, k) for i in range(order) for k in range(order) if i + k and i * (j + 2) + k * (j + 1) + 1 <= order]
 
 
-def acceleration_jet(oscillator: Oscillator, tau: Any, order: int, ring: Any) -> list[Any]:
-    """a_c^(k)(tau)/k! for k = 0..order."""
+def acceleration_jet(oscillator: Oscillator, tau: Any, order: int, ring: Any, keep: Collection[str] = ()) -> list[Any]:
+    """a_c^(k)(tau)/k! for k = 0..order; parameters in `keep` are symbols of the ring."""
     start = evaluate(tau, {}, ring) if isinstance(tau, Expression) else tau
     space = JetSpace(("u",), order, ring)
     (u,) = space.generators() if order else (space.jet({}),)
-    jet = space.evaluate(acceleration(oscillator), {"t": space.constant(start) + u})
+    letters = {name: space.constant(ring.symbol(name)) for name in keep}
+    jet = space.evaluate(acceleration(oscillator, keep), {"t": space.constant(start) + u, **letters})
     return [jet.coefficient((k,)) for k in range(order + 1)]
 
 
-def force_jet(oscillator: Oscillator, j: int, order: int, ring: Any) -> dict[tuple[int, int], Any]:
+def force_jet(
+    oscillator: Oscillator, j: int, order: int, ring: Any, keep: Collection[str] = ()
+) -> dict[tuple[int, int], Any]:
     """(i, k) -> f_ik/(i! k!) at (c, 0), for the pairs that the sheet to total order `order` needs."""
     pairs = _pairs(j, order)
     top = max((i + k for i, k in pairs), default=0)
@@ -135,5 +138,6 @@ def force_jet(oscillator: Oscillator, j: int, order: int, ring: Any) -> dict[tup
     space = JetSpace(("X", "V"), top, ring)
     X, V = space.generators()
     start = space.constant(evaluate(oscillator.clearance, {}, ring))
-    jet = space.evaluate(oscillator.force(), {"x": start + X, "xdot": V})
+    letters = {name: space.constant(ring.symbol(name)) for name in keep}
+    jet = space.evaluate(oscillator.force(keep), {"x": start + X, "xdot": V, **letters})
     return {pair: jet.terms[pair] for pair in pairs if pair in jet.terms}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in, substitute, walk
@@ -80,17 +80,20 @@ class Oscillator:
         """A digest of f and g alone: models that differ in parameters, clearance or restitution share it."""
         return hashlib.sha256(f"{self._texts[0]}|{self._texts[1]}".encode()).hexdigest()[:16]
 
-    def force(self) -> Expression:
-        """f with the parameters' values put in."""
-        return substitute(self.f, self.parameters)
+    def force(self, keep: Collection[str] = ()) -> Expression:
+        """f with the parameters' values put in; those in `keep` stay letters."""
+        return substitute(self.f, self._values(keep))
 
-    def forcing(self) -> Expression:
-        """g with the parameters' values put in."""
-        return substitute(self.g, self.parameters)
+    def forcing(self, keep: Collection[str] = ()) -> Expression:
+        """g with the parameters' values put in; those in `keep` stay letters."""
+        return substitute(self.g, self._values(keep))
 
-    def rho(self) -> Expression:
-        """The restitution as a tree in v with the parameters' values put in."""
-        return substitute(rebound.rho_of(self.restitution), self.parameters)
+    def rho(self, keep: Collection[str] = ()) -> Expression:
+        """The restitution as a tree in v with the parameters' values put in; those in `keep` stay letters."""
+        return substitute(rebound.rho_of(self.restitution), self._values(keep))
+
+    def _values(self, keep: Collection[str]) -> dict[str, Expression]:
+        return {name: value for name, value in self.parameters.items() if name not in keep}
 
     def slope_at_rest(self) -> Expression:
         """r = -rho'(0).

@@ -1,8 +1,8 @@
-"""Jets that are exact but not rational: polynomials in constants such as cos(12/5)."""
+"""Jets that are exact but not rational: polynomials in constants such as cos(12/5), or in letters."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -40,12 +40,9 @@ class ConstantRing(SymbolRing):
             total += term
         return total
 
-    def to_sympy(self, value: Any) -> Any:
-        """An element as a sympy expression."""
-        import sympy
-
-        plain = super().to_sympy(value)
-        return plain.subs(dict(zip(map(sympy.Symbol, self.names), self.constants, strict=True)))
+    def letters(self) -> list[Any]:
+        """The constants."""
+        return list(self.constants)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ConstantRing) and self.constants == other.constants
@@ -56,11 +53,17 @@ class ConstantRing(SymbolRing):
 
 def contact_of_constants(model: Oscillator, tau: Expression, j: int, order: int) -> Contact:
     """The jets of a model at an exact tau as polynomials in constants, or as rationals when they are."""
+    a = acceleration_jet(model, to_sympy(tau), max(order - 1, j), SYMBOLIC)
+    return contact_in_sympy(dict(enumerate(a)), force_jet(model, j, order, SYMBOLIC), j, tau)
+
+
+def contact_in_sympy(
+    a: Mapping[int, Any], f: Mapping[tuple[int, int], Any], j: int, tau: Expression | None = None
+) -> Contact:
+    """Jets that are sympy expressions as polynomials in whatever they are made of; a_0..a_(j-1) are left out."""
     import sympy
 
-    a = acceleration_jet(model, to_sympy(tau), max(order - 1, j), SYMBOLIC)
-    f = force_jet(model, j, order, SYMBOLIC)
-    values: dict[Any, Any] = {("a", k): sympy.expand(value) for k, value in enumerate(a) if k >= j}
+    values: dict[Any, Any] = {("a", k): sympy.expand(value) for k, value in a.items() if k >= j}
     values |= {pair: sympy.expand(value) for pair, value in f.items()}
     ring, convert = _ring_of(list(values.values()))
     kept = {key: convert(value) for key, value in values.items() if value != 0}
@@ -68,7 +71,7 @@ def contact_of_constants(model: Oscillator, tau: Expression, j: int, order: int)
     return Contact(
         j,
         ring,
-        {k: kept.get(("a", k), zero) for k in range(j, len(a))},
+        {k: kept.get(("a", k), zero) for k in a if k >= j},
         {(i, k): value for (i, k), value in kept.items() if i != "a"},
         tau,
     )

@@ -5,7 +5,7 @@ For a model they are exact when tau_* and lambda are, else mpmath numbers whose 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import factorial
@@ -19,6 +19,7 @@ from singimpact.inputs import InputError, refuse
 from singimpact.theory.completion import leaves, symbolic_completion
 from singimpact.theory.digits import all_digits, sympy_digits, with_digits
 from singimpact.theory.invariant_curve import InvariantCurve, invariant_curve
+from singimpact.theory.letters import LetteredModel
 from singimpact.theory.places import Place, exact_contact, multiplier, place
 from singimpact.theory.power_series import TRUST, PowerSeries
 from singimpact.theory.sheet import generic_sheet, sheet
@@ -51,12 +52,23 @@ def _checked(name: str, value: Any, least: int, most: int) -> int:
     return value
 
 
-def _without_model(tau: Any) -> None:
-    if tau is not None:
+def _lettered(model: Any, tau: Any, keep: Sequence[str], j: int) -> LetteredModel | None:
+    """The model whose parameters stay letters, when there are such."""
+    if isinstance(keep, str) or keep:
+        return LetteredModel(model, keep, j, tau)
+    if model is None and tau is not None:
         raise refuse("tau", tau, "a model too: tau names a point of it")
+    return None
 
 
-def v_c(order: int = 6, at: str | int = "generic", model: Any = None, tau: Any = None, digits: int = 30) -> Any:
+def v_c(
+    order: int = 6,
+    at: str | int = "generic",
+    model: Any = None,
+    tau: Any = None,
+    digits: int = 30,
+    keep: Sequence[str] = (),
+) -> Any:
     """v_c(tau_* + sigma, t) to total degree `order`, as a sympy expression [e:vtaylor, e:degen, e:swan].
 
     Parameters
@@ -66,6 +78,7 @@ def v_c(order: int = 6, at: str | int = "generic", model: Any = None, tau: Any =
     model : an oscillator; without one, symbols stand for the jets. tau : the point; without one the first point of
         the contact order with an invariant curve (at a regular point it must be given).
     digits : of the numbers, when they are not exact.
+    keep : parameters of the model that stay letters; without tau the derivatives of a_c are then symbols too.
 
     Examples
     --------
@@ -74,18 +87,20 @@ def v_c(order: int = 6, at: str | int = "generic", model: Any = None, tau: Any =
     >>> from singimpact.oscillator.model import Oscillator
     >>> v_c(order=3, at="swan", model=Oscillator("x", "cos(2*t)", 1, "1/2"), tau=0)
     sigma**2*t + 2*sigma*t**2/3 + t**3/6
+    >>> v_c(order=3, at="swan", model=Oscillator("x", "b*t**2", 0, "1/2", {"b": 1}), tau=0, keep=["b"])
+    -b*sigma**2*t/2 - b*sigma*t**2/3 - b*t**3/12
     """
     j = contact_order(at)
-    if model is None:
-        _without_model(tau)
-        found = generic_sheet(j, _checked("order", order, 1, LIMITS.sheet))
-        return found.to_sympy(found.v)
+    lettered = _lettered(model, tau, keep, j)
+    if lettered is not None or model is None:
+        _checked("order", order, 1, LIMITS.sheet)
+        return (generic_sheet(j, order) if lettered is None else sheet(lettered.contact(order), order)).v.to_sympy()
     _checked("order", order, 1, LIMITS.sheet_numbers)
     where = place(model, j, tau)
     exact = exact_contact(where, order)
     if exact is not None:
         found = sheet(exact, order)
-        return found.to_sympy(found.v)
+        return found.v.to_sympy()
     return with_digits(
         lambda ring: sheet(where.contact(order, ring), order).v,
         digits,
@@ -95,14 +110,19 @@ def v_c(order: int = 6, at: str | int = "generic", model: Any = None, tau: Any =
 
 
 def gamma(
-    order: int = 6, at: str | int = "tangency", model: Any = None, tau: Any = None, digits: int = 30
+    order: int = 6,
+    at: str | int = "tangency",
+    model: Any = None,
+    tau: Any = None,
+    digits: int = 30,
+    keep: Sequence[str] = (),
 ) -> PowerSeries:
     """The invariant curve: v as a series in sigma; without a model in lambda and the jets.
 
     Parameters
     ----------
     order : the last power of sigma, above the contact order. at : "tangency", "swan" or a contact order >= 1.
-    model, tau, digits : as for `v_c`.
+    model, tau, digits, keep : as for `v_c`; with letters, lambda stands for the restitution.
 
     Examples
     --------
@@ -113,10 +133,12 @@ def gamma(
     >>> mpmath.nstr(gamma(order=3, model=Oscillator("x", "cos(2*t)", "0.3", "1/2"))[3], 30)
     '-0.0677530338792073239024574139756'
     """
-    return _curve_series("graph", order, _curved(at), model, tau, digits)
+    return _curve_series("graph", order, _curved(at), model, tau, digits, keep)
 
 
-def fibre(order: int = 6, model: Any = None, tau: Any = None, digits: int = 30) -> PowerSeries:
+def fibre(
+    order: int = 6, model: Any = None, tau: Any = None, digits: int = 30, keep: Sequence[str] = ()
+) -> PowerSeries:
     """The stable fibre at a regular point: v as a series in sigma, where chatter ends at sigma = 0.
 
     Examples
@@ -124,11 +146,16 @@ def fibre(order: int = 6, model: Any = None, tau: Any = None, digits: int = 30) 
     >>> fibre(order=1)[1]
     a*(1/2 - lambda/2)
     """
-    return _curve_series("graph", order, 0, model, tau, digits)
+    return _curve_series("graph", order, 0, model, tau, digits, keep)
 
 
 def dynamics_on_gamma(
-    order: int = 6, at: str | int = "tangency", model: Any = None, tau: Any = None, digits: int = 30
+    order: int = 6,
+    at: str | int = "tangency",
+    model: Any = None,
+    tau: Any = None,
+    digits: int = 30,
+    keep: Sequence[str] = (),
 ) -> PowerSeries:
     """The impact map on the invariant curve: the next sigma as a series in sigma.
 
@@ -137,25 +164,27 @@ def dynamics_on_gamma(
     >>> dynamics_on_gamma(order=2)[1]
     lambda
     """
-    return _curve_series("motion", order, _curved(at), model, tau, digits)
+    return _curve_series("motion", order, _curved(at), model, tau, digits, keep)
 
 
-def chatter_limit(order: int = 6, model: Any = None, tau: Any = None, digits: int = 30) -> PowerSeries:
+def chatter_limit(
+    order: int = 6, model: Any = None, tau: Any = None, digits: int = 30, keep: Sequence[str] = ()
+) -> PowerSeries:
     """Complete chatter from (tau, v): tau_inf - tau as a series in v.
 
     Parameters
     ----------
-    order : the last power of v. model, digits : as for `v_c`. tau : where the first flight starts, a_c(tau) < 0.
+    order : the last power of v. model, digits, keep : as for `v_c`. tau : where the first flight starts, a_c(tau) < 0.
 
     Examples
     --------
     >>> chatter_limit(order=1)[1]
     2/(a*(lambda - 1))
     """
-    if model is None:
-        _without_model(tau)
+    lettered = _lettered(model, tau, keep, 0)
+    if lettered is not None or model is None:
         found = symbolic_completion(_checked("order", order, 1, LIMITS.completion))
-        return PowerSeries("v", order, {n: found.to_sympy(n) for n in range(1, order + 1)})
+        return _with_letters("v", order, {n: found.to_sympy(n) for n in range(1, order + 1)}, lettered)
     _checked("order", order, 1, LIMITS.completion_numbers)
     if tau is None:
         raise InputError("tau is needed: give the time at which the first flight starts")
@@ -187,16 +216,26 @@ def _curved(at: str | int) -> int:
     return j
 
 
-def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: int) -> PowerSeries:
+def _with_letters(
+    variable: str, order: int, coefficients: Mapping[int, Any], lettered: LetteredModel | None
+) -> PowerSeries:
+    """A series in the generic symbols, or in the letters of a model."""
+    if lettered is None:
+        return PowerSeries(variable, order, coefficients)
+    put_in = lettered.put_in(order + lettered.j)
+    return PowerSeries(variable, order, {n: put_in(value) for n, value in coefficients.items()})
+
+
+def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: int, keep: Sequence[str]) -> PowerSeries:
     least = j + 1 if part == "graph" else 1
     top = order if part == "graph" else order + j
-    if model is None:
-        _without_model(tau)
+    lettered = _lettered(model, tau, keep, j)
+    if lettered is not None or model is None:
         _checked("order", order, least, LIMITS.curve - (part == "motion") * j)
         symbolic = symbolic_curve(j, top)
-        known = getattr(symbolic, part)
-        length = int(part == "graph")
-        return PowerSeries("sigma", order, {n: symbolic.to_sympy(value, length) for n, value in known.items()})
+        known, length = getattr(symbolic, part), int(part == "graph")
+        shown = {n: symbolic.to_sympy(value, length) for n, value in known.items()}
+        return _with_letters("sigma", order, shown, lettered)
     _checked("order", order, least, LIMITS.curve_numbers)
     where = place(model, j, tau)
     rough = getattr(_curve(where, top + TRUST.further, DOUBLES), part)
