@@ -35,9 +35,9 @@ def golden(told: list[Section]) -> dict[Path, bytes]:
 
 def generated() -> dict[Path, bytes]:
     """The source under singimpact/generated: from theory and codegen alone, so it works with that folder emptied."""
-    from singimpact.theory.frozen import sheet_module
+    from singimpact.theory.frozen import curve_module, sheet_module
 
-    return {GENERATED / "sheets.py": sheet_module().encode()}
+    return {GENERATED / "sheets.py": sheet_module().encode(), GENERATED / "curves.py": curve_module().encode()}
 
 
 def main() -> None:

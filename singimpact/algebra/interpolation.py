@@ -1,7 +1,7 @@
 """Polynomials whose coefficients are rational functions of one letter, from their values at whole numbers.
 
 The denominators are known beforehand, so a numerator is interpolated; its degree is not known, so nodes are added until
-the last divided differences vanish, and two nodes more must agree with what was found.
+the last divided differences vanish, and every coefficient must agree with two nodes more.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ Value = dict[Exponents, Any]
 
 BATCH = 6  # nodes added at a time
 CHECKS = 2  # nodes that are not used for the interpolation and must agree
+WEIGHTS = (1 << 61) - 1  # a prime: powers modulo it have no pattern
 MOST_NODES = 600  # more than order 12 takes; a wrong denominator would go on for ever
 
 
@@ -63,7 +64,9 @@ def interpolated(
         sizes = _sizes(nodes, columns, denominators)
         if sizes is not None:
             made = zip(sizes, columns, denominators, strict=True)
-            return [_one(nodes[:size], column[:size], below) for size, column, below in made]
+            found = [_one(nodes[:size], column[:size], below) for size, column, below in made]
+            if all(_agrees(one, nodes, column) for one, column in zip(found, columns, strict=True)):
+                return found
     raise ArithmeticError("the denominators given are not those of the values")
 
 
@@ -79,10 +82,22 @@ def _sizes(nodes: Sequence[int], columns: Sequence[Sequence[Value]], denominator
     return sizes[::-1]
 
 
+def _agrees(found: RationalCoefficients, nodes: Sequence[int], values: Sequence[Value]) -> bool:
+    """Whether every monomial has its value at the last nodes, which the interpolation did not use."""
+    import flint
+
+    for node, value in zip(nodes[-CHECKS:], values[-CHECKS:], strict=True):
+        shown = found.at(flint.fmpq(node))
+        if any(shown.get(key, 0) != value.get(key, 0) for key in shown.keys() | value.keys()):
+            return False
+    return True
+
+
 @lru_cache(maxsize=4096)
 def _weight(key: Exponents) -> int:
-    """One combination of all monomials shows the degree of the highest: unlike weights, so that nothing cancels."""
-    return 1 + sum(pow(2 * place + 3, int(exponent), 1 << 61) for place, exponent in enumerate(key) if exponent)
+    """One combination of all monomials shows the highest degree, unless it cancels: weights without a pattern."""
+    powers = (pow(2 * place + 3, 40 * int(exponent) + 17, WEIGHTS) for place, exponent in enumerate(key) if exponent)
+    return 1 + sum(powers)
 
 
 def _scaled(nodes: Sequence[int], row: Sequence[Any], below: Any) -> list[Any]:

@@ -43,7 +43,7 @@ def function_source(
         rows.setdefault(key[-1], {})[key[:-1]] = coefficient
     inner = list(variables[:-1])
     lines += [f"    c_{power} = {_row(inner, rows[power], parameters)}" for power in sorted(rows)]
-    lines.append(f"    return {_horner(variables[-1], {power: f'c_{power}' for power in rows})}")
+    lines.append(f"    return {horner(variables[-1], {power: f'c_{power}' for power in rows})}")
     return "\n".join(lines) + "\n"
 
 
@@ -53,19 +53,20 @@ def _row(variables: list[str], part: Mapping[Exponents, Coefficient], parameters
     below: dict[int, dict[Exponents, Coefficient]] = {}
     for key, coefficient in part.items():
         below.setdefault(key[-1], {})[key[:-1]] = coefficient
-    return _horner(variables[-1], {n: _row(variables[:-1], rest, parameters) for n, rest in below.items()})
+    return horner(variables[-1], {n: _row(variables[:-1], rest, parameters) for n, rest in below.items()})
 
 
-def _horner(variable: str, coefficients: Mapping[int, str]) -> str:
+def horner(variable: str, coefficients: Mapping[int, str]) -> str:
     """c_l + x (c_m + ...) with the gaps between powers taken in one step."""
     powers = sorted(coefficients)
     text = coefficients[powers[-1]]
     for low, high in zip(powers[-2::-1], powers[:0:-1], strict=True):
-        text = f"({coefficients[low]} + {_power(variable, high - low)} * {text})"
-    return text if not powers[0] else f"({_power(variable, powers[0])} * {text})"
+        text = f"({coefficients[low]} + {power_text(variable, high - low)} * {text})"
+    return text if not powers[0] else f"({power_text(variable, powers[0])} * {text})"
 
 
-def _power(name: str, exponent: int) -> str:
+def power_text(name: str, exponent: int) -> str:
+    """A power as source."""
     return name if exponent == 1 else f"{name}**{exponent}"
 
 
@@ -78,7 +79,7 @@ def _quotient(coefficient: Coefficient, parameters: Sequence[str]) -> str:
 
 
 def _monomial(factor: int, exponents: Exponents, parameters: Sequence[str]) -> str:
-    jets = [_power(name, e) for name, e in zip(parameters, exponents, strict=True) if e]
+    jets = [power_text(name, e) for name, e in zip(parameters, exponents, strict=True) if e]
     if not jets:
         return str(factor)
     sign = "-" if factor < 0 else ""

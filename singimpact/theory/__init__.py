@@ -11,6 +11,7 @@ from singimpact.theory.formulas import dynamics_on_gamma as dynamics_on_gamma
 from singimpact.theory.formulas import fibre as fibre
 from singimpact.theory.formulas import gamma as gamma
 from singimpact.theory.formulas import v_c as v_c
+from singimpact.theory.formulas import v_c_on_arrays as v_c_on_arrays
 from singimpact.theory.sheet import Sheet as Sheet
 
 if TYPE_CHECKING:

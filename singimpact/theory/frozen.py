@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
+from math import factorial
 from typing import Any
 
 from singimpact.algebra.jets import Jet
+from singimpact.algebra.polynomials import Exponents
 from singimpact.codegen.formulas import function_source, module_source
-from singimpact.contact.contact import NAMED_ORDERS
-from singimpact.theory.sheet import generic_sheet
+from singimpact.codegen.rational_series import Factored, RationalSeries, Unit, rational_series_source
+from singimpact.contact.contact import NAMED_ORDERS, Contact, derivative_name
+from singimpact.germs.normal_form import normal_form
+from singimpact.theory.completion import symbolic_completion
+from singimpact.theory.sheet import generic_sheet, sheet
+from singimpact.theory.symbolic_curve import length_weight, symbolic_curve
 
 ORDER = 6  # total degree of what is frozen: one digit of v_c per third of a decade in t, and a file that can be read
 PLACES = ("generic", "tangency", "swan")
+CURVED = {"fibre": (0, 4), "gamma_tangency": (1, 5), "gamma_swan": (2, 6)}  # contact order, last power of sigma
+MOVED = {"motion_tangency": (1, 4), "motion_swan": (2, 4)}
+COMPLETED, OUTLINED = 4, 6
 COMMAND = "python derivations/freeze.py"
 
 
@@ -42,3 +52,70 @@ def sheet_module(order: int = ORDER) -> str:
             says = f"{what} velocity at a {place} point, to total degree {order} in (sigma, t)."
             functions.append(velocity_source(f"{name}_{place}", jet, names, says))
     return module_source("v_c and the impact velocity as functions of (sigma, t) and the jets.", COMMAND, functions)
+
+
+def curve_module(shift: int = 0) -> str:
+    """gamma, the motion on it, the fibre, tau_inf and the outline of p at a tangency, as one file.
+
+    Parameters
+    ----------
+    shift : orders more, or less when negative, than what is frozen.
+    """
+    made = [
+        *(_curve(name, j, top + shift, "graph") for name, (j, top) in CURVED.items()),
+        *(_curve(name, j, top + shift, "motion") for name, (j, top) in MOVED.items()),
+        _completion(COMPLETED + shift),
+        _outline(OUTLINED + shift),
+    ]
+    return module_source("Curves of the theory as functions of one variable, lambda and the jets.", COMMAND, made)
+
+
+def _curve(name: str, j: int, top: int, part: str) -> str:
+    symbolic = symbolic_curve(j, top if part == "graph" else top + j)
+    known = getattr(symbolic, part)
+    coefficients = {n: _factored(known[n].terms) for n in known if n <= top}
+    what = "v on" if part == "graph" else "The next sigma on"
+    says = f"{what} the {'fibre' if not j else 'curve gamma'} at contact order {j}, to sigma^{top}; r by lambda."
+    series = RationalSeries("sigma", symbolic.names, coefficients, _unit(j, symbolic.names), int(part == "graph"))
+    return rational_series_source(name, series, says)
+
+
+def _completion(top: int) -> str:
+    found = symbolic_completion(top)
+    coefficients = {n: _factored(value.terms) for n, value in found.coefficients.items()}
+    series = RationalSeries("v", found.names, coefficients, _unit(0, found.names), argument=1)
+    return rational_series_source("chatter_limit", series, f"tau_inf - tau to v^{top}; lambda is the restitution r.")
+
+
+def _outline(top: int) -> str:
+    contact = Contact.generic(1, top, unit=True)
+    names = contact.ring.names
+    offset = normal_form(sheet(contact, top).v, 2).offset
+    coefficients = {key[0]: _constants(value) for key, value in offset.terms.items()}
+    series = RationalSeries("sigma", names, coefficients, _unit(1, names), 1)
+    return rational_series_source("outline_tangency", series, f"v on the outline of p at a tangency, to sigma^{top}.")
+
+
+def _constants(value: Any) -> dict[Exponents, Factored]:
+    return {key: Factored(content) for key, content in _coefficient(value).items()}
+
+
+def _unit(j: int, names: tuple[str, ...]) -> Unit:
+    return Unit(derivative_name(j), factorial(j), {name: length_weight(name) for name in names})
+
+
+def _factored(terms: Mapping[Exponents, tuple[Any, Any]]) -> dict[Exponents, Factored]:
+    """Numerator over denominator, each an fmpq_poly in lambda, by factors that begin with a positive number."""
+    found = {}
+    for key, (above, below) in terms.items():
+        content, factors = Fraction(1), {}
+        for poly, sign in ((above, 1), (below, -1)):
+            constant, parts = poly.factor()
+            content *= Fraction(int(constant.p), int(constant.q)) ** sign
+            for part, power in parts:
+                whole = tuple(int(c.p) for c in part.coeffs())
+                if whole[0] < 0:
+                    whole, content = tuple(-c for c in whole), content * (-1) ** power
+                factors[whole] = sign * int(power)
+        found[tuple(map(int, key))] = Factored(content, factors)
+    return found

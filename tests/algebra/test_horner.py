@@ -3,12 +3,17 @@
 import time
 from fractions import Fraction
 
+import mpmath
 import numpy as np
+import pytest
 
+import singimpact as si
 from singimpact.algebra.horner import Horner
 from singimpact.algebra.rings import EXACT
 from singimpact.contact.contact import Contact
 from singimpact.theory.sheet import sheet
+
+EPSILON = 2.0**-52
 
 
 def duffing_sheet(order=8):
@@ -31,6 +36,46 @@ def test_relative_error_near_contact():
             worst = max(worst, abs(Fraction(float(found[n])) / value - 1))
     assert checked > 200
     assert worst < 4 * 2.0**-52
+
+
+@pytest.mark.parametrize("size", [0.3, 1e-6])
+def test_compensated_next_to_z(size):
+    """At doubles next to roots of v_c/t plain Horner keeps no digit; with two doubles all but a few units are kept."""
+    terms = duffing_sheet().v.terms
+    plain, careful = Horner(terms), Horner(terms, compensated=True)
+    worst, lost = 0.0, 0.0
+    for t in np.linspace(size / 2, size, 25):
+        start = -0.15
+        for _ in range(60):  # the secant of v_c/t in sigma, in doubles: ends at a double next to the root
+            value = careful(start, t) / t
+            slope = (careful(start + 1e-7, t) / t - value) / 1e-7
+            start -= float(value / slope)
+        for sigma in (start, np.nextafter(start, 1), start + 3e-15):
+            exact = sum(c * Fraction(float(sigma)) ** i * Fraction(float(t)) ** k for (i, k), c in terms.items())
+            size_of_terms = sum(
+                abs(c) * abs(Fraction(float(sigma))) ** i * Fraction(float(t)) ** k for (i, k), c in terms.items()
+            )
+            allowed = 2 * EPSILON + 8 * EPSILON**2 * float(size_of_terms / abs(exact))
+            worst = max(worst, abs(float(Fraction(float(careful(sigma, t))) / exact - 1)) / allowed)
+            lost = max(lost, abs(float(Fraction(float(plain(sigma, t))) / exact - 1)))
+    assert worst < 1
+    assert lost > 1e-3
+
+
+def test_compensated_sheet_of_a_model_against_true_flights():
+    """Next to Z, at a tangency in t = 0: the flight launched with v returns after t."""
+    model = si.ImpactOscillator("x + xdot/3 + x**2", "t**2 - t", 0, "0.5")
+    careful = si.theory.v_c_on_arrays(12, "tangency", model, 0, compensated=True)
+    sigma, low, high = -1e-3, 2.5e-3, 3.5e-3
+    for _ in range(40):  # v > 0 beyond the root
+        middle = (low + high) / 2
+        low, high = (low, middle) if careful(sigma, middle) > 0 else (middle, high)
+    t, v = high, float(careful(sigma, high))
+    assert 0 < v < 1e-16
+    with mpmath.workdps(40):
+        back = model.first_hit(sigma, v, digits=35).flight_time
+        slope = float(si.theory.v_c_on_arrays(12, "tangency", model, 0)(sigma, t + 1e-9) - v) / 1e-9
+        assert abs((back - mpmath.mpf(t)) * slope / v) < 4 * EPSILON
 
 
 def test_order_8_at_20000_points():

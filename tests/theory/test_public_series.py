@@ -1,5 +1,6 @@
 """The public series: reference values, exact where they can be, honest radii, one line for what cannot be done."""
 
+import itertools
 from fractions import Fraction
 
 import mpmath
@@ -40,6 +41,23 @@ def test_generic_series_in_lambda():
     assert sympy.cancel(series[3] - (1 - lambda_) * (2 + lambda_) * (3 * a2 - a1 * f_v) / 48) == 0
     assert series.as_expr().has(sympy.Symbol("sigma"))
     assert si.theory.r_of_lambda(1).subs(lambda_, sympy.Rational(1, 2)) == sympy.Rational(5, 16)
+
+
+@pytest.mark.parametrize(
+    "series",
+    [
+        lambda n: si.theory.gamma(order=n),
+        lambda n: si.theory.gamma(order=n, at="swan"),
+        lambda n: si.theory.fibre(order=n),
+        lambda n: si.theory.dynamics_on_gamma(order=n),
+        lambda n: si.theory.chatter_limit(order=n),
+    ],
+)
+def test_a_coefficient_is_the_same_at_every_order(series):
+    found = [series(n) for n in range(3, 7)]
+    for shorter, longer in itertools.pairwise(found):
+        for n in range(1, len(shorter)):
+            assert sympy.cancel(shorter[n] - longer[n]) == 0
 
 
 def test_chatter_limit_in_jets():
