@@ -13,6 +13,7 @@ from singimpact.progress import ProgressLine
 from singimpact.store import folder
 
 if TYPE_CHECKING:
+    from singimpact.documents.series import Asked
     from singimpact.documents.steps import Mark, Section
 
 FORMATS = ("latex", "pdf", "markdown", "json", "sympy", "numpy")
@@ -21,32 +22,48 @@ FORMATS = ("latex", "pdf", "markdown", "json", "sympy", "numpy")
 @click.command(short_help="write the derivations as LaTeX, PDF, Markdown or JSON")
 @click.argument("names", metavar="[SECTION]...", nargs=-1)
 @click.option("--format", "form", type=click.Choice(FORMATS), default="latex", show_default=True, help="What to write.")
-@click.option("--order", type=int, help="With sympy or numpy: the order of the series.  [default: 6]")
-@click.option("--model", metavar="FILE", help="With sympy or numpy: the series of this model.")
+@click.option("--order", type=int, help="The series to this order, in place of the derivations.  [default: 6]")
+@click.option("--model", metavar="FILE", help="The series of this model.")
+@click.option("--tau", help="With --model: the point of the series.  [default: tangency and swan points]")
+@click.option("--keep", metavar="NAME", multiple=True, help="With --model: a parameter that stays a letter.")
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 @click.option("-o", "--output", metavar="DIR", help="Write files there instead of one text to standard output.")
 def command(
-    names: tuple[str, ...], form: str, order: int | None, model: str | None, as_json: bool, output: str | None
+    names: tuple[str, ...],
+    form: str,
+    order: int | None,
+    model: str | None,
+    tau: str | None,
+    keep: tuple[str, ...],
+    as_json: bool,
+    output: str | None,
 ) -> None:
     """Write the derivations: steps in order, each equation with its label and the verdict of its claim.
 
     A SECTION is a number (4), a name (section4) or a subject (tangency); all of them without one.
     LaTeX goes into DIR as one file a section and derivations.tex, which takes them in.
-    sympy and numpy write the series v_c, gamma and more to an order, for symbols or for a model.
+    With --order or --model the series v_c, gamma and more are written instead, in any format; sympy and numpy write
+    them alone.
     """
-    from singimpact.documents.derivations import as_text, marks_of, sections
-
     form = "json" if as_json else form
-    if form in ("sympy", "numpy"):
-        _series(form, order, model, output)
-        return
-    if order is not None or model is not None:
-        raise InputError("--order and --model belong to --format sympy and --format numpy")
     if form == "pdf" and output is None:
         raise InputError("--format pdf goes to files only: give a folder with -o")
-    told = sections(names)
     if output is not None:
-        folder(output)  # a place that cannot be written is refused before the claims are run
+        folder(output)  # a place that cannot be written is refused before anything is computed
+    if form in ("sympy", "numpy") or order is not None or model is not None:
+        if names:
+            raise InputError(f"{names[0]} is a section of the derivations: a series takes --order and --model alone")
+        _series(_asked(order, model, tau, keep), form, output)
+        return
+    if tau is not None or keep:
+        raise InputError("--tau and --keep belong to --model")
+    _derivations(names, form, output)
+
+
+def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
+    from singimpact.documents.derivations import as_text, marks_of, sections
+
+    told = sections(names)
     with ProgressLine() as line:
         done = iter(range(1, sys.maxsize))
         marks = marks_of(told, lambda claim, _, total: line.show(next(done), total, claim.id))
@@ -56,24 +73,38 @@ def command(
         _write(told, marks, form, output)
 
 
-def _series(form: str, order: int | None, model: str | None, output: str | None) -> None:
-    """The series as text, to standard output or to a file in the folder."""
-    from singimpact.documents.series import series_text
-    from singimpact.store import written
+def _asked(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> Asked:
+    from singimpact.documents.series import Asked
 
-    if output is not None:
-        folder(output)
     given = None
     if model is not None:
         from singimpact.impact_oscillator import read_model
 
         given = read_model(model)
-    text = series_text(6 if order is None else order, form, given)
-    if output is None:
-        click.echo(text, nl=False)
+    return Asked(6 if order is None else order, given, tau, keep)
+
+
+def _series(asked: Asked, form: str, output: str | None) -> None:
+    """The series as text to standard output, or as files in the folder."""
+    from singimpact.documents.derivations import as_text
+    from singimpact.documents.sections import NOTATION
+    from singimpact.documents.series import series_section, series_text
+    from singimpact.store import written
+
+    if form in ("sympy", "numpy", "json"):
+        text = series_text(asked, form)
+        if output is None:
+            click.echo(text, nl=False)
+            return
+        name = "series.json" if form == "json" else f"series_{form}.py"
+        with written(Path(output) / name) as draft:
+            draft.write_bytes(text.encode())
         return
-    with written(Path(output) / f"series_{form}.py") as draft:
-        draft.write_bytes(text.encode())
+    told = [NOTATION, series_section(asked)]
+    if output is None:
+        click.echo(as_text(told, {}, form), nl=False)
+    else:
+        _write(told, {}, form, output)
 
 
 def _write(told: list[Section], marks: dict[str, Mark], form: str, output: str) -> None:

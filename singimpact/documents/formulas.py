@@ -11,7 +11,8 @@ from typing import Any
 import sympy
 
 _NAMES = {"mbar": r"\bar m", "ell": r"\ell", "Qrest": r"Q_r(\sigma, \eta) + O(3)", "Qdot": "Q'"}
-_GREEK = {"sigma", "tau", "eta", "lambda", "mu", "omega"}
+_GREEK = {"rho", "sigma", "tau", "eta", "lambda", "mu", "omega"}
+SHOWN_DIGITS = 15
 SMALL = ("v", "eta", "sigma", "s", "t")
 _FALLING = ("mbar", "m", "lambda", "r")
 _FIRST = ("r", "k", "ell")
@@ -38,6 +39,10 @@ def latex(value: Any) -> str:
     value = sympy.sympify(value)
     if value.is_Symbol:
         return name_of(value)
+    if value.is_Function or value.is_NumberSymbol:
+        return str(sympy.latex(value))
+    if value.is_Float:
+        return _decimal(value)
     return joined([latex(term) for term in _sorted(value)]) if value.is_Add else _product(value)
 
 
@@ -51,6 +56,12 @@ def joined(terms: list[str]) -> str:
     """
     first, *rest = terms
     return first + "".join(f" - {term[1:]}" if term.startswith("-") else f" + {term}" for term in rest)
+
+
+def _decimal(value: Any) -> str:
+    """A number with the digits that are shown; a power of ten as one."""
+    digits, _, exponent = str(sympy.Float(value, SHOWN_DIGITS)).partition("e")
+    return rf"{digits} \cdot 10^{{{int(exponent)}}}" if exponent else digits
 
 
 def name_of(symbol: Any) -> str:
@@ -67,7 +78,7 @@ def name_of(symbol: Any) -> str:
         return "a" + "'" * order if order < 4 else f"a^{{({order})}}"
     head, _, index = name.partition("_")
     if index:
-        return f"{head}_{{{index}}}"
+        return f"{name_of(head)}_{{{index}}}"
     return "\\" + name if name in _GREEK else _NAMES.get(name, name)
 
 

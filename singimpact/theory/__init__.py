@@ -16,7 +16,7 @@ from singimpact.theory.sheet import Sheet as Sheet
 
 if TYPE_CHECKING:
     from singimpact.theory.homogeneous import r_of_lambda as r_of_lambda
-    from singimpact.theory.normal_form import normal_form as normal_form
+    from singimpact.theory.plane_forms import normal_form as normal_form
 
 
 def __getattr__(name: str) -> Any:
@@ -25,7 +25,7 @@ def __getattr__(name: str) -> Any:
 
         return r_of_lambda
     if name == "normal_form":
-        from singimpact.theory.normal_form import normal_form
+        from singimpact.theory.plane_forms import normal_form
 
         return normal_form
     raise AttributeError(f"module 'singimpact.theory' has no attribute {name!r}")

@@ -18,8 +18,9 @@ from singimpact.algebra.jets import Jet
 from singimpact.contact.contact import Contact
 from singimpact.germs.normal_form import normal_form
 from singimpact.theory.fold_route import eta, k
-from singimpact.theory.implicit_route import sigma, t
+from singimpact.theory.implicit_route import a_symbol, sigma, t
 from singimpact.theory.sheet import Sheet, sheet
+from singimpact.theory.symbolic_curve import length_weight
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,20 @@ class FoldForm:
     residual_vanishes: bool
     invertible: bool
     identity_order: int
+
+    @property
+    def outline_of_p(self) -> Any:
+        """The outline v = P(sigma) in the jets as they are, no unit of length taken out.
+
+        Examples
+        --------
+        >>> sympy.Poly(fold_form(3).outline_of_p, sigma).coeff_monomial(sigma**2)
+        3*a_d1/8
+        """
+        unit = a_symbol(1) / 6
+        names = [str(letter) for letter in self.outline.free_symbols - {sigma}]
+        jets = {sympy.Symbol(name): sympy.Symbol(name) * unit ** length_weight(name) for name in names}
+        return sympy.expand(unit * self.outline.subs(jets, simultaneous=True))
 
 
 def _sheet(order: int) -> Sheet:

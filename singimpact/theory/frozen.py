@@ -22,6 +22,7 @@ PLACES = ("generic", "tangency", "swan")
 CURVED = {"fibre": (0, 4), "gamma_tangency": (1, 5), "gamma_swan": (2, 6)}  # contact order, last power of sigma
 MOVED = {"motion_tangency": (1, 4), "motion_swan": (2, 4)}
 COMPLETED, OUTLINED = 4, 6
+HIGHEST, HIGHEST_COMPLETION = 10, 8  # of a curve with symbols: a minute
 COMMAND = "python derivations/freeze.py"
 
 
@@ -42,8 +43,14 @@ def _coefficient(value: Any) -> dict[tuple[int, ...], Fraction]:
     return {tuple(map(int, key)): Fraction(int(c.p), int(c.q)) for key, c in value.to_dict().items()}
 
 
-def sheet_module(order: int = ORDER) -> str:
+def sheet_module() -> str:
     """v_c and the impact velocity at a regular point, a tangency and a swan, as one file."""
+    title = "v_c and the impact velocity as functions of (sigma, t) and the jets."
+    return module_source(title, COMMAND, sheet_functions(ORDER))
+
+
+def sheet_functions(order: int) -> list[str]:
+    """The source of both velocities at each place, to total degree `order`."""
     functions = []
     for place in PLACES:
         made = generic_sheet(NAMED_ORDERS[place], order)
@@ -51,23 +58,27 @@ def sheet_module(order: int = ORDER) -> str:
         for name, jet, what in (("v_c", made.v, "Launch"), ("xdot_c", made.xdot, "Impact")):
             says = f"{what} velocity at a {place} point, to total degree {order} in (sigma, t)."
             functions.append(velocity_source(f"{name}_{place}", jet, names, says))
-    return module_source("v_c and the impact velocity as functions of (sigma, t) and the jets.", COMMAND, functions)
+    return functions
 
 
-def curve_module(shift: int = 0) -> str:
-    """gamma, the motion on it, the fibre, tau_inf and the outline of p at a tangency, as one file.
+def curve_module() -> str:
+    """gamma, the motion on it, the fibre, tau_inf and the outline of p at a tangency, as one file."""
+    title = "Curves of the theory as functions of one variable, lambda and the jets."
+    return module_source(title, COMMAND, curve_functions())
 
-    Parameters
-    ----------
-    shift : orders more, or less when negative, than what is frozen.
-    """
-    made = [
-        *(_curve(name, j, top + shift, "graph") for name, (j, top) in CURVED.items()),
-        *(_curve(name, j, top + shift, "motion") for name, (j, top) in MOVED.items()),
-        _completion(COMPLETED + shift),
-        _outline(OUTLINED + shift),
+
+def curve_functions(order: int | None = None) -> list[str]:
+    """The source of each curve, to the orders that are frozen, or to `order` where symbols reach it."""
+    return [
+        *(_curve(name, j, _to(order, top, HIGHEST), "graph") for name, (j, top) in CURVED.items()),
+        *(_curve(name, j, _to(order, top, HIGHEST - j), "motion") for name, (j, top) in MOVED.items()),
+        _completion(_to(order, COMPLETED, HIGHEST_COMPLETION)),
+        _outline(_to(order, OUTLINED, HIGHEST)),
     ]
-    return module_source("Curves of the theory as functions of one variable, lambda and the jets.", COMMAND, made)
+
+
+def _to(order: int | None, frozen: int, highest: int) -> int:
+    return frozen if order is None else min(order, highest)
 
 
 def _curve(name: str, j: int, top: int, part: str) -> str:

@@ -97,6 +97,24 @@ def place(model: Any, j: int, tau: Any) -> Place:
     return Place(model, j, None, near[0])
 
 
+def points_of(model: Oscillator, tau: Any) -> list[int]:
+    """The contact orders 0, 1, 2 to look at: that of tau, or those of the model's points with an invariant curve."""
+    if tau is not None:
+        return [next(j for j in (2, 1, 0) if j == 0 or _is_place(model, j, tau))]
+    found = [j for j in KINDS if _is_place(model, j, None)]
+    if not found:
+        raise InputError("a_c of this model has no tangency or swan point with an invariant curve: give tau")
+    return found
+
+
+def _is_place(model: Oscillator, j: int, tau: Any) -> bool:
+    try:
+        place(model, j, tau)
+    except InputError:
+        return False
+    return True
+
+
 def _told(values: list[Any]) -> str:
     return ", ".join(f"{float(value):.3g}" for value in values)
 

@@ -1,5 +1,8 @@
 """`singimpact derive --order`: series as text that runs by itself."""
 
+import json
+import shutil
+
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -20,8 +23,54 @@ def model_file(tmp_path):
     return str(path)
 
 
+@pytest.fixture
+def damped_file(tmp_path):
+    path = tmp_path / "damped.toml"
+    path.write_text(
+        'f = "x + d*xdot"\ng = "cos(2*t)"\nclearance = "0.3"\nrestitution = "0.5"\nparameters = {d = "0.1"}\n'
+    )
+    return str(path)
+
+
+SERIES = ["v_c_generic", "fibre", "chatter_limit", "v_c_tangency", "gamma_tangency", "motion_tangency",
+          "outline_tangency", "v_c_swan", "gamma_swan", "motion_swan"]  # fmt: skip
+
+
 def test_sympy_for_symbols():
-    assert "gamma = -a_d1*sigma**2*(lambda - 1)*(lambda + 2)/6" in told("--format", "sympy", "--order", "2")
+    lines = told("--format", "sympy", "--order", "3").splitlines()
+    assert [line.split(" = ")[0] for line in lines] == SERIES
+    assert "gamma_tangency = -a_d1*sigma**2*(lambda - 1)*(lambda + 2)/6" in " ".join(lines).replace(" + sigma**3", " ")
+
+
+def test_json_for_symbols_and_for_a_model(model_file):
+    found = json.loads(told("--format", "json", "--order", "3"))
+    assert [each["name"] for each in found["series"]] == SERIES
+    of_model = json.loads(told("--format", "json", "--order", "4", "--model", model_file))
+    assert [each["name"] for each in of_model["series"]] == [name for name in SERIES if name.endswith("tangency")]
+    regular = json.loads(told("--format", "json", "--order", "4", "--model", model_file, "--tau", "6/5"))
+    assert [each["name"] for each in regular["series"]] == SERIES[:3]
+
+
+@pytest.mark.parametrize("form", ["latex", "markdown"])
+def test_written_formats(form, model_file):
+    text = told("--format", form, "--order", "4", "--model", model_file)
+    assert "0.2872545556991" in text
+    assert r"\bar\sigma" in told("--format", form, "--order", "3")
+
+
+def test_latex_compiles(tmp_path, model_file):
+    if shutil.which("latexmk") is None:
+        pytest.skip("latexmk is not found: CI has it")
+    told("--format", "pdf", "--order", "4", "-o", str(tmp_path / "symbols"))
+    told("--format", "pdf", "--order", "8", "--model", model_file, "-o", str(tmp_path / "model"))
+    assert (tmp_path / "symbols" / "derivations.pdf").stat().st_size > 20_000
+    assert (tmp_path / "model" / "derivations.pdf").stat().st_size > 20_000
+
+
+def test_letters_of_a_model(damped_file):
+    text = told("--format", "sympy", "--order", "3", "--model", damped_file, "--keep", "d")
+    assert "v_c_tangency = -a_d1*sigma*t/2" in text
+    assert "*d/" in text
 
 
 def test_numpy_text_runs_by_itself(model_file):
@@ -29,21 +78,26 @@ def test_numpy_text_runs_by_itself(model_file):
     exec(told("--format", "numpy", "--order", "4", "--model", model_file), scope)
     sigma = np.array([-0.1, -0.01])
     series = si.theory.gamma(order=4, model=si.linear(2, "0.3", "0.5"))
-    assert scope["gamma"](sigma) == pytest.approx([float(series(s)) for s in sigma], rel=1e-14)
+    assert scope["gamma_tangency"](sigma) == pytest.approx([float(series(s)) for s in sigma], rel=1e-14)
     assert scope["v_c_tangency"](-0.1, 0.05) > 0
 
 
 def test_numpy_for_symbols_and_a_file(tmp_path):
-    assert "def v_c_swan(sigma: Any, t: Any, a_d2" in told("--format", "numpy", "--order", "4")
-    told("--format", "sympy", "--order", "2", "-o", str(tmp_path / "out"))
+    text = told("--format", "numpy", "--order", "4")
+    assert "def v_c_swan(sigma: Any, t: Any, a_d2" in text
+    assert "def gamma_swan(sigma: Any, lambda_: Any" in text
+    exec(text, {})
+    told("--format", "sympy", "--order", "3", "-o", str(tmp_path / "out"))
     assert (tmp_path / "out" / "series_sympy.py").read_text().startswith("v_c_generic = ")
 
 
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (["--order", "3"], "belong to --format sympy"),
+        (["section4", "--order", "3"], "is a section of the derivations"),
         (["--format", "sympy", "--order", "0"], "order = 0 is not accepted"),
+        (["--tau", "1"], "belong to --model"),
+        (["--order", "4", "--keep", "d"], "belong to a model"),
     ],
 )
 def test_refusals(arguments, sentence):

@@ -54,11 +54,7 @@ def symbolic(name):
     elif name == "chatter_limit":
         series = theory.chatter_limit(4)
     else:
-        form = theory.normal_form(6)
-        k = sympy.Symbol("a_d1") / 6
-        jets = {s: s / k if str(s).startswith("a_") else s * k ** (int(str(s)[2]) + int(str(s)[3]) - 1)
-                for s in form.outline.free_symbols if str(s) != "sigma"}  # fmt: skip
-        return k * form.outline.subs(jets, simultaneous=True)
+        return theory.normal_form(6).outline_of_p
     return series.as_expr()
 
 

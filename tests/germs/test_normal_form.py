@@ -14,7 +14,7 @@ from singimpact.algebra.univariate import precision_of
 from singimpact.germs.normal_form import normal_form
 from singimpact.inputs import InputError
 from singimpact.theory import unfolding
-from singimpact.theory.normal_form import normal_form as public_form
+from singimpact.theory.plane_forms import normal_form as public_form
 
 ORDERS = [3, 5, 8]
 
