@@ -130,6 +130,18 @@ def test_radius_is_honest(model, tolerance):
         assert error <= tolerance * min(1, abs(long(sigma)))
 
 
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
+@pytest.mark.parametrize("model", [linear(), linear("0.3", "0.9"), si.ImpactOscillator(*DUFFING)])
+def test_radius_is_honest_under_the_true_map(model, tolerance):
+    """Against the velocity that separates complete from incomplete chatter, found by flights alone."""
+    series = si.theory.gamma(order=8, model=model)
+    point = next(p for p in si.tangency_points(model) if p.kind == "gamma")
+    radius = series.valid_within(tolerance)
+    for part in (1.0, 0.6):
+        true = float(si.threshold(model, point.tau - radius * part).v)
+        assert abs(float(series(mpmath.mpf(-radius * part))) - true) <= tolerance * min(1, true) + 4e-13 * true
+
+
 def test_multiplier_is_found_when_rational():
     from singimpact.algebra.numbers import constant
 
