@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -51,10 +52,27 @@ def path(osc: Oscillator, tau: Any, v: Any, t: Any) -> Path:
 
 
 def _followed(osc: Oscillator, states: States, times: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    return many_paths(osc, states.tau, states.v, [times])[0]
+
+
+def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any, Any]]) -> list[np.ndarray[Any, Any]]:
+    """x - c and x' of many launches, each at its own times: one array of shape (times, 2) a launch.
+
+    Parameters
+    ----------
+    osc : the model. tau, v : arrays of launches. times : for each of them, times of one sign that run away from 0.
+
+    Examples
+    --------
+    >>> many_paths(Oscillator("0", "-2", 0, 1), np.zeros(2), np.array([3.0, 0.0]), [np.array([1.0]), np.array([-1.0])])
+    [array([[2., 1.]]), array([[-1.,  2.]])]
+    """
     kernel, order = kernel_of(osc), degree_for(EPSILON)
-    out = np.full((times.size, 2), np.nan)
-    compiled(kernel.text, kernel.names)["follow"](
-        launches(osc, kernel, states.tau)[0], float(states.v[0]), times, order, LIMITS.safety * EPSILON,
-        doubles(kernel), np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), out,
-    )  # fmt: skip
-    return out
+    follow = compiled(kernel.text, kernel.names)["follow"]
+    numbers, X, W = doubles(kernel), np.zeros(order + 2), np.zeros((kernel.rows, order + 2))
+    found = []
+    for launch, speed, at in zip(launches(osc, kernel, tau), v.tolist(), times, strict=True):
+        out = np.full((at.size, 2), np.nan)
+        follow(launch, speed, at, order, LIMITS.safety * EPSILON, numbers, X, W, out)
+        found.append(out)
+    return found

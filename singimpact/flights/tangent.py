@@ -55,13 +55,13 @@ def response(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array
     with np.errstate(all="ignore"):
         hit = np.flatnonzero((velocity < 0) & np.isfinite(time))
     if hit.size:
-        flat[hit] = _variations(osc, tau[hit], v[hit], time[hit])
+        flat[hit] = variations(osc, tau[hit], v[hit], time[hit])
     return _response(flat.T, velocity, _acceleration(osc, tau, time, velocity))
 
 
 def touching(osc: Oscillator, tau: Array, v: Array, time: Array) -> tuple[Array, Array]:
     """Derivatives of x(T) by tau and by v at fixed flight time."""
-    by_v, _, by_tau, _ = _variations(osc, tau, v, time).T
+    by_v, _, by_tau, _ = variations(osc, tau, v, time).T
     return by_tau, by_v
 
 
@@ -73,7 +73,8 @@ def _response(variations: Any, velocity: Any, acceleration: Any) -> Response:
                         by_v_dot + acceleration * time_by_v)  # fmt: skip
 
 
-def _variations(osc: Oscillator, tau: Array, v: Array, time: Array) -> Array:
+def variations(osc: Oscillator, tau: Array, v: Array, time: Array) -> Array:
+    """dx/dv, dx'/dv, dx/dtau, dx'/dtau at fixed flight times >= 0, shape (n, 4)."""
     kernel, out = kernel_of(osc), np.empty((v.size, 4))
     if kernel.form is not None:
         space = compiled(kernel.text, kernel.names)

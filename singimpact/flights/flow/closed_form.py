@@ -66,7 +66,7 @@ def triple(a: complex, b: complex, c: complex, t: float) -> complex:
         b, c = c, b
     elif bc >= ca:
         a, b = b, a
-    if abs(a - c) * t > 0.5:
+    if abs((a - c) * t) > 0.5:
         return (pair(a, b, t) - pair(b, c, t)) / (a - c)
     mean = (a + b + c) / 3
     a, b, c = (a - mean) * t, (b - mean) * t, (c - mean) * t

@@ -1,0 +1,204 @@
+"""`ImpactSurface`: the curves on V_c' in a window, each computed once, when it is first asked for.
+
+Z comes from flights launched at rest.  The involution iota(tau, t) = (tau + t, -t) takes it to the horizon H; the
+velocity x' at the other end takes it to the outline P = p(H) = phi(Z).  Nothing is flown twice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.contact.points import TangencyPoint, tangency_points
+from singimpact.flights.hits import first_hit
+from singimpact.flights.inverse import backwards
+from singimpact.inputs import refuse
+from singimpact.oscillator.linear import linear_form
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+from singimpact.surface.curve import Curve, Window
+from singimpact.surface.named_vertices import NamedLine, named
+from singimpact.surface.rest_flights import RestFlights
+from singimpact.surface.tracing import traced
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Cusp:
+    """A flight from rest at a tangency point that crosses c again: phi has a cusp there, p at its mirror image.
+
+    Attributes
+    ----------
+    tau, t : the point of Z, a_c(tau) = 0: the cusp of phi [p:phising]. velocity : x' at the other end.
+    """
+
+    tau: float
+    t: float
+    velocity: float
+
+    @property
+    def of_p(self) -> tuple[float, float]:
+        """The cusp of p, on H: (tau, t) of the flight that lands at rest on the tangency point."""
+        return self.tau + self.t, -self.t
+
+    @property
+    def image(self) -> tuple[float, float]:
+        """(tau, v) of the cusp of P, the image of both."""
+        return self.tau + self.t, self.velocity
+
+
+CELLS_A_RADIAN = 6  # of the sketch, of the fastest rate that the model shows
+SAME = 1e-6  # a vertex is the first hit when that comes at its time: two crossings nearer than this meet on the picture
+
+
+class ImpactSurface:
+    """V_c' of a model in a window of the (tau, t)-plane.
+
+    Parameters
+    ----------
+    model : the oscillator. tau, t : ends of the window; t of either sign, or a polynomial's zeros are cut off.
+    pixels : how wide a picture of it is; curves are drawn to a quarter of such a point.
+
+    Attributes
+    ----------
+    window : as read. flights : computed so far.
+
+    Examples
+    --------
+    >>> surface = ImpactSurface(Oscillator("0", "12*(t**2 - 1)", 0, "1/2"), (-4, 4), (-6, 6))
+    >>> [(curve.closed, len(curve.marked("tangency"))) for curve in surface.zero_set]
+    [(True, 2)]
+    """
+
+    def __init__(self, model: Oscillator, tau: Any, t: Any, pixels: Any = 800) -> None:
+        if not isinstance(model, Oscillator):
+            raise refuse("model", model, "an ImpactOscillator")
+        self.model, self.window = model, Window.read(tau, t, pixels)
+        self._rest = RestFlights(model)
+
+    @property
+    def flights(self) -> int:
+        """Flights computed so far."""
+        return self._rest.flown
+
+    @cached_property
+    def tangencies(self) -> tuple[TangencyPoint, ...]:
+        """The zeros of a_c with tau in the window, those of one period repeated."""
+        return tuple(point for point, _ in self._tangencies)
+
+    @cached_property
+    def _tangencies(self) -> list[tuple[TangencyPoint, float]]:
+        """Each zero with its time in the window."""
+        points = tangency_points(self.model)
+        low, high = self.window.tau
+        if self.model.period is None:
+            return [(point, point.tau) for point in points if low <= point.tau <= high]
+        period = as_float(self.model.period)
+        turns = range(int(np.floor(low / period)) - 1, int(np.ceil(high / period)) + 1)
+        found = [(point, point.tau + n * period) for n in turns for point in points]
+        return [(point, tau) for point, tau in found if low <= tau <= high]
+
+    @cached_property
+    def _lines(self) -> list[NamedLine]:
+        cell = 1 / (CELLS_A_RADIAN * _fastest(self.model))
+        made = traced(self._rest.grid, self._rest.y_and_gradient, self.window, cell, self._speed)
+        zeros = [tau for _, tau in self._tangencies]
+        return [named(line, zeros, self._rest) for line in made]
+
+    @cached_property
+    def _speed(self) -> float:
+        """A size of the velocities in the window, for the spacing of P."""
+        tau = np.linspace(*self.window.tau, 65)
+        return float(np.abs(self._rest.acceleration(tau)).max() * max(map(abs, self.window.t)) / 8 or 1.0)
+
+    @cached_property
+    def zero_set(self) -> list[Curve]:
+        """Z: (tau, t) with v_c = 0, t != 0; `visible` where it is a first hit [s2-zero-set]."""
+        return [self._curve("Z", line.points, ("tau", "t"), line, self._first_ahead(line)) for line in self._lines]
+
+    @cached_property
+    def horizon(self) -> list[Curve]:
+        """H = iota(Z): (tau, t) where the flight lands with velocity 0; `visible` where it does so first."""
+        return [self._curve("H", _involved(line.points), ("tau", "t"), line, self._first_back(line))
+                for line in self._lines]  # fmt: skip
+
+    @cached_property
+    def outline(self) -> list[Curve]:
+        """P = p(H) = phi(Z): (tau, v) of the launches that graze."""
+        return [self._curve("P", np.stack([line.points.sum(axis=1), line.column], axis=1), ("tau", "v"), line,
+                            self._first_back(line)) for line in self._lines]  # fmt: skip
+
+    @cached_property
+    def discontinuities(self) -> list[Curve]:
+        """Where G jumps: the visible part of P."""
+        return [part for curve in self.outline for part in curve.parts(curve.visible) if len(part) > 1]
+
+    @cached_property
+    def cusps(self) -> list[Cusp]:
+        """The cusps of p and phi in the window."""
+        found = []
+        for line in self._lines:
+            at = [mark.index for mark in line.marks if mark.name == "cusp"]
+            places = [(float(line.points[i, 0]), float(line.points[i, 1])) for i in at]
+            found += [Cusp(tau, t, float(line.column[i])) for i, (tau, t) in zip(at, places, strict=True)]
+        return sorted(found, key=lambda cusp: (cusp.tau, cusp.t))
+
+    @cached_property
+    def shadow(self) -> list[Curve]:
+        """(tau, t): the next hit behind the visible horizon, for the same launches."""
+        found = []
+        for line, curve in zip(self._lines, self.horizon, strict=True):
+            ahead = self._next(line.points[:, 0])
+            behind = np.stack([curve.points[:, 0], curve.points[:, 1] + ahead], axis=1)
+            made = Curve("S", behind, ("tau", "t"), (), curve.closed, line.tolerance, curve.visible)
+            found += [part for part in made.parts(curve.visible & np.isfinite(ahead)) if len(part) > 1]
+        return found
+
+    def _curve(self, name: str, points: Array, axes: tuple[str, str], line: NamedLine, visible: Array) -> Curve:
+        return Curve(name, points, axes, line.marks, line.closed, line.tolerance, visible)
+
+    def _first_ahead(self, line: NamedLine) -> Array:
+        """Whether t > 0 is the first hit of the flight from rest."""
+        tau, t = line.points.T
+        return self._is_first(self._next(tau), t)
+
+    def _first_back(self, line: NamedLine) -> Array:
+        """Whether t < 0 is the first hit of the flight from rest run back, so that the graze is a first hit."""
+        tau, t = line.points.T
+        return self._is_first(self._previous(tau), -t)
+
+    def _is_first(self, found: Array, t: Array) -> Array:
+        """A hit at the time of the vertex."""
+        with np.errstate(invalid="ignore"):
+            return np.asarray(np.isfinite(found) & (t > 0) & (np.abs(found - t) <= SAME * (1 + t)))
+
+    def _next(self, tau: Array) -> Array:
+        return self._hits(self.model, tau)
+
+    def _previous(self, tau: Array) -> Array:
+        return self._hits(backwards(self.model), -tau)
+
+    def _hits(self, model: Oscillator, tau: Array) -> Array:
+        self._rest.flown += len(tau)
+        hit = first_hit(model, tau, np.zeros(len(tau)))
+        kept = np.isin(hit.status, (Status.hit, Status.graze))
+        return np.where(kept, hit.flight_time, np.nan)
+
+
+def _involved(points: Array) -> Array:
+    return np.stack([points.sum(axis=1), -points[:, 1]], axis=1)
+
+
+def _fastest(model: Oscillator) -> float:
+    """A rate that flights at rest show: of the waves and of the free motion, or of the period."""
+    form = linear_form(model)
+    if form is not None:
+        waves = [abs(as_float(wave.rate)) for wave in form.harmonics]
+        return float(max([abs(as_float(form.stiffness)) ** 0.5, abs(as_float(form.damping)), 0.5, *waves]))
+    period = None if model.period is None else as_float(model.period)
+    return max(2.0, 0.0 if period is None else 4 * np.pi / period)

@@ -1,0 +1,101 @@
+"""Flights launched at rest: Z is where they cross x = c again, and every other curve follows from them.
+
+    F(tau, t) = x(t) - c for the flight from (c, 0) at tau,   y = F/t^2,   y(tau, 0) = a_c(tau)/2
+
+t may be negative: the flight that ends at rest, run back.  y removes the launch itself, which is a double zero.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import DOUBLES
+from singimpact.contact.contact import acceleration
+from singimpact.flights.inverse import backwards
+from singimpact.flights.path import many_paths
+from singimpact.flights.tangent import variations
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass
+class RestFlights:
+    """Flights of a model that start at rest, counted.
+
+    Attributes
+    ----------
+    model : the oscillator. flown : flights computed so far.
+    """
+
+    model: Oscillator
+    flown: int = 0
+    _acceleration: Any = field(init=False, repr=False)
+    _slope: Any = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        self._acceleration = acceleration(self.model)
+        self._slope = derivative(self._acceleration, "t")
+
+    def acceleration(self, tau: Array) -> Array:
+        """a_c(tau)."""
+        return np.asarray(evaluate(self._acceleration, {"t": tau}, DOUBLES) + 0.0 * tau)
+
+    def grid(self, tau: Array, t: Array) -> Array:
+        """y at all pairs, shape (len(t), len(tau)); t increasing, 0 may be among them."""
+        found = np.empty((len(t), len(tau)))
+        found[t == 0] = self.acceleration(tau) / 2
+        for side in (np.flatnonzero(t > 0), np.flatnonzero(t < 0)[::-1]):
+            if side.size:
+                self.flown += len(tau)
+                paths = many_paths(self.model, tau, np.zeros(len(tau)), [t[side]] * len(tau))
+                found[side] = np.array([path[:, 0] for path in paths]).T / (t[side] ** 2)[:, None]
+        return found
+
+    def ends(self, tau: Array, t: Array) -> tuple[Array, Array]:
+        """x - c and x' at time t of the flight from tau, one pair each."""
+        self.flown += len(tau)
+        paths = many_paths(self.model, tau, np.zeros(len(tau)), [np.array([s]) for s in t.tolist()])
+        both = np.array([path[0] for path in paths]).reshape(len(tau), 2)
+        return both[:, 0], both[:, 1]
+
+    def slopes(self, tau: Array, t: Array, velocity: Array) -> Array:
+        """dF/dtau: the launch moved at rest is a launch with -a, so it is x' - a dx/dv."""
+        return np.asarray(velocity - self.acceleration(tau) * self._by_speed(tau, t)[:, 0])
+
+    def _by_speed(self, tau: Array, t: Array) -> Array:
+        """Derivatives of x and x' at time t by the launch velocity, shape (n, 2)."""
+        found = np.empty((len(tau), 2))
+        for side, model, turn in ((t >= 0, self.model, 1), (t < 0, backwards(self.model), -1)):
+            if side.any():
+                at = np.abs(t[side])
+                answer = variations(model, turn * tau[side], np.zeros(at.size), at)
+                found[side] = answer[:, :2] * [turn, 1]
+        return found
+
+    def rest_matrix(self, tau: Array, t: Array, velocity: Array) -> Array:
+        """The derivative of (F, x') by (tau, t) for one flight, shape (2, 2)."""
+        by_speed, push = self._by_speed(tau, t)[0], float(self.acceleration(tau)[0])
+        pull = evaluate(self.model.force(), {"x": as_float(self.model.clearance), "xdot": velocity[0]}, DOUBLES)
+        there = float(evaluate(self.model.forcing(), {"t": tau[0] + t[0]}, DOUBLES) - pull)
+        return np.array([[velocity[0] - push * by_speed[0], velocity[0]], [there - push * by_speed[1], there]])
+
+    def y_and_gradient(self, points: Array) -> tuple[Array, Array, Array]:
+        """y, (dy/dtau, dy/dt) and x' at points (tau, t); at t = 0 by their limits, where a_c = 0."""
+        tau, t = points.T
+        there = t != 0
+        y, gradient, velocity = self.acceleration(tau) / 2, np.empty((len(t), 2)), np.zeros(len(t))
+        slope = np.asarray(evaluate(self._slope, {"t": tau}, DOUBLES) + 0.0 * tau)
+        gradient[:, 0], gradient[:, 1] = slope / 2, slope / 6
+        tau, t = tau[there], t[there]
+        height, velocity[there] = self.ends(tau, t)
+        by_tau = self.slopes(tau, t, velocity[there])
+        y[there] = height / t**2
+        gradient[there] = np.stack([by_tau / t**2, velocity[there] / t**2 - 2 * y[there] / t], axis=1)
+        return y, gradient, velocity
