@@ -24,7 +24,9 @@ Grid = Callable[[Array, Array], Array]
 class TraceSettings:
     """close : Newton's last step, relative to 1 + |place|, of a vertex that counts as on the curve.
     rounds : of Newton, and of halving. deviation : of a chord from the curve, in points of the picture.
-    finest : times a grid is made finer around an extremum of y or where Newton leaves its cell.
+    finest : times a grid is made finer around an extremum of y. least_cells, most_cells : of the sketch, a side.
+    most_steps : along a small piece. turn : the least cosine of the turn in one step.
+    across : the largest sine of a chord of the sketch with the curve at its ends.
     """
 
     close: float = 4e-13
@@ -32,6 +34,9 @@ class TraceSettings:
     halvings: int = 10
     deviation: float = 0.25
     finest: int = 3
+    most_steps: int = 2000
+    turn: float = 0.9
+    across: float = 0.8
     least_cells: int = 40
     most_cells: int = 600
 
@@ -57,11 +62,13 @@ def traced(grid: Grid, gradient: Gradient, window: Window, cell: float, scale: f
     grid, gradient : y on a grid, and y, its gradient and a further column at points.
     cell : the largest cell that resolves y. scale : of the column, beside the size of the window, for the spacing.
     """
+    small = (_followed(seed, gradient, window, size) for seed, size in _small_ones(grid, window, cell))
+    sketched = (*_sketched(grid, window, cell), *small)
+    made = [one for line in sketched if (one := _on_curve(line, gradient, window, scale, cell)) is not None]
     found: list[Polyline] = []
-    for line in (*_sketched(grid, window, cell), *_small_ones(grid, window, cell)):
-        made = _on_curve(line, gradient, window, scale)
-        if made is not None and not any(_repeats(made, other) for other in found):
-            found.append(made)
+    for line in sorted(made, key=lambda one: -float(np.ptp(one.points, axis=0).sum())):
+        if not any(_repeats(line, longer) for longer in found):
+            found.append(line)
     return found
 
 
@@ -88,20 +95,57 @@ def _sketched(grid: Grid, window: Window, cell: float) -> list[Array]:
     return [np.asarray(line) for line in made if len(line) > 1]
 
 
-def _small_ones(grid: Grid, window: Window, cell: float, depth: int = 0) -> list[Array]:
-    """Closed pieces inside one cell of the sketch: found by a finer grid around each extremum of one sign."""
+def _small_ones(grid: Grid, window: Window, cell: float, depth: int = 0) -> list[tuple[Array, float]]:
+    """A place beside a piece that the sketch may have missed, and a size to begin with, for each extremum."""
     tau, t = _axes(window, cell)
     values = grid(tau, t)
-    found: list[Array] = []
+    found: list[tuple[Array, float]] = []
     for i, j in _extrema(values):
         small = Window((tau[max(j - 1, 0)], tau[min(j + 1, len(tau) - 1)]),
                        (t[max(i - 1, 0)], t[min(i + 1, len(t) - 1)]), window.pixels)  # fmt: skip
-        inner = grid(*(np.linspace(*ends, 17) for ends in (small.tau, small.t)))
+        axes = np.linspace(*small.tau, 17), np.linspace(*small.t, 17)
+        inner = grid(*axes)
         if inner.min() < 0 < inner.max():
-            found += _sketched(grid, small, (small.tau[1] - small.tau[0]) / 32)
+            rising = inner if values[i, j] < 0 else -inner
+            place = np.unravel_index(np.argmax(rising), inner.shape)
+            found.append((np.array([axes[0][place[1]], axes[1][place[0]]]), float(np.ptp(axes[0])) / 16))
         elif depth < SETTINGS.finest and np.abs(inner).min() < 0.5 * np.abs(values[i, j]):
             found += _small_ones(grid, small, (small.tau[1] - small.tau[0]) / 16, depth + 1)
     return found
+
+
+def _followed(seed: Array, gradient: Gradient, window: Window, size: float) -> Array:
+    """The curve through the point next to a seed, step by step along it, until it closes or leaves the window."""
+    place, _, step = newton(seed[None], gradient)
+    if step[0] > SETTINGS.close:
+        return place[:0]
+    ahead = _walked(place[0], 1, gradient, window, size)
+    if len(ahead) > 1 and np.array_equal(ahead[0], ahead[-1]):
+        return ahead
+    return np.vstack([_walked(place[0], -1, gradient, window, size)[:0:-1], ahead])
+
+
+def _walked(start: Array, side: int, gradient: Gradient, window: Window, size: float) -> Array:
+    line, h, ahead = [start], size / 4, side * _along(start, gradient)
+    for _ in range(SETTINGS.most_steps):
+        found, _, step = newton((line[-1] + h * ahead)[None], gradient)
+        turned = side * _along(found[0], gradient)
+        if step[0] > SETTINGS.close or ahead @ turned < SETTINGS.turn or np.hypot(*(found[0] - line[-1])) > 2 * h:
+            h /= 2
+            continue
+        line.append(found[0])
+        ahead, h = turned, min(h * 1.4, size)
+        if len(line) > 4 and np.hypot(*(line[-1] - line[0])) < h:
+            return np.array([*line, line[0]])
+        if not (window.tau[0] <= found[0, 0] <= window.tau[1] and window.t[0] <= found[0, 1] <= window.t[1]):
+            break
+    return np.array(line)
+
+
+def _along(place: Array, gradient: Gradient) -> Array:
+    """The unit tangent, y > 0 at its left."""
+    slope = gradient(place[None])[1][0]
+    return np.asarray(np.array([slope[1], -slope[0]]) / np.hypot(*slope))
 
 
 def _extrema(values: Array) -> list[tuple[int, int]]:
@@ -121,18 +165,32 @@ def _extrema(values: Array) -> list[tuple[int, int]]:
     return [(int(i) + 1, int(j) + 1) for i, j in zip(*np.nonzero(good), strict=True)]
 
 
-def _on_curve(line: Array, gradient: Gradient, window: Window, scale: float) -> Polyline | None:
-    closed = bool(np.allclose(line[0], line[-1], atol=1e-12)) and len(line) > 3
-    start = line[:-1] if closed else line
-    points, column, step = newton(start, gradient)
-    good = step < SETTINGS.close
-    points, column = points[good], column[good]
-    if len(points) < 2:
+def _on_curve(line: Array, gradient: Gradient, window: Window, scale: float, cell: float) -> Polyline | None:
+    if len(line) < 2:
         return None
+    points, column, step = newton(line, gradient)
+    if not _in_order(points, step, gradient):  # thinner than a cell: the sketch has cut it to pieces
+        line = _followed(line[0], gradient, window, cell / 4)
+        if len(line) < 3:
+            return None
+        points, column, step = newton(line, gradient)
+    closed = bool(np.abs(points[0] - points[-1]).max() < 1e-9) and len(points) > 3
     if closed:
-        points, column = np.vstack([points, points[:1]]), np.append(column, column[:1])
+        points[-1], column[-1] = points[0], column[0]
     points, column = _spaced(points, column, gradient, window, scale)
-    return Polyline(points, column, closed, float(step[good].max()))
+    return Polyline(points, column, closed, float(step.max()))
+
+
+def _in_order(points: Array, step: Array, gradient: Gradient) -> bool:
+    """Whether all vertices have settled, and every chord runs along the curve at both of its ends."""
+    if step.max() > SETTINGS.close:
+        return False
+    slope = gradient(points)[1]
+    chord = np.diff(points, axis=0)
+    length = np.hypot(*chord.T)
+    with np.errstate(all="ignore"):
+        along = [np.abs((chord * side).sum(axis=1)) / (length * np.hypot(*side.T)) for side in (slope[:-1], slope[1:])]
+    return bool(np.all((np.maximum(*along) < SETTINGS.across) | (length < 1e-9)))
 
 
 def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array]:
