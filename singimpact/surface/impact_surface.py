@@ -136,7 +136,7 @@ class ImpactSurface:
     @cached_property
     def discontinuities(self) -> list[Curve]:
         """Where G jumps: the visible part of P."""
-        return [part for curve in self.outline for part in curve.parts(curve.visible) if len(part) > 1]
+        return [part for curve in self.outline for part in curve.parts(_to_the_end(curve)) if len(part) > 1]
 
     @cached_property
     def cusps(self) -> list[Cusp]:
@@ -188,6 +188,16 @@ class ImpactSurface:
         hit = first_hit(model, tau, np.zeros(len(tau)))
         kept = np.isin(hit.status, (Status.hit, Status.graze))
         return np.where(kept, hit.flight_time, np.nan)
+
+
+def _to_the_end(curve: Curve) -> Array:
+    """The visible stretches with the named vertices next to them, where they end: a tangency, a cusp, rest."""
+    chosen = curve.visible.copy()
+    for mark in curve.marks:
+        beside = [mark.index - 1, mark.index + 1]
+        if mark.name != "end" and any(0 <= i < len(curve) and curve.visible[i] for i in beside):
+            chosen[mark.index] = True
+    return chosen
 
 
 def _involved(points: Array) -> Array:

@@ -1,0 +1,251 @@
+"""Invariant curves beyond their series: gamma and the stable manifolds W^s_tau, grown by the inverse of the map.
+
+A fundamental piece lies where the series is good; its inverse images follow one another without a gap, and errors
+across the curve shrink.  A piece is a function of one number s; where two neighbours are torn apart, the flight run
+back grazes between them, and the curve is split there by its hit history.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import names_in
+from singimpact.algebra.numbers import as_float
+from singimpact.contact.points import tangency_points
+from singimpact.flights.hits import first_hit
+from singimpact.flights.inverse import backwards, inverse_map
+from singimpact.inputs import InputError
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+from singimpact.surface.curve import Curve, Mark
+from singimpact.theory.formulas import dynamics_on_gamma, fibre, gamma
+from singimpact.theory.power_series import PowerSeries
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class GrowthSettings:
+    """order, trust : of the series, and how good it must be on the fundamental piece. start : points of it.
+    apart : neighbours in s nearer than this share of the piece, still far apart in the picture, are torn.
+    most : points of one generation. generations : inverse images at most.
+    """
+
+    order: int = 12
+    trust: float = 1e-13
+    start: int = 17
+    apart: float = 1e-11
+    most: int = 4000
+    generations: int = 60
+
+
+SETTINGS = GrowthSettings()
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What is drawn of the plane of states: times from tau_low, velocities to v_high, points to a quarter of a pixel.
+
+    Attributes
+    ----------
+    pixel_tau, pixel_v : the size of a point of the picture.
+    """
+
+    tau_low: float
+    tau_high: float
+    v_high: float
+    pixels: int = 800
+
+    @property
+    def scale(self) -> Array:
+        """The size of the picture in both directions."""
+        return np.array([self.tau_high - self.tau_low, self.v_high])
+
+    def holds(self, points: Array) -> Array:
+        """Which points lie inside."""
+        tau, v = points.T
+        return np.asarray((tau >= self.tau_low) & (tau <= self.tau_high) & (v <= self.v_high))
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch of one generation: parameters s in order, their points, how often the map takes them to the start."""
+
+    s: Array
+    points: Array
+    generation: int
+
+
+def grown_gamma(model: Oscillator, frame: Frame, tau: Any = None) -> list[Curve]:
+    """gamma from its series at a tangency (or swan) point to the edge of the frame [t:t2, t:t3].
+
+    Parameters
+    ----------
+    tau : the point; without one the first that has an invariant curve.
+
+    Returns
+    -------
+    curves in (tau, v) in order of hit history, the first with the mark "foot" at (tau_*, 0).
+
+    Examples
+    --------
+    >>> curve = grown_gamma(Oscillator("0", "12*(t**2 - 1)", 0, "1/2"), Frame(-2, 1, 20), 1)[0]
+    >>> round(float(curve.points[-1, 0]), 3), bool(curve.points[-1, 1] < 1e-3)
+    (-1.385, True)
+    """
+    at = _curved(model, tau)
+    series = gamma(SETTINGS.order, at, model, tau)
+    motion = dynamics_on_gamma(SETTINGS.order, at, model, tau)
+    foot = _foot(model, tau, at)
+    size = min(series.valid_within(SETTINGS.trust), motion.valid_within(SETTINGS.trust))
+    return _grown(model, frame, foot, series, -size, float(motion(-size)))
+
+
+def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
+    """W^s_tau of a regular point with a_c(tau) < 0, grown backwards across discontinuities [t:t1].
+
+    Examples
+    --------
+    >>> curves = stable_manifold(Oscillator("0", "12*(t**2 - 1)", 0, "1/2"), Frame(-2, 1, 20), "0.5")
+    >>> curves[0].points[0].tolist()
+    [0.5, 0.0]
+    """
+    series = fibre(SETTINGS.order, model, tau)
+    size = series.valid_within(SETTINGS.trust)
+    foot = _foot(model, tau, None)
+    # along the fibre the map contracts by r to first order; the exact image bounds the fundamental piece
+    landed = model_step(model, np.array([[foot - size, float(series(-size))]]))[0, 0] - foot
+    return _grown(model, frame, foot, series, -size, float(landed))
+
+
+def _curved(model: Oscillator, tau: Any) -> str:
+    """Whether the point is a tangency or a swan."""
+    for at in ("tangency", "swan"):
+        try:
+            gamma(3, at, model, tau)
+        except InputError as error:
+            told = error
+            continue
+        return at
+    raise told
+
+
+def _foot(model: Oscillator, tau: Any, at: str | None) -> float:
+    if tau is not None:
+        from singimpact.algebra.numbers import constant
+
+        return as_float(constant("tau", tau))
+    kind = "gamma" if at == "tangency" else "degenerate"
+    return next(point.tau for point in tangency_points(model) if point.kind == kind)
+
+
+def model_step(model: Oscillator, points: Array) -> Array:
+    """The impact map on points (tau, v), shape (n, 2); nan where there is no next impact."""
+    from singimpact.flights.hits import impact_map
+
+    step = impact_map(model, points[:, 0], points[:, 1])
+    good = np.isin(step.status, (Status.hit, Status.graze))
+    return np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
+
+
+def before(model: Oscillator, points: Array) -> Array:
+    """The inverse map on points, shape (n, 2); nan where nothing lands there."""
+    if names_in(model.restitution):
+        step = inverse_map(model, points[:, 0], points[:, 1])
+        tau, v, status = step.tau, step.v, step.status
+    else:
+        hit = first_hit(backwards(model), -points[:, 0], points[:, 1] / as_float(model.restitution))
+        tau, v, status = points[:, 0] - hit.flight_time, -hit.velocity, hit.status
+    good = np.isin(status, (Status.hit, Status.graze))
+    return np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)
+
+
+def _grown(
+    model: Oscillator, frame: Frame, foot: float, series: PowerSeries, outer: float, inner: float
+) -> list[Curve]:
+    """The series from its foot to the fundamental piece, then the inverse images of that."""
+
+    def start(s: Array) -> Array:
+        return np.stack([foot + s, [float(series(each)) for each in s.tolist()]], axis=1)
+
+    s = np.linspace(inner, outer, SETTINGS.start)
+    pieces, done = [Piece(s, start(s), 0)], [Piece(np.array([0.0, inner]), np.array([[foot, 0.0], start(s[:1])[0]]), 0)]
+    for generation in range(SETTINGS.generations):
+        if not pieces:
+            break
+        done += pieces
+        pieces = [new for piece in pieces for new in _images(model, frame, start, piece, generation + 1)]
+    return list(_joined(done, frame))
+
+
+def _images(
+    model: Oscillator, frame: Frame, start: Callable[[Array], Array], piece: Piece, generation: int
+) -> list[Piece]:
+    """The inverse image of a piece, with points added where the picture asks for them, in stretches without a tear."""
+
+    def image(s: Array) -> Array:
+        points = start(s)
+        for _ in range(generation):
+            points = before(model, points)
+        return points
+
+    s, points = piece.s, before(model, piece.points)
+    s, points = _refined(s, points, image, frame)
+    known = np.isfinite(points).all(axis=1) & (points[:, 0] >= frame.tau_low - 0.2 * frame.scale[0])
+    jump = np.hypot(*(np.diff(points, axis=0) / frame.scale).T) * frame.pixels > 8
+    torn = jump & (np.abs(np.diff(s)) <= SETTINGS.apart * np.ptp(piece.s))
+    cuts = np.flatnonzero(torn | ~known[1:] | ~known[:-1]) + 1
+    parts = np.split(np.arange(len(s)), cuts)
+    return [Piece(s[part], points[part], generation) for part in parts if len(part) > 1 and known[part].all()]
+
+
+def _refined(s: Array, points: Array, image: Callable[[Array], Array], frame: Frame) -> tuple[Array, Array]:
+    """Midpoints put in until chords are as short or as straight as the picture asks, or their ends as close in s."""
+    least = SETTINGS.apart * np.ptp(s)
+    for _ in range(60):
+        wanted = _too_coarse(points, frame) & (np.abs(np.diff(s)) > least)
+        at = np.flatnonzero(wanted)
+        if not at.size or len(s) + at.size > SETTINGS.most:
+            break
+        middle = (s[at] + s[at + 1]) / 2
+        s, points = np.insert(s, at + 1, middle), np.insert(points, at + 1, image(middle), axis=0)
+    return s, points
+
+
+def _too_coarse(points: Array, frame: Frame) -> Array:
+    """Chords longer than 1/40 of the picture, or at a bend that shows; or with one end that is not known."""
+    known = np.isfinite(points).all(axis=1)
+    near: Array = np.logical_or(frame.holds(points), ~known)
+    step = np.diff(points, axis=0) / frame.scale
+    length = np.hypot(*step.T)
+    with np.errstate(all="ignore"):
+        cross = np.abs(step[:-1, 0] * step[1:, 1] - step[:-1, 1] * step[1:, 0])
+        off = cross / np.maximum(np.hypot(*(step[:-1] + step[1:]).T), 1e-300) * frame.pixels
+    bend = np.zeros(len(length), dtype=bool)
+    bend[:-1] |= off > 0.5
+    bend[1:] |= off > 0.5
+    coarse = (length > 1 / 40) | (bend & (length * frame.pixels > 1))
+    return np.asarray((near[:-1] | near[1:]) & ((known[:-1] != known[1:]) | (known[:-1] & known[1:] & coarse)))
+
+
+def _joined(pieces: list[Piece], frame: Frame) -> list[Curve]:
+    """Pieces that follow one another as curves, cut to the frame."""
+    chains: list[list[Piece]] = []
+    for piece in pieces:
+        for chain in chains:
+            if np.hypot(*((chain[-1].points[-1] - piece.points[0]) / frame.scale)) * frame.pixels < 1:
+                chain.append(piece)
+                break
+        else:
+            chains.append([piece])
+    curves = []
+    for n, chain in enumerate(chains):
+        points = np.vstack([chain[0].points, *(piece.points[1:] for piece in chain[1:])])
+        marks = (Mark(0, "foot"),) if n == 0 else ()
+        whole = Curve(f"history {chain[0].generation}", points, ("tau", "v"), marks, visible=frame.holds(points))
+        curves += [replace(part, visible=np.ones(len(part), dtype=bool)) for part in whole.parts(whole.visible)]
+    return [curve for curve in curves if len(curve) > 1]
