@@ -218,7 +218,7 @@ def _refined(s: Array, points: Array, image: Callable[[Array], Array], frame: Fr
 
 def _too_coarse(points: Array, frame: Frame) -> Array:
     """Chords longer than 1/40 of the picture, or at a bend that shows; or with one end that is not known."""
-    known: Array = np.isfinite(points).all(axis=1)
+    known: Array = np.asarray(np.isfinite(points).all(axis=1))
     near: Array = np.logical_or(frame.holds(points), ~known)
     step = np.diff(points, axis=0) / frame.scale
     length = np.hypot(*step.T)
