@@ -90,6 +90,7 @@ class Verdict:
     kind : one of `KINDS`. effective : the weakest kind along what it rests on.
     corrected, corrected_kind : the statement that holds instead, in LaTeX, and its own verdict.
     witness : numbers at which the printed statement fails. seconds : of CPU time.
+    certificates : plain data on which the verdict rests where it is proved, each accepted by `algebra.checking`.
     """
 
     id: str
@@ -103,6 +104,7 @@ class Verdict:
     witness: Mapping[str, str] | None
     evidence: str
     rests_on: tuple[str, ...]
+    certificates: tuple[dict[str, Any], ...]
     seconds: float
 
     @property
@@ -116,6 +118,7 @@ class Verdict:
         data["verdict"] = data.pop("kind")
         data["witness"] = dict(self.witness) if self.witness is not None else None
         data["rests_on"] = list(self.rests_on)
+        data["certificates"] = list(self.certificates)
         data["seconds"] = round(self.seconds, 4)
         first = ("id", "verdict", "effective", "title", "printed", "corrected", "corrected_kind", "witness")
         return {key: data[key] for key in first} | {key: value for key, value in data.items() if key not in first}

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
+from singimpact.algebra.certificates import Certificate, collected
 from singimpact.claims.claim import STRENGTH, Check, Claim, Verdict
 from singimpact.claims.keys import key_of
 from singimpact.claims.memory import keep, recall
 from singimpact.claims.sections import CLAIMS
 from singimpact.inputs import unknown
+
+Certificates = tuple[Certificate, ...]
 
 
 def select(ids: Sequence[str] | None = None) -> list[Claim]:
@@ -75,12 +79,13 @@ def run(
 def decide(claim: Claim, known: dict[str, Verdict]) -> Verdict:
     """The verdict on one claim, given the verdicts on what it rests on."""
     started = time.process_time()
+    certificates: Certificates = ()
     corrected, corrected_kind = None, None
     try:
-        check = claim.verify(claim.printed.value)
+        check, certificates = _verified(claim, claim.printed.value)
         kind, evidence = check.kind, check.evidence
         if not check.holds:
-            kind, corrected, corrected_kind, evidence = _corrected(claim, check)
+            kind, corrected, corrected_kind, evidence, certificates = _corrected(claim, check)
     except Exception as error:  # a verifier that raises is a verdict, not a crash of the run
         check = Check(False, "error", "")
         kind, evidence = "error", f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
@@ -99,18 +104,32 @@ def decide(claim: Claim, known: dict[str, Verdict]) -> Verdict:
         None if check.holds else check.witness,
         evidence,
         claim.rests_on,
+        certificates,
         time.process_time() - started,
     )
 
 
-def _corrected(claim: Claim, failed: Check) -> tuple[str, str | None, str | None, str]:
-    """(kind, corrected LaTeX, its kind, evidence) when the printed statement failed."""
+def _verified(claim: Claim, value: Any) -> tuple[Check, Certificates]:
+    """What the verifier says of a statement, and the certificates on which that rests."""
+    with collected() as found:
+        check = claim.verify(value)
+    return check, tuple(found)
+
+
+def _corrected(claim: Claim, failed: Check) -> tuple[str, str | None, str | None, str, Certificates]:
+    """(kind, corrected LaTeX, its kind, evidence, certificates) when the printed statement failed."""
     if claim.corrected is None:
         raise ArithmeticError(f"the printed statement fails and nothing is known to hold instead: {failed.evidence}")
     statement = claim.corrected()
-    check = claim.verify(statement.value)
+    check, certificates = _verified(claim, statement.value)
     if not check.holds:
         raise ArithmeticError(f"printed and corrected statement both fail: {failed.evidence}; {check.evidence}")
     if not failed.witness:
         raise ArithmeticError("the printed statement fails without a witness")
-    return "corrected", statement.latex, check.kind, f"printed: {failed.evidence}; corrected: {check.evidence}"
+    return (
+        "corrected",
+        statement.latex,
+        check.kind,
+        f"printed: {failed.evidence}; corrected: {check.evidence}",
+        certificates,
+    )

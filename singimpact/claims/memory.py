@@ -7,6 +7,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
+from singimpact.algebra.checking import accepts
 from singimpact.claims.claim import KINDS, Verdict
 from singimpact.inputs import InputError
 from singimpact.store import cache_folder, folder, write_text
@@ -28,7 +29,10 @@ def recall(name: str, key: str) -> Verdict | None:
 def _verdict(data: dict[str, Any]) -> Verdict:
     if set(data) != {field.name for field in fields(Verdict)} or data["kind"] not in KINDS:
         raise ValueError("not a verdict")
-    return Verdict(**(data | {"rests_on": tuple(data["rests_on"])}))
+    certificates = tuple(data["certificates"])
+    if not all(accepts(certificate) for certificate in certificates):
+        raise ValueError("a certificate is not accepted")
+    return Verdict(**(data | {"rests_on": tuple(data["rests_on"]), "certificates": certificates}))
 
 
 def keep(verdict: Verdict, key: str) -> None:
