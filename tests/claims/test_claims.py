@@ -10,7 +10,7 @@ from tampering import bumped, changed, leaves
 from singimpact.algebra import certificates
 from singimpact.algebra.checking import accepts
 from singimpact.claims import CLAIMS, run, select
-from singimpact.claims.claim import Check, Claim, Statement
+from singimpact.claims.claim import Check, Claim, Statement, Trial, compared
 from singimpact.claims.memory import recall
 from singimpact.inputs import InputError
 
@@ -108,8 +108,8 @@ def test_unknown_id_names_the_nearest():
         select(["e:mex"])
 
 
-def _claim(verify, corrected=None):
-    return Claim("test", "0", "a test", Statement("x", 1), verify, (0,), corrected)
+def _claim(verify, corrected=None, trials=None):
+    return Claim("test", "0", "a test", Statement("x", 1), verify, (0,), corrected, trials=trials)
 
 
 def test_a_verifier_that_raises_is_an_error():
@@ -129,6 +129,47 @@ def test_a_failure_without_a_statement_that_holds_is_an_error():
 def test_a_correction_needs_a_witness():
     verify = lambda value: Check(value == 2, "proved", "compared")  # noqa: E731
     assert run([_claim(verify, lambda: Statement("y", 2))])[0].kind == "error"
+
+
+def _trial(model, printed=False, corrected=True):
+    return Trial(model, "x", "2", "1", "2", printed, corrected)
+
+
+@pytest.mark.parametrize(
+    ("trials", "kind", "reason"),
+    [
+        ([_trial("one"), _trial("two")], "corrected", ""),
+        ([], "error", "there are 0"),
+        ([_trial("one")], "error", "there are 1"),
+        ([_trial("one"), _trial("one")], "error", "there are 1"),
+        ([_trial("one"), _trial("two", printed=True)], "error", "there are 1"),
+        ([_trial("one"), _trial("two"), _trial("three", corrected=False)], "error", "fails on a model: three"),
+    ],
+)
+def test_a_correction_needs_two_models(trials, kind, reason):
+    verify = lambda value: Check(value == 2, "proved", "compared", {"x": "2"})  # noqa: E731
+    (verdict,) = run([_claim(verify, lambda: Statement("y", 2), lambda _printed, _corrected: trials)])
+    assert verdict.kind == kind
+    assert reason in verdict.evidence
+
+
+@pytest.mark.parametrize("name", sorted(MISPRINTED))
+def test_correction_is_told_by_two_models(name, verdicts):
+    trials = verdicts[name].trials
+    assert len({trial.model for trial in trials if trial.tells}) >= 2
+    assert all(trial.corrected_holds for trial in trials)
+
+
+@pytest.mark.parametrize("name", ["e:vtaylor-t2", "e:phinew", "s4b-ratio", "s3-dvdt", "s6-c-side", "e:hdef"])
+def test_trials_are_decided_by_the_statements(name):
+    """With the statements exchanged no model tells for the correction: that the printed one fails is found."""
+    claim = CLAIMS[name]
+    assert not any(trial.tells for trial in claim.trials(claim.corrected().value, claim.printed.value))
+
+
+def test_compared_to_a_tolerance():
+    assert compared("m", "q", 1.0, 1.01, 1.0001).tells
+    assert not compared("m", "q", 1.0, 1.0001, 1.0).tells
 
 
 def test_verify_from_the_command_line():
