@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -11,13 +12,16 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.certified import Certified, as_certified
 from singimpact.algebra.expressions import Call, Expression, Power, children, evaluate, names_in, substitute, walk
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import acceleration
 from singimpact.contact.zeros import Zero, derivatives, isolate, refined, sign_at
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
+
+MOST_DIGITS = 100_000
 
 
 @dataclass(frozen=True)
@@ -45,20 +49,49 @@ class TangencyPoint:
         """tau_* as a double."""
         return float(self.ball().mid())
 
+    def certified(self, digits: int = 30) -> Certified:
+        """tau_* with a certified radius; of a degenerate point, the zero of a_c' that is meant.
+
+        Examples
+        --------
+        >>> print(tangency_points(Oscillator("x", "cos(2*t)", "0.3", "1/2"))[1].certified(40))
+        2.508540817200043682832984018073391746625
+        """
+        return enclosed(self.ball, digits)
+
     def value(self, digits: int = 30) -> Any:
         """tau_* as an mpmath number with this many digits."""
         import mpmath
 
-        bits = ceil(digits * 3.33) + 16
-        with mpmath.workprec(bits):
-            exact = as_rational(self.ball(bits))
-            return mpmath.mpf(exact.numerator) / exact.denominator
+        with mpmath.workdps(digits + 5):
+            return +self.certified(digits + 3).value
+
+
+def enclosed(ball: Callable[[int], Any], digits: int) -> Certified:
+    """The certified number that ball(bits) gives, with more bits until it has its digits.
+
+    Raises
+    ------
+    InputError : digits are not a whole number from 1 to MOST_DIGITS.
+    """
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
+        raise refuse("digits", digits, f"a whole number from 1 to {MOST_DIGITS}")
+    bits = ceil(digits * 3.33) + 32
+    while (found := as_certified(ball(bits), digits)) is None:
+        bits *= 2
+        if bits > 64 * (digits + 64):
+            raise ArithmeticError(f"{digits} digits are not reached with {bits // 2} bits")
+    return found
 
 
 class TangencyPoints(tuple[TangencyPoint, ...]):
     """Tangency points in order, with `.tau` and `.kind` as arrays."""
 
     __slots__ = ()
+
+    def certified(self, digits: int = 30) -> tuple[Certified, ...]:
+        """The times tau_*, each with a certified radius and so many significant digits."""
+        return tuple(point.certified(digits) for point in self)
 
     @property
     def tau(self) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -200,6 +233,10 @@ class SwanPoint:
                     return smaller
                 enclosure = smaller
             return enclosure
+
+    def certified(self, digits: int = 30) -> tuple[Certified, Certified]:
+        """(tau_*, c_0), each with a certified radius and so many significant digits."""
+        return enclosed(self.tau_ball, digits), enclosed(self.clearance_ball, digits)
 
     @cached_property
     def tau(self) -> float:

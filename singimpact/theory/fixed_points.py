@@ -12,43 +12,14 @@ from functools import cache
 from typing import Any
 
 from singimpact.algebra.balls import Balls
+from singimpact.algebra.certified import Certified as Certified
+from singimpact.algebra.certified import as_certified
 from singimpact.algebra.numbers import as_fraction, constant
 from singimpact.algebra.roots import real_roots
 from singimpact.inputs import InputError, refuse
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
 MOST_DIGITS = 100_000
-
-
-@dataclass(frozen=True)
-class Certified:
-    """A real number known to lie within `radius` of `value`.
-
-    Attributes
-    ----------
-    value, radius : mpmath numbers. digits : how many significant digits were asked for.
-    """
-
-    value: Any
-    radius: Any
-    digits: int
-
-    def __str__(self) -> str:
-        return _text(self.value, self.digits)
-
-    def as_dict(self) -> dict[str, str]:
-        """value and radius as decimal text; the radius covers the rounding of the text, which has two more digits."""
-        import mpmath
-
-        with mpmath.workprec(64):
-            radius = 1.01 * (self.radius + abs(self.value) * mpmath.mpf(10) ** (-self.digits - 1))
-            return {"value": _text(self.value, self.digits + 2), "radius": _text(radius, 3)}
-
-
-def _text(value: Any, digits: int) -> str:
-    import mpmath
-
-    return str(mpmath.nstr(value, digits, strip_zeros=False))
 
 
 @dataclass(frozen=True)
@@ -234,25 +205,7 @@ def _certified(enclosures: Any, digits: int) -> dict[str, Certified]:
     while True:
         with flint.ctx.workprec(bits):
             found = enclosures(Balls(bits))
-        results = {name: _as_certified(ball, digits) for name, ball in found.items()}
+        results = {name: as_certified(ball, digits) for name, ball in found.items()}
         if all(result is not None for result in results.values()):
             return {name: result for name, result in results.items() if result is not None}
         bits += bits // 4 + GUARD_BITS
-
-
-def _as_certified(ball: Any, digits: int) -> Certified | None:
-    value, radius = _exact(ball.mid()), _exact(ball.rad())
-    import mpmath
-
-    with mpmath.workprec(64):
-        narrow = value != 0 and radius * mpmath.mpf(10) ** digits * 2 <= abs(value)
-    return Certified(value, radius, digits) if narrow else None
-
-
-def _exact(number: Any) -> Any:
-    """The mpmath number that an exact ball is, with all its bits."""
-    import mpmath
-
-    mantissa, exponent = number.man_exp()
-    with mpmath.workprec(int(mantissa).bit_length() + 8):
-        return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))

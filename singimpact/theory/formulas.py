@@ -12,6 +12,7 @@ from math import ceil, factorial
 from typing import Any
 
 from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.certified import Certified, as_certified
 from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
@@ -165,12 +166,15 @@ def chatter_limit(order: int = 6, model: Any = None, tau: Any = None, digits: in
     where = place(model, 0, tau)
     multiplier(0, model.slope_at_rest())
     further = {n: abs(c) for n, c in _completed(where, order + TRUST.further, DOUBLES).items() if n > order}
+
+    def enclosures(wanted: int) -> Any:
+        return _with_digits(lambda ring: _completed(where, order, ring), wanted, _enclosed)
+
     try:
-        numbers = _completed(where, order, EXACT)
-        return PowerSeries("v", order, {n: _shown(value) for n, value in numbers.items()}, digits, further)
+        numbers = {n: _shown(value) for n, value in _completed(where, order, EXACT).items()}
     except ArithmeticError:
         numbers = _with_digits(lambda ring: _completed(where, order, ring), digits, _mpfs)
-    return PowerSeries("v", order, numbers, digits, further)
+    return PowerSeries("v", order, numbers, digits, further, enclosures=enclosures)
 
 
 def _completed(where: Place, order: int, ring: Any) -> dict[int, Any]:
@@ -208,10 +212,13 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
     def numbers() -> Any:
         return _with_digits(lambda ring: getattr(_curve(where, top, ring), part), digits, _mpfs)
 
+    def enclosures(wanted: int) -> Any:
+        return _with_digits(lambda ring: getattr(_curve(where, top, ring), part), wanted, _enclosed)
+
     exact = _exact_curve(where, top, part)
     if exact is not None:
-        return PowerSeries("sigma", order, exact, digits, further, numbers)
-    return PowerSeries("sigma", order, numbers(), digits, further)
+        return PowerSeries("sigma", order, exact, digits, further, numbers, enclosures)
+    return PowerSeries("sigma", order, numbers(), digits, further, enclosures=enclosures)
 
 
 def _curve(where: Place, order: int, ring: Any) -> InvariantCurve:
@@ -275,20 +282,14 @@ def _with_digits(compute: Any, digits: int, show: Any) -> Any:
     while bits <= LIMITS.bits:
         with precision_of(Balls(bits)):
             found = compute(Balls(bits))
-        if all(_good(ball, digits) for ball in found.values()):
+        if all(as_certified(ball, digits) is not None for ball in found.values()):
             return show(found, digits)
         bits *= 2
     raise InputError(f"{digits} digits are not reached with {LIMITS.bits} bits: ask for fewer, or a lower order")
 
 
-def _good(ball: Any, digits: int) -> bool:
-    """Digits relative to the value; what is not told from zero must be far below them."""
-    import flint
-
-    with flint.ctx.workprec(64):
-        radius, size = ball.rad(), abs(ball.mid())
-        least = flint.arb(10) ** -digits
-        return bool(ball.is_finite() and (radius < least * size or abs(ball).abs_upper() < least**2))
+def _enclosed(found: Mapping[int, Any], digits: int) -> dict[int, Certified | None]:
+    return {n: as_certified(ball, digits) for n, ball in found.items()}
 
 
 def _mpfs(found: Mapping[int, Any], digits: int) -> dict[int, Any]:
