@@ -7,7 +7,8 @@ from fractions import Fraction
 from singimpact.claims import true_orbits
 from singimpact.claims.claim import Trial, Trials
 from singimpact.claims.true_sheet import swans
-from singimpact.contact.points import swan_points_over_clearance, tangency_points
+from singimpact.contact.points import tangency_points
+from singimpact.contact.swans import swan_points_over_clearance
 
 STEP = Fraction(1, 100)  # of the clearance, from c_0
 
