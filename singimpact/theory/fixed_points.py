@@ -2,6 +2,7 @@
 
 Everything follows from lambda, the root in (0, 1) of lambda^(j+1) P_j - r Q_j, and from u = 1 - lambda, the root of
 the same polynomial shifted to 1: so nothing is lost as r -> 0 or as r -> 1.  Isolation is `algebra.roots`.
+As functions of r (`of_m`, `series`, `minimal_polynomial`) they are in `multipliers`, and reached from here too.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from singimpact.algebra.certified import Certified as Certified
 from singimpact.algebra.certified import as_certified
 from singimpact.algebra.numbers import as_fraction, constant
 from singimpact.algebra.roots import real_roots
+from singimpact.contact.contact import contact_order
 from singimpact.inputs import InputError, refuse
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
@@ -48,7 +50,17 @@ class SwanFixedPoints:
     mu_minus_one: Certified
 
 
-def as_dict(points: TangencyFixedPoints | SwanFixedPoints) -> dict[str, dict[str, str]]:
+@dataclass(frozen=True)
+class Multipliers:
+    """On gamma (lambda) and across it (mu) at a contact of any order, and what they lack of 1."""
+
+    lambda_: Certified
+    mu: Certified
+    one_minus_lambda: Certified
+    mu_minus_one: Certified
+
+
+def as_dict(points: TangencyFixedPoints | SwanFixedPoints | Multipliers) -> dict[str, dict[str, str]]:
     """Names as on the paper's page -> value and radius as text."""
     return {field.name.rstrip("_"): getattr(points, field.name).as_dict() for field in fields(points)}
 
@@ -96,6 +108,32 @@ def swan(r: Any, digits: int = 50) -> SwanFixedPoints:
         return found | {"m_star": -found["one_minus_lambda"]}
 
     return SwanFixedPoints(**_certified(enclosures, asked))
+
+
+def multipliers(at: str | int, r: Any, digits: int = 50) -> Multipliers:
+    """lambda and mu at any contact order j >= 1: r = lambda^(j+1) P_j/Q_j.
+
+    Parameters
+    ----------
+    at : "tangency", "swan" or a contact order. r, digits : as in `tangency`.
+
+    Examples
+    --------
+    >>> print(multipliers(3, "1/2", digits=20).lambda_)
+    0.79433819166467074201
+    """
+    j, rate, asked = contact_order(at), _restitution(r), _digits(digits)
+    if not j:
+        raise refuse("at", at, "a contact order 1..12: at a regular point lambda is r")
+    return Multipliers(**_certified(lambda balls: _multipliers(j, rate, balls), asked))
+
+
+def __getattr__(name: str) -> Any:
+    if name in ("of_m", "series", "minimal_polynomial"):  # their file loads sympy
+        from singimpact.theory import multipliers as functions
+
+        return getattr(functions, name)
+    raise AttributeError(f"module 'singimpact.theory.fixed_points' has no attribute {name!r}")
 
 
 def _restitution(value: Any) -> Fraction:

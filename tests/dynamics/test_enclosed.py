@@ -51,6 +51,14 @@ def test_chatter_limit_contains_the_reference(r):
     assert not found.certified.contains(truth + Fraction(1, 10**28))
 
 
+def test_foot_of_the_stable_manifold_through_A_contains_the_reference():
+    """From rest at the tangency point A itself: tau_* is a root, so the flight's first two coefficients are zero."""
+    found = linear(2, "0.99", "0.5").chatter_limit("root(cos(2*u) - 0.99, -0.1, -0.05)", 0, digits=36).certified
+    truth = Fraction(values()["negswan.X[w=2,c=0.99,r=0.5]"])
+    assert found.contains(truth)
+    assert not found.contains(truth + Fraction(1, 10**34))
+
+
 def test_chatter_from_afar_contains_the_reference():
     """202 impacts; the value is that of the issue, 30 digits."""
     found = linear("2.8", 0, "0.8").chatter_limit("0.9", "0.005", digits=28)
