@@ -13,6 +13,7 @@ from singimpact.claims import CLAIMS, run, select
 from singimpact.claims.claim import Check, Claim, Statement, Trial, compared
 from singimpact.claims.memory import recall
 from singimpact.inputs import InputError
+from singimpact.theory.equations import derived_from, watched
 
 MISPRINTED = {
     "e:phi",
@@ -90,6 +91,28 @@ def test_every_claim_rests_on_claims_before_it():
     for claim in select():
         assert set(claim.rests_on) <= seen
         seen.add(claim.id)
+
+
+# psi o p to second order is the third part of s4-fold-form; that the rest can be removed, e:pdef, rests on it
+PART_OF_IT = {"s4-fold-form": {"e:pdef"}}
+
+
+def _used(claim):
+    """The claims whose equations a verifier derived something from, through equations that are no claims."""
+    statement = claim.corrected() if claim.corrected else claim.printed
+    todo, found = list(watched(lambda: claim.verify(statement.value))[1]), set()
+    while todo:
+        label = todo.pop()
+        found |= {label} & set(CLAIMS)
+        todo += [] if label in CLAIMS else derived_from(label)
+    return found - {claim.id}
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_what_a_verifier_uses_is_named(name):
+    """From what ran: each equation it derived from is among what the claim rests on, directly or through others."""
+    below = {claim.id for claim in select([name])}
+    assert _used(CLAIMS[name]) <= below | PART_OF_IT.get(name, set())
 
 
 def test_selection_brings_what_it_rests_on():
