@@ -216,7 +216,6 @@ WITHOUT = {
     "t:t2-fixed",
     "s4-Z-line",
     "s4-normal-id2",
-    "s4-m32-r1",
     "s4-mu-direction",
     "s4b-sector",
     "s6-d",

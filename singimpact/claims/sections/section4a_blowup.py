@@ -151,16 +151,19 @@ def _root_places(stated: tuple[Any, Any, Any]) -> Check:
 
 def _trivial_root(stated: str) -> Check:
     """Where m = 3/2 solves e:fixm: "r = 1" or "every r"."""
-    value = fold.fixed_point_equation().subs(m, THREE_HALVES)
-    cubic = fold.fixed_point_factors()[1].subs(m, THREE_HALVES)
-    always = is_zero(value)
+    value = certificates.value_at(fold.fixed_point_equation(), m, THREE_HALVES)
+    cubic = certificates.value_at(fold.fixed_point_factors()[1], m, THREE_HALVES)
+    always = value == 0
     return every(
         [
             (
                 "m = 3/2 solves e:fixm for every r" if always else "m = 3/2 does not solve e:fixm for every r",
                 always == (stated == "every r"),
             ),
-            ("it is a root of the cubic e:meq only for r = 1", sympy.Poly(cubic, r).all_roots() == [1]),
+            (
+                "it is a root of the cubic e:meq only for r = 1",
+                sympy.Poly(cubic, r).all_roots() == [1] and positive_on(cubic, r, 0, 1),
+            ),
         ],
         witness=lambda: {"r": "1/2", "m": "3/2", "Q_r(1,m) - m^2(m-1/2)^2": str(value)},
     )
