@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
     from singimpact.impact_oscillator import linear as linear
     from singimpact.impact_oscillator import read_model as read_model
+    from singimpact.impact_oscillator import swan_points as swan_points
     from singimpact.impact_oscillator import sweep as sweep
     from singimpact.impact_oscillator import tangency_points as tangency_points
     from singimpact.impact_oscillator import threshold as threshold
@@ -36,6 +37,7 @@ _HOMES = {
     "universal": "singimpact.impact_oscillator",
     "read_model": "singimpact.impact_oscillator",
     "tangency_points": "singimpact.impact_oscillator",
+    "swan_points": "singimpact.impact_oscillator",
     "sweep": "singimpact.impact_oscillator",
     "threshold": "singimpact.impact_oscillator",
     "plot": "singimpact.scenes",

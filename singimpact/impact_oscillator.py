@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from fractions import Fraction
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import compare, constant, float_array
-from singimpact.inputs import refuse
+from singimpact.algebra.numbers import as_float, as_fraction, compare, constant, float_array
+from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.files import read_fields, to_toml
 from singimpact.oscillator.model import Oscillator
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from singimpact.contact.points import TangencyPoints
+    from singimpact.contact.swans import SwanPoint
     from singimpact.dynamics.chatter import ChatterLimit
     from singimpact.dynamics.orbit import Orbit
     from singimpact.dynamics.periodic import PeriodicOrbit
@@ -206,6 +209,52 @@ def tangency_points(oscillator: Oscillator) -> TangencyPoints:
     from singimpact.contact.points import tangency_points as found
 
     return found(oscillator)
+
+
+def swan_points(
+    f: Any, g: Any, parameters: Mapping[str, Any] | None = None, over: str = "clearance", between: Any = None
+) -> tuple[SwanPoint, ...]:
+    """The swan points of x'' + f(x, x') = g(t) as the clearance varies, in the order of tau_*.
+
+    Parameters
+    ----------
+    f, g, parameters : as for `ImpactOscillator`. over : "clearance".
+    between : (low, high), clearances to look between; None for all, where f(x, 0) is a polynomial.
+
+    Returns
+    -------
+    tuple of SwanPoint : each with `.tau`, `.clearance` (c_0), `.kind` ("positive" | "negative"), `.certified(digits)`
+        and `.oscillator(restitution)`, the model exactly at c_0.
+
+    Examples
+    --------
+    >>> [(swan.kind, swan.clearance) for swan in swan_points("x", "cos(2*t)")]
+    [('negative', 1.0), ('positive', -1.0)]
+    >>> print(swan_points("x + 3*x**3/10", "cos(2*t)")[0].oscillator("0.5").clearance)
+    root(u + 0.3*u**3 - 1, 0.829051, 0.829052)
+    """
+    from singimpact.contact.swans import swan_points_over_clearance
+
+    if over != "clearance":
+        raise refuse("over", over, "'clearance'")
+    model = ImpactOscillator(f, g, 0, 1, parameters)
+    return swan_points_over_clearance(model, None if between is None else _ends(between))
+
+
+def _bound(end: Any) -> Fraction:
+    tree = constant("between", end)
+    exact = as_fraction(tree)
+    return Fraction(as_float(tree)) if exact is None else exact
+
+
+def _ends(between: Any) -> tuple[Fraction, Fraction]:
+    try:
+        low, high = (_bound(end) for end in between)
+    except (TypeError, ValueError) as error:
+        raise error if isinstance(error, InputError) else refuse("between", between, "two numbers low < high") from None
+    if not low < high:
+        raise refuse("between", between, "two numbers low < high")
+    return low, high
 
 
 def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None) -> Threshold:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.expressions import Expression, Root, evaluate
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,11 @@ class Balls:
 
     def call(self, function: str, argument: Any) -> Any:
         return abs(argument) if function == "abs" else getattr(argument, function)()
+
+    def root(self, tree: Root) -> Any:
+        from singimpact.algebra.zeros import ball_of
+
+        return ball_of(tree, self.bits)
 
 
 def as_rational(ball: Any) -> Fraction:

@@ -1,92 +1,270 @@
-"""Signs of polynomials on intervals, proved: exact root counts (Sturm) and signs at rational points.
+"""Statements about polynomials "for all r in (0, 1)", proved: certificates made here, and believed once checked.
 
-A statement "for all r in (0, 1)" about rational functions of one variable ends here.
+A certificate is plain data.  It counts only when `checking.accepts` has verified it from the data alone; then it joins
+the collection that the caller has opened (`collected`), beside the verdict that rests on it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise, product
+from math import lcm
 from typing import Any
 
 import sympy
 
+from singimpact.algebra.checking import accepts
+
+Certificate = dict[str, Any]
+Box = Mapping[Any, tuple[Any, Any]]
+_OPEN: ContextVar[list[Certificate] | None] = ContextVar("certificates", default=None)
+
 
 @dataclass(frozen=True)
-class SignCertificate:
-    """A polynomial keeps one sign on an open interval.
-
-    Attributes
-    ----------
-    polynomial, variable, low, high : the statement. sample, sign : a rational point inside and the sign there.
-    inside : the number of distinct real roots in the open interval; the certificate is good when it is 0.
-    """
-
-    polynomial: Any
-    variable: Any
-    low: Any
-    high: Any
-    sample: Any
-    sign: int
-    inside: int
-
-    @property
-    def good(self) -> bool:
-        """No root inside and a sign that is not 0."""
-        return self.inside == 0 and self.sign != 0
-
-
-def sign_on(expression: Any, variable: Any, low: Any, high: Any) -> SignCertificate:
-    """The sign of a polynomial or rational function on the open interval (low, high).
+class Effort:
+    """How far positive expansions are searched.
 
     Parameters
     ----------
-    expression : polynomial or rational function with rational coefficients; of a quotient the product is taken, which
-        has the same sign.
-    low, high : rationals; infinite ends are allowed.
+    raised : extra degrees tried; the claims of the paper need 4 at the most. samples : points a side where the sign is looked at first.
+    """  # noqa: E501
+
+    raised: tuple[int, ...] = (0, 1, 2, 4, 8, 16, 32)
+    samples: tuple[Fraction, ...] = (Fraction(1, 2), Fraction(1, 37), Fraction(1, 7), Fraction(5, 6), Fraction(40, 41))
+
+
+EFFORT = Effort()
+
+
+@contextmanager
+def collected() -> Iterator[list[Certificate]]:
+    """A list that gathers every certificate established while it is open, each once."""
+    found: list[Certificate] = []
+    token = _OPEN.set(found)
+    try:
+        yield found
+    finally:
+        _OPEN.reset(token)
+
+
+def established(certificate: Certificate) -> bool:
+    """Whether the checker accepts a certificate; if so it joins the open collection."""
+    if not accepts(certificate):
+        return False
+    gathering = _OPEN.get()
+    if gathering is not None and certificate not in gathering:
+        gathering.append(certificate)
+    return True
+
+
+def positive_on(expression: Any, variable: Any, low: Any, high: Any) -> bool:
+    """Proved to be positive on the open interval; infinite ends are allowed.
+
+    Parameters
+    ----------
+    expression : polynomial or rational function of the variable with rational coefficients. low, high : rationals, or infinite.
+
+    Raises
+    ------
+    ArithmeticError : there is no root inside, yet no certificate was found.
 
     Examples
     --------
     >>> x = sympy.Symbol("x")
-    >>> sign_on(x * (1 - x), x, 0, 1).good, sign_on(x - sympy.Rational(1, 2), x, 0, 1).good
+    >>> positive_on(x * (1 - x), x, 0, 1), positive_on(x - sympy.Rational(1, 2), x, 0, 1)
     (True, False)
-    """
-    numerator, denominator = sympy.fraction(sympy.cancel(sympy.together(expression)))
-    poly = sympy.Poly(sympy.expand(numerator * denominator), variable, domain="QQ")
-    ends = [sympy.sympify(low), sympy.sympify(high)]
-    inside = roots_inside(poly, *ends)
-    sample = _between(*ends)
-    value = poly.eval(sample)
-    return SignCertificate(poly.as_expr(), variable, ends[0], ends[1], sample, int(sympy.sign(value)), inside)
-
-
-def roots_inside(poly: Any, low: Any, high: Any) -> int:
-    """The number of distinct real roots in the open interval, exactly."""
-    if poly.is_zero:
-        raise ArithmeticError("the zero polynomial has no sign")
-    if poly.degree() == 0:
-        return 0
-    finite = [end for end in (low, high) if end.is_finite]
-    total = poly.count_roots(low if low.is_finite else None, high if high.is_finite else None)
-    return int(total) - sum(1 for end in finite if poly.eval(end) == 0)
-
-
-def _between(low: Any, high: Any) -> Any:
-    if low.is_finite and high.is_finite:
-        return (low + high) / 2
-    if low.is_finite:
-        return low + 1
-    return high - 1 if high.is_finite else sympy.Integer(0)
-
-
-def positive_on(expression: Any, variable: Any, low: Any, high: Any) -> bool:
-    """Proved to be positive on the open interval."""
-    certificate = sign_on(expression, variable, low, high)
-    return certificate.good and certificate.sign > 0
+    """  # noqa: E501
+    return positive_in(expression, {variable: (low, high)})
 
 
 def negative_on(expression: Any, variable: Any, low: Any, high: Any) -> bool:
     """Proved to be negative on the open interval."""
     return positive_on(-expression, variable, low, high)
+
+
+def positive_in(expression: Any, box: Box) -> bool:
+    """Proved to be positive on an open box, for all variables at once: see `positive_on`.
+
+    Examples
+    --------
+    >>> x, y = sympy.symbols("x y")
+    >>> positive_in(2 - x - y, {x: (0, 1), y: (0, 1)}), positive_in(1 - x - y, {x: (0, 1), y: (0, 1)})
+    (True, False)
+    """
+    above, below = _quotient(expression)
+    poly = sympy.Poly(sympy.expand(above * below), *box, domain="QQ")
+    if poly.is_zero or _seen_wrong(poly, box) or (len(box) == 1 and _roots(poly, *next(iter(box.values())))):
+        return False
+    proof = expansion(poly, list(box.values()))
+    if proof is None:
+        raise ArithmeticError(f"no certificate was found that {expression} > 0")
+    intervals = ", ".join(f"{low} < {name} < {high}" for name, (low, high) in box.items())
+    scale = lcm(*(int(sympy.Poly(part, *box).clear_denoms()[0]) for part in (above, below)))
+    data = {
+        "kind": "positive",
+        "says": f"({above})/({below}) > 0 for {intervals}" if below != 1 else f"{above} > 0 for {intervals}",
+        "variables": [str(name) for name in box],
+        "numerator": _data(above * scale, list(box)),
+        "denominator": _data(below * scale, list(box)),
+        "sign": 1,
+    }
+    proof["expansion"] = [[key, str(Fraction(value) * scale**2)] for key, value in proof["expansion"]]
+    return established(data | proof)
+
+
+def expansion(poly: Any, box: Sequence[tuple[Any, Any]]) -> Certificate | None:
+    """poly (times powers of 1 + distance to an end) as a positive sum of products of distances to the ends of a box."""
+    for more in EFFORT.raised:
+        lines = [_line(low, high, degree, more) for (low, high), degree in zip(box, poly.degree_list(), strict=True)]
+        total: dict[tuple[int, ...], Fraction] = {}
+        for key, value in poly.terms():
+            for powers in product(*(line[exponent].items() for line, exponent in zip(lines, key, strict=True))):
+                at = tuple(power for power, _ in powers)
+                part = Fraction(int(value.p), int(value.q))
+                for _, factor in powers:
+                    part *= factor
+                total[at] = total.get(at, Fraction(0)) + part
+        if all(value >= 0 for value in total.values()):
+            return {
+                "box": [[str(low), str(high)] for low, high in box],
+                "degree": [d + more if _finite(*ends) else 0 for d, ends in zip(poly.degree_list(), box, strict=True)],
+                "raised": [0 if _finite(*ends) else more for ends in box],
+                "expansion": [[list(key), str(value)] for key, value in sorted(total.items()) if value],
+            }
+    return None
+
+
+def _finite(low: Any, high: Any) -> bool:
+    return bool(sympy.sympify(low).is_finite and sympy.sympify(high).is_finite)
+
+
+def _line(low: Any, high: Any, degree: int, more: int) -> list[dict[int, Fraction]]:
+    """x^n for n = 0..degree in the basis of an interval: power -> coefficient."""
+    t = sympy.Symbol("t")
+    if _finite(low, high):
+        width = sympy.sympify(high) - low  # x = (low + high t)/(1 + t)
+        forms = [
+            (low + high * t) ** n * (1 + t) ** (degree + more - n) / width ** (degree + more) for n in range(degree + 1)
+        ]
+    else:
+        place = low + t if sympy.sympify(low).is_finite else high - t
+        if not sympy.sympify(place).is_polynomial(t) or place.has(sympy.oo):
+            raise ArithmeticError(f"the interval ({low}, {high}) has no finite end")
+        forms = [place**n * (1 + t) ** more for n in range(degree + 1)]
+    return [
+        {int(k): Fraction(int(v.p), int(v.q)) for (k,), v in sympy.Poly(form, t, domain="QQ").terms()} for form in forms
+    ]
+
+
+def _quotient(expression: Any) -> tuple[Any, Any]:
+    return sympy.fraction(sympy.cancel(sympy.together(sympy.sympify(expression))))  # type: ignore[no-any-return]
+
+
+def _data(expression: Any, variables: Sequence[Any]) -> list[Any]:
+    """A polynomial with whole coefficients as [exponents, coefficient] pairs."""
+    terms = sympy.Poly(expression, *variables, domain="QQ").terms()
+    return [[list(key), int(value) if value.q == 1 else str(value)] for key, value in terms if value]
+
+
+def _seen_wrong(poly: Any, box: Box) -> bool:
+    """Whether some sample point of the box has a value that is not positive."""
+    sides = [[_inside(part, *ends) for part in EFFORT.samples] for ends in box.values()]
+    return any(poly(*point) <= 0 for point in product(*sides))
+
+
+def _inside(part: Fraction, low: Any, high: Any) -> Any:
+    share = sympy.Rational(part.numerator, part.denominator)
+    if _finite(low, high):
+        return low + (sympy.sympify(high) - low) * share
+    return low + share / (1 - share) if sympy.sympify(low).is_finite else high - share / (1 - share)
+
+
+def _roots(poly: Any, low: Any, high: Any) -> int:
+    """The number of distinct real roots in the open interval, counted by sympy."""
+    if poly.degree() == 0:
+        return 0
+    ends = [sympy.sympify(end) for end in (low, high)]
+    total = poly.count_roots(*(end if end.is_finite else None for end in ends))
+    return int(total) - sum(1 for end in ends if end.is_finite and poly.eval(end) == 0)
+
+
+def roots_inside(expression: Any, variable: Any, low: Any, high: Any) -> int:
+    """The number of real roots in the open interval, proved by a Sturm chain.
+
+    Examples
+    --------
+    >>> x = sympy.Symbol("x")
+    >>> roots_inside(x**3 - x, x, -1, 1), roots_inside(x**3 - x, x, -1, sympy.oo)
+    (1, 2)
+    """
+    poly = sympy.Poly(_quotient(expression)[0], variable, domain="QQ").primitive()[1]
+    count = _roots(poly, low, high)
+    chain, steps = [poly, poly.diff().primitive()[1]], []
+    while True:
+        quotient, rest = divmod(chain[-2], chain[-1])
+        scale = sympy.Rational(1) if rest.is_zero else rest.primitive()[0]
+        steps.append([[str(value) for value in reversed(quotient.all_coeffs())], str(scale)])
+        if rest.is_zero:
+            break
+        chain.append(-rest.primitive()[1])
+    data = {
+        "kind": "count",
+        "says": f"{poly.as_expr()} has {count} real roots in ({low}, {high})",
+        "chain": [[str(value) for value in reversed(part.all_coeffs())] for part in chain],
+        "first": str(poly.diff().primitive()[0]),
+        "steps": steps,
+        "low": str(low),
+        "high": str(high),
+        "roots": count,
+    }
+    if not established(data):
+        raise ArithmeticError(f"the Sturm chain of {poly.as_expr()} is not accepted: it has a multiple root")
+    return count
+
+
+def sign_chain(expression: Any, variable: Any, signs: Sequence[tuple[Any, int]], box: Box) -> bool:
+    """Proved: at each place of the variable, which may be infinite, the polynomial has the sign stated for all parameters.
+
+    Examples
+    --------
+    >>> x, r = sympy.symbols("x r")
+    >>> sign_chain(x**2 - r, x, ((0, -1), (1, 1)), {r: (0, 1)}), sign_chain(x**2 - r, x, ((0, 1), (1, 1)), {r: (0, 1)})
+    (True, False)
+    """  # noqa: E501
+    poly = sympy.Poly(expression, variable, *box, domain="QQ").primitive()[1]
+    places = []
+    for at, sign in signs:
+        value = sympy.Poly(_value_or_leading(poly.as_expr(), variable, at) * sign, *box, domain="QQ")
+        if value.is_zero or _seen_wrong(value, box):
+            return False
+        proof = expansion(value, list(box.values()))
+        if proof is None:
+            raise ArithmeticError(f"no certificate was found for the sign of {expression} at {variable} = {at}")
+        places.append({"at": str(at), "sign": sign} | {name: proof[name] for name in ("degree", "raised", "expansion")})
+    gaps = [[a["at"], b["at"]] for a, b in pairwise(places) if a["sign"] != b["sign"]]
+    ranges = ", ".join(f"{low} < {name} < {high}" for name, (low, high) in box.items())
+    data = {
+        "kind": "chain",
+        "says": f"{poly.as_expr()} has a root {variable} in each of {gaps} for all {ranges}",
+        "variables": [str(variable), *map(str, box)],
+        "polynomial": _data(poly.as_expr(), [variable, *box]),
+        "box": [[str(low), str(high)] for low, high in box.values()],
+        "places": places,
+        "roots": gaps,
+        "all": len(gaps) == poly.degree(variable),
+    }
+    return established(data)
+
+
+def _value_or_leading(expression: Any, variable: Any, at: Any) -> Any:
+    if at in (sympy.oo, -sympy.oo):
+        poly = sympy.Poly(expression, variable)
+        return poly.LC() * (-1 if at == -sympy.oo and poly.degree() % 2 else 1)
+    return expression.subs(variable, at)
 
 
 def value_at(expression: Any, variable: Any, point: Any) -> Any:
@@ -98,6 +276,76 @@ def value_at(expression: Any, variable: Any, point: Any) -> Any:
     >>> value_at((x**2 - 1) / (x - 1), x, 1), value_at(1 / x, x, 0)
     (2, zoo)
     """
-    numerator, denominator = sympy.fraction(sympy.cancel(sympy.together(expression)))
-    below = denominator.subs(variable, point)
-    return sympy.zoo if below == 0 else sympy.cancel(numerator.subs(variable, point) / below)
+    above, below = _quotient(expression)
+    under = below.subs(variable, point)
+    found = sympy.zoo if under == 0 else sympy.cancel(above.subs(variable, point) / under)
+    variables = sorted(expression.free_symbols | {variable}, key=str)
+    data = {
+        "kind": "value",
+        "says": f"({above})/({below}) -> {found} as {variable} -> {point}",
+        "variables": [str(name) for name in variables],
+        "numerator": _data(above, variables),
+        "denominator": _data(below, variables),
+        "index": variables.index(variable),
+        "at": str(point),
+        "value": "infinite" if found == sympy.zoo else [_data(part, variables) for part in _quotient(found)],
+    }
+    if not established(data):
+        raise ArithmeticError(f"the value of {expression} at {variable} = {point} is not certified")
+    return found
+
+
+def definite(form: Any, x: Any, y: Any) -> int:
+    """The sign of a definite quadratic form in x and y off the origin, proved; 0 when it is not definite.
+
+    Examples
+    --------
+    >>> x, y = sympy.symbols("x y")
+    >>> definite(6 * x**2 + 4 * x * y + y**2, x, y), definite(x * y, x, y)
+    (1, 0)
+    """
+    poly = sympy.Poly(form, x, y, domain="QQ")
+    if set(map(sum, poly.monoms())) - {2}:
+        return 0
+    values = [poly.coeff_monomial(part) for part in (x**2, x * y, y**2)]
+    sign = int(sympy.sign(values[0]))
+    data = {"kind": "definite", "says": f"{form} is definite", "form": [str(value) for value in values], "sign": sign}
+    return sign if established(data) else 0
+
+
+def identical(left: Any, right: Any) -> bool:
+    """Record that two rational functions are equal, or two with one square root; what has another form is left out."""
+    left, right = sympy.sympify(left), sympy.sympify(right)
+    root = sorted((p for part in (left, right) for p in part.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2),
+                  key=str)[:1]  # fmt: skip
+    w, relation = sympy.Symbol("w"), sympy.Integer(0)
+    if root:
+        above, below = _quotient(root[0].base)
+        relation = below * w**2 - above
+        left, right = (part.subs({p: w ** (2 * p.exp) for p in part.atoms(sympy.Pow) if p.base == root[0].base})
+                       for part in (left, right))  # fmt: skip
+    sides = [_quotient(side) for side in (left, right)]
+    names = sorted({name for side in sides for part in side for name in part.free_symbols} - {w}, key=str)
+    if not all(part.is_polynomial(*names, w) for side in sides for part in side):
+        return False
+    variables = [*names, w]
+    data = {
+        "kind": "identity",
+        "says": f"{left} = {right}" + (f" where {relation} = 0" if root else ""),
+        "variables": [str(name) for name in variables],
+        "left": [_data(part, variables) for part in sides[0]],
+        "right": [_data(part, variables) for part in sides[1]],
+        "relation": [_data(part, variables) for part in _related(sides, relation, w)] if root else None,
+    }  # fmt: skip
+    return established(data)
+
+
+def _related(sides: list[Any], relation: Any, w: Any) -> tuple[Any, Any, Any]:
+    """(multiplier, cofactor, relation), multiplier (left - right) = cofactor relation over the common denominator."""
+    (above, below), (other, under) = sides
+    difference = sympy.Poly(sympy.expand(above * under - other * below), w)
+    if difference.degree() < 2:
+        return sympy.Integer(1), sympy.Integer(0), relation
+    cofactor, _ = sympy.pdiv(difference, sympy.Poly(relation, w))
+    lead = sympy.Poly(relation, w).LC()
+    return lead ** (difference.degree() - 1), cofactor.as_expr(), relation

@@ -100,7 +100,20 @@ class Call:
         return f"{self.function}({self.argument})"
 
 
-Expression = Number | Pi | Name | Sum | Product | Power | Call
+@dataclass(frozen=True, slots=True)
+class Root:
+    """The one zero of a function of u between two rationals: a number without another name; a leaf, for u is bound."""
+
+    function: Expression
+    low: Fraction
+    high: Fraction
+
+    def __str__(self) -> str:
+        return f"root({self.function}, {decimal_text(self.low)}, {decimal_text(self.high)})"
+
+
+Expression = Number | Pi | Name | Sum | Product | Power | Call | Root
+BOUND = "u"  # the variable of the function in a `Root`
 ZERO, ONE, MINUS_ONE = Number(Fraction(0)), Number(Fraction(1)), Number(Fraction(-1))
 
 
@@ -221,6 +234,7 @@ class Ring(Protocol):
     def pi(self) -> Any: ...
     def power(self, base: Any, exponent: Fraction) -> Any: ...
     def call(self, function: str, argument: Any) -> Any: ...
+    def root(self, tree: Root) -> Any: ...
 
 
 def evaluate(tree: Expression, values: Mapping[str, Any], ring: Ring) -> Any:
@@ -263,6 +277,8 @@ def evaluate(tree: Expression, values: Mapping[str, Any], ring: Ring) -> Any:
             return ring.call("exp", evaluate(general, values, ring) * logarithm)
         case Call(function, argument):
             return ring.call(function, evaluate(argument, values, ring))
+        case Root():
+            return ring.root(tree)
     raise TypeError(f"not an expression: {tree!r}")
 
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.expressions import Expression, Root, evaluate
 from singimpact.algebra.polynomials import Exponents, SparsePolynomials
 from singimpact.algebra.taylor import taylor_coefficients
 
@@ -102,6 +102,9 @@ class JetSpace:
 
     def pi(self) -> Jet:
         return self.constant(self.ring.pi())
+
+    def root(self, tree: Root) -> Jet:
+        return self.constant(self.ring.root(tree))
 
     def power(self, base: Jet, exponent: Fraction) -> Jet:
         if exponent.denominator == 1 and exponent >= 0:

@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from singimpact.algebra.expressions import (
+    BOUND,
     FUNCTIONS,
     MINUS_ONE,
     Call,
@@ -20,6 +21,7 @@ from singimpact.algebra.expressions import (
     Name,
     Number,
     Pi,
+    Root,
     add,
     multiply,
     negate,
@@ -187,7 +189,26 @@ class _Parser:
             raise self.refusal(f"a number has more than {LIMITS.digits} digits")
         return Number(Fraction(token))
 
+    def root(self) -> Expression:
+        """root(function of u, low, high): the one zero between two rationals."""
+        from singimpact.algebra.zeros import is_one_root
+
+        outer, self.names = self.names, (BOUND,)
+        function = self.sum()
+        self.names, ends = outer, []
+        while self.take(","):
+            ends.append(self.sum())
+        if not self.take(")") or len(ends) != 2 or not all(isinstance(end, Number) for end in ends):
+            raise self.refusal("root takes a function of u and two rationals, root(u**2 - 2, 1, 2)")
+        low, high = (end.value for end in ends if isinstance(end, Number))
+        found = Root(function, low, high)
+        if not low < high or not is_one_root(found):
+            raise self.refusal(f"{found} is not one zero: the function must change sign once between the two numbers")
+        return found
+
     def named(self, token: str) -> Expression:
+        if token == "root" and self.take("("):
+            return self.root()
         if self.kind == "sign" and self.token == "(":
             if token not in FUNCTIONS:
                 raise self.refusal(f"unknown function {shown(token)}; accepted are {_LANGUAGE}")

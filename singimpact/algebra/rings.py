@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import Expression, Root, evaluate
 from singimpact.algebra.polynomials import PackedPolynomials
 
 
@@ -48,6 +49,9 @@ class Exact:
             return Fraction(int(function == "sqrt"))
         raise ArithmeticError(f"{function} of a rational is not rational")
 
+    def root(self, tree: Root) -> Any:
+        raise ArithmeticError(f"{tree} is not written as a rational")
+
 
 class Doubles:
     """Python floats and numpy arrays."""
@@ -73,6 +77,9 @@ class Doubles:
 
     def call(self, function: str, argument: Any) -> Any:
         return getattr(np, {"atan": "arctan"}.get(function, function))(argument)
+
+    def root(self, tree: Root) -> float:
+        return float(Balls(128).root(tree).mid())
 
 
 @dataclass(frozen=True)
@@ -104,6 +111,10 @@ class Multiprecision:
             if function == "abs"
             else getattr(self.context, {"log": "ln"}.get(function, function))(argument)
         )
+
+    def root(self, tree: Root) -> Any:
+        mantissa, exponent = Balls(self.context.prec + 32).root(tree).mid().man_exp()
+        return self.context.ldexp(self.context.mpf(int(mantissa)), int(exponent))
 
 
 class Symbolic:
@@ -141,6 +152,9 @@ class Symbolic:
         import sympy
 
         return getattr(sympy, "Abs" if function == "abs" else function)(argument)
+
+    def root(self, tree: Root) -> Any:
+        raise ArithmeticError(f"{tree} is not written with functions")
 
 
 EXACT, DOUBLES, SYMBOLIC = Exact(), Doubles(), Symbolic()

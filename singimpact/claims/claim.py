@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -36,6 +36,51 @@ class Check:
 
 
 @dataclass(frozen=True)
+class Trial:
+    """The printed and the corrected statement on one model.
+
+    Attributes
+    ----------
+    model : an oscillator at a point; where the statement is about r alone, a value of r.
+    quantity : what is compared. found : what the model gives. printed, corrected : what the statements say.
+    """
+
+    model: str
+    quantity: str
+    found: str
+    printed: str
+    corrected: str
+    printed_holds: bool
+    corrected_holds: bool
+
+    def __post_init__(self) -> None:
+        for name in ("printed_holds", "corrected_holds"):  # a comparison of numpy numbers is not a bool for JSON
+            object.__setattr__(self, name, bool(getattr(self, name)))
+
+    @property
+    def tells(self) -> bool:
+        """Whether the printed statement fails here and the corrected one holds."""
+        return self.corrected_holds and not self.printed_holds
+
+    def line(self) -> str:
+        """One line for a table."""
+        return f"{self.model}: {self.quantity} = {self.found}; printed {self.printed}, corrected {self.corrected}"
+
+
+def compared(
+    model: str, quantity: str, found: float, printed: float, corrected: float, tolerance: float = 1e-3
+) -> Trial:
+    """A trial of two numbers against the one found, to a part `tolerance` of the largest of the three."""
+    near = tolerance * max(abs(found), abs(printed), abs(corrected))
+    told = [f"{value:.8g}" for value in (found, printed, corrected)]
+    holds = [abs(value - found) <= near for value in (printed, corrected)]
+    return Trial(model, quantity, told[0], told[1], told[2], holds[0], holds[1])
+
+
+Trials = Callable[[Any, Any], Sequence[Trial]]
+
+
+@dataclass(frozen=True)
 class Claim:
     """A checkable statement of the paper.
 
@@ -47,6 +92,7 @@ class Claim:
     corrected : makes the statement that holds instead, from what was derived; None if the printed one should hold.
     mutants : wrong statements that the verifier must reject.
     rests_on : ids of the claims that the verifier uses.
+    trials : tries the printed and the corrected statement on models; a correction needs two that tell them apart.
     """
 
     id: str
@@ -57,6 +103,7 @@ class Claim:
     mutants: tuple[Any, ...]
     corrected: Callable[[], Statement] | None = None
     rests_on: tuple[str, ...] = ()
+    trials: Trials | None = None
 
     @property
     def label(self) -> str | None:
@@ -90,6 +137,8 @@ class Verdict:
     kind : one of `KINDS`. effective : the weakest kind along what it rests on.
     corrected, corrected_kind : the statement that holds instead, in LaTeX, and its own verdict.
     witness : numbers at which the printed statement fails. seconds : of CPU time.
+    certificates : plain data on which the verdict rests where it is proved, each accepted by `algebra.checking`.
+    trials : of the printed and the corrected statement, on two models or more.
     """
 
     id: str
@@ -103,6 +152,8 @@ class Verdict:
     witness: Mapping[str, str] | None
     evidence: str
     rests_on: tuple[str, ...]
+    certificates: tuple[dict[str, Any], ...]
+    trials: tuple[Trial, ...]
     seconds: float
 
     @property
@@ -116,6 +167,8 @@ class Verdict:
         data["verdict"] = data.pop("kind")
         data["witness"] = dict(self.witness) if self.witness is not None else None
         data["rests_on"] = list(self.rests_on)
+        data["certificates"] = list(self.certificates)
+        data["trials"] = [asdict(trial) for trial in self.trials]
         data["seconds"] = round(self.seconds, 4)
         first = ("id", "verdict", "effective", "title", "printed", "corrected", "corrected_kind", "witness")
         return {key: data[key] for key in first} | {key: value for key, value in data.items() if key not in first}

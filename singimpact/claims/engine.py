@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
-from singimpact.claims.claim import STRENGTH, Check, Claim, Verdict
+from singimpact.algebra.certificates import Certificate, collected
+from singimpact.claims.claim import STRENGTH, Check, Claim, Trial, Verdict
 from singimpact.claims.keys import key_of
 from singimpact.claims.memory import keep, recall
 from singimpact.claims.sections import CLAIMS
@@ -72,45 +75,79 @@ def run(
     return list(done.values())
 
 
+@dataclass(frozen=True)
+class _Found:
+    """What came of one claim by itself."""
+
+    kind: str
+    evidence: str
+    witness: Mapping[str, str] | None = None
+    corrected: str | None = None
+    corrected_kind: str | None = None
+    certificates: tuple[Certificate, ...] = ()
+    trials: tuple[Trial, ...] = ()
+
+
 def decide(claim: Claim, known: dict[str, Verdict]) -> Verdict:
     """The verdict on one claim, given the verdicts on what it rests on."""
     started = time.process_time()
-    corrected, corrected_kind = None, None
     try:
-        check = claim.verify(claim.printed.value)
-        kind, evidence = check.kind, check.evidence
-        if not check.holds:
-            kind, corrected, corrected_kind, evidence = _corrected(claim, check)
+        found = _found(claim)
     except Exception as error:  # a verifier that raises is a verdict, not a crash of the run
-        check = Check(False, "error", "")
-        kind, evidence = "error", f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
-    strength = corrected_kind if kind == "corrected" and corrected_kind else kind
+        found = _Found("error", f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")
+    strength = found.corrected_kind or found.kind
     below = [known[name].effective for name in claim.rests_on if name in known]
     effective = min([strength, *below], key=lambda name: STRENGTH[name])
     return Verdict(
-        claim.id,
-        claim.section,
-        claim.title,
-        kind,
-        effective,
-        claim.printed.latex,
-        corrected,
-        corrected_kind,
-        None if check.holds else check.witness,
-        evidence,
-        claim.rests_on,
-        time.process_time() - started,
+        id=claim.id,
+        section=claim.section,
+        title=claim.title,
+        effective=effective,
+        printed=claim.printed.latex,
+        rests_on=claim.rests_on,
+        seconds=time.process_time() - started,
+        **vars(found),
     )
 
 
-def _corrected(claim: Claim, failed: Check) -> tuple[str, str | None, str | None, str]:
-    """(kind, corrected LaTeX, its kind, evidence) when the printed statement failed."""
+def _found(claim: Claim) -> _Found:
+    check, certificates = _verified(claim, claim.printed.value)
+    if check.holds:
+        return _Found(check.kind, check.evidence, certificates=certificates)
+    return _corrected(claim, check)
+
+
+def _verified(claim: Claim, value: Any) -> tuple[Check, tuple[Certificate, ...]]:
+    """What the verifier says of a statement, and the certificates on which that rests."""
+    with collected() as gathered:
+        check = claim.verify(value)
+    return check, tuple(gathered)
+
+
+def _corrected(claim: Claim, failed: Check) -> _Found:
+    """What holds instead of a printed statement that failed."""
     if claim.corrected is None:
         raise ArithmeticError(f"the printed statement fails and nothing is known to hold instead: {failed.evidence}")
     statement = claim.corrected()
-    check = claim.verify(statement.value)
+    check, certificates = _verified(claim, statement.value)
     if not check.holds:
         raise ArithmeticError(f"printed and corrected statement both fail: {failed.evidence}; {check.evidence}")
     if not failed.witness:
         raise ArithmeticError("the printed statement fails without a witness")
-    return "corrected", statement.latex, check.kind, f"printed: {failed.evidence}; corrected: {check.evidence}"
+    evidence = f"printed: {failed.evidence}; corrected: {check.evidence}"
+    trials = _tried(claim, statement.value)
+    return _Found("corrected", evidence, failed.witness, statement.latex, check.kind, certificates, trials)
+
+
+def _tried(claim: Claim, corrected: Any) -> tuple[Trial, ...]:
+    """The trials of a correction: two models must tell it from the printed statement, and none may speak against it."""
+    trials = tuple(claim.trials(claim.printed.value, corrected)) if claim.trials else ()
+    against = [trial.line() for trial in trials if not trial.corrected_holds]
+    if against:
+        raise ArithmeticError(f"the corrected statement fails on a model: {against[0]}")
+    telling = {trial.model for trial in trials if trial.tells}
+    if len(telling) < 2:
+        raise ArithmeticError(
+            f"a correction needs two models that tell it from what is printed, there are {len(telling)}"
+        )
+    return trials

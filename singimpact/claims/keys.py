@@ -45,7 +45,7 @@ def key_of(claim: Claim, below: Mapping[str, str]) -> str:
     64
     """
     told = [ground(), claim.id, claim.title, claim.section, claim.printed.latex, _told(claim.printed.value, set())]
-    told += [_told(claim.verify, set()), _told(claim.corrected, set())]
+    told += [_told(claim.verify, set()), _told(claim.corrected, set()), _told(claim.trials, set())]
     told += [below.get(name, "") for name in claim.rests_on]
     return hashlib.sha256(json.dumps(told).encode()).hexdigest()
 

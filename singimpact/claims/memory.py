@@ -7,7 +7,8 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from singimpact.claims.claim import KINDS, Verdict
+from singimpact.algebra.checking import accepts
+from singimpact.claims.claim import KINDS, Trial, Verdict
 from singimpact.inputs import InputError
 from singimpact.store import cache_folder, folder, write_text
 
@@ -28,7 +29,11 @@ def recall(name: str, key: str) -> Verdict | None:
 def _verdict(data: dict[str, Any]) -> Verdict:
     if set(data) != {field.name for field in fields(Verdict)} or data["kind"] not in KINDS:
         raise ValueError("not a verdict")
-    return Verdict(**(data | {"rests_on": tuple(data["rests_on"])}))
+    certificates = tuple(data["certificates"])
+    trials = tuple(Trial(**trial) for trial in data["trials"])
+    if not all(accepts(certificate) for certificate in certificates):
+        raise ValueError("a certificate is not accepted")
+    return Verdict(**(data | {"rests_on": tuple(data["rests_on"]), "certificates": certificates, "trials": trials}))
 
 
 def keep(verdict: Verdict, key: str) -> None:

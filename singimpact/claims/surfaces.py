@@ -139,7 +139,7 @@ def _launch(at: Any, c: float, tau: float, v: float, time: float) -> float:
 
 @dataclass(frozen=True)
 class TouchingFlight:
-    """x = t^3 (1-t)^2: at rest with a = 0 at t = 0, and touching again at t = 1."""
+    """A flight from rest with a = 0 at s = 0: a, a' there, x-dot and v_(sigma t) where it is back."""
 
     acceleration: Any
     slope: Any
@@ -147,17 +147,20 @@ class TouchingFlight:
     mixed: Any
 
 
-@lru_cache(maxsize=1)
-def touching_flight() -> TouchingFlight:
-    """The derivatives that a cusp of phi at (0, 0; 1) would need, exactly."""
-    s, e = sympy.symbols("s e")
-    x = s**3 * (1 - s) ** 2
+PATH = sympy.Symbol("s")
+
+
+@lru_cache(maxsize=8)
+def touching_flight(x: Any = PATH**3 * (1 - PATH) ** 2) -> TouchingFlight:
+    """The derivatives that a cusp of phi would need at the first return of the flight x(s) from rest, exactly."""
+    s, e = PATH, sympy.Symbol("e")
+    back = min(root for root in sympy.Poly(x, s).real_roots() if root > 0)
     forcing = sympy.Poly(sympy.expand(sympy.diff(x, s, 2)), s)
     twice = sum(value * s ** (n + 2) / ((n + 1) * (n + 2)) for (n,), value in forcing.terms())  # X'' = forcing
     # launch at s, back at e: v(s, e) = X'(s) - (X(e) - X(s))/(e - s); at the landing the other way round
     launch = sympy.cancel(sympy.diff(twice, s) - (twice.subs(s, e) - twice) / (e - s))
     after = launch.subs({s: e, e: s}, simultaneous=True)  # velocity at the landing, phi = (e, after)
-    at = {s: 0, e: 1}
+    at = {s: 0, e: back}
     return TouchingFlight(
         acceleration=forcing.eval(0),
         slope=sympy.diff(forcing.as_expr(), s).subs(s, 0),

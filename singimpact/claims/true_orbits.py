@@ -21,7 +21,8 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float, as_fraction
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import acceleration
-from singimpact.contact.points import swan_points_over_clearance, tangency_points
+from singimpact.contact.points import tangency_points
+from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.oscillator.model import Oscillator
 
 Flow = Callable[[Any, Any, Any], tuple[Any, Any]]

@@ -8,6 +8,7 @@ from typing import Any
 
 import sympy
 
+from singimpact.algebra.certificates import identical
 from singimpact.claims.claim import Check
 
 _SAMPLES = [Fraction(n, d) for n, d in ((3, 5), (7, 4), (2, 9), (11, 6), (5, 13), (17, 8), (1, 7), (19, 12))]
@@ -16,11 +17,21 @@ _SAMPLES = [Fraction(n, d) for n, d in ((3, 5), (7, 4), (2, 9), (11, 6), (5, 13)
 def is_zero(expression: Any) -> bool:
     """Whether an expression with rational coefficients and one square root vanishes identically, decided exactly.
 
+    That the terms of a sum cancel is kept as a certificate.
+
     Raises
     ------
     ArithmeticError : two roots whose radicands are not in the ratio of two rational squares.
     """
-    expression = sympy.together(sympy.sympify(expression))
+    expression = sympy.sympify(expression)
+    if not _cancels(sympy.together(expression)):
+        return False
+    if expression.is_Add:
+        identical(expression.args[0], sympy.Add(*(-part for part in expression.args[1:])))
+    return True
+
+
+def _cancels(expression: Any) -> bool:
     roots = sorted((p for p in expression.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2), key=str)
     if not roots:
         return bool(sympy.cancel(expression) == 0)
@@ -60,8 +71,10 @@ def identity(truth: Callable[[], Any], what: str = "derived from the equation of
         if len(stated) != len(derived):
             raise ArithmeticError(f"{len(stated)} parts are stated, {len(derived)} derived")
         for left, right in zip(stated, derived, strict=True):
-            if not is_zero(left - right):
+            if not _cancels(sympy.together(left - right)):
                 return Check(False, "proved", f"differs from what is {what}", sample(left, right))
+        for left, right in zip(stated, derived, strict=True):
+            identical(left, right)
         return Check(True, "proved", f"equal to what is {what}, as exact expressions")
 
     return verify

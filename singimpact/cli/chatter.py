@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.status import Status
+
+if TYPE_CHECKING:
+    from singimpact.algebra.certified import Certified
 
 
 @click.command(short_help="when infinitely many impacts accumulate")
@@ -24,11 +27,18 @@ def command(tau: str, v: str, digits: int | None, as_json: bool, output: str | N
     status = Status(int(found.status))
     if as_json:
         told = {"tau": number(found.tau, digits), "error": float(found.error), "impacts": found.impacts}
+        told |= enclosure(found.certified)
         emit(as_json_text({"model": oscillator.to_dict(), **told, "status": status.name}), output)
     else:
         lines = [f"tau      {number(found.tau, digits)}", f"error    {float(found.error):.1e}",
+                 *(f"{name:8} {text}" for name, text in enclosure(found.certified).items()),
                  f"impacts  {found.impacts}", f"status   {status.name}: {status.sentence}"]  # fmt: skip
         emit("\n".join(lines), output)
+
+
+def enclosure(found: Certified | None) -> dict[str, str]:
+    """Value and radius as text, where they are proved."""
+    return {} if found is None else found.as_dict()
 
 
 def number(value: Any, digits: int | None) -> Any:

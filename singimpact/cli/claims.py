@@ -47,9 +47,19 @@ def show(name: str, as_json: bool, output: str | None) -> None:
 
 
 def _told(value: Any) -> str:
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return "".join(f"\n  {_item(item)}" for item in value)
     if isinstance(value, dict):
         return ", ".join(f"{key} = {item}" for key, item in value.items()) or "-"
     return (" ".join(map(str, value)) or "-") if isinstance(value, list) else "-" if value is None else str(value)
+
+
+def _item(item: dict[str, Any]) -> str:
+    """A certificate or a trial on one line."""
+    if "says" in item:
+        return f"{item['kind']}: {item['says']}"
+    says = f"printed {item['printed']}, corrected {item['corrected']}"
+    return f"{item['model']}: {item['quantity']} = {item['found']}; {says}"
 
 
 @command.command()

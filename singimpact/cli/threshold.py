@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from singimpact.cli.chatter import number
+from singimpact.cli.chatter import enclosure, number
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.status import Status
@@ -26,6 +26,9 @@ def command(tau: str, digits: int | None, as_json: bool, output: str | None, **o
     status = Status(int(found.status))
     if as_json:
         told = {"v": number(found.v, digits), "error": float(found.error), "status": status.name}
+        told |= enclosure(found.certified)
         emit(as_json_text({"model": oscillator.to_dict(), **told}), output)
     else:
-        emit(f"v       {number(found.v, digits)}\nerror   {float(found.error):.1e}\nstatus  {status.name}", output)
+        lines = [f"v       {number(found.v, digits)}", f"error   {float(found.error):.1e}"]
+        lines += [f"{name:7} {text}" for name, text in enclosure(found.certified).items()]
+        emit("\n".join([*lines, f"status  {status.name}"]), output)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -11,13 +12,15 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import Balls, as_rational
-from singimpact.algebra.expressions import Call, Expression, Power, children, evaluate, names_in, substitute, walk
+from singimpact.algebra.certified import Certified, as_certified
+from singimpact.algebra.expressions import Call, Expression, Power, children, names_in, walk
 from singimpact.algebra.numbers import as_float
-from singimpact.algebra.rings import DOUBLES
+from singimpact.algebra.zeros import Zero, derivatives, isolate, refined, sign_at
 from singimpact.contact.contact import acceleration
-from singimpact.contact.zeros import Zero, derivatives, isolate, refined, sign_at
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
+
+MOST_DIGITS = 100_000
 
 
 @dataclass(frozen=True)
@@ -45,20 +48,49 @@ class TangencyPoint:
         """tau_* as a double."""
         return float(self.ball().mid())
 
+    def certified(self, digits: int = 30) -> Certified:
+        """tau_* with a certified radius; of a degenerate point, the zero of a_c' that is meant.
+
+        Examples
+        --------
+        >>> print(tangency_points(Oscillator("x", "cos(2*t)", "0.3", "1/2"))[1].certified(40))
+        2.508540817200043682832984018073391746625
+        """
+        return enclosed(self.ball, digits)
+
     def value(self, digits: int = 30) -> Any:
         """tau_* as an mpmath number with this many digits."""
         import mpmath
 
-        bits = ceil(digits * 3.33) + 16
-        with mpmath.workprec(bits):
-            exact = as_rational(self.ball(bits))
-            return mpmath.mpf(exact.numerator) / exact.denominator
+        with mpmath.workdps(digits + 5):
+            return +self.certified(digits + 3).value
+
+
+def enclosed(ball: Callable[[int], Any], digits: int) -> Certified:
+    """The certified number that ball(bits) gives, with more bits until it has its digits.
+
+    Raises
+    ------
+    InputError : digits are not a whole number from 1 to MOST_DIGITS.
+    """
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
+        raise refuse("digits", digits, f"a whole number from 1 to {MOST_DIGITS}")
+    bits = ceil(digits * 3.33) + 32
+    while (found := as_certified(ball(bits), digits)) is None:
+        bits *= 2
+        if bits > 64 * (digits + 64):
+            raise ArithmeticError(f"{digits} digits are not reached with {bits // 2} bits")
+    return found
 
 
 class TangencyPoints(tuple[TangencyPoint, ...]):
     """Tangency points in order, with `.tau` and `.kind` as arrays."""
 
     __slots__ = ()
+
+    def certified(self, digits: int = 30) -> tuple[Certified, ...]:
+        """The times tau_*, each with a certified radius and so many significant digits."""
+        return tuple(point.certified(digits) for point in self)
 
     @property
     def tau(self) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -90,15 +122,15 @@ def tangency_points(oscillator: Oscillator) -> TangencyPoints:
     function = acceleration(oscillator)
     if "t" not in names_in(function):
         return TangencyPoints()
-    low, high = _window(oscillator, function)
+    low, high = window(oscillator, function)
     points = []
     for zero in isolate(function, "t", low, high):
         points += [TangencyPoint(function, zero, KINDS[zero.slope])] if zero.slope else _decided(function, zero)
     return TangencyPoints(_within(points, oscillator))
 
 
-def _window(oscillator: Oscillator, function: Expression) -> tuple[Fraction, Fraction]:
-    """A window with rational ends that contains one period, or all zeros of a polynomial."""
+def window(oscillator: Oscillator, function: Expression) -> tuple[Fraction, Fraction]:
+    """A window of the tau-axis with rational ends that contains one period, or all zeros of a polynomial."""
     if oscillator.period is not None:
         period = Fraction(as_float(oscillator.period))
         return -period * Fraction(1, 97), period * Fraction(98, 97)
@@ -159,95 +191,3 @@ def _within(points: list[TangencyPoint], oscillator: Oscillator) -> list[Tangenc
     period = as_float(oscillator.period)
     slack = 1e-12 * period  # a zero at 0 is found with a tiny sign
     return sorted((p for p in points if -slack <= p.tau < period - slack), key=lambda point: point.tau)
-
-
-@dataclass(frozen=True)
-class SwanPoint:
-    """A clearance c_0 and a time at which a_c and a_c' vanish together.
-
-    Attributes
-    ----------
-    model : the family, at any clearance. zero : isolates tau_*, a zero of g'.
-    kind : "positive" (a'' > 0) or "negative". clearance_zero : isolates c_0.
-    """
-
-    model: Oscillator
-    zero: Zero
-    kind: str
-    clearance_zero: Zero
-
-    def tau_ball(self, bits: int = 128) -> Any:
-        """A ball that contains tau_*."""
-        return refined(self.model.forcing(), "t", self.zero, bits, order=1)
-
-    def clearance_ball(self, bits: int = 128) -> Any:
-        """A ball that contains c_0: f(c_0, 0) = g(tau_*), by Newton's method on balls."""
-        import flint
-
-        with flint.ctx.workprec(bits + 32):
-            level = derivatives(self.model.forcing(), "t", self.tau_ball(bits + 32), 0, Balls(bits + 32))[0]
-            rest = _rest_force(self.model)
-            balls = Balls(bits + 32)
-            enclosure = balls.interval(self.clearance_zero.low, self.clearance_zero.high)
-            for _ in range(200):
-                middle = enclosure.mid()
-                value, slope = (
-                    derivatives(rest, "x", middle, 0, balls)[0],
-                    derivatives(rest, "x", enclosure, 1, balls)[1],
-                )
-                smaller = (middle - (value - level) / slope).intersection(enclosure)
-                if smaller.rad() >= enclosure.rad() * flint.arb(0.9):
-                    return smaller
-                enclosure = smaller
-            return enclosure
-
-    @cached_property
-    def tau(self) -> float:
-        """tau_* as a double."""
-        return float(self.tau_ball().mid())
-
-    @cached_property
-    def clearance(self) -> float:
-        """c_0 as a double."""
-        return float(self.clearance_ball().mid())
-
-
-def _rest_force(model: Oscillator) -> Expression:
-    from singimpact.algebra.expressions import number
-
-    return substitute(model.force(), {"xdot": number(0)})
-
-
-def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fraction]) -> tuple[SwanPoint, ...]:
-    """The swan points of x'' + f = g as the clearance varies in an interval.
-
-    a_c'(tau) = g'(tau) is free of c, so tau_* is a zero of g' and c_0 solves f(c, 0) = g(tau_*).
-
-    Examples
-    --------
-    >>> model = Oscillator("x", "cos(2*t)", 0, 1)
-    >>> [(p.kind, p.clearance) for p in swan_points_over_clearance(model, (Fraction(-2), Fraction(2)))]
-    [('negative', 1.0), ('positive', -1.0)]
-    """
-    forcing, rest = model.forcing(), _rest_force(model)
-    if model.period is None:
-        raise InputError(f"g = {model.g} is not seen to be periodic: give period=")
-    period = Fraction(as_float(model.period))
-    found = []
-    for zero in isolate(forcing, "t", -period / 97, period * Fraction(98, 97), order=1):
-        tau = float(refined(forcing, "t", zero, 64, order=1).mid()) if zero.slope else float(zero.low)
-        if not zero.slope or not -1e-12 * float(period) <= tau < float(period) * (1 - 1e-12):
-            continue
-        level = float(evaluate(forcing, {"t": tau}, DOUBLES))
-        shifted = _minus(rest, Fraction(level))
-        for piece in isolate(shifted, "x", *between):
-            if piece.slope:
-                wide = Zero(piece.low - Fraction(1, 10**9), piece.high + Fraction(1, 10**9), piece.slope)
-                found.append(SwanPoint(model, zero, "positive" if zero.slope > 0 else "negative", wide))
-    return tuple(found)
-
-
-def _minus(tree: Expression, value: Fraction) -> Expression:
-    from singimpact.algebra.expressions import number, subtract
-
-    return subtract(tree, number(value))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.documents import escape
@@ -31,6 +31,11 @@ class Erratum:
         return ", ".join(f"{name} = {value}" for name, value in (self.verdict.witness or {}).items())
 
     @property
+    def trials(self) -> list[str]:
+        """Model by model, what was found and what the two statements say."""
+        return [trial.line() for trial in self.verdict.trials]
+
+    @property
     def survives(self) -> str:
         """What rests on it, and how that stands with the corrected statement."""
         return ", ".join(f"{name} ({kind})" for name, kind in self.dependants.items()) or "nothing rests on it"
@@ -41,6 +46,7 @@ class Erratum:
         names = ("id", "section", "title", "printed", "corrected", "corrected_kind", "evidence")
         return {name: getattr(verdict, name) for name in names} | {
             "witness": dict(verdict.witness or {}),
+            "trials": [asdict(trial) for trial in verdict.trials],
             "dependants": self.dependants,
         }
 
@@ -75,7 +81,9 @@ class Errata(Sequence[Erratum]):
             parts.append(
                 f"{v.id}  (section {v.section})  {v.title}\n  printed    {v.printed}\n"
                 f"  corrected  {v.corrected}   [{v.corrected_kind}]\n  why        {v.evidence}\n"
-                f"  witness    {entry.witness}\n  survives   {entry.survives}"
+                f"  witness    {entry.witness}\n"
+                + "".join(f"  tried      {line}\n" for line in entry.trials)
+                + f"  survives   {entry.survives}"
             )
         return "\n\n".join(parts)
 
@@ -88,7 +96,8 @@ class Errata(Sequence[Erratum]):
                 f"## `{v.id}` (section {v.section})\n\n{escape.markdown(v.title)}.\n\n"
                 f"- printed: ${v.printed}$\n- corrected ({v.corrected_kind}): ${v.corrected}$\n"
                 f"- why: {escape.markdown(v.evidence)}\n- witness: {escape.markdown(entry.witness)}\n"
-                f"- what rests on it: {escape.markdown(entry.survives)}"
+                + "".join(f"- tried: {escape.markdown(line)}\n" for line in entry.trials)
+                + f"- what rests on it: {escape.markdown(entry.survives)}"
             )
         return "\n\n".join(parts) + "\n"
 
@@ -124,6 +133,7 @@ def _latex_entry(entry: Erratum) -> str:
         ("corrected", f"${v.corrected}$ ({v.corrected_kind})"),
         ("why", escape.latex(v.evidence)),
         ("witness", escape.latex(entry.witness)),
+        *(("tried", escape.latex(line)) for line in entry.trials),
         ("survives", escape.latex(entry.survives)),
     ]
     body = "\n".join(rf"\item[\textit{{{name}}}] {text}" for name, text in rows)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, log
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.certified import Certified
 from singimpact.algebra.numbers import as_float, as_mpf, compare
 from singimpact.algebra.rings import DOUBLES, Multiprecision
+from singimpact.dynamics import enclosed
 from singimpact.dynamics.completion import completion
 from singimpact.flights.hits import checked_digits, derivative, impact_map
 from singimpact.flights.kernel import kernel_of
@@ -56,12 +58,14 @@ class ChatterLimit:
     impacts : flown before the rest was summed up.
     error : estimate of the error of tau, rounding of the given state included.
     status : `complete`, `lifts_off`, or the status of a flight that ended the sequence.
+    certified : tau with a proved radius, when digits were asked for and the model is linear; else None.
     """
 
     tau: Any
     impacts: int
     error: Any
     status: np.int8
+    certified: Certified | None = None
 
 
 def chatter_limit(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None) -> ChatterLimit:
@@ -70,6 +74,11 @@ def chatter_limit(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = Non
     Parameters
     ----------
     osc : the model. tau, v : one state, v >= 0. digits : decimal digits of tau, which is then an mpmath number.
+
+    Notes
+    -----
+    With digits, tau of a linear model with a number for restitution is enclosed (`dynamics.enclosed`): `certified` has
+    value and radius, and `error` covers them.  For other models `error` is an estimate from the last terms.
 
     Examples
     --------
@@ -84,7 +93,25 @@ def chatter_limit(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = Non
     found = flown.limit()
     if digits is None or found.status not in (Status.complete, Status.lifts_off):
         return found
-    return _precise(osc, states, found, checked_digits(digits))
+    return _enclosed(osc, states, checked_digits(digits)) or _precise(osc, states, found, digits)
+
+
+def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | None:
+    """The limit in balls, where the model and the state allow it."""
+    if not enclosed.enclosable(osc):
+        return None
+    found = enclosed.chatter_limit(osc, states.exact_tau(0), states.exact_v(0), digits)
+    if found is None:
+        return None
+    status = Status.lifts_off if found.lost else Status.complete
+    return replace(_rounded(found.tau.value, found.impacts, _covering(found.tau), status, digits), certified=found.tau)
+
+
+def _covering(found: Certified) -> Any:
+    """The radius, and the rounding of the value to its digits."""
+    import mpmath
+
+    return found.radius + abs(found.value) * mpmath.mpf(10) ** -found.digits
 
 
 def summed(osc: Oscillator, tau: float, v: float, resolution: float) -> float | None:

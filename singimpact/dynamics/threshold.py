@@ -7,9 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.certified import Certified
+from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
 from singimpact.algebra.rings import Multiprecision
 from singimpact.contact.contact import acceleration_jet, force_jet
+from singimpact.dynamics import enclosed
 from singimpact.dynamics.rest import release
 from singimpact.flights.hits import checked_digits, derivative, impact_map
 from singimpact.flights.launch import horizon_of
@@ -48,11 +51,16 @@ SEARCH = Search()
 
 @dataclass(frozen=True)
 class Threshold:
-    """The velocity `v`, an estimate of its `error`, and `complete`, or `unresolved` when no threshold was found."""
+    """The velocity `v`, an estimate of its `error`, and `complete`, or `unresolved` when no threshold was found.
+
+    `certified` has v with a proved radius, when digits were asked for and the model is linear: within it lie a velocity
+    from which chatter completes and one from which contact is lost before.
+    """
 
     v: Any
     error: Any
     status: np.int8
+    certified: Certified | None = None
 
 
 def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None) -> Threshold:
@@ -78,7 +86,21 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None) -> Thresh
     if not np.isfinite(end):
         return Threshold(np.nan, np.nan, np.int8(Status.unresolved))
     found = _bisected(osc, start, end)
-    return found if digits is None else _refined(osc, place, found, checked_digits(digits))
+    if digits is None or found.status != Status.complete:
+        return found
+    return _enclosed(osc, place, found, end, checked_digits(digits)) or _refined(osc, place, found, digits)
+
+
+def _enclosed(osc: Oscillator, place: Expression, rough: Threshold, end: float, digits: int) -> Threshold | None:
+    """The threshold in balls, where the model allows it."""
+    import mpmath
+
+    found = enclosed.threshold(osc, place, rough.v, end, digits) if enclosed.enclosable(osc) else None
+    if found is None:
+        return None
+    with mpmath.workdps(digits):
+        error = found.radius + abs(found.value) * mpmath.mpf(10) ** -digits
+        return Threshold(+found.value, error, np.int8(Status.complete), found)
 
 
 def _bisected(osc: Oscillator, tau: float, end: float) -> Threshold:

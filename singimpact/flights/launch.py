@@ -63,9 +63,7 @@ class States:
 
 
 def _raw(name: str, value: Any) -> np.ndarray[Any, Any]:
-    from singimpact.algebra.expressions import Call, Name, Pi, Power, Product, Sum
-
-    if isinstance(value, Number | Pi | Name | Sum | Product | Power | Call):
+    if isinstance(value, Expression):
         boxed = np.empty((), dtype=object)
         boxed[()] = value
         return boxed

@@ -19,9 +19,9 @@ from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Name, evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
+from singimpact.algebra.zeros import isolate, refined
 from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.points import tangency_points
-from singimpact.contact.zeros import isolate, refined
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.surface.curve import Window

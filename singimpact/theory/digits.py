@@ -9,6 +9,7 @@ from math import ceil
 from typing import Any
 
 from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.certified import Certified, as_certified
 from singimpact.algebra.univariate import precision_of
 from singimpact.inputs import InputError, refuse
 
@@ -42,20 +43,15 @@ def with_digits(
     while bits <= LIMITS.bits:
         with precision_of(Balls(bits)):
             found = compute(Balls(bits))
-        if all(_good(ball, digits) for ball in balls_in(found)):
+        if all(as_certified(ball, digits) is not None for ball in balls_in(found)):
             return show(found, digits)
         bits *= 2
     raise InputError(f"{digits} digits are not reached with {LIMITS.bits} bits: ask for fewer, or a lower order")
 
 
-def _good(ball: Any, digits: int) -> bool:
-    """Digits relative to the value; what is not told from zero must be far below them."""
-    import flint
-
-    with flint.ctx.workprec(64):
-        radius, size = ball.rad(), abs(ball.mid())
-        least = flint.arb(10) ** -digits
-        return bool(ball.is_finite() and (radius < least * size or abs(ball).abs_upper() < least**2))
+def all_certified(found: Mapping[int, Any], digits: int) -> dict[int, Certified | None]:
+    """Every ball of a series as a value with a radius."""
+    return {n: as_certified(ball, digits) for n, ball in found.items()}
 
 
 def all_digits(found: Mapping[int, Any], digits: int) -> dict[int, Any]:

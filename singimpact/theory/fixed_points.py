@@ -2,6 +2,7 @@
 
 Everything follows from lambda, the root in (0, 1) of lambda^(j+1) P_j - r Q_j, and from u = 1 - lambda, the root of
 the same polynomial shifted to 1: so nothing is lost as r -> 0 or as r -> 1.  Isolation is `algebra.roots`.
+As functions of r (`of_m`, `series`, `minimal_polynomial`) they are in `multipliers`, and reached from here too.
 """
 
 from __future__ import annotations
@@ -12,43 +13,15 @@ from functools import cache
 from typing import Any
 
 from singimpact.algebra.balls import Balls
+from singimpact.algebra.certified import Certified as Certified
+from singimpact.algebra.certified import as_certified
 from singimpact.algebra.numbers import as_fraction, constant
 from singimpact.algebra.roots import real_roots
+from singimpact.contact.contact import contact_order
 from singimpact.inputs import InputError, refuse
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
 MOST_DIGITS = 100_000
-
-
-@dataclass(frozen=True)
-class Certified:
-    """A real number known to lie within `radius` of `value`.
-
-    Attributes
-    ----------
-    value, radius : mpmath numbers. digits : how many significant digits were asked for.
-    """
-
-    value: Any
-    radius: Any
-    digits: int
-
-    def __str__(self) -> str:
-        return _text(self.value, self.digits)
-
-    def as_dict(self) -> dict[str, str]:
-        """value and radius as decimal text; the radius covers the rounding of the text, which has two more digits."""
-        import mpmath
-
-        with mpmath.workprec(64):
-            radius = 1.01 * (self.radius + abs(self.value) * mpmath.mpf(10) ** (-self.digits - 1))
-            return {"value": _text(self.value, self.digits + 2), "radius": _text(radius, 3)}
-
-
-def _text(value: Any, digits: int) -> str:
-    import mpmath
-
-    return str(mpmath.nstr(value, digits, strip_zeros=False))
 
 
 @dataclass(frozen=True)
@@ -77,7 +50,17 @@ class SwanFixedPoints:
     mu_minus_one: Certified
 
 
-def as_dict(points: TangencyFixedPoints | SwanFixedPoints) -> dict[str, dict[str, str]]:
+@dataclass(frozen=True)
+class Multipliers:
+    """On gamma (lambda) and across it (mu) at a contact of any order, and what they lack of 1."""
+
+    lambda_: Certified
+    mu: Certified
+    one_minus_lambda: Certified
+    mu_minus_one: Certified
+
+
+def as_dict(points: TangencyFixedPoints | SwanFixedPoints | Multipliers) -> dict[str, dict[str, str]]:
     """Names as on the paper's page -> value and radius as text."""
     return {field.name.rstrip("_"): getattr(points, field.name).as_dict() for field in fields(points)}
 
@@ -125,6 +108,32 @@ def swan(r: Any, digits: int = 50) -> SwanFixedPoints:
         return found | {"m_star": -found["one_minus_lambda"]}
 
     return SwanFixedPoints(**_certified(enclosures, asked))
+
+
+def multipliers(at: str | int, r: Any, digits: int = 50) -> Multipliers:
+    """lambda and mu at any contact order j >= 1: r = lambda^(j+1) P_j/Q_j.
+
+    Parameters
+    ----------
+    at : "tangency", "swan" or a contact order. r, digits : as in `tangency`.
+
+    Examples
+    --------
+    >>> print(multipliers(3, "1/2", digits=20).lambda_)
+    0.79433819166467074201
+    """
+    j, rate, asked = contact_order(at), _restitution(r), _digits(digits)
+    if not j:
+        raise refuse("at", at, "a contact order 1..12: at a regular point lambda is r")
+    return Multipliers(**_certified(lambda balls: _multipliers(j, rate, balls), asked))
+
+
+def __getattr__(name: str) -> Any:
+    if name in ("of_m", "series", "minimal_polynomial"):  # their file loads sympy
+        from singimpact.theory import multipliers as functions
+
+        return getattr(functions, name)
+    raise AttributeError(f"module 'singimpact.theory.fixed_points' has no attribute {name!r}")
 
 
 def _restitution(value: Any) -> Fraction:
@@ -234,25 +243,7 @@ def _certified(enclosures: Any, digits: int) -> dict[str, Certified]:
     while True:
         with flint.ctx.workprec(bits):
             found = enclosures(Balls(bits))
-        results = {name: _as_certified(ball, digits) for name, ball in found.items()}
+        results = {name: as_certified(ball, digits) for name, ball in found.items()}
         if all(result is not None for result in results.values()):
             return {name: result for name, result in results.items() if result is not None}
         bits += bits // 4 + GUARD_BITS
-
-
-def _as_certified(ball: Any, digits: int) -> Certified | None:
-    value, radius = _exact(ball.mid()), _exact(ball.rad())
-    import mpmath
-
-    with mpmath.workprec(64):
-        narrow = value != 0 and radius * mpmath.mpf(10) ** digits * 2 <= abs(value)
-    return Certified(value, radius, digits) if narrow else None
-
-
-def _exact(number: Any) -> Any:
-    """The mpmath number that an exact ball is, with all its bits."""
-    import mpmath
-
-    mantissa, exponent = number.man_exp()
-    with mpmath.workprec(int(mantissa).bit_length() + 8):
-        return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))

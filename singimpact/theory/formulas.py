@@ -18,7 +18,7 @@ from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.inputs import InputError, refuse
 from singimpact.theory.completion import leaves, symbolic_completion
-from singimpact.theory.digits import all_digits, sympy_digits, with_digits
+from singimpact.theory.digits import all_certified, all_digits, sympy_digits, with_digits
 from singimpact.theory.invariant_curve import InvariantCurve, invariant_curve
 from singimpact.theory.letters import LetteredModel
 from singimpact.theory.places import Place, exact_contact, multiplier, place
@@ -238,12 +238,15 @@ def chatter_limit(
     where = place(model, 0, tau)
     multiplier(0, model.slope_at_rest())
     further = {n: abs(c) for n, c in _completed(where, order + TRUST.further, DOUBLES).items() if n > order}
+
+    def enclosures(wanted: int) -> Any:
+        return with_digits(lambda ring: _completed(where, order, ring), wanted, all_certified)
+
     try:
-        numbers = _completed(where, order, EXACT)
-        return PowerSeries("v", order, {n: _shown(value) for n, value in numbers.items()}, digits, further)
+        numbers = {n: _shown(value) for n, value in _completed(where, order, EXACT).items()}
     except ArithmeticError:
         numbers = with_digits(lambda ring: _completed(where, order, ring), digits, all_digits)
-    return PowerSeries("v", order, numbers, digits, further)
+    return PowerSeries("v", order, numbers, digits, further, enclosures=enclosures)
 
 
 def _completed(where: Place, order: int, ring: Any) -> dict[int, Any]:
@@ -291,10 +294,13 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
     def numbers() -> Any:
         return with_digits(lambda ring: getattr(_curve(where, top, ring), part), digits, all_digits)
 
+    def enclosures(wanted: int) -> Any:
+        return with_digits(lambda ring: getattr(_curve(where, top, ring), part), wanted, all_certified)
+
     exact = _exact_curve(where, top, part)
     if exact is not None:
-        return PowerSeries("sigma", order, exact, digits, further, numbers)
-    return PowerSeries("sigma", order, numbers(), digits, further)
+        return PowerSeries("sigma", order, exact, digits, further, numbers, enclosures)
+    return PowerSeries("sigma", order, numbers(), digits, further, enclosures=enclosures)
 
 
 def _curve(where: Place, order: int, ring: Any) -> InvariantCurve:

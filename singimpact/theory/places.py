@@ -149,7 +149,10 @@ def exact_contact(where: Place, order: int) -> Contact | None:
             return None
     from singimpact.theory.constants import contact_of_constants
 
-    return contact_of_constants(where.model, where.exact, where.j, order)
+    try:
+        return contact_of_constants(where.model, where.exact, where.j, order)
+    except ArithmeticError:  # tau_* or c is a root without another name
+        return None
 
 
 def multiplier(j: int, r: Expression, bits: int | None = None) -> Any:

@@ -8,6 +8,7 @@ from functools import cached_property
 from math import inf
 from typing import Any
 
+from singimpact.algebra.certified import Certified
 from singimpact.inputs import InputError, refuse
 
 
@@ -39,6 +40,7 @@ class PowerSeries:
     digits : of the numbers.
     further : sizes of the coefficients beyond the order, for `valid_within`; empty for a series with symbols.
     numbers : gives the coefficients as mpmath numbers, when they are long exact expressions.
+    enclosures : gives them as certified numbers with so many digits.
 
     Examples
     --------
@@ -54,6 +56,7 @@ class PowerSeries:
     digits: int = 30
     further: Mapping[int, float] = field(default_factory=dict, repr=False)
     numbers: Callable[[], Mapping[int, Any]] | None = field(default=None, repr=False, compare=False)
+    enclosures: Callable[[int], Mapping[int, Certified]] | None = field(default=None, repr=False, compare=False)
 
     def __getitem__(self, power: int) -> Any:
         if isinstance(power, bool) or not isinstance(power, int) or not 0 <= power <= self.order:
@@ -79,6 +82,17 @@ class PowerSeries:
     @cached_property
     def _numbers(self) -> Mapping[int, Any]:
         return self.coefficients if self.numbers is None else self.numbers()
+
+    def certified(self, digits: int | None = None) -> dict[int, Certified]:
+        """n -> coefficient with a certified radius, from balls; `digits` significant ones, else as many as the series has.
+
+        Raises
+        ------
+        InputError : the series has symbols.
+        """  # noqa: E501
+        if self.enclosures is None:
+            raise InputError("certified needs numbers: the coefficients of this series have symbols; give model=")
+        return dict(self.enclosures(self.digits if digits is None else digits))
 
     def as_expr(self) -> Any:
         """The series as a sympy expression in its variable."""

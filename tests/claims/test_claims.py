@@ -5,10 +5,15 @@ import subprocess
 import sys
 
 import pytest
+from tampering import bumped, changed, leaves
 
+from singimpact.algebra import certificates
+from singimpact.algebra.checking import accepts
 from singimpact.claims import CLAIMS, run, select
-from singimpact.claims.claim import Check, Claim, Statement
+from singimpact.claims.claim import Check, Claim, Statement, Trial, compared
+from singimpact.claims.memory import recall
 from singimpact.inputs import InputError
+from singimpact.theory.equations import derived_from, watched
 
 MISPRINTED = {
     "e:phi",
@@ -88,6 +93,28 @@ def test_every_claim_rests_on_claims_before_it():
         seen.add(claim.id)
 
 
+# psi o p to second order is the third part of s4-fold-form; that the rest can be removed, e:pdef, rests on it
+PART_OF_IT = {"s4-fold-form": {"e:pdef"}}
+
+
+def _used(claim):
+    """The claims whose equations a verifier derived something from, through equations that are no claims."""
+    statement = claim.corrected() if claim.corrected else claim.printed
+    todo, found = list(watched(lambda: claim.verify(statement.value))[1]), set()
+    while todo:
+        label = todo.pop()
+        found |= {label} & set(CLAIMS)
+        todo += [] if label in CLAIMS else derived_from(label)
+    return found - {claim.id}
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_what_a_verifier_uses_is_named(name):
+    """From what ran: each equation it derived from is among what the claim rests on, directly or through others."""
+    below = {claim.id for claim in select([name])}
+    assert _used(CLAIMS[name]) <= below | PART_OF_IT.get(name, set())
+
+
 def test_selection_brings_what_it_rests_on():
     names = [claim.id for claim in select(["e:meq", "e:qdef"])]
     assert {"e:yeq", "e:degen", "e:phinew", "e:defq", "e:qdef", "e:fixm", "e:meq"} <= set(names)
@@ -104,8 +131,8 @@ def test_unknown_id_names_the_nearest():
         select(["e:mex"])
 
 
-def _claim(verify, corrected=None):
-    return Claim("test", "0", "a test", Statement("x", 1), verify, (0,), corrected)
+def _claim(verify, corrected=None, trials=None):
+    return Claim("test", "0", "a test", Statement("x", 1), verify, (0,), corrected, trials=trials)
 
 
 def test_a_verifier_that_raises_is_an_error():
@@ -127,6 +154,47 @@ def test_a_correction_needs_a_witness():
     assert run([_claim(verify, lambda: Statement("y", 2))])[0].kind == "error"
 
 
+def _trial(model, printed=False, corrected=True):
+    return Trial(model, "x", "2", "1", "2", printed, corrected)
+
+
+@pytest.mark.parametrize(
+    ("trials", "kind", "reason"),
+    [
+        ([_trial("one"), _trial("two")], "corrected", ""),
+        ([], "error", "there are 0"),
+        ([_trial("one")], "error", "there are 1"),
+        ([_trial("one"), _trial("one")], "error", "there are 1"),
+        ([_trial("one"), _trial("two", printed=True)], "error", "there are 1"),
+        ([_trial("one"), _trial("two"), _trial("three", corrected=False)], "error", "fails on a model: three"),
+    ],
+)
+def test_a_correction_needs_two_models(trials, kind, reason):
+    verify = lambda value: Check(value == 2, "proved", "compared", {"x": "2"})  # noqa: E731
+    (verdict,) = run([_claim(verify, lambda: Statement("y", 2), lambda _printed, _corrected: trials)])
+    assert verdict.kind == kind
+    assert reason in verdict.evidence
+
+
+@pytest.mark.parametrize("name", sorted(MISPRINTED))
+def test_correction_is_told_by_two_models(name, verdicts):
+    trials = verdicts[name].trials
+    assert len({trial.model for trial in trials if trial.tells}) >= 2
+    assert all(trial.corrected_holds for trial in trials)
+
+
+@pytest.mark.parametrize("name", ["e:vtaylor-t2", "e:phinew", "s4b-ratio", "s3-dvdt", "s6-c-side", "e:hdef"])
+def test_trials_are_decided_by_the_statements(name):
+    """With the statements exchanged no model tells for the correction: that the printed one fails is found."""
+    claim = CLAIMS[name]
+    assert not any(trial.tells for trial in claim.trials(claim.corrected().value, claim.printed.value))
+
+
+def test_compared_to_a_tolerance():
+    assert compared("m", "q", 1.0, 1.01, 1.0001).tells
+    assert not compared("m", "q", 1.0, 1.0001, 1.0).tells
+
+
 def test_verify_from_the_command_line():
     command = [sys.executable, "-m", "singimpact", "verify", "e:meq", "s3-dvdt", "--json"]
     found = subprocess.run(command, capture_output=True, text=True, check=True)
@@ -135,3 +203,66 @@ def test_verify_from_the_command_line():
     assert claims["s3-dvdt"]["verdict"] == "corrected"
     assert claims["s3-dvdt"]["witness"] == {"at": "a = 3/5", "stated": "3/10", "derived": "-3/10"}
     assert {"id", "verdict", "printed", "corrected", "witness", "seconds"} <= set(claims["e:meq"])
+
+
+# proved by a comparison of signs, of places or of words that has no polynomial to hand on
+WITHOUT = {
+    "e:yeq",
+    "s2-two-sheets",
+    "s2-first-hit-rest",
+    "s3-eigenvectors",
+    "e:lin",
+    "s4-saddle",
+    "t:t2-fixed",
+    "s4-Z-line",
+    "s4-normal-id2",
+    "s4-mu-direction",
+    "s4b-sector",
+    "s6-d",
+    "s6-a0-typo",
+    "s6-sections",
+    "s6p-AB",
+    "s6p-BE",
+    "s6p-AE",
+    "s6n-corr",
+    "s6n-shadow-neg",
+    "s6n-cusp",
+}
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_what_is_proved_has_certificates_that_hold(name, verdicts):
+    verdict = verdicts[name]
+    if (verdict.corrected_kind or verdict.kind) == "proved":
+        assert bool(verdict.certificates) != (name in WITHOUT)
+    for certificate in verdict.certificates:
+        assert accepts(json.loads(json.dumps(certificate)))
+        for path in leaves(certificate):
+            if path[-1] in ("roots", "sign", "all", "first") or path[0] == "expansion" or "expansion" in path:
+                assert not accepts(changed(certificate, path, bumped)), (certificate["says"], path)
+
+
+def test_for_all_r_rests_on_certificates(verdicts):
+    kinds = {name: [c["kind"] for c in verdicts[name].certificates] for name in CLAIMS}
+    assert kinds["s4-root-places"] == ["chain"]
+    assert kinds["s4-saddle-m3"].count("value") >= 4
+    assert kinds["s4-saddle-m3"].count("positive") >= 3
+    assert {"value", "positive", "count"} <= set(kinds["s5-mstar-place"])
+    assert "positive" in kinds["s5-slopes"]
+    assert "positive" in kinds["s4b-M"]
+    assert "definite" in kinds["s5-positive"]
+    assert "value" in kinds["s3-slope-r"]
+
+
+def test_a_kept_verdict_with_a_damaged_certificate_is_decided_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
+    run(select(["s4b-M"]), kept=True)
+    (path,) = (tmp_path / "verdicts").iterdir()
+    path.write_text(path.read_text().replace('"sign": 1', '"sign": -1'))
+    assert recall("s4b-M", json.loads(path.read_text())["key"]) is None
+    assert run(select(["s4b-M"]), kept=True)[0].kind == "proved"
+
+
+def test_a_proof_without_an_accepted_certificate_is_none(monkeypatch):
+    monkeypatch.setattr(certificates, "accepts", lambda _: False)
+    assert run([CLAIMS["s4b-M"]])[0].kind == "error"

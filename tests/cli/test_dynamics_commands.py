@@ -14,12 +14,18 @@ def test_chatter(singimpact):
     assert told["error"] < 1e-12
     many = json.loads(singimpact("chatter", *LINEAR, "--tau", "0.9", "--v", "0.005", "--digits", "20", "--json").output)
     assert abs(float(many["tau"]) - told["tau"]) <= told["error"]
+    assert many["value"].startswith(many["tau"][:15])
+    assert float(many["radius"]) < 1e-19
+    assert "radius" not in told
 
 
 def test_threshold(singimpact):
     told = json.loads(singimpact("threshold", *LINEAR, "--tau", "pi/2.8", "--json").output)
     assert abs(told["v"] - 0.1008699912692559258909) < 1e-13
     assert "0.100869991269" in singimpact("threshold", *LINEAR, "--tau", "pi/2.8").output
+    many = singimpact("threshold", *LINEAR, "--tau", "pi/2.8", "--digits", "20").output
+    assert "value   0.100869991269255925890" in many
+    assert "radius" in many
     refused = singimpact("threshold", *LINEAR, "--tau", "0")
     assert refused.exit_code == 2
 

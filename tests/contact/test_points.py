@@ -9,7 +9,8 @@ import pytest
 
 from singimpact.algebra.rings import EXACT
 from singimpact.contact.contact import Contact
-from singimpact.contact.points import swan_points_over_clearance, tangency_points
+from singimpact.contact.points import tangency_points
+from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 

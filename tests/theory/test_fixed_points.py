@@ -6,6 +6,7 @@ import mpmath
 import pytest
 
 from singimpact.inputs import InputError
+from singimpact.theory import fixed_points
 from singimpact.theory.fixed_points import as_dict, swan, tangency
 
 NAMES = {"lambda": "lambda_", "mstar": "m_star"}
@@ -72,3 +73,28 @@ def test_restitution_out_of_range_is_one_line(rate):
 def test_digits_out_of_range_is_one_line(digits):
     with pytest.raises(InputError, match=r"digits = .* is not accepted"):
         swan("1/2", digits)
+
+
+@pytest.mark.parametrize("j", [1, 2, 3, 7])
+@pytest.mark.parametrize("r", ["1/2", "1e-20", Fraction(10**20 - 1, 10**20)])
+def test_multipliers_at_any_contact_order(j, r):
+    few, many = (fixed_points.multipliers(j, r, digits) for digits in (25, 70))
+    for name in ("lambda_", "mu", "one_minus_lambda", "mu_minus_one"):
+        assert getattr(few, name).contains(getattr(many, name).value)
+    with mpmath.workdps(200):
+        rate = many.lambda_.value
+        P, Q = (sum(c * rate**i for i, c in enumerate(part)) for part in (range(j + 1, 0, -1), range(1, j + 2)))
+        assert (
+            abs(rate ** (j + 1) * P / Q / mpmath.mpf(Fraction(r).numerator) * Fraction(r).denominator - 1)
+            < mpmath.mpf(10) ** -60
+        )
+        assert abs(many.mu.value * rate * Q**2 / P**2 - 1) < mpmath.mpf(10) ** -60
+
+
+def test_functions_of_r_are_reached_from_here():
+    assert fixed_points.series("lambda", 1, 1) == [1, Fraction(-3, 5)]
+    assert str(fixed_points.of_m()["r"]) == "(2*m - 1)**2*(2*m + 3)/(16*m)"
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        fixed_points.nothing  # noqa: B018
+    with pytest.raises(InputError, match="contact order"):
+        fixed_points.multipliers(0, "1/2")

@@ -7,6 +7,7 @@ from typing import Any
 
 import sympy
 
+from singimpact.algebra import certificates
 from singimpact.algebra.certificates import negative_on, positive_on
 from singimpact.claims.claim import Check, Statement, in_section
 from singimpact.claims.verifiers import every, identity, is_zero
@@ -22,16 +23,7 @@ ROOT_SIGNS = ((-sympy.oo, -1), (-THREE_HALVES, 1), (0, 1), (HALF, -1), (sympy.oo
 
 def sign_chain(expression: Any, signs: tuple[tuple[Any, int], ...]) -> bool:
     """The polynomial in m has the stated sign at each place, for every r in (0, 1); the places may be infinite."""
-    return all(_sign_at(expression, place) == sign for place, sign in signs)
-
-
-def _sign_at(expression: Any, place: Any) -> int:
-    if place in (sympy.oo, -sympy.oo):
-        poly = sympy.Poly(expression, m)
-        value = poly.LC() * (1 if place == sympy.oo or poly.degree() % 2 == 0 else -1)
-    else:
-        value = expression.subs(m, place)
-    return 1 if positive_on(value, r, 0, 1) else -1 if negative_on(value, r, 0, 1) else 0
+    return certificates.sign_chain(expression, m, signs, {r: (0, 1)})
 
 
 def _blow_up(stated: tuple[Any, Any]) -> Check:
@@ -79,13 +71,14 @@ def _q_positive(stated: str) -> Check:
 def _domain(stated: tuple[str, str]) -> Check:
     """Near s = 0 the equation Q_r(1, m) + O(s) = 0 has smooth solutions through the zeros, which are simple."""
     discriminant = sympy.discriminant(fold.Q_at_one(), m)
+    simple = sign_chain(fold.Q_at_one(), ((-sympy.oo, 1), (HALF, -1), (sympy.oo, 1)))
     ends = ("m_-", "m_+")
     return every(
         [
             (
                 "the discriminant of Q_r(1, m) is positive for every r in (0, 1), so dQ/dm is not 0 at m_-, m_+ "
                 "and the implicit function theorem gives delta_-, delta_+",
-                positive_on(discriminant, r, 0, 1),
+                simple and positive_on(discriminant, r, 0, 1),
             ),
             ("delta_-(0), delta_+(0) are the zeros of Q_r(1, m), at which the root leaves the reals", stated == ends),
         ]
@@ -158,16 +151,19 @@ def _root_places(stated: tuple[Any, Any, Any]) -> Check:
 
 def _trivial_root(stated: str) -> Check:
     """Where m = 3/2 solves e:fixm: "r = 1" or "every r"."""
-    value = fold.fixed_point_equation().subs(m, THREE_HALVES)
-    cubic = fold.fixed_point_factors()[1].subs(m, THREE_HALVES)
-    always = is_zero(value)
+    value = certificates.value_at(fold.fixed_point_equation(), m, THREE_HALVES)
+    cubic = certificates.value_at(fold.fixed_point_factors()[1], m, THREE_HALVES)
+    always = value == 0
     return every(
         [
             (
                 "m = 3/2 solves e:fixm for every r" if always else "m = 3/2 does not solve e:fixm for every r",
                 always == (stated == "every r"),
             ),
-            ("it is a root of the cubic e:meq only for r = 1", sympy.Poly(cubic, r).all_roots() == [1]),
+            (
+                "it is a root of the cubic e:meq only for r = 1",
+                sympy.Poly(cubic, r).all_roots() == [1] and positive_on(cubic, r, 0, 1),
+            ),
         ],
         witness=lambda: {"r": "1/2", "m": "3/2", "Q_r(1,m) - m^2(m-1/2)^2": str(value)},
     )

@@ -208,7 +208,7 @@ CLAIMS = (
             r"h=\bigl(\eta-\tfrac12\sigma,-\sqrt{Q_r(\sigma,\eta)+O(3)}\,\bigr),\quad\sigma<0", fold.h()
         ),
         mutants=((eta - sigma / 2, eta), (eta + sigma / 2, -sympy.sqrt(2 * r * eta**2 + QUARTERS * sigma**2))),
-        rests_on=("s4-fold-form", "e:defq", "e:qdef"),
+        rests_on=("e:pdef", "e:defq", "e:qdef"),
     ),
     Claim(
         id="e:qdef",

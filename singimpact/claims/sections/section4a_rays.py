@@ -117,7 +117,7 @@ CLAIMS = (
         Statement(r"m_1<-\tfrac32:\quad v\le0,\ \text{opposite orientations}", (-1, -1)),
         _line(-sympy.oo, -THREE_HALVES),
         ((1, -1), (-1, 1)),
-        ("s4-root-places", "s4-fold-form", "e:defq"),
+        ("s4-root-places", "e:pdef", "e:defq"),
     ),
     claim_4a(
         "s4-m1-gradient",
@@ -133,7 +133,7 @@ CLAIMS = (
         Statement(r"0<m_2<\tfrac12:\quad\text{opposite orientations}", (-1, 1)),
         _line(sympy.Integer(0), HALF),
         ((1, 1),),
-        ("s4-root-places", "s4-fold-form", "e:defq"),
+        ("s4-root-places", "e:pdef", "e:defq"),
     ),
     claim_4a(
         "s4-m2-sign",
@@ -152,6 +152,6 @@ CLAIMS = (
         Statement(r"\tfrac12<m_3<\tfrac32,\quad m_3\nearrow\ \text{as}\ r\nearrow", (HALF, THREE_HALVES)),
         ray_m3,
         ((HALF, sympy.Integer(2)), (sympy.Integer(0), THREE_HALVES)),
-        ("s4-root-places", "s4-fold-form", "e:defq"),
+        ("s4-root-places", "e:pdef", "e:defq"),
     ),
 )

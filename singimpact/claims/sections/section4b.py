@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import negative_on, positive_on
+from singimpact.algebra.certificates import negative_on, positive_in, positive_on
 from singimpact.claims import leaves
 from singimpact.claims.claim import Check, Statement, in_section
 from singimpact.claims.verifiers import every, identity, is_zero
@@ -28,18 +28,8 @@ def on_ray() -> tuple[Any, Any]:
 
 
 def _positive_for_all(expression: Any, *, rate: bool = True) -> bool:
-    """A polynomial in (l, r), divided by what is positive, is positive for l > 0 and 0 < r < 1: all its coefficients in l are."""
-    numerator, denominator = sympy.fraction(sympy.cancel(sympy.together(expression)))
-    if numerator == 0:
-        return False
-    sign = 1 if sympy.Poly(denominator.subs({r: sympy.Rational(1, 2)}), ell).LC() > 0 else -1
-    for part in (sign * numerator, sign * denominator):
-        coefficients = [value for value in sympy.Poly(part, ell).all_coeffs() if value != 0]
-        if rate and not all(positive_on(value, r, 0, 1) if value.has(r) else value > 0 for value in coefficients):
-            return False
-        if not rate and not all(value > 0 for value in coefficients):
-            return False
-    return True
+    """A rational function of (l, r) is positive for l > 0 and 0 < r < 1; one of l alone, for l > 0."""
+    return positive_in(expression, {ell: (0, sympy.oo)} | ({r: (0, 1)} if rate else {}))
 
 
 def _continuous(side: int) -> Check:

@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import negative_on, positive_on, roots_inside, value_at
+from singimpact.algebra.certificates import definite, negative_on, positive_on, roots_inside, value_at
 from singimpact.claims import swans, true_orbits
 from singimpact.claims.claim import Check, Statement, in_section
 from singimpact.claims.notation import latex
@@ -95,7 +95,7 @@ def _intersections(count: int) -> Check:
 def _place(stated: tuple[Any, Any]) -> Check:
     low, high = stated
     polynomial = swan.fixed_point_polynomial()
-    half = sympy.Poly(polynomial.subs(r, HALF), m)
+    half = polynomial.subs(r, HALF)
     rule = swan.r_of_m()
     return every(
         [
@@ -105,7 +105,7 @@ def _place(stated: tuple[Any, Any]) -> Check:
                 and value_at(rule, m, high) == 1
                 and positive_on(sympy.diff(rule, m), m, low, high),
             ),
-            ("one root there at r = 1/2, by Sturm", roots_inside(half, low, high) == 1),
+            ("one root there at r = 1/2, by Sturm", roots_inside(half, m, low, high) == 1),
         ]
     )
 
@@ -139,15 +139,12 @@ def _saddle(stated: tuple[int, int]) -> Check:
 def _positive_slope(sign: int) -> Check:
     """dv_c/dt = -(a''/24)(6 sigma^2 + 8 sigma t + 3 t^2): the form is definite."""
     leading = sympy.expand(sympy.diff(swan_velocity(), t) / (-a2 / 24))
-    definite = (
-        negative_on(sympy.discriminant(leading.subs(sigma, 1), t) * sigma**2, sigma, 0, 1)
-        and leading.subs({sigma: 1, t: 0}) > 0
-    )
+    found = definite(leading, sigma, t)
     return every(
         [
             (
                 f"dv_c/dt = -(a''/24)({leading}) + ..., a definite form, so > 0 off w_* for a'' < 0",
-                bool(definite) and sign == 1,
+                found == 1 and sign == 1,
             )
         ]
     )
@@ -284,7 +281,7 @@ def _no_impacts(stated: int) -> Check:
         [
             (
                 f"v_c = -(a''/24) t ({leading}) + ..., discriminant {discriminant} < 0: negative for t > 0, a'' > 0",
-                bool(discriminant < 0) and leading.subs({sigma: 0, t: 1}) > 0 and stated == -1,
+                definite(leading, sigma, t) == 1 and stated == -1,
             )
         ]
     )

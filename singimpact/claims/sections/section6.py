@@ -6,6 +6,7 @@ from typing import Any
 
 import sympy
 
+from singimpact.algebra.certificates import definite
 from singimpact.claims import unfolded
 from singimpact.claims.claim import Check, Statement, in_section
 from singimpact.claims.verifiers import every, is_zero
@@ -57,7 +58,7 @@ def _lips(cusps: int) -> Check:
         [
             (
                 "H is an ellipse (its quadratic form is definite), in lengths that shrink with the distance of the zeros",
-                sympy.discriminant((conic + 6).subs(sigma, 1), t) < 0,
+                definite(conic + 6, sigma, t) == 1,
             ),
             (
                 f"v_tt = 0 on it at {points}, both nondegenerate cusps",
@@ -82,12 +83,11 @@ def _none(sign: int) -> Check:
     e = sympy.Symbol("e")
     form = 6 * (sigma**2 + e) + 4 * sigma * t + t**2
     moved = sympy.expand(-kappa * t * form - model.launch_velocity() + kappa * t * (6 * e + 6))
-    discriminant = sympy.discriminant((6 * sigma**2 + 4 * sigma * t + t**2).subs(sigma, 1), t)
     return every(
         [
             (
                 "v = -kappa t (6 (sigma^2 + e) + 4 sigma t + t^2), a definite form for e >= 0: v < 0 for t > 0",
-                is_zero(moved) and bool(discriminant < 0) and sign == -1,
+                is_zero(moved) and definite(6 * sigma**2 + 4 * sigma * t + t**2, sigma, t) == 1 and sign == -1,
             )
         ]
     )

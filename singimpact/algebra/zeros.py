@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import Expression
+from singimpact.algebra.expressions import BOUND, Expression, Root
 from singimpact.algebra.jets import JetSpace
 
 BITS = 128  # of the balls that isolate; far more than the least width needs
@@ -122,6 +123,27 @@ def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int =
         if work == bits + 64:
             return enclosure
         low, high = _ends(enclosure)
+
+
+@lru_cache(maxsize=256)
+def ball_of(tree: Root, bits: int) -> Any:
+    """A ball of about this many bits around the number that a root is.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> print(ball_of(parse("root(u**2 - 2, 1, 2)"), 100).str(20, radius=False))
+    1.4142135623730950488
+    """
+    rising = sign_at(tree.function, BOUND, tree.high, 0)
+    return refined(tree.function, BOUND, Zero(tree.low, tree.high, rising), bits)
+
+
+def is_one_root(tree: Root) -> bool:
+    """Whether the function has exactly one zero in the interval, with opposite signs at the ends."""
+    ends = [sign_at(tree.function, BOUND, end, 0) for end in (tree.low, tree.high)]
+    found = isolate(tree.function, BOUND, tree.low, tree.high)
+    return ends[0] * ends[1] < 0 and len(found) == 1 and found[0].slope != 0
 
 
 def _monotone(tree: Expression, variable: str, zero: Zero, order: int) -> tuple[Fraction, Fraction]:

@@ -1,0 +1,163 @@
+"""Certificates checked from their data alone: whole numbers and fractions, no algebra system.
+
+A polynomial is a list of [exponents, coefficient].  What a certificate says is in `certificates`, which makes them and
+shares nothing with this file but the layout of the data.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from singimpact.algebra.plain import Terms, line, plus, raised, terms, times
+
+INFINITE = ("-oo", "oo")
+
+
+def accepts(certificate: Mapping[str, Any]) -> bool:
+    """Whether the data prove what the certificate claims; damaged data prove nothing.
+
+    Examples
+    --------
+    >>> accepts({"kind": "definite", "form": ["6", "4", "1"], "sign": 1})
+    True
+    >>> accepts({"kind": "definite", "form": ["6", "5", "1"], "sign": 1})
+    False
+    """
+    try:
+        return bool(_CHECKS[certificate["kind"]](certificate))
+    except (KeyError, TypeError, ValueError, ZeroDivisionError, IndexError):
+        return False
+
+
+def _at(poly: Terms, index: int, place: str) -> Terms:
+    """A variable set to a number, or the leading coefficient, signed, at infinity; it stays, to power 0."""
+    if place in INFINITE:
+        top = max(key[index] for key in poly)
+        sign = -1 if place == "-oo" and top % 2 else 1
+        return {_without(key, index): value * sign for key, value in poly.items() if key[index] == top}
+    total: Terms = {}
+    for key, value in poly.items():
+        total = plus(total, {_without(key, index): value * Fraction(place) ** key[index]})
+    return total
+
+
+def _without(key: tuple[int, ...], index: int) -> tuple[int, ...]:
+    return (*key[:index], 0, *key[index + 1 :])
+
+
+def _expands(poly: Terms, proof: Mapping[str, Any]) -> bool:
+    """poly times powers of 1 + distance equals a sum, with coefficients > 0, of products of distances to the ends."""
+    size, left, total = len(proof["box"]), poly, dict[tuple[int, ...], Fraction]()
+    expansion = terms(proof["expansion"])
+    for index, (low, high) in enumerate(proof["box"]):
+        more = proof["raised"][index]
+        if more if low not in INFINITE and high not in INFINITE else proof["degree"][index]:
+            return False  # a finite interval has a degree and needs no factor, a half-line the other way round
+        one = _distance(low, 1, index, size) if high == "oo" else _distance(high, -1, index, size)
+        left = times(left, raised(plus(one, line(Fraction(1), 0, index, size)), more, size))
+    for key, value in expansion.items():
+        part = {(0,) * size: value}
+        for index, (low, high) in enumerate(proof["box"]):
+            part = times(part, _basis(low, high, key[index], proof["degree"][index], index, size))
+        total = plus(total, part)
+    return bool(expansion) and all(value > 0 for value in expansion.values()) and left == total
+
+
+def _distance(end: str, sign: int, index: int, size: int) -> Terms:
+    return line(-sign * Fraction(end), sign, index, size)
+
+
+def _basis(low: str, high: str, power: int, degree: int, index: int, size: int) -> Terms:
+    """(x - low)^power (high - x)^(degree - power), or a power of the distance to the one finite end."""
+    if high == "oo":
+        return raised(_distance(low, 1, index, size), power, size)
+    if low == "-oo":
+        return raised(_distance(high, -1, index, size), power, size)
+    if not Fraction(low) < Fraction(high) or not 0 <= power <= degree:
+        raise ValueError("no such interval or power")
+    above = raised(_distance(high, -1, index, size), degree - power, size)
+    return times(raised(_distance(low, 1, index, size), power, size), above)
+
+
+def _positive(data: Mapping[str, Any]) -> bool:
+    """numerator/denominator has the sign claimed on the open box."""
+    poly = times(terms(data["numerator"]), terms(data["denominator"]))
+    return data["sign"] in (-1, 1) and _expands({key: value * data["sign"] for key, value in poly.items()}, data)
+
+
+def _chain(data: Mapping[str, Any]) -> bool:
+    """At each place one sign for all parameters in the box; so a root in every gap where it changes, and no others."""
+    poly, places = terms(data["polynomial"]), data["places"]
+    order = [(-1, Fraction(0)) if p["at"] == "-oo" else (1, Fraction(0)) if p["at"] == "oo" else (0, Fraction(p["at"]))
+             for p in places]  # fmt: skip
+    for place in places:
+        value = _at(poly, 0, place["at"])
+        signed = {key[1:]: number * place["sign"] for key, number in value.items()}
+        if place["sign"] not in (-1, 1) or not _expands(signed, place | {"box": data["box"]}):
+            return False
+    gaps = [[a["at"], b["at"]] for a, b in pairwise(places) if a["sign"] != b["sign"]]
+    degree = max(key[0] for key in poly)
+    return order == sorted(set(order)) and gaps == data["roots"] and data["all"] == (len(gaps) == degree)
+
+
+def _count(data: Mapping[str, Any]) -> bool:
+    """Sturm: the polynomial without multiple roots has so many roots in the open interval."""
+    chain = [terms([[[n], value] for n, value in enumerate(part)]) for part in data["chain"]]
+    slope = {(key[0] - 1,): value * key[0] for key, value in chain[0].items() if key[0]}
+    if Fraction(data["first"]) <= 0 or slope != times(chain[1], {(0,): Fraction(data["first"])}):
+        return False
+    for n, (quotient, scale) in enumerate(data["steps"]):
+        last = chain[n + 2] if n + 2 < len(chain) else {}
+        right = plus(times(terms([[[k], v] for k, v in enumerate(quotient)]), chain[n + 1]), last, -Fraction(scale))
+        if Fraction(scale) <= 0 or chain[n] != right or (not last and Fraction(scale) != 1):
+            return False
+    changes = [_changes(chain, end) for end in (data["low"], data["high"])]
+    at_end = data["high"] not in INFINITE and not _at(chain[0], 0, data["high"])
+    whole = len(data["steps"]) == len(chain) - 1 and set(chain[-1]) == {(0,)}
+    return whole and changes[0] - changes[1] - at_end == data["roots"]
+
+
+def _changes(chain: list[Terms], place: str) -> int:
+    values = [sum(_at(part, 0, place).values(), Fraction(0)) for part in chain]
+    signs = [value > 0 for value in values if value]
+    return sum(a != b for a, b in pairwise(signs))
+
+
+def _value(data: Mapping[str, Any]) -> bool:
+    """A quotient at a place, after common factors are gone."""
+    above, below = (_at(terms(data[name]), data["index"], data["at"]) for name in ("numerator", "denominator"))
+    if data["value"] == "infinite":
+        return not below and bool(above)
+    stated = [terms(part) for part in data["value"]]
+    return bool(below and stated[1]) and times(above, stated[1]) == times(below, stated[0])
+
+
+def _definite(data: Mapping[str, Any]) -> bool:
+    """a x^2 + b x y + c y^2 has one sign off the origin."""
+    a, b, c = (data["sign"] * Fraction(value) for value in data["form"])
+    return data["sign"] in (-1, 1) and a > 0 and 4 * a * c > b * b
+
+
+def _identity(data: Mapping[str, Any]) -> bool:
+    """Two quotients are equal, or are where a relation holds: multiplier times difference = cofactor times relation."""
+    (above, below), (other, under) = ([terms(part) for part in data[side]] for side in ("left", "right"))
+    difference = plus(times(above, under), times(other, below), Fraction(-1))
+    if data["relation"] is None:
+        return bool(below and under) and not difference
+    multiplier, cofactor, relation = (terms(part) for part in data["relation"])
+    of_a_root = max(key[-1] for key in relation) == 2 and not any(key[-1] for key in multiplier)
+    sound = bool(below and under and multiplier) and of_a_root
+    return sound and times(multiplier, difference) == times(cofactor, relation)
+
+
+_CHECKS = {
+    "positive": _positive,
+    "chain": _chain,
+    "count": _count,
+    "value": _value,
+    "definite": _definite,
+    "identity": _identity,
+}

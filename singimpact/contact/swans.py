@@ -1,0 +1,210 @@
+"""Swan points of a family as the clearance varies: tau_*, c_0 and the model at c_0, all with exact definitions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import floor
+from typing import Any
+
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.certified import Certified
+from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.expressions import (
+    BOUND,
+    Call,
+    Expression,
+    Name,
+    Number,
+    Power,
+    Root,
+    evaluate,
+    multiply,
+    names_in,
+    number,
+    substitute,
+    subtract,
+    walk,
+)
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import EXACT, SYMBOLIC
+from singimpact.algebra.zeros import Zero, derivatives, is_one_root, isolate, refined
+from singimpact.contact.points import enclosed, window
+from singimpact.inputs import InputError
+from singimpact.oscillator.model import Oscillator
+
+PARTS = 8  # of a period: the zeros of g' that have a name are looked for at its eighths
+GRID = 10**6  # the ends of a root are multiples of 1/GRID where they can be
+SHORT = 1000  # the largest denominator with which c_0 is tried as a rational
+
+
+@dataclass(frozen=True)
+class SwanPoint:
+    """A clearance c_0 and a time tau_* at which a_c and a_c' vanish together.
+
+    Attributes
+    ----------
+    model : the family, at any clearance. time, place : tau_* and c_0 as exact constants.
+    kind : "positive" (a'' > 0) or "negative".
+    """
+
+    model: Oscillator
+    time: Expression
+    place: Expression
+    kind: str
+
+    def tau_ball(self, bits: int = 128) -> Any:
+        """A ball that contains tau_*."""
+        return evaluate_ball(self.time, bits)
+
+    def clearance_ball(self, bits: int = 128) -> Any:
+        """A ball that contains c_0."""
+        return evaluate_ball(self.place, bits)
+
+    def certified(self, digits: int = 30) -> tuple[Certified, Certified]:
+        """(tau_*, c_0), each with a certified radius and so many significant digits."""
+        return enclosed(self.tau_ball, digits), enclosed(self.clearance_ball, digits)
+
+    @cached_property
+    def tau(self) -> float:
+        """tau_* as a double."""
+        return as_float(self.time)
+
+    @cached_property
+    def clearance(self) -> float:
+        """c_0 as a double."""
+        return as_float(self.place)
+
+    def oscillator(self, restitution: Any) -> Any:
+        """The model exactly at c_0: its a_c has a double zero at tau_*, to any number of digits.
+
+        Examples
+        --------
+        >>> model = Oscillator("x + 0.3*x**3", "cos(2*t)", 0, 1)
+        >>> print(swan_points_over_clearance(model)[0].oscillator("0.5").clearance)
+        root(u + 0.3*u**3 - 1, 0.829051, 0.829052)
+        """
+        return self.model.replace(clearance=self.place, restitution=restitution)
+
+
+def evaluate_ball(tree: Expression, bits: int) -> Any:
+    """A constant as a ball."""
+    return Balls(bits).evaluate(tree, {})
+
+
+def swan_points_over_clearance(
+    model: Oscillator, between: tuple[Fraction, Fraction] | None = None
+) -> tuple[SwanPoint, ...]:
+    """The swan points of x'' + f = g as the clearance varies in an interval; without one, over all clearances.
+
+    a_c'(tau) = g'(tau) is free of c, so tau_* is a zero of g' and c_0 solves f(c, 0) = g(tau_*).
+
+    Raises
+    ------
+    InputError : g is neither periodic nor a polynomial; f(c, 0) is no polynomial and there is no interval; a zero of g'
+        or of f(c, 0) - g(tau_*) is double.
+
+    Examples
+    --------
+    >>> model = Oscillator("x", "cos(2*t)", 0, 1)
+    >>> [(p.kind, p.clearance) for p in swan_points_over_clearance(model, (Fraction(-2), Fraction(2)))]
+    [('negative', 1.0), ('positive', -1.0)]
+    """
+    slope = derivative(model.forcing(), "t")
+    if "t" not in names_in(slope):
+        return ()
+    found = []
+    for zero in isolate(slope, "t", *window(model, slope)):
+        if not zero.slope:
+            raise InputError(
+                f"g' has zeros near t = {float(zero.low):.6g} that are not simple: they are not classified"
+            )
+        time = _named_time(model, slope, zero)
+        if _in_period(model, as_float(time)):
+            kind = "positive" if zero.slope > 0 else "negative"
+            found += [SwanPoint(model, time, place, kind) for place in _clearances(model, time, between)]
+    return tuple(sorted(found, key=lambda point: (point.tau, point.clearance)))
+
+
+def _in_period(model: Oscillator, tau: float) -> bool:
+    if model.period is None:
+        return True
+    period = as_float(model.period)
+    return -1e-12 * period <= tau < period * (1 - 1e-12)  # a zero at 0 is found with a tiny sign
+
+
+def _named_time(model: Oscillator, slope: Expression, zero: Zero) -> Expression:
+    """The zero of g' on a piece: 0 or a part of the period where it is one exactly, else a root."""
+    candidates: list[Expression] = [number(0)]
+    if model.period is not None:
+        candidates += [multiply(number(Fraction(k, PARTS)), model.period) for k in range(1, PARTS)]
+    for tree in candidates:
+        if float(zero.low) <= as_float(tree) <= float(zero.high) and _exact(slope, {"t": tree}) == 0:
+            return tree
+    return _root(slope, "t", zero)
+
+
+def _root(tree: Expression, variable: str, piece: Zero) -> Root:
+    """The zero on a piece, between short decimals where the piece contains them."""
+    middle = as_rational(refined(tree, variable, piece, 64).mid())
+    low = Fraction(floor(middle * GRID), GRID)
+    ends = (low, low + Fraction(1, GRID)) if piece.low <= low < low + Fraction(1, GRID) <= piece.high else None
+    function = substitute(tree, {variable: Name(BOUND)})
+    found = Root(function, *(ends or (piece.low, piece.high)))
+    return found if is_one_root(found) else Root(function, piece.low, piece.high)
+
+
+def _exact(tree: Expression, values: dict[str, Expression]) -> Fraction | None:
+    """The rational that a tree is at constants, when sympy's own rules for special angles show it; else None."""
+    try:
+        found = evaluate(tree, {name: evaluate(value, {}, SYMBOLIC) for name, value in values.items()}, SYMBOLIC)
+    except ArithmeticError:
+        return None
+    return Fraction(int(found.p), int(found.q)) if found.is_Rational else None
+
+
+def _clearances(model: Oscillator, time: Expression, between: tuple[Fraction, Fraction] | None) -> list[Expression]:
+    """The solutions c of f(c, 0) = g(tau_*)."""
+    rest = substitute(model.force(), {"xdot": number(0)})
+    value = _exact(model.forcing(), {"t": time})
+    level = substitute(model.forcing(), {"t": time}) if value is None else Number(value)
+    shifted = subtract(rest, level)
+    if "x" not in names_in(rest):
+        raise InputError(f"f = {model.f} does not contain x: no clearance is a swan point rather than another")
+    low, high = between if between is not None else _all_clearances(rest, level)
+    found: list[Expression] = []
+    for piece in isolate(shifted, "x", low, high):
+        if not piece.slope:
+            raise InputError(f"f(c, 0) - g(tau_*) has a double zero near c = {float(piece.low):.6g}: give between=")
+        found.append(_named_place(shifted, piece))
+    return found
+
+
+def _named_place(shifted: Expression, piece: Zero) -> Expression:
+    """The zero on a piece: a rational where it is a short one exactly, a quotient where f is linear, else a root."""
+    middle = refined(shifted, "x", piece, 128).mid()
+    short = Fraction(float(middle)).limit_denominator(SHORT)
+    if piece.low <= short <= piece.high and _exact(shifted, {"x": Number(short)}) == 0:
+        return Number(short)
+    slope = derivative(shifted, "x")
+    if isinstance(slope, Number):
+        return multiply(Number(-1 / slope.value), substitute(shifted, {"x": number(0)}))
+    return _root(shifted, "x", piece)
+
+
+def _all_clearances(rest: Expression, level: Expression) -> tuple[Fraction, Fraction]:
+    """A window with every solution: Cauchy's bound, for a polynomial."""
+    if any(isinstance(part, Call) or (isinstance(part, Power) and names_in(part.exponent)) for part in walk(rest)):
+        raise InputError(f"between is needed: f(x, 0) = {rest} is not a polynomial in x; give between=(low, high)")
+    degree = sum(int(abs(part.exponent.value)) for part in walk(rest) if isinstance(part, Power) and
+                 isinstance(part.exponent, Number)) + sum(isinstance(part, Name) for part in walk(rest))  # fmt: skip
+    try:
+        coefficients = derivatives(rest, "x", Fraction(0), degree, EXACT)
+    except ArithmeticError:
+        raise InputError("between is needed: f(x, 0) has coefficients that are not rational; give between=") from None
+    while coefficients[-1] == 0:
+        coefficients.pop()
+    size = max(abs(value) for value in coefficients) + Fraction(abs(as_float(level))) + 1
+    bound = 1 + size / abs(coefficients[-1])
+    return -bound * Fraction(98, 97), bound

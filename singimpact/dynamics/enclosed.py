@@ -1,0 +1,261 @@
+"""Chatter limits and thresholds of linear models, enclosed: flights in balls, and the rest of a chatter between bounds.
+
+While a_c stays between -A and -a on what is left of a chatter and q = A/a (both enlarged for damping and height), each
+flight takes between 2v/A and 2v/a and returns between v/q and q v.  So the rest lies between 2v/(A (1 - r/q)) and
+2v/(a (1 - r q)): its width is of second order in v, and half the digits asked for have to be flown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from math import ceil, log
+from typing import Any, TypeVar
+
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.certified import Certified, as_certified, from_ends
+from singimpact.algebra.expressions import Expression, evaluate, names_in
+from singimpact.algebra.numbers import as_float, sign_of
+from singimpact.contact.points import TangencyPoint, tangency_points
+from singimpact.flights.flow.balls import LinearFlow
+from singimpact.flights.launch import at_rest
+from singimpact.oscillator.linear import linear_form
+from singimpact.oscillator.model import Oscillator
+from singimpact.theory.invariant_curve import multiplier_across
+from singimpact.theory.places import multiplier
+
+Found = TypeVar("Found")
+
+
+@dataclass(frozen=True)
+class BallOrbits:
+    """How much an enclosed orbit may cost.
+
+    Parameters
+    ----------
+    impacts : flown at most; r = 0.999 to 30 digits takes 35 000. bits : of the balls at most, per digit asked for.
+    spare : bits beside the digits. wide : the window on which the rest is bounded, in units of its first guess.
+    stage, stages, secants : impacts along gamma in the first search for the threshold, its growth, steps at each.
+    """
+
+    impacts: int = 200_000
+    bits: int = 64
+    spare: int = 64
+    wide: int = 3
+    stage: int = 6
+    stages: float = 1.5
+    secants: int = 6
+
+
+ORBITS = BallOrbits()
+
+
+def enclosable(osc: Oscillator) -> bool:
+    """Whether orbits of a model can be flown in balls: it is linear, and its restitution is a number below 1."""
+    return linear_form(osc) is not None and not names_in(osc.restitution) and as_float(osc.restitution) < 1
+
+
+def _with_more_bits(attempt: Callable[[LinearFlow], Found | None], osc: Oscillator, digits: int) -> Found | None:
+    """attempt(flow) at growing precision, until it decides."""
+    import flint
+
+    bits = ceil(digits * 3.33) + ORBITS.spare
+    while bits <= ORBITS.bits * (digits + 32):
+        with flint.ctx.workprec(bits):
+            found = attempt(LinearFlow(osc, bits))
+        if found is not None:
+            return found
+        bits *= 2
+    return None
+
+
+@dataclass(frozen=True)
+class EnclosedLimit:
+    """Where a chatter ends: the time, the impacts flown, and whether contact was lost there instead."""
+
+    tau: Certified
+    impacts: int
+    lost: bool
+
+
+def chatter_limit(osc: Oscillator, tau: Expression, v: Expression, digits: int) -> EnclosedLimit | None:
+    """The accumulation time of chatter, or the impact at which a_c no longer presses; None when neither was proved.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.numbers import constant
+    >>> osc = Oscillator("x", "cos(2.8*t)", 0, "0.8")
+    >>> print(chatter_limit(osc, constant("tau", "0.9"), constant("v", "0.005"), 30).tau)
+    0.959359234422082626031840228653
+    """
+    removed = 1
+    if not sign_of(v):
+        sign, order = at_rest(osc, tau)
+        if sign <= 0:
+            return None
+        removed = order + 2
+    return _with_more_bits(lambda flow: _chatter(flow, tau, v, removed, digits), osc, digits)
+
+
+def _chatter(flow: LinearFlow, tau: Expression, v: Expression, removed: int, digits: int) -> EnclosedLimit | None:
+    time, speed = (evaluate(tree, {}, flow.balls) for tree in (tau, v))
+    for count in range(ORBITS.impacts):
+        a = flow.acceleration(time)
+        if count and a > 0:
+            found = as_certified(time, digits)
+            return None if found is None else EnclosedLimit(found, count, True)
+        if a < 0 and (left := remaining(flow, time, speed)) is not None:
+            found = as_certified(time + left, digits)
+            if found is not None:
+                return EnclosedLimit(found, count, False)
+        hit = flow.first_hit(time, speed, removed=removed)
+        if hit is None or hit.time is None:
+            return None
+        time, speed, removed = time + hit.time, -flow.r * hit.velocity, 1
+        if not speed > 4 * speed.rad():
+            return None
+    return None
+
+
+def remaining(flow: LinearFlow, tau: Any, v: Any) -> Any | None:
+    """A ball that contains what is left of a chatter from (tau, v); None when the bounds do not close.
+
+    The bounds hold on a window; they close when what is left, by these bounds, fits into the window.
+    """
+    lost = 1 - flow.r
+    window = (ORBITS.wide * 2 * v / (abs(flow.acceleration(tau)) * lost)).upper()
+    pressing = -flow.acceleration(tau.union(tau + window))
+    # |x-dot| <= 2v and 0 <= x - c <= v window on the way, which q < 2 below confirms
+    off = (abs(flow.d) * 2 * v + abs(flow.k) * v * window).upper()
+    low, high = pressing.lower() - off, pressing.upper() + off
+    if not low > 0:
+        return None
+    q = high / low
+    if not (q < 2 and flow.r * q < 1):
+        return None
+    least, most = 2 * v / (high * (1 - flow.r / q)), 2 * v / (low * (1 - flow.r * q))
+    return least.union(most) if most < window else None
+
+
+def threshold(osc: Oscillator, tau: Expression, rough: Any, end: float, digits: int) -> Certified | None:
+    """The v over tau in radius of which lie one from which chatter completes before `end` and one that flies
+    past it: both proved.
+
+    Parameters
+    ----------
+    rough : the v found in doubles. end : the zero of a_c with a_c' > 0 into which gamma runs, as a double.
+    """
+    goal = _tangency(osc, end)
+    if goal is None:
+        return None
+    near = _with_more_bits(lambda flow: _searched(_Gamma(flow, goal), tau, rough, digits), osc, digits)
+    if near is None:
+        return None
+    margin = abs(near) / (4 * 10**digits)
+    low, high = near - margin, near + margin
+
+    def side(v: Fraction) -> int | None:
+        return _with_more_bits(lambda flow: _side(_Gamma(flow, goal), tau, v), osc, digits)
+
+    return from_ends(low, high, digits) if side(low) == -1 and side(high) == 1 else None
+
+
+@dataclass(frozen=True)
+class _Goal:
+    """A tangency point moved by whole periods."""
+
+    osc: Oscillator
+    point: TangencyPoint
+    periods: int
+
+    def ball(self, bits: int) -> Any:
+        if self.osc.period is None:
+            return self.point.ball(bits)
+        return self.point.ball(bits) + self.periods * evaluate(self.osc.period, {}, Balls(bits))
+
+
+def _tangency(osc: Oscillator, end: float) -> _Goal | None:
+    period = as_float(osc.period) if osc.period is not None else 1.0
+    for point in tangency_points(osc):
+        turns = round((end - point.tau) / period) if osc.period is not None else 0
+        if point.kind == "gamma" and abs(point.tau + turns * period - end) < 1e-6 * (1 + abs(end)):
+            return _Goal(osc, point, turns)
+    return None
+
+
+class _Gamma:
+    """gamma near its end, v = sigma^2 (g2 + g3 sigma) + ..., and the flights that follow it, in balls."""
+
+    def __init__(self, flow: LinearFlow, goal: _Goal) -> None:
+        self.flow, self.end = flow, goal.ball(flow.balls.bits)
+        self.rate = multiplier(1, goal.osc.restitution, flow.balls.bits)
+        slope, bend = flow.acceleration(self.end, 1), flow.acceleration(self.end, 2)
+        self.g2 = slope * (1 - self.rate) * (2 + self.rate) / 6
+        self.g3 = self.g2 * (3 * bend - slope * flow.d) / (8 * slope)
+
+    def missed(self, tau: Any, impacts: int, start: Fraction) -> Any | None:
+        """v - gamma after some impacts; None when a flight was not decided or passes the end."""
+        v = self.flow.number(start)
+        for _ in range(impacts):
+            hit = self.flow.first_hit(tau, v, self.end - tau)
+            if hit is None or hit.time is None:
+                return None
+            tau, v = tau + hit.time, -self.flow.r * hit.velocity
+        sigma = tau - self.end
+        return v - sigma**2 * (self.g2 + self.g3 * sigma)
+
+
+def _searched(gamma: _Gamma, tau: Expression, rough: Any, digits: int) -> Fraction | None:
+    """A v near gamma, by secants: nothing is proved here.  The more impacts, the less the cut of gamma matters."""
+    start, rate = evaluate(tau, {}, gamma.flow.balls), float(gamma.rate.mid())
+    forgotten = rate**2 / multiplier_across(1, rate)  # by each impact, of the error in the cut of gamma
+    most = ceil((digits + 3) * log(10) / -log(forgotten))
+    v, impacts, step = Fraction(float(rough)), ORBITS.stage, Fraction(1, 10**12)
+    while True:
+        impacts = min(impacts, most)
+        reached = max(Fraction(forgotten**impacts), Fraction(1, 10 ** (digits + 3))) / 10
+        found = _secant(partial(gamma.missed, start, impacts), v, v * step, v * reached, gamma.flow.balls)
+        if found is None or impacts == most:
+            return found
+        impacts, step = ceil(impacts * ORBITS.stages), max(abs(found - v) / v / 10**4, Fraction(1, 10 ** (2 * digits)))
+        v = found
+
+
+def _secant(
+    miss: Callable[[Fraction], Any], v: Fraction, step: Fraction, small: Fraction, balls: Balls
+) -> Fraction | None:
+    """A zero of miss near v, to `small`; None when it is not defined there, or these balls do not give it so well."""
+    other, value = v + step, miss(v)
+    for _ in range(ORBITS.secants):
+        beyond = miss(other)
+        if value is None or beyond is None or not abs(beyond - value) > 0:
+            return None
+        change = balls.rational(other - v) * beyond / (beyond - value)
+        if change.rad() > balls.rational(small):
+            return None
+        closer = as_rational(balls.rational(other) - change)
+        v, value, other = other, beyond, closer
+        if abs(other - v) < small:
+            break
+    return other
+
+
+def _side(gamma: _Gamma, tau: Expression, v: Fraction) -> int | None:
+    """-1 when chatter from (tau, v) completes before the end of gamma, 1 when a flight passes it, None undecided."""
+    flow = gamma.flow
+    time, speed = evaluate(tau, {}, flow.balls), flow.number(v)
+    for _ in range(ORBITS.impacts):
+        if not time < gamma.end or not speed > 4 * speed.rad():
+            return None
+        left = remaining(flow, time, speed) if flow.acceleration(time) < 0 else None
+        if left is not None and time + left < gamma.end:
+            return -1
+        hit = flow.first_hit(time, speed, gamma.end - time)
+        if hit is None:
+            return None
+        if hit.time is None or time + hit.time > gamma.end:
+            return 1
+        time, speed = time + hit.time, -flow.r * hit.velocity
+    return None
