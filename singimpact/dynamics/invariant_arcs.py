@@ -147,21 +147,26 @@ def model_step(model: Oscillator, points: Array) -> Array:
     """The impact map on points (tau, v), shape (n, 2); nan where there is no next impact."""
     from singimpact.flights.hits import impact_map
 
-    step = impact_map(model, points[:, 0], points[:, 1])
+    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
+    step = impact_map(model, points[known, 0], points[known, 1])
     good = np.isin(step.status, (Status.hit, Status.graze))
-    return np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
+    found[known] = np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
+    return found
 
 
 def before(model: Oscillator, points: Array) -> Array:
     """The inverse map on points, shape (n, 2); nan where nothing lands there."""
+    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
+    at, v_at = points[known].T
     if names_in(model.restitution):
-        step = inverse_map(model, points[:, 0], points[:, 1])
+        step = inverse_map(model, at, v_at)
         tau, v, status = step.tau, step.v, step.status
     else:
-        hit = first_hit(backwards(model), -points[:, 0], points[:, 1] / as_float(model.restitution))
-        tau, v, status = points[:, 0] - hit.flight_time, -hit.velocity, hit.status
+        hit = first_hit(backwards(model), -at, v_at / as_float(model.restitution))
+        tau, v, status = at - hit.flight_time, -hit.velocity, hit.status
     good = np.isin(status, (Status.hit, Status.graze))
-    return np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)
+    found[known] = np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)
+    return found
 
 
 def _grown(

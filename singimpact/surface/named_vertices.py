@@ -104,12 +104,12 @@ def _cusps(points: Array, zeros: Sequence[float], flights: RestFlights) -> list[
         for i in np.flatnonzero((offset[:-1] >= 0) != (offset[1:] >= 0)).tolist():
             share = offset[i] / (offset[i] - offset[i + 1]) if offset[i] != offset[i + 1] else 0.5
             t = float(points[i, 1] + share * (points[i + 1, 1] - points[i, 1]))
-            if points[i, 1] * points[i + 1, 1] > 0 and (settled := _crossing(flights, tau, t)) is not None:
+            if points[i, 1] * points[i + 1, 1] > 0 and (settled := crossing(flights, tau, t)) is not None:
                 made.append(_Named(i, (tau, settled[0]), settled[1], "cusp"))
     return made
 
 
-def _crossing(flights: RestFlights, tau: float, t: float) -> tuple[float, float] | None:
+def crossing(flights: RestFlights, tau: float, t: float) -> tuple[float, float] | None:
     """The crossing of x = c near t of the flight from tau, with x' there."""
     for _ in range(20):
         height, velocity = flights.ends(np.array([tau]), np.array([t]))
