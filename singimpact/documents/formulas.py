@@ -11,7 +11,7 @@ from typing import Any
 import sympy
 
 _NAMES = {"mbar": r"\bar m", "ell": r"\ell", "Qrest": r"Q_r(\sigma, \eta) + O(3)", "Qdot": "Q'"}
-_GREEK = {"rho", "sigma", "tau", "eta", "lambda", "mu", "omega"}
+_GREEK = {"kappa", "rho", "sigma", "tau", "eta", "lambda", "mu", "omega"}
 SHOWN_DIGITS = 15
 SMALL = ("v", "eta", "sigma", "s", "t")
 _FALLING = ("mbar", "m", "lambda", "r")
