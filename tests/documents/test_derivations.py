@@ -27,6 +27,8 @@ LABELS = [
     "s4-r-of-m", "s4-Nr-1", "s4-Nr-2", "s4-Nr-3", "s4-Dh-form", "s4-gamma-leading", "s4-lambda-P", "s4-lambda-r",
     "s4-lambda-mu", "s4-lambda-gamma", "s4-lambda-DG", "e:pdeg3", "s5-phi", "s5-hbar", "s5-f", "s5-g", "s5-fixed",
     "s5-r-of-m", "s5-jacobian", "s5-mu", "s5-lambda-P", "s5-lambda-r", "s5-gamma-leading",
+    "s6-model", "s6-launch", "s6-impact", "s6-horizon", "s6-zero-set", "s6-E", "s6n-corr", "s6n-cusp", "s6p-AB",
+    "s6p-BE", "s6p-gamma", "s6-shadow", "s6n-maps", "s6-GA", "s6n-X",
 ]  # fmt: skip
 
 
