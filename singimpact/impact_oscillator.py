@@ -197,7 +197,7 @@ def read_model(path: str | FilePath) -> ImpactOscillator:
     return ImpactOscillator(**read_fields(path))
 
 
-def tangency_points(oscillator: Oscillator) -> TangencyPoints:
+def tangency_points(oscillator: Oscillator, digits: int = 30) -> TangencyPoints:
     """The zeros of a_c over one period, or all real ones when g is a polynomial: see `singimpact.contact.points`.
 
     Examples
@@ -205,10 +205,12 @@ def tangency_points(oscillator: Oscillator) -> TangencyPoints:
     >>> points = tangency_points(linear(2, "0.3", "0.5"))
     >>> points.kind, points.tau.round(6).tolist()
     (('foliation', 'gamma'), [0.633052, 2.508541])
+    >>> print(tangency_points(linear(2, "0.3", "0.5"), digits=60).certified()[1])
+    2.50854081720004368283298401807339174662515706538471755942770
     """
     from singimpact.contact.points import tangency_points as found
 
-    return found(oscillator)
+    return found(oscillator, digits)
 
 
 def swan_points(

@@ -31,6 +31,15 @@ def is_zero(expression: Any) -> bool:
     return True
 
 
+def same(left: Any, right: Any) -> bool:
+    """Whether two expressions are equal, decided as by `is_zero`, with a certificate of that."""
+    left, right = sympy.sympify(left), sympy.sympify(right)
+    equal = _cancels(sympy.together(left - right))
+    if equal:
+        identical(left, right)
+    return equal
+
+
 def _cancels(expression: Any) -> bool:
     roots = sorted((p for p in expression.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2), key=str)
     if not roots:

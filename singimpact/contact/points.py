@@ -73,9 +73,7 @@ def enclosed(ball: Callable[[int], Any], digits: int) -> Certified:
     ------
     InputError : digits are not a whole number from 1 to MOST_DIGITS.
     """
-    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
-        raise refuse("digits", digits, f"a whole number from 1 to {MOST_DIGITS}")
-    bits = ceil(digits * 3.33) + 32
+    bits = ceil(_checked(digits) * 3.33) + 32
     while (found := as_certified(ball(bits), digits)) is None:
         bits *= 2
         if bits > 64 * (digits + 64):
@@ -83,14 +81,20 @@ def enclosed(ball: Callable[[int], Any], digits: int) -> Certified:
     return found
 
 
+def _checked(digits: Any) -> int:
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
+        raise refuse("digits", digits, f"a whole number from 1 to {MOST_DIGITS}")
+    return digits
+
+
 class TangencyPoints(tuple[TangencyPoint, ...]):
-    """Tangency points in order, with `.tau` and `.kind` as arrays."""
+    """Tangency points in order, with `.tau` and `.kind` as arrays; `digits` of what `certified` gives."""
 
-    __slots__ = ()
+    digits: int = 30
 
-    def certified(self, digits: int = 30) -> tuple[Certified, ...]:
+    def certified(self, digits: int | None = None) -> tuple[Certified, ...]:
         """The times tau_*, each with a certified radius and so many significant digits."""
-        return tuple(point.certified(digits) for point in self)
+        return tuple(point.certified(self.digits if digits is None else digits) for point in self)
 
     @property
     def tau(self) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -106,8 +110,12 @@ class TangencyPoints(tuple[TangencyPoint, ...]):
 KINDS = {1: "gamma", -1: "foliation"}
 
 
-def tangency_points(oscillator: Oscillator) -> TangencyPoints:
+def tangency_points(oscillator: Oscillator, digits: int = 30) -> TangencyPoints:
     """The zeros of a_c over one period [0, T), or all real zeros when g is a polynomial.
+
+    Parameters
+    ----------
+    digits : significant ones that `certified` of the points gives.
 
     Raises
     ------
@@ -126,7 +134,9 @@ def tangency_points(oscillator: Oscillator) -> TangencyPoints:
     points = []
     for zero in isolate(function, "t", low, high):
         points += [TangencyPoint(function, zero, KINDS[zero.slope])] if zero.slope else _decided(function, zero)
-    return TangencyPoints(_within(points, oscillator))
+    found = TangencyPoints(_within(points, oscillator))
+    found.digits = _checked(digits)
+    return found
 
 
 def window(oscillator: Oscillator, function: Expression) -> tuple[Fraction, Fraction]:

@@ -103,6 +103,8 @@ def _chatter(flow: LinearFlow, tau: Expression, v: Expression, removed: int, dig
     time, speed = (evaluate(tree, {}, flow.balls) for tree in (tau, v))
     for count in range(ORBITS.impacts):
         a = flow.acceleration(time)
+        if count and not (a > 0 or a < 0):
+            return None  # whether contact is lost at this impact is not decided
         if count and a > 0:
             found = as_certified(time, digits)
             return None if found is None else EnclosedLimit(found, count, True)

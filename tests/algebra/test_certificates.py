@@ -4,6 +4,8 @@ import json
 
 import pytest
 import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from tampering import bumped, changed, leaves
 
 from singimpact.algebra import certificates
@@ -102,3 +104,16 @@ def test_nothing_is_shared_between_maker_and_checker(clone):
         assert "flint" not in text
         assert text.count("\n") < 170
         assert "import certificates" not in text
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.integers(-9, 9), min_size=1, max_size=6))
+def test_a_yes_is_right_and_a_no_too(coefficients):
+    """Against counts of roots: a positive polynomial is never refused, only left without a certificate."""
+    poly = sympy.Poly(coefficients, x)
+    ends_and_roots = 0 if poly.degree() < 1 else poly.count_roots(0, 1) - sum(poly.eval(end) == 0 for end in (0, 1))
+    positive = ends_and_roots == 0 and poly.eval(HALF) > 0
+    try:
+        assert certificates.positive_on(poly.as_expr(), x, 0, 1) == positive
+    except ArithmeticError:
+        assert positive

@@ -87,6 +87,8 @@ def test_tangency_points_any_digits():
 def test_digits_of_a_point_are_checked():
     with pytest.raises(InputError, match="digits = 0"):
         si.tangency_points(si.linear(2, "0.3", "0.9")).certified(0)
+    with pytest.raises(InputError, match="digits = 'many'"):
+        si.tangency_points(si.linear(2, "0.3", "0.9"), digits="many")
 
 
 def test_symbols_have_no_radius():

@@ -10,7 +10,7 @@ from singimpact.algebra.certificates import positive_on, value_at
 from singimpact.claims import true_orbits
 from singimpact.claims.claim import Check, Claim, Statement
 from singimpact.claims.notation import latex
-from singimpact.claims.verifiers import every, identity, is_zero
+from singimpact.claims.verifiers import every, identity, is_zero, same
 from singimpact.theory import implicit_route as route
 from singimpact.theory.implicit_route import a_symbol, r, sigma, t
 
@@ -25,11 +25,14 @@ def _image(matrix: Any) -> Any:
 def _eigenvectors(stated: tuple[tuple[Any, tuple[Any, Any]], ...]) -> Check:
     """Each (eigenvalue, vector) satisfies DG vector = eigenvalue vector, and the two vectors are independent."""
     matrix = route.DG()
-    residuals = [matrix * sympy.Matrix(vector) - value * sympy.Matrix(vector) for value, vector in stated]
+    sides = [(matrix * sympy.Matrix(vector), value * sympy.Matrix(vector)) for value, vector in stated]
     basis = sympy.Matrix([list(vector) for _, vector in stated])
     return every(
         [
-            ("DG v = lambda v for both vectors", all(is_zero(part) for residual in residuals for part in residual)),
+            (
+                "DG v = lambda v for both vectors",
+                all(same(x, y) for left, right in sides for x, y in zip(left, right, strict=True)),
+            ),
             ("they are independent", not is_zero(basis.det())),
         ]
     )

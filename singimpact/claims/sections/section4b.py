@@ -10,7 +10,7 @@ import sympy
 from singimpact.algebra.certificates import negative_on, positive_in, positive_on
 from singimpact.claims import leaves
 from singimpact.claims.claim import Check, Statement, in_section
-from singimpact.claims.verifiers import every, identity, is_zero
+from singimpact.claims.verifiers import every, identity, is_zero, same
 from singimpact.theory import fold_route as fold
 from singimpact.theory.fold_route import k
 from singimpact.theory.implicit_route import a_symbol, r, sigma, t
@@ -58,11 +58,11 @@ def _sector(stated: tuple[Any, Any]) -> Check:
         [
             (
                 f"v = -k t ({launch}), so for k < 0 and t > 0 v >= 0 where {launch} >= 0",
-                is_zero(launch - (factor * sigma + t)) and least == 0,
+                same(launch, factor * sigma + t) and least == 0,
             ),
             (
                 f"dv/dt = -k ({launch} + t) > 0 inside, so there p is one to one for each sigma",
-                is_zero(rise - launch - t),
+                same(rise, launch + t),
             ),
         ]
     )
