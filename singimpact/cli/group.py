@@ -25,6 +25,7 @@ COMMANDS = {
     "errata": "what is misprinted, what holds instead, and why",
     "claims": "the claims: list, show, graph, impact",
     "fixed-points": "fixed points and multipliers, certified, to any digits",
+    "cite": "what to cite",
 }
 
 

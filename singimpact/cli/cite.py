@@ -1,0 +1,26 @@
+"""`singimpact cite`: what to cite."""
+
+from __future__ import annotations
+
+import click
+
+from singimpact import __version__
+from singimpact.cli.output import as_json_text, emit, output_options
+
+PAPER = "D. R. J. Chillingworth, Dynamics of an impact oscillator near a degenerate graze"
+SOFTWARE = f"singimpact {__version__}: low-velocity impacts of an oscillator near a degenerate graze"
+ENTRY = f"""@software{{singimpact,
+  title = {{{SOFTWARE}}},
+  version = {{{__version__}}},
+  license = {{MIT}}
+}}"""
+
+
+@click.command(short_help="what to cite")
+@output_options
+def command(as_json: bool, output: str | None) -> None:
+    """What to cite: this version, with a BibTeX entry, and the paper."""
+    if as_json:
+        emit(as_json_text({"software": SOFTWARE, "paper": PAPER, "bibtex": ENTRY}), output)
+    else:
+        emit(f"{SOFTWARE}\n{PAPER}\n\n{ENTRY}", output)

@@ -1,0 +1,21 @@
+"""`singimpact cite` and the version, from one place."""
+
+import json
+import re
+
+from click.testing import CliRunner
+
+import singimpact
+from singimpact.cli.cite import command
+
+
+def test_what_to_cite():
+    text = CliRunner().invoke(command, []).output
+    assert singimpact.__version__ in text
+    assert "Chillingworth" in text
+    assert json.loads(CliRunner().invoke(command, ["--json"]).output)["bibtex"].startswith("@software")
+
+
+def test_citation_file_has_this_version(clone):
+    (found,) = re.findall(r"^version: (.*)$", (clone / "CITATION.cff").read_text(), re.MULTILINE)
+    assert found == singimpact.__version__
