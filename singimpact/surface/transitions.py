@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -22,9 +23,10 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.zeros import isolate, refined
 from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.points import tangency_points
+from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
-from singimpact.surface.curve import Window
+from singimpact.surface.curve import Curve, Window
 from singimpact.surface.rest_flights import RestFlights
 
 Array = np.ndarray[Any, Any]
@@ -90,6 +92,55 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) ->
     return sorted(found, key=lambda each: (each.value, each.tau, each.t))
 
 
+def swan_curves(model: Oscillator, over: tuple[str, str], between: tuple[Any, Any]) -> list[Curve]:
+    """Curves of swan points in the plane of two numbers of a model.
+
+    Parameters
+    ----------
+    over : two names of parameters, or "clearance". between : the two ends of each.
+
+    Returns
+    -------
+    curves with the axes `over`; every vertex solves a_c = a_c' = 0.  Along a curve the second number rises.
+
+    Examples
+    --------
+    >>> model = Oscillator("x", "h*cos(2*t)", 0, "1/2", {"h": 1})
+    >>> curves = swan_curves(model, ("clearance", "h"), ((0, 2), ("0.5", "1.5")))
+    >>> [bool(abs(curve.points[:, 0] - curve.points[:, 1]).max() < 1e-12) for curve in curves]
+    [True]
+    """
+    first, second = over
+    for name in over:
+        if name != "clearance" and name not in model.parameters:
+            raise unknown("parameter", name, ["clearance", *model.parameters])
+    window = Window.read(between[0], between[1])
+    rows: list[list[tuple[float, float, Transition]]] = []
+    for value in np.linspace(*window.t, SETTINGS.steps + 1).tolist():
+        family = _Family(_Family(model, second).at(value), first)
+        found = list(_swans(family, np.linspace(*window.tau, SETTINGS.steps + 1)))
+        rows.append([(swan.value, value, swan) for swan in found])
+    return [Curve("swan", np.array(line), over) for line in _linked(rows) if len(line) > 1]
+
+
+def _linked(rows: list[list[tuple[float, float, Transition]]]) -> list[list[tuple[float, float]]]:
+    """Swans of neighbouring rows joined when their times and kinds agree."""
+    open_: list[tuple[Transition, list[tuple[float, float]]]] = []
+    done: list[list[tuple[float, float]]] = []
+    for row in rows:
+        following = []
+        for value, other, swan in row:
+            same = [pair for pair in open_ if pair[0].kind == swan.kind]
+            near = min(same, key=lambda pair: abs(pair[0].tau - swan.tau), default=None)
+            line = near[1] if near is not None and abs(near[0].tau - swan.tau) < 0.3 else []
+            if near is not None and line:
+                open_.remove(near)
+            following.append((swan, [*line, (value, other)]))
+        done += [line for _, line in open_]
+        open_ = following
+    return done + [line for _, line in open_]
+
+
 @dataclass(frozen=True)
 class _Family:
     """A model in which one number moves."""
@@ -109,7 +160,17 @@ class _Family:
 
 
 def _swans(family: _Family, values: Array) -> Iterator[Transition]:
-    """Where an extremum of a_c passes through zero: extrema are followed from value to value."""
+    """Where a_c gets a double zero: over the clearance all of them, isolated with proof; else those that are met."""
+    if family.over == "clearance":
+        between = Fraction(float(values[0])), Fraction(float(values[-1]))
+        for swan in swan_points_over_clearance(family.model, between):
+            yield Transition(f"swan, {swan.kind}", swan.clearance, swan.tau, 0.0)
+    else:
+        yield from _met(family, values)
+
+
+def _met(family: _Family, values: Array) -> Iterator[Transition]:
+    """Extrema of a_c are followed from value to value; where one passes through zero Newton's method ends it."""
     tree = family.acceleration()
     before: list[tuple[float, float]] = []
     for value in values.tolist():
@@ -128,8 +189,6 @@ def _extrema(model: Oscillator) -> list[tuple[float, float]]:
     tree = acceleration(model)
     if model.period is None:
         raise InputError(f"g = {model.g} is not seen to be periodic: give period=")
-    from fractions import Fraction
-
     end = Fraction(as_float(model.period))
     zeros = isolate(tree, "t", Fraction(-1, 97) * end, Fraction(96, 97) * end, order=1)
     tau = [float(refined(tree, "t", zero, 128, order=1).mid()) for zero in zeros if zero.slope]

@@ -6,7 +6,7 @@ import pytest
 import singimpact as si
 from singimpact.inputs import InputError
 from singimpact.surface.impact_surface import ImpactSurface
-from singimpact.surface.transitions import transitions
+from singimpact.surface.transitions import swan_curves, transitions
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(w*t)", "0.3", "0.6", parameters={"w": "1.7"})
 
@@ -39,12 +39,26 @@ def test_a_piece_of_z_is_born_in_the_lips_that_are_found():
     assert sorted(pieces) == [0, 1]
 
 
+def test_curves_of_swan_points_over_two_numbers():
+    """f(c) = max of g: c + 0.3 c^3 = 1 whatever w; over the height h of the forcing c + 0.3 c^3 = h."""
+    model = si.ImpactOscillator("x + 0.3*x**3", "h*cos(w*t)", 0, "0.6", parameters={"w": "1.7", "h": 1})
+    (level,) = swan_curves(model, ("clearance", "w"), ((0, 2), (1, 2)))
+    assert np.abs(level.points[:, 0] + 0.3 * level.points[:, 0] ** 3 - 1).max() < 1e-12
+    curves = swan_curves(model, ("h", "clearance"), (("0.2", "2"), ("0.3", "0.9")))
+    points = max(curves, key=len).points
+    assert np.abs(points[:, 0] - points[:, 1] - 0.3 * points[:, 1] ** 3).max() < 1e-12
+    assert len(points) > 40
+
+
 @pytest.mark.parametrize(
     ("ask", "told"),
     [
         (lambda: transitions(DUFFING, "q", (0, 1)), "q"),
         (lambda: transitions(DUFFING, "w", (2, 1)), "two numbers"),
-        (lambda: transitions(si.universal(-1, "0.5"), "clearance", (-1, 1)), "not seen to be periodic"),
+        (
+            lambda: transitions(si.ImpactOscillator("k*x", "t**2 - 1", 0, "0.5", parameters={"k": 1}), "k", (1, 2)),
+            "not seen to be periodic",
+        ),
     ],
 )
 def test_refusals(ask, told):
