@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import evaluate, names_in
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.algebra.rings import DOUBLES
 from singimpact.codegen.kernels import compiled
@@ -152,8 +154,9 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     status = np.zeros(states.v.size, dtype=np.int8)
     removed = _removed(osc, states, status)
     numbers = _flown(osc, kernel, states, removed, status, limit, epsilon)
-    _settle(osc, states, limit, status, numbers)
-    if kernel.form is not None:
+    # first: what left the range of doubles would be followed again in many digits
+    _escapes(osc, kernel.form, states, status, numbers)
+    if _settle(osc, states, limit, status, numbers):
         _escapes(osc, kernel.form, states, status, numbers)
     return _conditioned(osc, states, flight_of(status, numbers))
 
@@ -164,8 +167,10 @@ def _conditioned(osc: Oscillator, states: States, flight: Flight) -> Flight:
     return replace(flight, condition=answers.condition(tau, states.v, flight.flight_time))
 
 
-def _escapes(osc: Oscillator, form: LinearForm, states: States, status: Array, numbers: Array) -> None:
+def _escapes(osc: Oscillator, form: LinearForm | None, states: States, status: Array, numbers: Array) -> None:
     """What has not returned is asked whether it ever can."""
+    if form is None:
+        return
     # a flight that left the range of doubles was followed without impact too
     gone = np.flatnonzero((status == Status.no_return) | (numbers[:, 2] > LIMITS.far))
     if gone.size:
@@ -219,12 +224,29 @@ def _doubles(kernel: Kernel) -> Array:
     return p
 
 
-def _settle(osc: Oscillator, states: States, limit: float, status: Array, numbers: Array) -> None:
+@lru_cache(maxsize=256)
+def remainders(kernel: Kernel) -> tuple[Array, Array]:
+    """What the doubles of a linear model leave out; the phases of its waves, with what their doubles leave out."""
+    assert kernel.form is not None
+    low = np.array([_halves(tree)[1] for tree in kernel.constants])
+    waves = kernel.form.harmonics
+    return low, np.array([_halves(wave.phase) for wave in waves]).reshape(len(waves), 2).T.copy()
+
+
+def _halves(tree: Expression) -> tuple[float, float]:
+    high = as_float(tree)
+    exact = as_rational(Balls(256).evaluate(tree, {}))
+    return high, float(exact - Fraction(high)) if np.isfinite(high) else 0.0
+
+
+def _settle(osc: Oscillator, states: States, limit: float, status: Array, numbers: Array) -> bool:
     """What doubles leave open is asked again with many digits: the state is exact, so the answer exists."""
-    for index in np.flatnonzero(status == Status.unresolved)[: LIMITS.settled]:
+    open_ones = np.flatnonzero(status == Status.unresolved)[: LIMITS.settled]
+    for index in open_ones:
         settled = manydigits.settle(osc, states, int(index), limit)
         if settled is not None:
             status[index], numbers[index] = settled
+    return bool(open_ones.size)
 
 
 def flight_of(status: Array, numbers: Array) -> Flight:

@@ -85,3 +85,29 @@ def bounds(p: Any, step: float, out: Any) -> None:
     for n in range(6, len(out)):
         factorial *= max(n - 6, 1)
         out[n] = 1 / factorial
+
+
+def expansions(p: Any, out: Any) -> None:
+    """out[i] = how x_i of the series x - c = x_0 + x_1 t + ... follows from the state at its start.
+
+    Columns: by x_0, by x_1, by nothing, then by cosine and sine of every wave there.
+    """
+    count = (len(p) - 5) // 3
+    for i in range(len(out)):
+        row = out[i]
+        for at in range(3 + 2 * count):
+            row[at] = 0.0
+        if i < 2:
+            row[i] = 1.0
+            continue
+        factorial = 1.0
+        for k in range(2, i - 1):
+            factorial *= k
+        row[2] = p[3] if i == 2 else 0.0
+        for j in range(count):
+            # cos and sin differentiated i - 2 times: turned by as many quarters
+            power = p[5 + 3 * j] ** (i - 2) / factorial * (1.0 if (i - 2) % 4 < 2 else -1.0)
+            one, other = p[6 + 3 * j] * power, p[7 + 3 * j] * power
+            row[3 + 2 * j], row[4 + 2 * j] = (one, other) if i % 2 == 0 else (other, -one)
+        for at in range(3 + 2 * count):
+            row[at] = (row[at] - p[1] * (i - 1) * out[i - 1, at] - p[2] * out[i - 2, at]) / (i * (i - 1))
