@@ -51,6 +51,8 @@ def complex_exp(z: complex) -> complex:
 
 def pair(a: complex, b: complex, t: float) -> complex:
     """D[a, b](t) = (e^{a t} - e^{b t})/(a - b)."""
+    # numpy's complex scalars divide in another way than Python's and the compiler's
+    a, b, t = complex(a), complex(b), float(t)
     y = (a - b) * t / 2
     if abs(y) < 0.1:
         y2 = y * y
@@ -61,6 +63,7 @@ def pair(a: complex, b: complex, t: float) -> complex:
 
 def triple(a: complex, b: complex, c: complex, t: float) -> complex:
     """D[a, b, c](t), from the two points that are farthest apart, or from the series when all are close."""
+    a, b, c, t = complex(a), complex(b), complex(c), float(t)
     ab, bc, ca = abs(a - b), abs(b - c), abs(c - a)
     if ab >= bc and ab >= ca:
         b, c = c, b

@@ -100,13 +100,12 @@ def expansions(p: Any, out: Any) -> None:
         if i < 2:
             row[i] = 1.0
             continue
-        factorial = 1.0
-        for k in range(2, i - 1):
-            factorial *= k
         row[2] = p[3] if i == 2 else 0.0
         for j in range(count):
             # cos and sin differentiated i - 2 times: turned by as many quarters
-            power = p[5 + 3 * j] ** (i - 2) / factorial * (1.0 if (i - 2) % 4 < 2 else -1.0)
+            power = 1.0 if (i - 2) % 4 < 2 else -1.0
+            for k in range(1, i - 1):
+                power *= p[5 + 3 * j] / k
             one, other = p[6 + 3 * j] * power, p[7 + 3 * j] * power
             row[3 + 2 * j], row[4 + 2 * j] = (one, other) if i % 2 == 0 else (other, -one)
         for at in range(3 + 2 * count):
