@@ -17,6 +17,7 @@ from singimpact.codegen.kernels import compiled
 from singimpact.flights import edges, manydigits
 from singimpact.flights.carriers import Derivative, Flight, Step
 from singimpact.flights.escape import never_returns
+from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.kernel import Kernel, kernel_of
 from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
 from singimpact.flights.limits import LIMITS, degree_for
@@ -59,7 +60,8 @@ def first_hit(
     limit = horizon_of(osc, horizon)
     epsilon = _tolerance(tolerance)
     if digits is not None:
-        return shaped(manydigits.flights(osc, states, checked_digits(digits), limit), states.shape)
+        found = manydigits.flights(osc, states, checked_digits(digits), limit)
+        return shaped(_conditioned(osc, states, found), states.shape)
     return shaped(_flights(osc, states, limit, epsilon), states.shape)
 
 
@@ -162,20 +164,21 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
 
 
 def _conditioned(osc: Oscillator, states: States, flight: Flight) -> Flight:
-    answers = response(osc, states.tau, states.v, flight.flight_time, flight.velocity)
+    time, velocity = (np.array(part, dtype=float) for part in (flight.flight_time, flight.velocity))
+    answers = response(osc, states.tau, states.v, time, velocity)
     tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
-    return replace(flight, condition=answers.condition(tau, states.v, flight.flight_time))
+    return replace(flight, condition=answers.condition(tau, states.v, time))
 
 
 def _escapes(osc: Oscillator, form: LinearForm | None, states: States, status: Array, numbers: Array) -> None:
     """What has not returned is asked whether it ever can."""
-    if form is None:
-        return
     # a flight that left the range of doubles was followed without impact too
-    gone = np.flatnonzero((status == Status.no_return) | (numbers[:, 2] > LIMITS.far))
+    gone = np.flatnonzero((status == Status.no_return) | _lost(status, numbers))
     if gone.size:
         time, speed, place, _ = numbers[gone].T
-        status[gone[never_returns(osc, form, states.tau[gone], time, place, speed)]] = Status.escaped
+        proved = (never_turns(osc, place, speed) if form is None
+                  else never_returns(osc, form, states.tau[gone], time, place, speed))  # fmt: skip
+        status[gone[proved]] = Status.escaped
 
 
 def _removed(osc: Oscillator, states: States, status: Array) -> Array:
@@ -239,9 +242,14 @@ def _halves(tree: Expression) -> tuple[float, float]:
     return high, float(exact - Fraction(high)) if np.isfinite(high) else 0.0
 
 
+def _lost(status: Array, numbers: Array) -> Array:
+    """Flights that came to no graze but to the end of the range of numbers, or of the functions in f and g."""
+    return np.asarray((status == Status.unresolved) & ~(numbers[:, 2] <= 10 * numbers[:, 3]))
+
+
 def _settle(osc: Oscillator, states: States, limit: float, status: Array, numbers: Array) -> bool:
     """What doubles leave open is asked again with many digits: the state is exact, so the answer exists."""
-    open_ones = np.flatnonzero(status == Status.unresolved)[: LIMITS.settled]
+    open_ones = np.flatnonzero((status == Status.unresolved) & ~_lost(status, numbers))[: LIMITS.settled]
     for index in open_ones:
         settled = manydigits.settle(osc, states, int(index), limit)
         if settled is not None:
@@ -256,6 +264,6 @@ def flight_of(status: Array, numbers: Array) -> Flight:
     gone = (status == Status.no_return) | (status == Status.escaped)
     time[gone], velocity[gone | unknown], time[unknown] = np.inf, np.nan, np.nan
     velocity[(status == Status.graze) | (status == Status.sticks)] = 0.0
-    plain = ~unknown & (status != Status.graze)
+    plain = (~unknown & (status != Status.graze)) | _lost(status, numbers)
     depth[plain], bound[plain] = np.nan, np.nan
     return Flight(time, velocity, status, depth, bound, np.full(time.shape, np.nan))

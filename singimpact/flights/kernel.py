@@ -22,7 +22,7 @@ STRIDES = (table.tabulate, table.bounds, table.expansions, strides.series, strid
            strides.turned,
            strides.inner_stride, strides.place, strides.newton, strides.lowest, strides.crossing,
            strides.bent_stride, strides.stride, strides.stride_all,
-           pull.sum_twice, pull.product_twice, pull.divided, pull.phase_of, pull.in_quarter, pull.wave,
+           pull.divided, pull.phase_of, pull.in_quarter, pull.wave,
            pull.wave_twice, pull.pull_twice, pull.pull)  # fmt: skip
 HEAD = '''"""Written by singimpact from the text of its own functions and from f and g: edit those, not this file."""
 
@@ -68,7 +68,14 @@ def kernel_of(osc: Oscillator, exact_restart: bool = True) -> Kernel:
 @lru_cache(maxsize=2)
 def _linear_text(exact_restart: bool) -> tuple[str, tuple[str, ...]]:
     restart = (
-        (closed_form.complex_exp, closed_form.pair, closed_form.triple, closed_form.restart)
+        (
+            pull.sum_twice,
+            pull.product_twice,
+            closed_form.turning,
+            closed_form.pair,
+            closed_form.triple,
+            closed_form.restart,
+        )
         if exact_restart
         else (taylor.restart,)
     )

@@ -19,7 +19,6 @@ class Limits:
         launch costs about 20 ms, so a grid laid along a graze does not hang.
     settling_digits : digits of the first and of the last attempt; a touch that 120 digits do not tell from a graze is
         called a graze.
-    far : x - c beyond which products overflow; a flight is followed up to there.
     guard : digits beyond those asked for; half of the digits go in a square root at a graze, so agreement of two
         runs is what is trusted, not this number.
     """
@@ -30,7 +29,6 @@ class Limits:
     derivatives_at_rest: int = 12
     settled: int = 200
     settling_digits: tuple[int, int] = (50, 120)
-    far: float = 1e99
     guard: int = 15
 
 

@@ -11,7 +11,6 @@ flight.  p as in `flow.closed_form`.
 from __future__ import annotations
 
 from cmath import sqrt as complex_sqrt
-from math import cos, sin
 from typing import Any
 
 FIXED = 8
@@ -29,7 +28,7 @@ def tabulate(p: Any, step: float, table: Any) -> None:
     for m in range(len(table)):
         time, row = m * step, table[m]
         free = pair(a, b, time)
-        slope = complex_exp(a * time) + b * free
+        slope = turning(a, time) + b * free
         steady = p[3] * triple(a, b, 0j, time)
         row[0], row[1], row[2] = slope.real + p[1] * free.real, free.real, steady.real
         row[3], row[4], row[5] = -p[2] * free.real, slope.real, p[3] * free.real
@@ -39,7 +38,8 @@ def tabulate(p: Any, step: float, table: Any) -> None:
             wave = complex(p[6 + 3 * j], -p[7 + 3 * j])
             forced = wave * triple(a, b, 1j * rate, time)
             moved = wave * free + 1j * rate * forced
-            turn_c, turn_s = cos(rate * time), sin(rate * time)
+            turned = turning(1j * rate, time)
+            turn_c, turn_s = turned.real, turned.imag
             at = 8 + 8 * j
             row[at], row[at + 1], row[at + 2], row[at + 3] = forced.real, -forced.imag, moved.real, -moved.imag
             row[at + 4] = p[6 + 3 * j] * turn_c + p[7 + 3 * j] * turn_s
