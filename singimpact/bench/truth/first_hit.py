@@ -55,7 +55,7 @@ def _without_root(v: float, a: float, motion: Any) -> float:
 
 def _lowest(z: float, u: float, e: float, half: float) -> float:
     """The least value of z + u s + e s^2/2 on [-half, half]."""
-    ends = min(z + u * half, z - u * half) + e * half * half / 2
+    ends: float = min(z + u * half, z - u * half) + e * half * half / 2
     return min(ends, z - u * u / (2 * e)) if e > 0 and abs(u) < e * half else ends
 
 

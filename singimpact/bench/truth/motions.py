@@ -71,7 +71,7 @@ class Cubic:
     >>> import flint
     >>> with flint.ctx.workprec(256):
     ...     print(Cubic(2.0, 0.0, 0.0, 1.0).at(1)[0].str(20, radius=False))
-    1.0239797061797925468
+    1.0860656485255256926
     """
 
     order = 72
