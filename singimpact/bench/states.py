@@ -33,6 +33,7 @@ class Draw:
     cubic : one case in so many is of the cubic oscillator, whose truth takes a hundred times longer.
     bits : of the balls for v near 1; small v take more.
     horizon : of the cubic oscillator, which is damped: many flights never return, and the truth follows them slowly.
+    tries : draws for a state that grazes, before another model is taken.
     wrong : a flight time that is off by this part, and by more than a hundred times what is allowed, is a wrong root.
     """
 
@@ -40,6 +41,7 @@ class Draw:
     cubic: int = 25
     bits: int = 320
     horizon: float = 60.0
+    tries: int = 12
     wrong: float = 1e-6
 
 
@@ -103,12 +105,14 @@ def _drawn(rng: Any, family: str, regime: str) -> tuple[float, float, list[tuple
     else:
         omega, clearance = float(rng.uniform(0.3, 3.5)), float(rng.uniform(-0.9, 0.9))
     states: list[tuple[float, float]] = []
-    while len(states) < DRAW.each:
+    for _ in range(DRAW.tries * DRAW.each):
         tau, v = float(rng.uniform(-1, 1) * 2 * pi / omega), float(rng.uniform(0.01, 3))
         if regime == "low":
             v = float(10 ** rng.uniform(-12, -3) if rng.random() < 0.9 else 10 ** rng.uniform(-300, -12))
         states += _grazing(rng, family, omega, clearance, tau) if regime == "graze" else [(tau, v)]
-    return omega, clearance, states
+        if len(states) == DRAW.each:
+            return omega, clearance, states
+    return _drawn(rng, family, regime)  # few flights of that model touch: another one
 
 
 def _grazing(rng: Any, family: str, omega: float, clearance: float, tau: float) -> Iterator[tuple[float, float]]:

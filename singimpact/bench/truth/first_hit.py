@@ -46,7 +46,7 @@ def first_hit(motion: Any, v: float, horizon: float) -> tuple[Any, Any] | None:
 
 def _without_root(v: float, a: float, motion: Any) -> float:
     """A time before which v t + a t^2/2 - M t^3/6 is positive; M bounds |x'''| there."""
-    third = motion.third(0.0, v, 0.25) * (1 + 1e-9)
+    third: float = motion.third(0.0, v, 0.25) * (1 + 1e-9)
     if a > 0:
         return min(max(3 * a / third, sqrt(6 * v / third)), 0.25) * (1 - 1e-9)
     # v + a t/2 - M t^2/6 falls, so its first root bounds; the form without a difference
