@@ -57,12 +57,15 @@ def _map() -> tuple[dict[str, Any], str]:
     """The impact map, compile time left out."""
     from singimpact.bench.grid_speed import compare_grid
     from singimpact.bench.map_speed import compare, ratios
+    from singimpact.bench.warm_start import starts
 
     with ProgressLine() as line:
         done = iter(range(1, 100))
-        rows = compare(told=lambda text: line.show(next(done), 9, text))
-        line.show(next(done), 9, "grid")
+        rows = compare(told=lambda text: line.show(next(done), 10, text))
+        line.show(next(done), 10, "grid")
         grid = compare_grid()
+        line.show(next(done), 10, "first calls")
+        first = starts()
     times = ratios(rows)
     header = ["family", "regime", "method", "microseconds", "wrong", "times singimpact"]
     cells = [
@@ -70,8 +73,14 @@ def _map() -> tuple[dict[str, Any], str]:
          f"{times[row.family, row.regime, row.method]:.1f}" if (row.family, row.regime, row.method) in times else ""]
         for row in rows if row.of
     ]  # fmt: skip
-    told = {"flights": [asdict(row) for row in rows], "grid": [asdict(row) for row in grid]}
-    return told, columns(header, cells) + "\n\n" + _grid_table(grid)
+    told: dict[str, list[Any]] = {"flights": [*rows], "grid": [*grid], "first_calls": [*first]}
+    text = "\n\n".join([columns(header, cells), _grid_table(grid), _start_table(first)])
+    return {name: [asdict(row) for row in part] for name, part in told.items()}, text
+
+
+def _start_table(first: list[Any]) -> str:
+    cells = [[row.what, f"{row.seconds:.2f}", f"{row.more:.2f}"] for row in first]
+    return columns(["first call in a new process, disk cache warm", "seconds", "more than numba's own"], cells)
 
 
 def _series() -> tuple[dict[str, Any], str]:
