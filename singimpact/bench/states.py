@@ -152,12 +152,13 @@ def _errors(
 
 def _conditions(motion: Any, truth: tuple[Any, Any], state: tuple[float, float]) -> tuple[float, float]:
     """kappa of the flight time and of the velocity."""
-    time, u, e = float(truth[0]), float(truth[1]), float(motion.at(truth[0])[2])
-    sizes, total = (max(state[0], time), state[1]), [1.0, 1.0]
-    for (z_by, u_by), size in zip(motion.variations(truth[0]), sizes, strict=True):
+    # in balls: a return after 1e-188 leaves derivatives that no double holds
+    (time, u), e = truth, motion.at(truth[0])[2]
+    sizes, total = (max(state[0], float(time)), state[1]), [1.0, 1.0]
+    for (z_by, u_by), size in zip(motion.variations(time), sizes, strict=True):
         time_by = -z_by / u
-        total[0] += abs(time_by) * size / time
-        total[1] += abs(u_by + e * time_by) * size / abs(u)
+        total[0] += float(abs(time_by / time) * size)
+        total[1] += float(abs((u_by + e * time_by) / u) * size)
     return total[0], total[1]
 
 

@@ -160,7 +160,28 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     _escapes(osc, kernel.form, states, status, numbers)
     if _settle(osc, states, limit, status, numbers):
         _escapes(osc, kernel.form, states, status, numbers)
-    return _conditioned(osc, states, flight_of(status, numbers))
+    flight = _conditioned(osc, states, flight_of(status, numbers))
+    return _sharpened(osc, states, flight, limit) if kernel.form is not None else flight
+
+
+def _sharpened(osc: Oscillator, states: States, flight: Flight, limit: float) -> Flight:
+    """Hits whose rounding is more than their condition explains are flown in many digits.
+
+    At near resonances all flights come back together: the state hardly matters, but the sums still cancel.
+    """
+    answers = response(osc, states.tau, states.v, flight.flight_time, flight.velocity)
+    tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
+    kappas = answers.conditions(tau, states.v, flight.flight_time, flight.velocity)
+    table = table_of(kernel_of(osc), doubles(kernel_of(osc)))
+    far = flight.flight_time > (table.step if table else np.inf)  # before, a series in t loses nothing
+    with np.errstate(all="ignore"):
+        rough = [part > np.maximum(least, 10 * kappa * EPSILON)
+                 for part, least, kappa in zip(answers.rounding, (1e-14, 1e-13), kappas, strict=True)]  # fmt: skip
+    for index in np.flatnonzero((flight.status == Status.hit) & far & (rough[0] | rough[1]))[: LIMITS.settled]:
+        settled = manydigits.settle(osc, states, int(index), limit)
+        if settled is not None and settled[0] == Status.hit:
+            flight.flight_time[index], flight.velocity[index] = settled[1][:2]
+    return flight
 
 
 def _conditioned(osc: Oscillator, states: States, flight: Flight) -> Flight:

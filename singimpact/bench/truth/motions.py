@@ -49,7 +49,7 @@ class Linear:
         """A bound of |x'''| within `width` of a place; the energy grows by less than the force times the time."""
         return float(self.omega) + hypot(z + float(self.c), u) + width
 
-    def variations(self, t: Any) -> tuple[tuple[float, float], tuple[float, float]]:
+    def variations(self, t: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
         """Derivatives of (x, x') at t by tau and by v."""
         import flint
 
@@ -60,7 +60,7 @@ class Linear:
         turned.cos, turned.sin = -self.omega * self.sin, self.omega * self.cos
         z, u, _ = turned.at(t)
         sine, cosine = flint.arb(t).sin_cos()
-        return (float(z), float(u)), (float(sine), float(cosine))
+        return (z, u), (sine, cosine)
 
 
 class Cubic:
@@ -118,7 +118,7 @@ class Cubic:
         pull, damping = x + float(abs(self.cubic)) * x**3, float(abs(self.damping))
         return float(self.omega) + damping * (1 + damping * u + pull) + u * (1 + 3 * float(abs(self.cubic)) * x * x)
 
-    def variations(self, t: Any) -> tuple[tuple[float, float], tuple[float, float]]:
+    def variations(self, t: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
         """Derivatives of (x, x') at t by tau and by v, as differences that 60 digits carry."""
         import flint
 
@@ -129,7 +129,7 @@ class Cubic:
             tau, v = self.start[0] + moved[0], self.start[1] + moved[1]
             other = Cubic(float(self.omega), float(self.c), tau, v, self.sign).at(t)
             size = moved[0] + moved[1]
-            rows.append((float((other[0] - z) / size), float((other[1] - u) / size)))
+            rows.append(((other[0] - z) / size, (other[1] - u) / size))
         return rows[0], rows[1]
 
 

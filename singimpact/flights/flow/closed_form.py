@@ -105,18 +105,26 @@ def restart(launch: Any, v: float, time: float, z: float, u: float, noise: float
     return z, u, ulp * size * (1 + p[4] * time)
 
 
-def responses(launch: Any, time: Any, p: Any, out: Any) -> None:
-    """out[i] = dx/dv, dx'/dv, dx/dtau, dx'/dtau at time[i] after the launch, the launch state and velocity kept."""
+def responses(launch: Any, v: Any, time: Any, p: Any, out: Any) -> None:
+    """out[i] = dx/dv, dx'/dv, dx/dtau, dx'/dtau at time[i] after the launch, the launch state and velocity kept; then
+    the sizes of the terms whose sums are x - c and x'.
+    """
     root = complex_sqrt(complex(p[1] * p[1] / 4 - p[2]))
     a, b = -p[1] / 2 + root, -p[1] / 2 - root
     for i in range(len(time)):
         free = pair(a, b, time[i])
         slope = turning(a, time[i]) + b * free
         by_tau, by_tau_dot = 0.0, 0.0
+        # divided differences are differences of what is that large, however small they come out
+        gap = abs(a - b)
+        reach = time[i] if gap * time[i] < 2 else 2 / gap
+        strength = abs(p[3])
         for j in range((len(p) - 5) // 3):
             rate = 1j * p[5 + 3 * j]
             wave = rate * complex(p[6 + 3 * j], -p[7 + 3 * j]) * complex(launch[i, 2 * j], launch[i, 2 * j + 1])
             forced = wave * triple(a, b, rate, time[i])
-            by_tau += forced.real
-            by_tau_dot += (wave * free + rate * forced).real
+            moved = wave * free + rate * forced
+            by_tau, by_tau_dot = by_tau + forced.real, by_tau_dot + moved.real
+            strength += abs(p[6 + 3 * j]) + abs(p[7 + 3 * j])
         out[i, 0], out[i, 1], out[i, 2], out[i, 3] = free.real, slope.real, by_tau, by_tau_dot
+        out[i, 4], out[i, 5] = (v[i] + strength * reach) * reach, v[i] + strength * reach
