@@ -15,8 +15,8 @@ class Limits:
     safety : rounding allowed for, in units of epsilon times the size of the terms; a Horner sum of 25 terms is
         within 2.5 units in practice, a restart of the closed form within 3, so 8 covers both.
     likely : the same, as it is usually: hits with more than their condition explains are flown in many digits. At 2
-        that is one of 70 near grazes, at 8 one of 6. Of 96 000 random linear states 8 that come back late to a near
-        graze keep more error than is allowed: 7 up to 3 times, one 79 times.
+        that is one of 70 near grazes, at 8 one of 6. Of 96 000 random linear states 10 keep more error than is
+        allowed: 9 up to 3 times, one 79 times.
     derivatives_at_rest : how many derivatives of a_c are tried for a mass at rest before it is called at rest for good.
     settled : launches at most that double arithmetic leaves undecided and that are settled in many digits; a settled
         launch costs about 20 ms, so a grid laid along a graze does not hang.
