@@ -17,7 +17,7 @@ class Flight:
     status : int8, see `singimpact.status.Status`.
     depth : nan, or beside `unresolved` and `graze` the least x - c near the graze.
     bound : rounding bound of `depth`.
-    condition : relative condition number kappa of the flight time; nan when there is no hit, and with digits=.
+    condition : relative condition number kappa of the flight time; nan when there is no hit.
     """
 
     flight_time: Any

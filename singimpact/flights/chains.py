@@ -8,24 +8,19 @@ from typing import Any
 
 
 def chain(
-    tau: float, v: float, count: int, slow: float, w: Any, phases: Any, launch: Any, order: int, terms: int,
+    tau: float, v: float, count: int, slow: float, w: Any, low: Any, phases: Any, launch: Any, order: int, terms: int,
     horizon: float, ulp: float, p: Any, step: float, table: Any, bound: Any, X: Any, W: Any, q: Any, out: Any,
 ) -> Any:  # fmt: skip
     """(impacts flown, status of the last flight); out[i] = time since the start, v, flight time, velocity, a_c.
 
     Parameters
     ----------
-    tau, v : the state; count : impacts at most; w : constants of rho; phases : of the waves.
+    tau, v : the state; count : impacts at most; w : constants of rho; low, phases : as in `pull`.
     slow : stop where the rest of the chatter, if the acceleration stayed, would last less than this; 0: never.
     """
-    waves = (len(p) - 5) // 3
     since, lost = 0.0, 0.0
     for i in range(count):
-        a = p[3]
-        for j in range(waves):
-            angle = p[5 + 3 * j] * (tau + since) + phases[j]
-            launch[2 * j], launch[2 * j + 1] = cos(angle), sin(angle)
-            a += p[6 + 3 * j] * launch[2 * j] + p[7 + 3 * j] * launch[2 * j + 1]
+        a = pull(tau + since, late(tau, since, lost), p, low, phases, launch)
         if slow > 0 and a < 0 and 2 * v < -a * slow:
             return i, 0
         code, time, velocity, _depth, _error = stride(
@@ -43,6 +38,13 @@ def chain(
         if not v > 0:
             return i + 1, 8
     return count, 0
+
+
+def late(t: float, since: float, lost: float) -> float:
+    """What t + since - lost is more than the double t + since."""
+    total = t + since
+    part = total - t
+    return (t - (total - part)) + (since - part) - lost
 
 
 def taylor_chain(

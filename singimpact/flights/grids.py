@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
+from math import frexp, ldexp
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import substitute
 from singimpact.algebra.numbers import as_float
 from singimpact.codegen.kernels import compiled
 from singimpact.codegen.scalar import scalar
-from singimpact.flights import lanes
-from singimpact.flights.hits import EPSILON, doubles
+from singimpact.flights import chains, lane_roots, lane_walk, lanes
+from singimpact.flights.hits import EPSILON, doubles, remainders
 from singimpact.flights.kernel import kernel_of, source
 from singimpact.flights.launch import States, horizon_of
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
 from singimpact.flights.sequences import sequence
-from singimpact.flights.tables import STRIDES, table_of
+from singimpact.flights.tables import LANES, STRIDES, Table, table_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.rebound import rho_of
 from singimpact.status import Status
 
-LANES = 16
+LOOPS = (chains.late, lanes.landed, lanes.phased, lane_walk.ahead, lane_walk.doubtful, lane_walk.judged, lane_walk.walk,
+         lane_roots.turned_to, lane_roots.expanded, lane_roots.guess, lane_roots.polish, lanes.lanes)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -46,8 +50,7 @@ def after(osc: Oscillator, tau: Any, v: Any, impacts: int) -> Ends:
     """
     states = States.read(tau, v)
     kernel = kernel_of(osc)
-    p = doubles(kernel)
-    table = table_of(kernel, p)
+    table = table_of(kernel, doubles(kernel), LANES)
     times, speeds = states.tau.copy(), states.v.copy()
     status = np.where(speeds > 0, np.int8(0), np.int8(Status.sticks))
     if table is None or kernel.form is None:
@@ -58,24 +61,39 @@ def after(osc: Oscillator, tau: Any, v: Any, impacts: int) -> Ends:
                 times[index], speeds[index] = found.tau[-1], found.v[-1]
         return Ends(*(part.reshape(states.shape)[()] for part in (times, speeds, status)))
     shift = np.zeros(times.size) if osc.period is None else times - reduced(times, osc.period)
-    padded = [np.resize(part, -(-times.size // LANES) * LANES) for part in (times - shift, speeds, status)]
+    padded = [np.resize(part, -(-times.size // lanes.LANES) * lanes.LANES) for part in (times - shift, speeds, status)]
     padded[2][times.size :] = Status.sticks
-    _fly(osc, p, table, padded, impacts)
+    _fly(osc, table, padded, impacts)
     parts = (padded[0][: times.size] + shift, padded[1][: times.size], padded[2][: times.size])
     return Ends(*(part.reshape(states.shape)[()] for part in parts))
 
 
-def _fly(osc: Oscillator, p: Any, table: Any, padded: list[Any], impacts: int) -> None:
-    kernel = kernel_of(osc)
-    assert kernel.form is not None
+def _fly(osc: Oscillator, table: Table, padded: list[Any], impacts: int) -> None:
+    kernel, p = kernel_of(osc), doubles(kernel_of(osc))
+    slow, order = table_of(kernel, p), degree_for(EPSILON)
+    assert slow is not None
     text, trees = scalar(rho_of(osc.restitution), "v", "rebound")
-    loops = (lanes.walk, lanes.crossed, lanes.lanes)
-    whole = "\n\n".join([kernel.text, text, *(source(loop) for loop in loops)])
-    names = (*kernel.names, "rebound", *(loop.__name__ for loop in loops))
+    constants = f"{lanes.CONSTANTS}\nORDER = {LANES.order}\n"
+    whole = "\n\n".join([kernel.text, constants, text, *(source(loop) for loop in LOOPS)])
     w = np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
-    phases, order = np.array([as_float(wave.phase) for wave in kernel.form.harmonics]), degree_for(EPSILON)
-    compiled(whole, names)["lanes"](
-        padded[0], padded[1], impacts, w, phases, np.zeros(max(2 * phases.size, 1)), STRIDES.order, order,
-        horizon_of(osc, None), LIMITS.safety * EPSILON, p, table.step, table.rows, table.bound, np.zeros(order + 2),
-        np.zeros((kernel.rows, order + 2)), np.zeros(order + 2), padded[2],
-    )  # fmt: skip
+    low, phases = remainders(kernel)
+    waves = phases.shape[1]
+    with np.errstate(all="ignore"):  # what leaves the range of doubles is not a plain crossing
+        compiled(whole, (*kernel.names, "rebound", *(loop.__name__ for loop in LOOPS)))["lanes"](
+            padded[0], padded[1], impacts, w, p, low, phases, _turn(osc), table.step, table.rows, table.bound,
+            table.series, (slow.step, slow.rows, slow.bound), STRIDES.order, order, horizon_of(osc, None),
+            LIMITS.safety * EPSILON, np.zeros(len(lanes.ROWS) * lanes.LANES), np.zeros((2 * waves, lanes.LANES)),
+            np.zeros((2 * waves, lanes.LANES)), np.zeros((LANES.order + 1, lanes.LANES)),
+            np.zeros(max(2 * waves, 1)), np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2),
+            padded[2],
+        )  # fmt: skip
+
+
+def _turn(osc: Oscillator) -> Any:
+    """The period in two parts, the first of 33 bits, and its inverse; zeros without a period."""
+    if osc.period is None:
+        return np.zeros(3)
+    exact = as_rational(Balls(256).evaluate(osc.period, {}))
+    fraction, exponent = frexp(float(exact))
+    high = ldexp(int(ldexp(fraction, 33)), exponent - 33)
+    return np.array([high, float(exact - Fraction(high)), 1 / float(exact)])

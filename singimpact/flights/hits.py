@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import evaluate, names_in
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.algebra.rings import DOUBLES
 from singimpact.codegen.kernels import compiled
 from singimpact.flights import edges, manydigits
 from singimpact.flights.carriers import Derivative, Flight, Step
 from singimpact.flights.escape import never_returns
+from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.kernel import Kernel, kernel_of
 from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
 from singimpact.flights.limits import LIMITS, degree_for
@@ -57,7 +60,8 @@ def first_hit(
     limit = horizon_of(osc, horizon)
     epsilon = _tolerance(tolerance)
     if digits is not None:
-        return shaped(manydigits.flights(osc, states, checked_digits(digits), limit), states.shape)
+        found = manydigits.flights(osc, states, checked_digits(digits), limit)
+        return shaped(_conditioned(osc, states, found), states.shape)
     return shaped(_flights(osc, states, limit, epsilon), states.shape)
 
 
@@ -152,25 +156,50 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     status = np.zeros(states.v.size, dtype=np.int8)
     removed = _removed(osc, states, status)
     numbers = _flown(osc, kernel, states, removed, status, limit, epsilon)
-    _settle(osc, states, limit, status, numbers)
-    if kernel.form is not None:
+    # first: what left the range of doubles would be followed again in many digits
+    _escapes(osc, kernel.form, states, status, numbers)
+    if _settle(osc, states, limit, status, numbers):
         _escapes(osc, kernel.form, states, status, numbers)
-    return _conditioned(osc, states, flight_of(status, numbers))
+    flight = _conditioned(osc, states, flight_of(status, numbers))
+    return _sharpened(osc, states, flight, limit) if kernel.form is not None else flight
+
+
+def _sharpened(osc: Oscillator, states: States, flight: Flight, limit: float) -> Flight:
+    """Hits whose rounding is more than their condition explains are flown in many digits.
+
+    At near resonances all flights come back together: the state hardly matters, but the sums still cancel.
+    """
+    answers = response(osc, states.tau, states.v, flight.flight_time, flight.velocity)
+    tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
+    kappas = answers.conditions(tau, states.v, flight.flight_time, flight.velocity)
+    table = table_of(kernel_of(osc), doubles(kernel_of(osc)))
+    far = flight.flight_time > (table.step if table else np.inf)  # before, a series in t loses nothing
+    with np.errstate(all="ignore"):
+        rough = [part > np.maximum(least, 10 * kappa * EPSILON)
+                 for part, least, kappa in zip(answers.rounding, (1e-14, 1e-13), kappas, strict=True)]  # fmt: skip
+    for index in np.flatnonzero((flight.status == Status.hit) & far & (rough[0] | rough[1]))[: LIMITS.settled]:
+        settled = manydigits.settle(osc, states, int(index), limit)
+        if settled is not None and settled[0] == Status.hit:
+            flight.flight_time[index], flight.velocity[index] = settled[1][:2]
+    return flight
 
 
 def _conditioned(osc: Oscillator, states: States, flight: Flight) -> Flight:
-    answers = response(osc, states.tau, states.v, flight.flight_time, flight.velocity)
+    time, velocity = (np.array(part, dtype=float) for part in (flight.flight_time, flight.velocity))
+    answers = response(osc, states.tau, states.v, time, velocity)
     tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
-    return replace(flight, condition=answers.condition(tau, states.v, flight.flight_time))
+    return replace(flight, condition=answers.condition(tau, states.v, time))
 
 
-def _escapes(osc: Oscillator, form: LinearForm, states: States, status: Array, numbers: Array) -> None:
+def _escapes(osc: Oscillator, form: LinearForm | None, states: States, status: Array, numbers: Array) -> None:
     """What has not returned is asked whether it ever can."""
     # a flight that left the range of doubles was followed without impact too
-    gone = np.flatnonzero((status == Status.no_return) | (numbers[:, 2] > LIMITS.far))
+    gone = np.flatnonzero((status == Status.no_return) | _lost(status, numbers))
     if gone.size:
         time, speed, place, _ = numbers[gone].T
-        status[gone[never_returns(osc, form, states.tau[gone], time, place, speed)]] = Status.escaped
+        proved = (never_turns(osc, place, speed) if form is None
+                  else never_returns(osc, form, states.tau[gone], time, place, speed))  # fmt: skip
+        status[gone[proved]] = Status.escaped
 
 
 def _removed(osc: Oscillator, states: States, status: Array) -> Array:
@@ -219,12 +248,34 @@ def _doubles(kernel: Kernel) -> Array:
     return p
 
 
-def _settle(osc: Oscillator, states: States, limit: float, status: Array, numbers: Array) -> None:
+@lru_cache(maxsize=256)
+def remainders(kernel: Kernel) -> tuple[Array, Array]:
+    """What the doubles of a linear model leave out; the phases of its waves, with what their doubles leave out."""
+    assert kernel.form is not None
+    low = np.array([_halves(tree)[1] for tree in kernel.constants])
+    waves = kernel.form.harmonics
+    return low, np.array([_halves(wave.phase) for wave in waves]).reshape(len(waves), 2).T.copy()
+
+
+def _halves(tree: Expression) -> tuple[float, float]:
+    high = as_float(tree)
+    exact = as_rational(Balls(256).evaluate(tree, {}))
+    return high, float(exact - Fraction(high)) if np.isfinite(high) else 0.0
+
+
+def _lost(status: Array, numbers: Array) -> Array:
+    """Flights that came to no graze but to the end of the range of numbers, or of the functions in f and g."""
+    return np.asarray((status == Status.unresolved) & ~(numbers[:, 2] <= 10 * numbers[:, 3]))
+
+
+def _settle(osc: Oscillator, states: States, limit: float, status: Array, numbers: Array) -> bool:
     """What doubles leave open is asked again with many digits: the state is exact, so the answer exists."""
-    for index in np.flatnonzero(status == Status.unresolved)[: LIMITS.settled]:
+    open_ones = np.flatnonzero((status == Status.unresolved) & ~_lost(status, numbers))[: LIMITS.settled]
+    for index in open_ones:
         settled = manydigits.settle(osc, states, int(index), limit)
         if settled is not None:
             status[index], numbers[index] = settled
+    return bool(open_ones.size)
 
 
 def flight_of(status: Array, numbers: Array) -> Flight:
@@ -234,6 +285,6 @@ def flight_of(status: Array, numbers: Array) -> Flight:
     gone = (status == Status.no_return) | (status == Status.escaped)
     time[gone], velocity[gone | unknown], time[unknown] = np.inf, np.nan, np.nan
     velocity[(status == Status.graze) | (status == Status.sticks)] = 0.0
-    plain = ~unknown & (status != Status.graze)
+    plain = (~unknown & (status != Status.graze)) | _lost(status, numbers)
     depth[plain], bound[plain] = np.nan, np.nan
     return Flight(time, velocity, status, depth, bound, np.full(time.shape, np.nan))

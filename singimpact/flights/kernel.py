@@ -11,17 +11,19 @@ from typing import Any
 
 from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power
 from singimpact.algebra.numbers import as_float, sign_of
-from singimpact.flights import first_root, march, strides
+from singimpact.flights import first_root, march, pull, strides
 from singimpact.flights.flow import closed_form, table, taylor
 from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 
 COMMON = (first_root.sums, first_root.safe_step, first_root.polished, first_root.first_root,
           march.advanced, march.march, march.run, march.follow)  # fmt: skip
-STRIDES = (table.tabulate, table.bounds, strides.series, strides.falling, strides.launched,
+STRIDES = (table.tabulate, table.bounds, table.expansions, strides.series, strides.falling, strides.launched,
            strides.turned,
            strides.inner_stride, strides.place, strides.newton, strides.lowest, strides.crossing,
-           strides.bent_stride, strides.stride, strides.stride_all)  # fmt: skip
+           strides.bent_stride, strides.stride, strides.stride_all,
+           pull.divided, pull.phase_of, pull.in_quarter, pull.wave,
+           pull.wave_twice, pull.pull_twice, pull.pull)  # fmt: skip
 HEAD = '''"""Written by singimpact from the text of its own functions and from f and g: edit those, not this file."""
 
 from __future__ import annotations
@@ -66,7 +68,14 @@ def kernel_of(osc: Oscillator, exact_restart: bool = True) -> Kernel:
 @lru_cache(maxsize=2)
 def _linear_text(exact_restart: bool) -> tuple[str, tuple[str, ...]]:
     restart = (
-        (closed_form.complex_exp, closed_form.pair, closed_form.triple, closed_form.restart)
+        (
+            pull.sum_twice,
+            pull.product_twice,
+            closed_form.turning,
+            closed_form.pair,
+            closed_form.triple,
+            closed_form.restart,
+        )
         if exact_restart
         else (taylor.restart,)
     )

@@ -16,6 +16,7 @@ from singimpact.algebra.rings import Multiprecision
 from singimpact.codegen.kernels import FUNCTIONS, plain
 from singimpact.flights.carriers import Flight, Step
 from singimpact.flights.escape import never_returns
+from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.kernel import Kernel, kernel_of
 from singimpact.flights.launch import States, at_rest
 from singimpact.flights.limits import LIMITS, degree_for
@@ -92,7 +93,7 @@ def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: floa
     while precision < 4 * digits + 500:
         precision = precision + max(LIMITS.guard, precision // 4)
         again = flown(osc, states, index, precision, limit)
-        if outcome[0] == again[0] == Status.no_return or min(outcome[1][2], again[1][2]) > LIMITS.far:
+        if _over(outcome) and _over(again):
             return _escaping(osc, states, index, again)
         if outcome[0] == again[0] != Status.unresolved and _close(outcome[1], again[1], digits):
             return again
@@ -102,13 +103,19 @@ def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: floa
     return outcome
 
 
+def _over(outcome: Outcome) -> bool:
+    """Whether a flight came to the horizon, or left the range of numbers, and to no graze."""
+    code, (_, _, depth, bound) = outcome
+    return code == Status.no_return or (code == Status.unresolved and not depth <= 10 * bound)
+
+
 def _escaping(osc: Oscillator, states: States, index: int, outcome: Outcome) -> Outcome:
-    """`escaped` in place of `no_return` where the bounds of `flights.escape` prove it; doubles are enough for them."""
+    """`escaped` in place of `no_return` where it is proved; doubles are enough for that."""
     form, numbers = linear_form(osc), outcome[1]
     time, speed, place = (np.array([float(value)]) for value in numbers[:3])
-    if form is None or not never_returns(osc, form, states.tau[[index]], time, place, speed)[0]:
-        return outcome
-    return int(Status.escaped), numbers
+    proved = (never_turns(osc, place, speed) if form is None
+              else never_returns(osc, form, states.tau[[index]], time, place, speed))  # fmt: skip
+    return (int(Status.escaped), numbers) if proved[0] else outcome
 
 
 def _close(first: tuple[Any, ...], second: tuple[Any, ...], digits: int) -> bool:

@@ -13,7 +13,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.codegen.kernels import compiled
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import chains
-from singimpact.flights.hits import EPSILON, doubles
+from singimpact.flights.hits import EPSILON, doubles, remainders
 from singimpact.flights.kernel import kernel_of, source
 from singimpact.flights.launch import horizon_of
 from singimpact.flights.limits import LIMITS, degree_for
@@ -50,9 +50,9 @@ def _chained(osc: Oscillator) -> tuple[str, tuple[str, ...], Array]:
     kernel = kernel_of(osc)
     linear = kernel.form is not None and table_of(kernel, doubles(kernel)) is not None
     text, trees = scalar(rho_of(osc.restitution), "v", "rebound")
-    loop = chains.chain if linear else chains.taylor_chain
-    whole = "\n\n".join([kernel.text, text, source(loop)])
-    names = (*kernel.names, "rebound", loop.__name__)
+    loops = (chains.late, chains.chain) if linear else (chains.taylor_chain,)
+    whole = "\n\n".join([kernel.text, text, *(source(loop) for loop in loops)])
+    names = (*kernel.names, "rebound", *(loop.__name__ for loop in loops))
     return whole, names, np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
 
 
@@ -74,11 +74,10 @@ def sequence(osc: Oscillator, tau: float, v: float, count: int, slow: float = 0.
     if loop == "chain":
         table = table_of(kernel, p)
         assert table is not None
-        assert kernel.form is not None
-        phases = np.array([as_float(wave.phase) for wave in kernel.form.harmonics])
+        low, phases = remainders(kernel)
         flown, status = compiled(text, names)[loop](
-            start, v, count, slow, w, phases, np.zeros(max(2 * phases.size, 1)), STRIDES.order, order, limit, ulp, p,
-            table.step, table.rows, table.bound, *work, out,
+            start, v, count, slow, w, low, phases, np.zeros(max(2 * phases.shape[1], 1)), STRIDES.order, order, limit,
+            ulp, p, table.step, table.rows, table.bound, *work, out,
         )  # fmt: skip
     else:
         flown, status = compiled(text, names)[loop](

@@ -8,7 +8,7 @@ differences.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -40,6 +40,15 @@ class Response:
     time_by_v: Any
     velocity_by_tau: Any
     velocity_by_v: Any
+    rounding: Any = None
+    """Of the flight time and of x' at the hit, relative, where a closed form is summed; None without one."""
+
+    def conditions(self, tau: Array, v: Array, time: Array, velocity: Array) -> tuple[Array, Array]:
+        """kappa of the flight time and of x' at the hit."""
+        with np.errstate(all="ignore"):
+            reach = np.maximum(np.abs(tau), time)
+            moved = np.abs(self.velocity_by_tau) * reach + np.abs(self.velocity_by_v) * v
+            return self.condition(tau, v, time), 1 + moved / np.abs(velocity)
 
     def condition(self, tau: Array, v: Array, time: Array) -> Array:
         """kappa = 1 + (|dT/dtau| max(|tau|, |T|) + |dT/dv| v)/T; nan where there is none."""
@@ -51,17 +60,23 @@ class Response:
 
 def response(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array) -> Response:
     """The response of flights in doubles; entries that are no hits, velocity < 0, give nan."""
-    flat = np.full((v.size, 4), np.nan)
+    flat = np.full((v.size, 6), np.nan)
     with np.errstate(all="ignore"):
         hit = np.flatnonzero((velocity < 0) & np.isfinite(time))
     if hit.size:
         flat[hit] = variations(osc, tau[hit], v[hit], time[hit])
-    return _response(flat.T, velocity, _acceleration(osc, tau, time, velocity))
+    acceleration = _acceleration(osc, tau, time, velocity)
+    found = _response(flat.T[:4], velocity, acceleration)
+    with np.errstate(all="ignore"):
+        late = LIMITS.likely * EPSILON * flat[:, 4] / np.abs(velocity)
+        dull = LIMITS.likely * EPSILON * flat[:, 5] + np.abs(acceleration) * late
+        rounding = late / time, dull / np.abs(velocity)
+    return replace(found, rounding=rounding)
 
 
 def touching(osc: Oscillator, tau: Array, v: Array, time: Array) -> tuple[Array, Array]:
     """Derivatives of x(T) by tau and by v at fixed flight time."""
-    by_v, _, by_tau, _ = variations(osc, tau, v, time).T
+    by_v, _, by_tau, *_ = variations(osc, tau, v, time).T
     return by_tau, by_v
 
 
@@ -74,12 +89,12 @@ def _response(variations: Any, velocity: Any, acceleration: Any) -> Response:
 
 
 def variations(osc: Oscillator, tau: Array, v: Array, time: Array) -> Array:
-    """dx/dv, dx'/dv, dx/dtau, dx'/dtau at fixed flight times >= 0, shape (n, 4)."""
-    kernel, out = kernel_of(osc), np.empty((v.size, 4))
+    """dx/dv, dx'/dv, dx/dtau, dx'/dtau at fixed flight times >= 0, and the sizes of x and x', shape (n, 6)."""
+    kernel, out = kernel_of(osc), np.full((v.size, 6), np.nan)
     if kernel.form is not None:
         space = compiled(kernel.text, kernel.names)
         p = np.array([as_float(tree) for tree in kernel.constants])
-        space["responses"](launches(osc, kernel, tau), time, p, out)
+        space["responses"](launches(osc, kernel, tau), v, time, p, out)
         return out
     text, names = _text(osc)
     emitted, order = taylor.variation_of(osc), degree_for(EPSILON)

@@ -251,3 +251,20 @@ def test_two_flows_that_share_no_restart_agree_on_random_models(seed: int) -> No
     assert np.array_equal(one.status, two.status)
     hit = one.status == Status.hit
     assert np.allclose(one.flight_time[hit], two.flight_time[hit], rtol=1e-9, atol=0)
+
+
+def test_escape_of_a_polynomial_model_is_proved() -> None:
+    for force, forcing, status in (
+        ("-x**3", "2 + cos(t)", Status.escaped),
+        ("-x**3 + x**2", "3", Status.escaped),
+        ("-exp(x)", "0", Status.unresolved),
+    ):
+        step = ImpactOscillator(force, forcing, 0, "0.5").first_hit(0.1, 3.0)
+        assert step.status == status
+        assert np.isnan(step.depth)
+
+
+def test_condition_is_told_with_digits_too() -> None:
+    for osc in (linear("2.8", "0.1", "0.8"), MODELS["polynomial"]):
+        few, many = osc.impact_map(0.3, 0.4), osc.impact_map(0.3, 0.4, digits=20)
+        assert many.condition == pytest.approx(few.condition, rel=1e-9)

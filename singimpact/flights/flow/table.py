@@ -11,7 +11,6 @@ flight.  p as in `flow.closed_form`.
 from __future__ import annotations
 
 from cmath import sqrt as complex_sqrt
-from math import cos, sin
 from typing import Any
 
 FIXED = 8
@@ -29,7 +28,7 @@ def tabulate(p: Any, step: float, table: Any) -> None:
     for m in range(len(table)):
         time, row = m * step, table[m]
         free = pair(a, b, time)
-        slope = complex_exp(a * time) + b * free
+        slope = turning(a, time) + b * free
         steady = p[3] * triple(a, b, 0j, time)
         row[0], row[1], row[2] = slope.real + p[1] * free.real, free.real, steady.real
         row[3], row[4], row[5] = -p[2] * free.real, slope.real, p[3] * free.real
@@ -39,7 +38,8 @@ def tabulate(p: Any, step: float, table: Any) -> None:
             wave = complex(p[6 + 3 * j], -p[7 + 3 * j])
             forced = wave * triple(a, b, 1j * rate, time)
             moved = wave * free + 1j * rate * forced
-            turn_c, turn_s = cos(rate * time), sin(rate * time)
+            turned = turning(1j * rate, time)
+            turn_c, turn_s = turned.real, turned.imag
             at = 8 + 8 * j
             row[at], row[at + 1], row[at + 2], row[at + 3] = forced.real, -forced.imag, moved.real, -moved.imag
             row[at + 4] = p[6 + 3 * j] * turn_c + p[7 + 3 * j] * turn_s
@@ -85,3 +85,28 @@ def bounds(p: Any, step: float, out: Any) -> None:
     for n in range(6, len(out)):
         factorial *= max(n - 6, 1)
         out[n] = 1 / factorial
+
+
+def expansions(p: Any, out: Any) -> None:
+    """out[i] = how x_i of the series x - c = x_0 + x_1 t + ... follows from the state at its start.
+
+    Columns: by x_0, by x_1, by nothing, then by cosine and sine of every wave there.
+    """
+    count = (len(p) - 5) // 3
+    for i in range(len(out)):
+        row = out[i]
+        for at in range(3 + 2 * count):
+            row[at] = 0.0
+        if i < 2:
+            row[i] = 1.0
+            continue
+        row[2] = p[3] if i == 2 else 0.0
+        for j in range(count):
+            # cos and sin differentiated i - 2 times: turned by as many quarters
+            power = 1.0 if (i - 2) % 4 < 2 else -1.0
+            for k in range(1, i - 1):
+                power *= p[5 + 3 * j] / k
+            one, other = p[6 + 3 * j] * power, p[7 + 3 * j] * power
+            row[3 + 2 * j], row[4 + 2 * j] = (one, other) if i % 2 == 0 else (other, -one)
+        for at in range(3 + 2 * count):
+            row[at] = (row[at] - p[1] * (i - 1) * out[i - 1, at] - p[2] * out[i - 2, at]) / (i * (i - 1))

@@ -1,0 +1,109 @@
+"""Flights of a nonlinear model that are proved never to return: f a polynomial that cannot turn a rising mass back.
+
+From x = x_1, x' = u_1 > 0 the mass rises for ever if g - f(x, x') > 0 for all x >= x_1, x' >= u_1 and all times.  f is
+a polynomial in what x and x' are more than there; if its coefficients are <= 0 apart from the constant one, and that is
+below every g, it is so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import Expression, Name, Number, Power, Product, Sum, names_in
+from singimpact.algebra.jets import JetSpace
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Proof:
+    """How the inequality is checked.
+
+    Parameters
+    ----------
+    part : x_1 and u_1 are taken so much smaller than a flight came with, which is far above its error.
+    pieces : of a period, on each of which g is enclosed; what encloses it too widely proves nothing.
+    """
+
+    part: float = 1e-6
+    pieces: int = 256
+    bits: int = 128
+
+
+PROOF = Proof()
+
+
+def never_turns(osc: Oscillator, z: Array, u: Array) -> Array:
+    """Whether flights that came to x - c = z and x' = u are proved to rise for ever; False proves nothing.
+
+    Examples
+    --------
+    >>> osc = Oscillator("-x**3", "cos(t)", 0, 1)
+    >>> never_turns(osc, np.array([5.0, 0.1]), np.array([30.0, 30.0])).tolist()
+    [True, False]
+    """
+    degree, least = degree_of(osc.force()), _least_force(osc)
+    if degree is None or least is None:
+        return np.zeros(z.shape, dtype=bool)
+    return np.array([a > 0 and b > 0 and _rises(osc, degree, least, float(a), float(b))
+                     for a, b in zip(z, u, strict=True)], dtype=bool)  # fmt: skip
+
+
+def degree_of(tree: Expression) -> int | None:
+    """The degree of a polynomial in x and xdot; None for anything else.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> degree_of(parse("x**3*xdot - 2*x", ["x", "xdot"])), degree_of(parse("sin(x)", ["x"]))
+    (4, None)
+    """
+    match tree:
+        case Name():
+            return 1
+        case Sum(terms):
+            parts = [degree_of(term) for term in terms]
+            return None if None in parts else max(part for part in parts if part is not None)
+        case Product(factors):
+            parts = [degree_of(factor) for factor in factors]
+            return None if None in parts else sum(part for part in parts if part is not None)
+        case Power(base, Number(exponent)) if exponent.denominator == 1 and exponent > 0 and names_in(base):
+            inner = degree_of(base)
+            return None if inner is None else inner * int(exponent)
+    return None if names_in(tree) else 0
+
+
+def _rises(osc: Oscillator, degree: int, least: Any, z: float, u: float) -> bool:
+    if not (np.isfinite(z) and np.isfinite(u)):
+        return False
+    balls = Balls(PROOF.bits)
+    space = JetSpace(("x", "xdot"), max(degree, 1), balls)
+    smaller = Fraction(1) - Fraction(PROOF.part)
+    x, xdot = space.generators()
+    x = x + space.constant(balls.evaluate(osc.clearance, {}) + balls.rational(Fraction(z) * smaller))
+    xdot = xdot + space.constant(balls.rational(Fraction(u) * smaller))
+    terms = dict(space.evaluate(osc.force(), {"x": x, "xdot": xdot}).terms)
+    constant = terms.pop((0, 0), balls.rational(Fraction(0)))
+    return bool(constant < least and all(value <= 0 for value in terms.values()))
+
+
+@lru_cache(maxsize=64)
+def _least_force(osc: Oscillator) -> Any:
+    """A number below g at all times, from its enclosures over a period; None where there is none."""
+    balls, forcing = Balls(PROOF.bits), osc.forcing()
+    if "t" not in names_in(forcing):
+        return balls.evaluate(forcing, {}).lower()
+    if osc.period is None:
+        return None
+    period, lows = balls.evaluate(osc.period, {}), []
+    for piece in range(PROOF.pieces):
+        ends = [period * piece / PROOF.pieces, period * (piece + 1) / PROOF.pieces]
+        lows.append(balls.evaluate(forcing, {"t": ends[0].union(ends[1])}).lower())
+    return min(lows) if all(low.is_finite() for low in lows) else None
