@@ -22,6 +22,7 @@ from singimpact.flights.kernel import Kernel, kernel_of
 from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
+from singimpact.flights.polish import polished
 from singimpact.flights.tables import STRIDES, table_of
 from singimpact.flights.tangent import rebound_slope, response
 from singimpact.inputs import InputError, refuse
@@ -161,7 +162,7 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     if _settle(osc, states, limit, status, numbers):
         _escapes(osc, kernel.form, states, status, numbers)
     flight = _conditioned(osc, states, flight_of(status, numbers))
-    return _sharpened(osc, states, flight, limit) if kernel.form is not None else flight
+    return _sharpened(osc, states, flight, limit)
 
 
 def _sharpened(osc: Oscillator, states: States, flight: Flight, limit: float) -> Flight:
@@ -173,14 +174,20 @@ def _sharpened(osc: Oscillator, states: States, flight: Flight, limit: float) ->
     tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
     kappas = answers.conditions(tau, states.v, flight.flight_time, flight.velocity)
     table = table_of(kernel_of(osc), doubles(kernel_of(osc)))
-    far = flight.flight_time > (table.step if table else np.inf)  # before, a series in t loses nothing
+    # pressed back at once, a flight is a short series in t that loses nothing
+    far = (flight.flight_time > (table.step if table else 0)) | (known_accelerations(osc, states) >= 0)
     with np.errstate(all="ignore"):
         rough = [part > np.maximum(least, 10 * kappa * EPSILON)
                  for part, least, kappa in zip(answers.rounding, (1e-14, 1e-13), kappas, strict=True)]  # fmt: skip
-    for index in np.flatnonzero((flight.status == Status.hit) & far & (rough[0] | rough[1]))[: LIMITS.settled]:
-        settled = manydigits.settle(osc, states, int(index), limit)
-        if settled is not None and settled[0] == Status.hit:
-            flight.flight_time[index], flight.velocity[index] = settled[1][:2]
+    left = LIMITS.settled
+    for index in np.flatnonzero((flight.status == Status.hit) & far & (rough[0] | rough[1])).tolist():
+        found = polished(osc, states, index, float(flight.flight_time[index]))
+        if found is None and left:
+            left -= 1
+            settled = manydigits.settle(osc, states, index, limit)
+            found = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
+        if found is not None:
+            flight.flight_time[index], flight.velocity[index] = found
     return flight
 
 

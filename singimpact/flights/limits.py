@@ -14,9 +14,11 @@ class Limits:
     horizon_periods, horizon_time : default horizon with and without a period of g.
     safety : rounding allowed for, in units of epsilon times the size of the terms; a Horner sum of 25 terms is
         within 2.5 units in practice, a restart of the closed form within 3, so 8 covers both.
-    likely : the same, as it is usually: hits with more than their condition explains are flown in many digits. At 2
-        that is one of 70 near grazes, at 8 one of 6. Of 96 000 random linear states 10 keep more error than is
-        allowed: 9 up to 3 times, one 79 times.
+    likely : the same, as it is usually: hits with more than their condition explains are polished in balls (70 us),
+        one of 15 random states, and of those near a graze four of 10; without a closed form in many digits.
+    likely_steps : the share of it that a Taylor flow has, relative to the size of its velocities.
+    likely_phase : the share of it that the phases of a closed form lose in a radian of time.
+    polish_bits, polish_order : of those balls, and of their Taylor steps.
     derivatives_at_rest : how many derivatives of a_c are tried for a mass at rest before it is called at rest for good.
     settled : launches at most that double arithmetic leaves undecided and that are settled in many digits; a settled
         launch costs about 20 ms, so a grid laid along a graze does not hang.
@@ -29,7 +31,11 @@ class Limits:
     horizon_periods: float = 1000.0
     horizon_time: float = 1e4
     safety: float = 8.0
-    likely: float = 2.0
+    likely: float = 16.0
+    likely_steps: float = 1.0
+    likely_phase: float = 1 / 64
+    polish_bits: int = 192
+    polish_order: int = 40
     derivatives_at_rest: int = 12
     settled: int = 200
     settling_digits: tuple[int, int] = (50, 120)

@@ -41,7 +41,7 @@ class Response:
     velocity_by_tau: Any
     velocity_by_v: Any
     rounding: Any = None
-    """Of the flight time and of x' at the hit, relative, where a closed form is summed; None without one."""
+    """Of the flight time and of x' at the hit, relative, as it usually is."""
 
     def conditions(self, tau: Array, v: Array, time: Array, velocity: Array) -> tuple[Array, Array]:
         """kappa of the flight time and of x' at the hit."""
@@ -67,11 +67,24 @@ def response(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array
         flat[hit] = variations(osc, tau[hit], v[hit], time[hit])
     acceleration = _acceleration(osc, tau, time, velocity)
     found = _response(flat.T[:4], velocity, acceleration)
+    _sized(osc, flat, v, time, velocity, acceleration)
     with np.errstate(all="ignore"):
         late = LIMITS.likely * EPSILON * flat[:, 4] / np.abs(velocity)
         dull = LIMITS.likely * EPSILON * flat[:, 5] + np.abs(acceleration) * late
         rounding = late / time, dull / np.abs(velocity)
     return replace(found, rounding=rounding)
+
+
+def _sized(osc: Oscillator, flat: Array, v: Array, time: Array, velocity: Array, acceleration: Array) -> None:
+    """The sizes that rounding is relative to: with a closed form its phases lose digits in time; else by the speeds."""
+    kernel = kernel_of(osc)
+    with np.errstate(all="ignore"):
+        if kernel.form is not None:
+            flat[:, 4:] *= (1 + as_float(kernel.constants[4]) * time * LIMITS.likely_phase)[:, None]
+        else:
+            speeds = np.abs(v) + np.abs(velocity) + np.abs(acceleration) * np.minimum(time, 1) / 2
+            flat[:, 5] = speeds * LIMITS.likely_steps
+            flat[:, 4] = flat[:, 5] * time / 2
 
 
 def touching(osc: Oscillator, tau: Array, v: Array, time: Array) -> tuple[Array, Array]:

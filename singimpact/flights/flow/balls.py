@@ -36,6 +36,7 @@ class BallLimits:
 
 
 LIMITS = BallLimits()
+NEAR = Fraction(1, 10**7)  # of its size is as far as a hit in doubles is from the true one, where it is isolated
 
 
 @dataclass(frozen=True)
@@ -114,6 +115,40 @@ class LinearFlow:
             if not top < end:
                 return BallHit(None, None) if limit is not None and end < longest else None
             low, high = top, high * LIMITS.growth.numerator / LIMITS.growth.denominator
+
+    def polished(self, tau: Any, v: Any, near: float) -> tuple[Any, Any] | None:
+        """Time and velocity of the hit next to a time that doubles have found, one step of Halley's method away.
+
+        The model with its waves is one linear system, so resonance needs no care; None when the step is not small.
+        """
+        time, pull = self.number(Fraction(near)), self._system()
+        state = (pull * time).exp() * self._start(tau, v)
+        height, speed = state[0, 0], state[1, 0]
+        change = pull * state
+        curve, jerk = change[1, 0], (pull * change)[1, 0]
+        if not abs(height) < abs(speed * time) * NEAR.numerator / NEAR.denominator:
+            return None
+        step = -height / speed
+        step *= 1 - step * curve / (2 * speed)
+        return time + step, speed + step * (curve + step * jerk / 2)
+
+    def _system(self) -> Any:
+        """The matrix of (z, z', 1, cosine and sine of each wave)."""
+        import flint
+
+        size = 3 + 2 * len(self.waves)
+        rows = [[flint.arb(0)] * size for _ in range(size)]
+        rows[0][1], rows[1][0], rows[1][1], rows[1][2] = flint.arb(1), -self.k, -self.d, self.rest
+        for n, (rate, _, cosine, sine) in enumerate(self.waves):
+            at = 3 + 2 * n
+            rows[1][at], rows[1][at + 1], rows[at][at + 1], rows[at + 1][at] = cosine, sine, -rate, rate
+        return flint.arb_mat(rows)
+
+    def _start(self, tau: Any, v: Any) -> Any:
+        import flint
+
+        angles = [(rate * tau + phase).sin_cos() for rate, phase, _, _ in self.waves]
+        return flint.arb_mat([[0], [v], [1], *([part] for sine, cosine in angles for part in (cosine, sine))])
 
     def _first_window(self, tau: Any, v: Any, removed: int) -> Any:
         a = self.acceleration(tau)
