@@ -15,6 +15,10 @@ def step_size(X: Any, z: Any, n: int, longest: Any, ulp: Any, p: Any) -> Any:  #
     h = longest
     for _ in range(2):  # the root of a high order forgives a size that is a little wrong
         size = abs(z) + h * (abs(X[1]) + h * (abs(X[2]) + h * abs(X[3])))
+        k = 4
+        while size == 0 and k < n - 1:  # at rest, with a_c = a_c' = 0 too
+            size = abs(X[k]) * h**k
+            k += 1
         for k in range(n - 1, n + 1):
             if X[k] != 0:
                 fit = (ulp * size / (8 * abs(X[k]))) ** (1 / (k + 0 * h))
