@@ -35,11 +35,9 @@ def test_a_mass_at_rest_leaves_when_its_first_derivative_is_positive(force, a, s
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("offset", [1e-6, 1e-12, 3e-15])
-@pytest.mark.parametrize(
-    "model",
-    [pytest.param(si.linear(2, "0.3", "0.5"), marks=pytest.mark.slow), pytest.param(DUFFING, marks=pytest.mark.slow)],
-)
+@pytest.mark.parametrize("model", [si.linear(2, "0.3", "0.5"), DUFFING])
 def test_both_sides_of_a_graze_are_told_apart(model, offset):
     """Run back from a touch in many digits; launched a little faster the flight passes, a little slower it hits."""
     touch = mpmath.mpf(1) / 10  # a_c > 0 there
