@@ -19,6 +19,7 @@ COMMANDS = {
     "map": "fly from an impact to the next one",
     "orbit": "fly many impacts; -o draws x(t)",
     "chatter": "when infinitely many impacts accumulate",
+    "figure": "the paper's figures, from computed data",
     "scene": "draw the layers that a scene file names",
     "threshold": "the velocity that separates complete from incomplete chatter",
     "sweep": "one question for many values of a number of the model",

@@ -158,7 +158,7 @@ def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
 
 def _curved(model: Oscillator, tau: Any) -> str:
     """Whether the point is a tangency or a swan."""
-    for at in ("tangency", "swan"):
+    for at in ("swan", "tangency"):  # at a swan point the equations of a tangency are singular
         try:
             gamma(3, at, model, tau)
         except InputError as error:
@@ -212,7 +212,8 @@ def _grown(
         return np.stack([foot + s, [float(series(each)) for each in s.tolist()]], axis=1)
 
     s = np.linspace(inner, outer, SETTINGS.start)
-    pieces, done = [Piece(s, start(s), 0)], [Piece(np.array([0.0, inner]), np.array([[foot, 0.0], start(s[:1])[0]]), 0)]
+    whole = np.linspace(0.0, inner, 2 * SETTINGS.start)
+    pieces, done = [Piece(s, start(s), 0)], [Piece(whole, start(whole), 0)]
     for generation in range(SETTINGS.generations):
         if not pieces:
             break

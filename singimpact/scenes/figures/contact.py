@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from typing import Any
 
@@ -18,6 +18,7 @@ from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 
 R = 0.5
+Map = tuple[str, str, Callable[[Array], Array]]  # title, name of the second axis, the map
 
 
 @lru_cache(maxsize=1)
@@ -85,7 +86,7 @@ def _segment(start: Any, end: Any) -> Array:
 def _actions(tau: float, edges: dict[str, tuple[Array, str, str]], boxes: list[tuple[Point, Point]]) -> list[Panel]:
     """A region of V' and what p, phi and R make of it, edge by edge."""
     model = oscillator()
-    maps = [("$V'$", "$t$", lambda z: z), ("$p(V')$", "$v$", lambda z: projected(model, z)),
+    maps: list[Map] = [("$V'$", "$t$", lambda z: z), ("$p(V')$", "$v$", lambda z: projected(model, z)),
             (r"$\phi(V')$", r"$\dot x$", lambda z: reset(model, z)),
             (r"$R\phi(V')$", "$v$", lambda z: rebounded(reset(model, z), R))]  # fmt: skip
     panels = []
@@ -103,12 +104,13 @@ def figure_4() -> Picture:
     """a' > 0: what is visible lies between Pi_0 and H; p folds it along H."""
     tau, s = tangency("gamma"), 0.3
     H = _near(_window(tau, s).horizon, tau, s, -1)
-    edges = {"Pi_0": (_segment((tau - s, 0), (tau, 0)), "Z", r"$\Pi_0$"), "H": (H, "H", "$H$"),
+    edges = {"Pi_0": (_segment((tau - s, 0), (tau, 0)), "jump", r"$\Pi_0$"), "H": (H, "H", "$H$"),
              "cut": (_segment(H[-1], (tau - s, 0)), "hidden", "")}  # fmt: skip
     v = 1.2 * float(projected(oscillator(), H)[:, 1].max())
     boxes = [((-s, 0.6 * s), (-0.3 * s, 1.8 * s)), ((-s, 0.6 * s), (-0.15 * v, v)), ((-s, 0.8 * s), (-v, 0.3 * v)),
              ((-s, 0.8 * s), (-0.15 * v, 0.6 * v))]  # fmt: skip
-    return Picture(4, "The actions of p, phi and R at a tangency with a' > 0", ("s4-horizon-line", "s4-P-star", "e:pnew"),
+    return Picture(4, "The actions of p, phi and R at a tangency with a' > 0",
+                   ("s4-horizon-line", "s4-P-star", "e:pnew"),
                    str(oscillator()), _actions(tau, edges, boxes), 2)  # fmt: skip
 
 
@@ -117,30 +119,32 @@ def figure_6() -> Picture:
     tau, s = tangency("foliation"), 0.2
     Z = _near(_window(tau, s).zero_set, tau, s, -1)[::-1]
     top = float(Z[0, 1])
-    edges = {"Z": (Z, "Z", "$Z$"), "Pi_0": (_segment((tau, 0), (tau + s, 0)), "H", r"$\Pi_0$"),
+    edges = {"Z": (Z, "Z", "$Z$"), "Pi_0": (_segment((tau, 0), (tau + s, 0)), "jump", r"$\Pi_0$"),
              "right": (_segment((tau + s, 0), (tau + s, top)), "hidden", ""),
              "top": (_segment((tau + s, top), Z[0]), "hidden", "")}  # fmt: skip
     v = 1.15 * float(projected(oscillator(), edges["right"][0])[:, 1].max())
     low = 1.1 * float(reset(oscillator(), edges["right"][0])[:, 1].min())
     boxes = [((-1.2 * s, 1.3 * s), (-0.15 * top, 1.1 * top)), ((-1.2 * s, 1.3 * s), (-0.15 * v, v)),
              ((-1.2 * s, 4.4 * s), (low, -0.2 * low)), ((-1.2 * s, 4.4 * s), (0.1 * low, -0.6 * low))]  # fmt: skip
-    return Picture(6, "The actions of p, phi and R at a tangency with a' < 0", ("s4b-sector", "s4b-T2-bounds", "s4b-continuous"),
+    return Picture(6, "The actions of p, phi and R at a tangency with a' < 0",
+                   ("s4b-sector", "s4b-T2-bounds", "s4b-continuous"),
                    str(oscillator()), _actions(tau, edges, boxes), 2)  # fmt: skip
 
 
 def figure_5() -> Picture:
     """Degenerate chatter: gamma between P_* and Pi_0."""
     model, tau = oscillator(), tangency("gamma")
-    low, high, v = tau - 0.8, tau + 0.15, 0.18
+    low, high, v = tau - 0.62, tau + 0.1, 0.11
     frame = Frame(low, high, v)
     surface = ImpactSurface(model, (low - 0.5, high), (-2, 2))
     jump = next(c.points for c in surface.discontinuities if np.hypot(*(c.points - [tau, 0.0]).T).min() < 1e-9)
     (curve, *_) = gammas_within(model, frame)
     lines = leaves(model, frame, np.linspace(low, tau, 14)[1:-1].tolist())
-    lines += [Line(jump, "jump", "P_*", "$P_*$", _share(jump, tau - 0.42), (6, 4)),
-              Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, tau - 0.6), (-14, -12))]  # fmt: skip
-    lines += [Line(_orbit(model, curve.points, low + 0.12, share), "orbit", "orbit above gamma", at=0.5, arrow=True)
-              for share in (0.12, 0.35)]  # fmt: skip
+    lines += [Line(jump, "jump", "P_*", "$P_*$", _share(jump, tau - 0.25), (8, 4)),
+              Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, tau - 0.45),
+                   (-14, -14))]  # fmt: skip
+    lines += [Line(_orbit(model, curve.points, low + 0.05, share), "orbit", "orbit above gamma", at=0.3, arrow=True)
+              for share in (0.1, 0.3)]  # fmt: skip
     near = curve.points[(curve.points[:, 0] < tau - 0.02) & (curve.points[:, 0] > tau - 0.2)]
     below = np.interp(near[:, 0], *jump[np.argsort(jump[:, 0])].T)
     facts = {"gamma_below_P": float((near[:, 1] / below).max()), "order": _order(near, tau)}
@@ -174,9 +178,9 @@ def _orbit(model: Any, curve: Array, start: float, share: float) -> Array:
 def figure_7() -> Picture:
     """a' < 0: every orbit nearby chatters to a point right of w_*; epsilon is the image of [w_1, w_*]."""
     model, tau = oscillator(), tangency("foliation")
-    low, high, v = tau - 0.45, tau + 0.5, 0.12
+    low, high, v = tau - 0.4, tau + 0.6, 0.1
     frame = Frame(low, high, v)
-    start = tau - 0.28
+    start = tau - 0.25
     rest = np.stack([np.linspace(start, tau, 80)[:-1], np.zeros(79)], axis=1)
     epsilon = np.vstack([model_step(model, rest), [[tau, 0.0]]])
     lines = leaves(model, frame, (tau + np.linspace(0.03, 0.6, 14)).tolist())
@@ -195,12 +199,13 @@ def figure_8() -> Picture:
     """At a swan point with a'' < 0 every stable manifold flattens, and gamma touches Pi_0 to third order."""
     swan = next(each for each in swan_points("x", "cos(2*t)") if each.kind == "negative")
     model = swan.oscillator("0.5")
-    low, high, v = -1.0, 0.9, 0.25
+    low, high, v = -0.45, 0.45, 0.03
     frame = Frame(low, high, v)
     (curve, *_) = gammas_within(model, frame)
-    lines = leaves(model, frame, [*np.linspace(-0.95, -0.15, 7).tolist(), *np.linspace(0.15, 1.2, 9).tolist()])
-    lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, -0.8), (6, 2)))
+    lines = leaves(model, frame, [*np.linspace(-0.42, -0.1, 7).tolist(), *np.linspace(0.1, 0.58, 9).tolist()])
+    lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, -0.36), (8, 2)))
     near = curve.points[(curve.points[:, 0] < -0.02) & (curve.points[:, 0] > -0.2)]
     panel = Panel(((low, high), (-0.05 * v, v)), lines=lines, dots=[Dot("$w_*$", (0.0, 0.0), (0, -6))])
-    return Picture(8, "Stable manifolds close to a negative swan point", ("t:t3", "t:t3-others", "s5-saddle"), str(model),
+    return Picture(8, "Stable manifolds close to a negative swan point",
+                   ("t:t3", "t:t3-others", "s5-saddle"), str(model),
                    [panel], facts={"order": _order(near, 0.0)})  # fmt: skip

@@ -96,16 +96,18 @@ def _solid(axes: Any, panel: Panel) -> None:
     """A surface in (tau, v, t), lines on it as polylines in space."""
     assert panel.mesh is not None
     tau, v, t = panel.mesh
-    axes.plot_surface(tau, v, t, color="#BBD9EE", alpha=0.55, linewidth=0.25, edgecolor="0.55", shade=True, rstride=2,
-                      cstride=2)  # fmt: skip
+    axes.plot_surface(tau, v, t, color="#BBD9EE", alpha=0.5, linewidth=0.25, edgecolor="0.5", shade=False,
+                      rstride=3, cstride=3)  # fmt: skip
     for line in panel.lines:
         axes.plot(*line.points.T, **PENS[line.pen].line(), zorder=10)
         if line.label:
             place = line.points[int(line.at * (len(line.points) - 1))]
-            axes.text(*(place + np.array([0.06, 0.03, 0.06])), line.label, fontsize=LETTER, path_effects=_halo(), zorder=20)
+            axes.text(
+                *(place + np.array([0.06, 0.03, 0.06])), line.label, fontsize=LETTER, path_effects=_halo(), zorder=20
+            )
     (left, right), (low, high) = panel.box
     axes.set(xlim=(left, right), ylim=(low, high))
     axes.set_xlabel(panel.x)
     axes.set_ylabel(panel.y)
     axes.set_zlabel("$t$")
-    axes.view_init(elev=24, azim=-58)
+    axes.view_init(elev=26, azim=-68)

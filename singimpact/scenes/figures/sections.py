@@ -22,8 +22,8 @@ def figure_9() -> Picture:
         kind = swan.kind
         middle, size = (swan.A + swan.B) / 2, half(swan)
         tau = np.linspace(middle - 2.4 * size, middle + 2.4 * size, 121)
-        curves = [Line(np.stack([tau, acceleration(linear(2, c, "0.5"), tau)], axis=1), pen, f"a for c = {c}", f"$c={c}$",
-                       0.5, (-18, 5 if kind == "negative" else -15))
+        curves = [Line(np.stack([tau, acceleration(linear(2, c, "0.5"), tau)], axis=1), pen, f"a for c = {c}",
+                       f"$c={c}$", 0.5, (-18, 5 if kind == "negative" else -15))
                   for c, pen in zip(values, ("before", "at", "graph"), strict=True)]  # fmt: skip
         height = 1.3 * max(float(np.abs(curve.points[30:91, 1]).max()) for curve in curves)
         bounds = (-0.6 * height, height) if kind == "positive" else (-height, 0.6 * height)
@@ -44,28 +44,34 @@ def figure_10() -> Picture:
     swan, size = positive(), half(positive())
     middle, panels = (swan.A + swan.B) / 2, []
     for place in PLACES:
-        tau = {"A": swan.A, "D": swan.points["D"][0], "E": swan.points["E"][0]}.get(NAMED.get(place, ""), middle + place * size)
+        tau = {"A": swan.A, "D": swan.points["D"][0], "E": swan.points["E"][0]}.get(
+            NAMED.get(place, ""), middle + place * size
+        )
         t = np.linspace(-3.2, 7.2, 261) * size
         v = launch_and_landing(swan.model, np.stack([np.full(t.size, tau), t], axis=1))[0]
-        scale = 40 * size**3 / 12
+        local = v[(t > -0.8 * size) & (t < 5.5 * size)]
+        low, high = float(local.min()), max(float(local.max()), 0.35 * float(-local.min()))
         curve = np.stack([t, v], axis=1)
-        lines = [Line(np.array([[0.0, -99.0], [0.0, 99.0]]), "axis", "t = 0"), Line(curve, "P", "section")]
-        lines += [Line(part, "jump", "first hits") for part in _visible(swan.model, tau, curve)]
+        lines = [
+            Line(np.array([[0.0, 2 * float(v.min())], [0.0, 2 * float(v.max())]]), "axis", "t = 0"),
+            Line(curve, "P", "section"),
+        ]
+        lines += [Line(part, "jump", "first hits") for part in _visible(tau, curve)]
         letter = NAMED.get(place)
-        dots = [] if letter is None else [Dot(f"${letter}$", _on(swan, letter), (4, 5))]
+        dots = [] if letter is None else [Dot(f"${letter}$", _on(letter), (4, 5))]
         title = f"$\\sigma = {place:.3g}$" if letter is None else f"$\\sigma = {place:.3g}$, through ${letter}$"
-        panels.append(Panel(((-3.2 * size, 7.2 * size), (-scale, 0.7 * scale)), x="$t$", title=title, lines=lines,
+        panels.append(Panel(((-3.2 * size, 7.2 * size), (1.1 * low, 1.1 * high)), x="$t$", title=title, lines=lines,
                             dots=dots, ticks=False))  # fmt: skip
     return Picture(10, "Sections of V' at constant tau near a positive swan (sigma in half distances of A and B)",
                    ("s6-sections", "s6p-BE", "s6p-AE"), str(swan.model), panels, 4)  # fmt: skip
 
 
-def _on(swan: object, letter: str) -> tuple[float, float]:
+def _on(letter: str) -> tuple[float, float]:
     place = positive().points[letter]
     return place[1], positive().projected[letter][1]
 
 
-def _visible(model: object, tau: float, curve: Array) -> list[Array]:
+def _visible(tau: float, curve: Array) -> list[Array]:
     """The stretches with v >= 0 and t > 0 that are first hits."""
     swan = positive()
     t, v = curve.T

@@ -22,7 +22,9 @@ def launch_and_landing(model: Oscillator, points: Array) -> tuple[Array, Array]:
     """
     tau, t = points.T
     times = [np.array([each if each else 1.0]) for each in t.tolist()]
-    rest, fast = (np.array([path[0] for path in many_paths(model, tau, np.full(len(tau), v), times)]) for v in (0.0, 1.0))
+    rest, fast = (
+        np.array([path[0] for path in many_paths(model, tau, np.full(len(tau), v), times)]) for v in (0.0, 1.0)
+    )
     v = np.where(t == 0, 0.0, -rest[:, 0] / (fast[:, 0] - rest[:, 0]))
     return v, np.where(t == 0, -0.0, rest[:, 1] + v * (fast[:, 1] - rest[:, 1]))
 

@@ -143,7 +143,8 @@ def figure_12() -> Picture:
                    [Dot("$A'=C'$", places["A"], (4, -8)), Dot("$B'$", places["B"], (4, 4)),
                     Dot("$E'$", places["E"], (-5, 4))],
                    [Region(arc_p, label=r"$\mathcal{S}'$", place=(swan.A + 0.4 * size, 0.07 * v))])  # fmt: skip
-    second = _views(swan, r"(b) under $\phi$", r"$\dot x$", [Line(outline, "P", "P"), Line(arc_phi, "jump", "arc AE''")],
+    second = _views(swan, r"(b) under $\phi$", r"$\dot x$",
+                    [Line(outline, "P", "P"), Line(arc_phi, "jump", "arc AE''")],
                     [Dot("$C''$", images["C"], (-6, 2))],
                     [Dot("$A''$", images["A"], (-4, 4)), Dot("$B''=D''$", images["B"], (-14, 8)),
                      Dot("$E''$", images["E"], (5, -4))],

@@ -63,14 +63,15 @@ def figure_16() -> Picture:
     left = np.array([[swan.A - 3 * size, 0.0], [swan.A, 0.0]])
     between, right = np.array([[swan.A, 0.0], [swan.B, 0.0]]), np.array([[swan.B, 0.0], [swan.B + 3 * size, 0.0]])
     onto = _landed_right(4 * size)
-    first = [Line(left, "axis", "left of A", "1", 0.5, (-4, 6)), Line(jump, "graph", "lower edge", "2", 0.6, (-18, -8), True),
-             Line(jump + [0.09 * size, 0.035 * v], "shadow", "upper edge", "3", 0.55, (10, 4), True),
+    first = [Line(left, "axis", "left of A", "1", 0.5, (-4, 6)),
+             Line(jump, "graph", "lower edge", "2", 0.6, (-18, -8), True),
+             Line(jump + np.array([0.09 * size, 0.035 * v]), "shadow", "upper edge", "3", 0.55, (10, 4), True),
              Line(between, "Z", "AB", "4", 0.5, (-4, 6), True),
              Line(right, "gamma", "right of B", "5", 0.5, (-4, 6))]  # fmt: skip
     second = [Line(left, "axis", "image of 1", "1", 0.5, (-4, 6)),
               Line(np.array([swan.reset["A"], swan.reset["D"]]), "graph", "image of 2", "2", 0.5, (-4, 6), True),
               Line(landed[::-1], "shadow", "image of 3", "3", 0.5, (-20, -12), True),
-              Line(bottom + [0.2 * size, 0.0], "Z", "image of 4, moved right", "4", 0.4, (10, 4), True),
+              Line(bottom + np.array([0.2 * size, 0.0]), "Z", "image of 4, moved right", "4", 0.4, (10, 4), True),
               Line(onto, "gamma", "image of 5", "5", 0.5, (-4, 6))]  # fmt: skip
     third = [Line(rebounded(line.points, 0.5), line.pen, line.name, line.label, line.at, line.shift, line.arrow)
              for line in second]  # fmt: skip
@@ -84,7 +85,8 @@ def figure_16() -> Picture:
         Panel(box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"after $R$", lines=third,
               dots=[*letters, Dot("$Q$", swan.Q, (6, 2))]),
     ]  # fmt: skip
-    return Picture(16, "The action of the map on the segments of a negative swan", ("s6n-maps", "s6n-AB", "s2-discontinuity"),
+    return Picture(16, "The action of the map on the segments of a negative swan",
+                   ("s6n-maps", "s6n-AB", "s2-discontinuity"),
                    str(model), panels, 3)  # fmt: skip
 
 
@@ -111,7 +113,8 @@ def figure_17() -> Picture:
     lines.append(Line(arcs[0].points, "gamma", "gamma", r"$\gamma$", 0.35, (-16, -12)))
     across = rebounded(reset(swan.model, shadow()), 0.5)
     lines.append(Line(across, "epsilon", "R(D''C'')", r"$R(D''C'')$", 0.45, (6, -14)))
-    dots = [Dot("$A$", (swan.A, 0.0), (-4, -6)), Dot("$B=D''$", (swan.B, 0.0), (-4, -6)), Dot("$X$", (swan.X, 0.0), (2, -6)),
+    dots = [Dot("$A$", (swan.A, 0.0), (-4, -6)), Dot("$B=D''$", (swan.B, 0.0), (-4, -6)),
+            Dot("$X$", (swan.X, 0.0), (2, -6)),
             Dot("$Q$", swan.Q, (6, 3)), Dot("$D'$", swan.projected["D"], (5, 2))]  # fmt: skip
     facts = {"X": swan.X, "Q": swan.Q[0], "pieces": float(len(manifold))}
     return Picture(17, "Dynamics created at the unfolding of a negative swan",
