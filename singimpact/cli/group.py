@@ -23,6 +23,8 @@ COMMANDS = {
     "scene": "draw the layers that a scene file names",
     "threshold": "the velocity that separates complete from incomplete chatter",
     "sweep": "one question for many values of a number of the model",
+    "basins": "where the orbits of a grid of states end, as a picture",
+    "bifurcation": "where an orbit settles as a number of the model moves",
     "bench": "run time against error, beside other tools",
     "errata": "what is misprinted, what holds instead, and why",
     "claims": "the claims: list, show, graph, impact",

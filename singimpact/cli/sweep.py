@@ -46,7 +46,7 @@ def command(
     first, last = as_float(constant("--from", low)), as_float(constant("--to", high))
     values = np.linspace(first, last, points).tolist()
     ask = partial(last_state, oscillator.to_dict(), over, tau, v, impacts)
-    with _pool(workers) as pool:
+    with pool_of(workers) as pool:
         found = sweep(ask, values, pool, keep)
     rows = [[value, *map(float, row[:2]), Status(int(row[2])).name] for value, row in zip(values, found, strict=True)]
     if as_json:
@@ -56,7 +56,8 @@ def command(
         emit(columns([over, "tau", "v", "status"], [[str(cell) for cell in row] for row in rows]), output)
 
 
-def _pool(workers: int | None) -> Any:
+def pool_of(workers: int | None) -> Any:
+    """A pool of processes that a command starts and ends."""
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
