@@ -39,8 +39,8 @@ class Bifurcation:
 
 
 def bifurcation(
-    model: Oscillator, over: str, between: Any, points: int = 300, start: Any = (0, "0.1"), impacts: int = 400,
-    kept: int = 100, executor: Executor | None = None, output: Any = None,
+    model: Oscillator, over: str, between: Any, points: int = 300, start: Any = (0, "0.1"), impacts: int = 200,
+    kept: int = 60, executor: Executor | None = None, output: Any = None,
 ) -> Bifurcation:  # fmt: skip
     """The last events of an orbit for evenly spaced values of a number of the model.
 
@@ -77,7 +77,9 @@ def settled(
     """The last events of one orbit; a function of this module, so that another process can be sent it."""
     model = Oscillator(**fields).replace(**{over: value})
     assert model.period is not None
-    events = np.array(list(_events(model, start[0], start[1], impacts))[-kept:]).reshape(-1, 3)
+    flown = list(_events(model, start[0], start[1], impacts))
+    last = flown[max(impacts - kept, 0) :][-kept:] or flown[-1:]  # one that has come to rest for ever shows only that
+    events = np.array(last).reshape(-1, 3)
     events[:, 0] = np.mod(events[:, 0], as_float(model.period))
     return np.vstack([events, np.full((kept - len(events), 3), np.nan)])
 
