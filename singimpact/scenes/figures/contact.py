@@ -92,7 +92,8 @@ def _actions(tau: float, edges: dict[str, tuple[Array, str, str]], boxes: list[t
     panels = []
     for n, (title, y, turn) in enumerate(maps):
         made = {name: turn(points) - np.array([tau, 0.0]) for name, (points, _, _) in edges.items()}
-        lines = [Line(made[name], pen, f"image of {name}", label if pen != "hidden" else "", 0.6, (6, 6))
+        lines = [Line(made[name], pen, f"image of {name}", label if pen != "hidden" else "",
+                      0.15 if name == "Z" else 0.6, (6, 6))
                  for name, (_, pen, label) in edges.items()]  # fmt: skip
         region = Region(np.vstack(list(made.values())))
         panels.append(Panel(boxes[n], x=r"$\sigma$", y=y, title=title, lines=lines, regions=[region],
