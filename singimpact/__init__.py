@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from singimpact.impact_oscillator import tangency_points as tangency_points
     from singimpact.impact_oscillator import threshold as threshold
     from singimpact.impact_oscillator import universal as universal
+    from singimpact.scenes import Scene as Scene
     from singimpact.scenes import plot as plot
+    from singimpact.scenes.figures import figure as figure
     from singimpact.theory import fixed_points as fixed_points
 
 __version__ = "0.1.0"
@@ -41,6 +43,8 @@ _HOMES = {
     "sweep": "singimpact.impact_oscillator",
     "threshold": "singimpact.impact_oscillator",
     "plot": "singimpact.scenes",
+    "Scene": "singimpact.scenes",
+    "figure": "singimpact.scenes.figures",
     "verify": "singimpact.documents.verdicts",
     "errata": "singimpact.documents.errata",
 }

@@ -18,7 +18,8 @@ from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import tangency_points
 from singimpact.flights.hits import first_hit
 from singimpact.flights.inverse import backwards, inverse_map
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.surface.curve import Curve, Mark
@@ -32,13 +33,14 @@ Array = np.ndarray[Any, Any]
 class GrowthSettings:
     """order, trust : of the series, and how good it must be on the fundamental piece. start : points of it.
     apart : neighbours in s nearer than this share of the piece, still far apart in the picture, are torn.
-    most : points of one generation. generations : inverse images at most.
+    longest : chord, in points of the picture. most : points of one generation. generations : inverse images at most.
     """
 
     order: int = 12
     trust: float = 1e-13
     start: int = 17
     apart: float = 1e-11
+    longest: float = 16.0
     most: int = 4000
     generations: int = 60
 
@@ -105,6 +107,36 @@ def grown_gamma(model: Oscillator, frame: Frame, tau: Any = None) -> list[Curve]
     return _grown(model, frame, foot, series, -size, float(motion(-size)))
 
 
+def gammas_within(model: Oscillator, frame: Frame) -> list[Curve]:
+    """gamma from every tangency point with a' > 0, and every swan point with a'' < 0, whose tau lies in the frame.
+
+    Examples
+    --------
+    >>> curves = gammas_within(Oscillator("x", "cos(2*t)", "0.3", "1/2"), Frame(2, 6, 1))
+    >>> [round(float(curve.points[0, 0]), 3) for curve in curves if curve.marked("foot").size]
+    [2.509, 5.65]
+    """
+    found: list[Curve] = []
+    for point in tangency_points(model):
+        bent = float(acceleration(model, np.array([point.tau]), 2)[0])
+        if point.kind == "foliation" or (point.kind == "degenerate" and bent > 0):
+            continue
+        for shift in _turns(model, point.tau, frame):
+            moved = replace(frame, tau_low=frame.tau_low - shift, tau_high=frame.tau_high - shift)
+            grown = grown_gamma(model, moved, repr(point.tau))
+            found += [replace(curve, points=curve.points + np.array([shift, 0.0])) for curve in grown]
+    return found
+
+
+def _turns(model: Oscillator, tau: float, frame: Frame) -> list[float]:
+    """Multiples of the period that bring a time into the frame."""
+    if model.period is None:
+        return [0.0] if frame.tau_low <= tau <= frame.tau_high else []
+    period = as_float(model.period)
+    first, last = np.ceil((frame.tau_low - tau) / period), np.floor((frame.tau_high - tau) / period)
+    return [n * period for n in np.arange(first, last + 1).tolist()]
+
+
 def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
     """W^s_tau of a regular point with a_c(tau) < 0, grown backwards across discontinuities [t:t1].
 
@@ -114,6 +146,8 @@ def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
     >>> curves[0].points[0].tolist()
     [0.5, 0.0]
     """
+    if not float(acceleration(model, np.array([_foot(model, tau, None)]))[0]) < 0:
+        raise refuse("tau", tau, "a time with a_c < 0: chatter comes to rest there, and W^s_tau exists")
     series = fibre(SETTINGS.order, model, tau)
     size = series.valid_within(SETTINGS.trust)
     foot = _foot(model, tau, None)
@@ -124,7 +158,7 @@ def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
 
 def _curved(model: Oscillator, tau: Any) -> str:
     """Whether the point is a tangency or a swan."""
-    for at in ("tangency", "swan"):
+    for at in ("swan", "tangency"):  # at a swan point the equations of a tangency are singular
         try:
             gamma(3, at, model, tau)
         except InputError as error:
@@ -178,7 +212,8 @@ def _grown(
         return np.stack([foot + s, [float(series(each)) for each in s.tolist()]], axis=1)
 
     s = np.linspace(inner, outer, SETTINGS.start)
-    pieces, done = [Piece(s, start(s), 0)], [Piece(np.array([0.0, inner]), np.array([[foot, 0.0], start(s[:1])[0]]), 0)]
+    whole = np.linspace(0.0, inner, 2 * SETTINGS.start)
+    pieces, done = [Piece(s, start(s), 0)], [Piece(whole, start(whole), 0)]
     for generation in range(SETTINGS.generations):
         if not pieces:
             break
@@ -222,7 +257,7 @@ def _refined(s: Array, points: Array, image: Callable[[Array], Array], frame: Fr
 
 
 def _too_coarse(points: Array, frame: Frame) -> Array:
-    """Chords longer than 1/40 of the picture, or at a bend that shows; or with one end that is not known."""
+    """Chords too long for the picture, or at a bend that shows; or with one end that is not known."""
     known: Array = np.asarray(np.isfinite(points).all(axis=1))
     near: Array = np.logical_or(frame.holds(points), ~known)
     step = np.diff(points, axis=0) / frame.scale
@@ -233,7 +268,7 @@ def _too_coarse(points: Array, frame: Frame) -> Array:
     bend = np.zeros(len(length), dtype=bool)
     bend[:-1] |= off > 0.5
     bend[1:] |= off > 0.5
-    coarse = (length > 1 / 40) | (bend & (length * frame.pixels > 1))
+    coarse = (length > min(SETTINGS.longest / frame.pixels, 1 / 25)) | (bend & (length * frame.pixels > 1))
     return np.asarray((near[:-1] | near[1:]) & ((known[:-1] != known[1:]) | (known[:-1] & known[1:] & coarse)))
 
 

@@ -14,7 +14,7 @@ from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.algebra.rings import DOUBLES
 from singimpact.codegen.kernels import compiled
-from singimpact.flights import edges, manydigits
+from singimpact.flights import counted, edges, manydigits
 from singimpact.flights.carriers import Derivative, Flight, Step
 from singimpact.flights.escape import never_returns
 from singimpact.flights.escape_polynomial import never_turns
@@ -227,6 +227,7 @@ def _flown(
     moving = np.flatnonzero(status == Status.hit)
     if not moving.size:
         return numbers
+    counted.add(moving.size)
     p, table = doubles(kernel), table_of(kernel, doubles(kernel))
     part, flown = np.empty(moving.size, dtype=np.int8), np.empty((moving.size, 4))
     work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)

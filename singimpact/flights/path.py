@@ -9,6 +9,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, float_array
 from singimpact.codegen.kernels import compiled
+from singimpact.flights import counted
 from singimpact.flights.hits import EPSILON, doubles
 from singimpact.flights.kernel import kernel_of
 from singimpact.flights.launch import States, launches
@@ -67,6 +68,7 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any
     >>> many_paths(Oscillator("0", "-2", 0, 1), np.zeros(2), np.array([3.0, 0.0]), [np.array([1.0]), np.array([-1.0])])
     [array([[2., 1.]]), array([[-1.,  2.]])]
     """
+    counted.add(len(times))
     kernel, order = kernel_of(osc), degree_for(EPSILON)
     follow = compiled(kernel.text, kernel.names)["follow"]
     numbers, X, W = doubles(kernel), np.zeros(order + 2), np.zeros((kernel.rows, order + 2))

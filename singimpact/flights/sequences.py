@@ -12,7 +12,7 @@ from singimpact.algebra.expressions import substitute
 from singimpact.algebra.numbers import as_float
 from singimpact.codegen.kernels import compiled
 from singimpact.codegen.scalar import scalar
-from singimpact.flights import chains
+from singimpact.flights import chains, counted
 from singimpact.flights.hits import EPSILON, doubles, remainders
 from singimpact.flights.kernel import kernel_of, source
 from singimpact.flights.launch import horizon_of
@@ -83,5 +83,6 @@ def sequence(osc: Oscillator, tau: float, v: float, count: int, slow: float = 0.
         flown, status = compiled(text, names)[loop](
             start, v, count, slow, w, np.zeros(1), order, limit, ulp, p, *work, out
         )
+    counted.add(int(flown))
     since, speed, time, velocity, acceleration = out[:flown].T
     return Sequence(tau + since, speed, time, velocity, acceleration, int(status))

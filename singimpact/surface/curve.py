@@ -20,7 +20,7 @@ class Window:
 
     Parameters
     ----------
-    tau, t : (low, high). pixels : curves are drawn to a quarter of such a point.
+    tau, t : (low, high). pixels : curves are drawn to half of such a point.
     """
 
     tau: tuple[float, float]

@@ -62,7 +62,7 @@ class ImpactSurface:
     Parameters
     ----------
     model : the oscillator. tau, t : ends of the window; t of either sign, or a polynomial's zeros are cut off.
-    pixels : how wide a picture of it is; curves are drawn to a quarter of such a point.
+    pixels : how wide a picture of it is; curves are drawn to half of such a point.
 
     Attributes
     ----------
@@ -80,6 +80,10 @@ class ImpactSurface:
             raise refuse("model", model, "an ImpactOscillator")
         self.model, self.window = model, Window.read(tau, t, pixels)
         self._rest = RestFlights(model)
+
+    def take(self, **found: list[Any]) -> None:
+        """Use lines, horizon, ... of the same model and window that were computed before: they are not flown again."""
+        vars(self).update(found)
 
     @property
     def flights(self) -> int:
@@ -104,7 +108,8 @@ class ImpactSurface:
         return [(point, tau) for point, tau in found if low <= tau <= high]
 
     @cached_property
-    def _lines(self) -> list[NamedLine]:
+    def lines(self) -> list[NamedLine]:
+        """Z with its named points and x' at the other end; everything else follows from it."""
         cell = 1 / (CELLS_A_RADIAN * _fastest(self.model))
         made = traced(self._rest.grid, self._rest.y_and_gradient, self.window, cell, self._speed)
         zeros = [tau for _, tau in self._tangencies]
@@ -119,19 +124,19 @@ class ImpactSurface:
     @cached_property
     def zero_set(self) -> list[Curve]:
         """Z: (tau, t) with v_c = 0, t != 0; `visible` where it is a first hit [s2-zero-set]."""
-        return [self._curve("Z", line.points, ("tau", "t"), line, self._first_ahead(line)) for line in self._lines]
+        return [self._curve("Z", line.points, ("tau", "t"), line, self._first_ahead(line)) for line in self.lines]
 
     @cached_property
     def horizon(self) -> list[Curve]:
         """H = iota(Z): (tau, t) where the flight lands with velocity 0; `visible` where it does so first."""
         return [self._curve("H", _involved(line.points), ("tau", "t"), line, self._first_back(line))
-                for line in self._lines]  # fmt: skip
+                for line in self.lines]  # fmt: skip
 
     @cached_property
     def outline(self) -> list[Curve]:
         """P = p(H) = phi(Z): (tau, v) of the launches that graze."""
         return [self._curve("P", np.stack([line.points.sum(axis=1), line.column], axis=1), ("tau", "v"), line,
-                            self._first_back(line)) for line in self._lines]  # fmt: skip
+                            back.visible) for line, back in zip(self.lines, self.horizon, strict=True)]  # fmt: skip
 
     @cached_property
     def discontinuities(self) -> list[Curve]:
@@ -142,7 +147,7 @@ class ImpactSurface:
     def cusps(self) -> list[Cusp]:
         """The cusps of p and phi in the window."""
         found = []
-        for line in self._lines:
+        for line in self.lines:
             at = [mark.index for mark in line.marks if mark.name == "cusp"]
             places = [(float(line.points[i, 0]), float(line.points[i, 1])) for i in at]
             found += [Cusp(tau, t, float(line.column[i])) for i, (tau, t) in zip(at, places, strict=True)]
@@ -152,7 +157,7 @@ class ImpactSurface:
     def shadow(self) -> list[Curve]:
         """(tau, t): the next hit behind the visible horizon, for the same launches."""
         found = []
-        for line, curve in zip(self._lines, self.horizon, strict=True):
+        for line, curve in zip(self.lines, self.horizon, strict=True):
             ahead = self._next(line.points[:, 0])
             behind = np.stack([curve.points[:, 0], curve.points[:, 1] + ahead], axis=1)
             made = Curve("S", behind, ("tau", "t"), (), curve.closed, line.tolerance, curve.visible)

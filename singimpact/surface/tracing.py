@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ Grid = Callable[[Array, Array], Array]
 class TraceSettings:
     """close : Newton's last step, relative to 1 + |place|, of a vertex that counts as on the curve.
     rounds : of Newton, and of halving. deviation : of a chord from the curve, in points of the picture.
+    longest : chord, in points of the picture: where a curve goes out of sight is known to one chord.
     finest : times a grid is made finer around an extremum of y. least_cells, most_cells : of the sketch, a side.
     most_steps : along a small piece. turn : the least cosine of the turn in one step.
     across : the largest sine of a chord of the sketch with the curve at its ends.
@@ -32,7 +34,8 @@ class TraceSettings:
     close: float = 4e-13
     rounds: int = 12
     halvings: int = 10
-    deviation: float = 0.25
+    deviation: float = 0.5
+    longest: float = 6.0
     finest: int = 3
     most_steps: int = 2000
     turn: float = 0.9
@@ -62,14 +65,17 @@ def traced(grid: Grid, gradient: Gradient, window: Window, cell: float, scale: f
     grid, gradient : y on a grid, and y, its gradient and a further column at points.
     cell : the largest cell that resolves y. scale : of the column, beside the size of the window, for the spacing.
     """
-    small = (_followed(seed, gradient, window, size) for seed, size in _small_ones(grid, window, cell))
-    sketched = (*_sketched(grid, window, cell), *small)
+    axes = _axes(window, cell)
+    values = grid(*axes)
+    found = _small_ones(grid, axes, values, window)
+    small = (_followed(seed, gradient, window, size) for seed, size in found)
+    sketched = (*(_thinned(line, window.pixel) for line in _sketched(axes, values)), *small)
     made = [one for line in sketched if (one := _on_curve(line, gradient, window, scale, cell)) is not None]
-    found: list[Polyline] = []
+    kept: list[Polyline] = []
     for line in sorted(made, key=lambda one: -float(np.ptp(one.points, axis=0).sum())):
-        if not any(_repeats(line, longer) for longer in found):
-            found.append(line)
-    return found
+        if not any(_repeats(line, longer) for longer in kept):
+            kept.append(line)
+    return kept
 
 
 def _repeats(new: Polyline, old: Polyline) -> bool:
@@ -87,30 +93,51 @@ def _axes(window: Window, cell: float) -> tuple[Array, Array]:
     return axis(*window.tau), axis(*window.t)
 
 
-def _sketched(grid: Grid, window: Window, cell: float) -> list[Array]:
+def _sketched(axes: tuple[Array, Array], values: Array) -> list[Array]:
     from contourpy import LineType, contour_generator
 
-    tau, t = _axes(window, cell)
-    made = contour_generator(tau, t, grid(tau, t), line_type=LineType.Separate).lines(0.0)
+    made = contour_generator(*axes, values, line_type=LineType.Separate).lines(0.0)
     return [np.asarray(line) for line in made if len(line) > 1]
 
 
-def _small_ones(grid: Grid, window: Window, cell: float, depth: int = 0) -> list[tuple[Array, float]]:
+def _thinned(line: Array, pixel: float) -> Array:
+    """Every vertex of a sketch costs flights: those that a coarse picture does not show are left out."""
+    if len(line) < 8:
+        return line
+    limit, kept = 0.5 * pixel, {0, len(line) // 3, 2 * len(line) // 3, len(line) - 1}
+    waiting = list(pairwise(sorted(kept)))
+    while waiting:
+        first, last = waiting.pop()
+        if last - first < 2:
+            continue
+        chord = line[last] - line[first]
+        inner = line[first + 1 : last] - line[first]
+        away = np.abs(inner[:, 0] * chord[1] - inner[:, 1] * chord[0]) / max(np.hypot(*chord), 1e-300)
+        if away.max() > limit or np.hypot(*chord) > SETTINGS.longest * pixel:
+            middle = (first + last) // 2
+            kept.add(middle)
+            waiting += [(first, middle), (middle, last)]
+    return line[sorted(kept)]
+
+
+def _small_ones(
+    grid: Grid, axes: tuple[Array, Array], values: Array, window: Window, depth: int = 0
+) -> list[tuple[Array, float]]:
     """A place beside a piece that the sketch may have missed, and a size to begin with, for each extremum."""
-    tau, t = _axes(window, cell)
-    values = grid(tau, t)
+    tau, t = axes
     found: list[tuple[Array, float]] = []
     for i, j in _extrema(values):
         small = Window((tau[max(j - 1, 0)], tau[min(j + 1, len(tau) - 1)]),
                        (t[max(i - 1, 0)], t[min(i + 1, len(t) - 1)]), window.pixels)  # fmt: skip
-        axes = np.linspace(*small.tau, 17), np.linspace(*small.t, 17)
-        inner = grid(*axes)
+        finer = np.linspace(*small.tau, 17), np.linspace(*small.t, 17)
+        inner = grid(*finer)
         if inner.min() < 0 < inner.max():
             rising = inner if values[i, j] < 0 else -inner
             place = np.unravel_index(np.argmax(rising), inner.shape)
-            found.append((np.array([axes[0][place[1]], axes[1][place[0]]]), float(np.ptp(axes[0])) / 16))
+            found.append((np.array([finer[0][place[1]], finer[1][place[0]]]), float(np.ptp(finer[0])) / 16))
         elif depth < SETTINGS.finest and np.abs(inner).min() < 0.5 * np.abs(values[i, j]):
-            found += _small_ones(grid, small, (small.tau[1] - small.tau[0]) / 16, depth + 1)
+            fine = _axes(small, (small.tau[1] - small.tau[0]) / 16)
+            found += _small_ones(grid, fine, grid(*fine), small, depth + 1)
     return found
 
 
@@ -226,7 +253,7 @@ def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, sc
         far = np.hypot(np.hypot(*(place - middle).T), (value - half) / scale * window.pixel * window.pixels)
         chord = np.hypot(*(points[open_ + 1] - points[open_]).T)
         sound = (step < SETTINGS.close) & (np.hypot(*(place - middle).T) < chord)
-        added = sound & (far > limit)
+        added = sound & ((far > limit) | (chord > SETTINGS.longest * window.pixel))
         checked[open_[~added]] = True
         at = open_[added] + 1
         points, column = np.insert(points, at, place[added], axis=0), np.insert(column, at, value[added])

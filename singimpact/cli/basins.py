@@ -1,0 +1,44 @@
+"""`singimpact basins`: where the orbits of a grid of states end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.model import model_options, take_model
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import save, suffix_of
+from singimpact.cli.sweep import process_pool
+from singimpact.store import require_writable
+
+
+@click.command(short_help="where the orbits of a grid of states end, as a picture")
+@model_options
+@click.option("--tau", nargs=2, metavar="LOW HIGH", help="Window of launch phases; a period without it.")
+@click.option("--v", nargs=2, metavar="LOW HIGH", default=("0", "2"), show_default=True, help="Window of velocities.")
+@click.option("--size", type=click.IntRange(2, 10_000), default=600, show_default=True, help="States a side.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
+@click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
+@click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
+def command(
+    tau: tuple[str, str] | None, v: tuple[str, str], size: int, workers: int | None, keep: str | None, output: str,
+    as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """Basins: complete chatter, orbits of n impacts in k periods, anything else, for a grid of launches."""
+    suffix_of(output)
+    require_writable(output)
+    model = take_model(options)
+    from singimpact.dynamics.basins import basins
+    from singimpact.scenes.basins import draw_basins
+
+    with process_pool(workers) as pool:
+        found = basins(model, tau, v, size, pool, keep)
+    save(draw_basins(found).figure, output)
+    told = [{"class": name, "share": share} for _, name, share in found.classes]
+    if as_json:
+        click.echo(as_json_text({"model": model.to_dict(), "output": output, "classes": told}))
+    else:
+        click.echo(columns(["class", "share"], [[str(each["class"]), f"{each['share']:.4f}"] for each in told]))

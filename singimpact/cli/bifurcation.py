@@ -1,0 +1,49 @@
+"""`singimpact bifurcation`: where an orbit settles as a number of the model moves."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.model import model_options, take_model
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import save, suffix_of
+from singimpact.cli.sweep import process_pool
+from singimpact.store import require_writable
+
+
+@click.command(short_help="where an orbit settles as a number of the model moves")
+@model_options
+@click.option("--over", metavar="NAME", default="clearance", show_default=True, help="What moves: also a parameter.")
+@click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")
+@click.option("--to", "high", metavar="NUMBER", required=True, help="Its last value.")
+@click.option("--points", type=click.IntRange(2, 100_000), default=300, show_default=True, help="How many values.")
+@click.option("--start", nargs=2, metavar="TAU V", default=("0", "0.1"), show_default=True, help="The first state.")
+@click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Flown for each.")
+@click.option("--kept", type=click.IntRange(1, 100_000), default=60, show_default=True, help="Of them, shown.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
+@click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give phase, v and end of chatter for each value as JSON.")
+def command(
+    over: str, low: str, high: str, points: int, start: tuple[str, str], impacts: int, kept: int, workers: int | None,
+    output: str, as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """The last impacts of an orbit for values of a number of the model, the clearance if no other is named.
+
+    A model named by options needs the option of the number that moves too.
+    """
+    suffix_of(output)
+    require_writable(output)
+    model = take_model(options)
+    from singimpact.dynamics.bifurcation import bifurcation
+    from singimpact.scenes.basins import draw_bifurcation
+
+    with process_pool(workers) as pool:
+        found = bifurcation(model, over, (low, high), points, start, impacts, kept, pool)
+    save(draw_bifurcation(found).figure, output)
+    if as_json:
+        rows = zip(found.values.tolist(), found.events.tolist(), strict=True)
+        click.echo(as_json_text({"over": over, "cases": [{"value": value, "events": each} for value, each in rows]}))
+    else:
+        click.echo(f"{output}: {points} values of {over}, {kept} events of each")

@@ -1,0 +1,51 @@
+"""`singimpact figure`: the paper's figures from computed data."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import save
+from singimpact.inputs import refuse
+from singimpact.progress import ProgressLine
+from singimpact.store import folder, write_text
+
+
+@click.command(short_help="the paper's figures, from computed data")
+@click.argument("which", metavar="N|all")
+@click.option("-o", "--output", metavar="DIR", default=".", show_default=True, help="A folder for the pictures.")
+@click.option("--format", "kind", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
+@click.option("--data", is_flag=True, help="Write the curves as JSON beside each picture.")
+@click.option("--json", "as_json", is_flag=True, help="Print what was written as JSON.")
+def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> None:
+    """Draw figure N of the paper, 1 to 17, or all, each from a real oscillator, with the claims that it illustrates."""
+    from singimpact.scenes.figures import FIGURES, picture
+    from singimpact.scenes.figures.rendering import drawn
+
+    place, written = folder(output), []
+    with ProgressLine() as line:
+        numbers = _numbers(which, list(FIGURES))
+        for done, number in enumerate(numbers):
+            line.show(done, len(numbers), f"figure {number}")
+            made = picture(number)
+            target = Path(place) / f"figure{number:02d}.{kind}"
+            save(drawn(made), target)
+            if data:
+                write_text(target.with_suffix(".json"), as_json_text(made.to_dict()) + "\n")
+            written.append((number, made.title, made.claims, str(target)))
+    if as_json:
+        keys = ("figure", "title", "claims", "file")
+        click.echo(as_json_text({"figures": [dict(zip(keys, each, strict=True)) for each in written]}))
+    else:
+        for _, title, claims, file in written:
+            click.echo(f"{file}  {title} ({', '.join(claims)})")
+
+
+def _numbers(which: str, known: list[int]) -> list[int]:
+    if which == "all":
+        return known
+    if not which.isdigit() or int(which) not in known:
+        raise refuse("figure", which, f"a number from {min(known)} to {max(known)}, or all")
+    return [int(which)]

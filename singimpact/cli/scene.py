@@ -1,0 +1,43 @@
+"""`singimpact scene`: the picture that a scene file describes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import save, suffix_of
+from singimpact.store import require_writable
+
+
+@click.command(short_help="draw the layers that a scene file names")
+@click.argument("file", metavar="FILE.toml")
+@click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give the report as JSON.")
+def command(file: str, output: str, as_json: bool) -> None:
+    """Draw a scene: a model, a window and layers, from a TOML file.
+
+    Layers of the (tau, t)-plane: horizon, zero-set, visible, shadow. Layers of the (tau, v)-plane: outline,
+    discontinuities, gamma, stable-manifolds, foliation, orbits. What is computed, what it took and what came from the
+    cache is printed.
+    """
+    suffix_of(output)
+    require_writable(output)
+    from singimpact.scenes.scene import DPI, Scene
+
+    scene = Scene.read(file)
+    axes = scene.draw()
+    save(axes.figure, output, dpi=DPI)
+    report = {"output": str(Path(output)), **scene.report()}
+    click.echo(as_json_text(report) if as_json else _told(report))
+
+
+def _told(report: dict[str, Any]) -> str:
+    spent, curves = report["seconds_by_layer"], report["curves"]
+    rows = [[name, str(curves[name]), f"{seconds:.3f}"] for name, seconds in spent.items()]
+    kept = ", ".join(report["from_cache"]) or "nothing"
+    table = columns(["layer", "curves", "seconds"], rows) if rows else "no layers"
+    return f"{table}\n{report['flights']} flights computed; from the cache: {kept}"

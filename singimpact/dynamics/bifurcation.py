@@ -1,0 +1,103 @@
+"""Where orbits settle as a number of the model moves: the last impacts of one long orbit for each value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.cases import sweep
+from singimpact.dynamics.orbit import orbit
+from singimpact.flights.sequences import sequence
+from singimpact.inputs import refuse, unknown
+from singimpact.oscillator.model import Oscillator
+from singimpact.surface.curve import Window
+
+Array = np.ndarray[Any, Any]
+SLOW = 1e-4  # of a period: what is left of a chatter that the compiled loop leaves to the orbit
+BLOCK = 128  # impacts of a call
+
+
+@dataclass(frozen=True)
+class Bifurcation:
+    """Events of settled orbits.
+
+    Attributes
+    ----------
+    over : the number that moves. values : of it. events : shape (values, kept, 3): phase, v, 1 where chatter ended; nan
+        where an orbit had fewer.
+    """
+
+    over: str
+    values: Array
+    events: Array
+
+
+def bifurcation(
+    model: Oscillator, over: str, between: Any, points: int = 300, start: Any = (0, "0.1"), impacts: int = 200,
+    kept: int = 60, executor: Executor | None = None, output: Any = None,
+) -> Bifurcation:  # fmt: skip
+    """The last events of an orbit for evenly spaced values of a number of the model.
+
+    Parameters
+    ----------
+    over : clearance, restitution or a parameter. between : its ends. points : values. start : the state (tau, v).
+    impacts : flown for each value. kept : events of the end that are shown. executor, output : as for `sweep`.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> with ThreadPoolExecutor(1) as pool:
+    ...     model = Oscillator("x", "cos(2*t)", 0, "1/2")
+    ...     found = bifurcation(model, "clearance", ("0.2", "0.3"), 2, impacts=60, kept=4, executor=pool)
+    >>> found.events.shape, bool(abs(found.events[0, 0] - found.events[0, 3]).max() < 1e-6)
+    ((2, 4, 3), True)
+    """
+    if over not in ("clearance", "restitution", *model.parameters):
+        raise unknown("number of the model", str(over), ["clearance", "restitution", *model.parameters])
+    if model.period is None:
+        raise refuse("model", model, "one with a period: phases are shown")
+    for name, value, least in (("points", points, 2), ("impacts", impacts, 1), ("kept", kept, 1)):
+        if isinstance(value, bool) or not isinstance(value, int) or value < least:
+            raise refuse(name, value, f"a whole number from {least}")
+    low, high = Window.read(between, (0, 1)).tau
+    values = np.linspace(low, high, points)
+    ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), impacts, kept)
+    return Bifurcation(over, values, sweep(ask, values.tolist(), executor, output))
+
+
+def settled(
+    fields: Mapping[str, Any], over: str, start: tuple[str, ...], impacts: int, kept: int, value: float
+) -> Array:
+    """The last events of one orbit; a function of this module, so that another process can be sent it."""
+    model = Oscillator(**fields).replace(**{over: value})
+    assert model.period is not None
+    flown = list(_events(model, start[0], start[1], impacts))
+    last = flown[max(impacts - kept, 0) :][-kept:] or flown[-1:]  # one that has come to rest for ever shows only that
+    events = np.array(last).reshape(-1, 3)
+    events[:, 0] = np.mod(events[:, 0], as_float(model.period))
+    return np.vstack([events, np.full((kept - len(events), 3), np.nan)])
+
+
+def _events(model: Oscillator, tau: Any, v: Any, impacts: int) -> Iterator[tuple[float, float, float]]:
+    """Impacts from the compiled loop; it stops where chatter is slow, and the orbit sums that up."""
+    assert model.period is not None
+    slow, flown = SLOW * as_float(model.period), 0
+    while flown < impacts:
+        last = orbit(model, tau, v, 1)
+        shown = np.isin(last.kind[1:], ("impact", "graze", "complete"))
+        yield from zip(last.tau[1:][shown], last.v[1:][shown], 1.0 * (last.kind[1:][shown] == "complete"), strict=True)
+        if last.tau.size == 1:
+            return
+        tau, v, flown = float(last.tau[-1]), float(last.v[-1]), flown + 1
+        if v > 0 and flown < impacts:
+            found = sequence(model, tau, v, min(BLOCK, impacts - flown), slow)
+            yield from zip(found.tau, found.v, np.zeros(found.tau.size), strict=True)
+            flown += found.tau.size
+            if found.tau.size:
+                tau, v = float(found.tau[-1]), float(found.v[-1])

@@ -1,0 +1,65 @@
+"""Pictures of basins and of bifurcations: classes told apart by lightness too, values by position alone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from singimpact.dynamics.basins import CHATTER, OTHER, Basins
+from singimpact.dynamics.bifurcation import Bifurcation
+from singimpact.scenes.looks import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
+
+FIXED = {OTHER: "#F2F2F2", CHATTER: BLACK}
+ORBITS = (ORANGE, BLUE, SKY, VERMILLION, GREEN, PURPLE, "#F0E442", "#8C8C8C")  # neighbours differ in lightness
+LETTERS = {"clearance": "clearance $c$", "restitution": "restitution $r$"}
+
+
+def draw_basins(found: Basins, axes: Any = None) -> Any:
+    """The classes of a grid of states as a picture; returns the matplotlib axes."""
+    from matplotlib.colors import to_rgb
+    from matplotlib.patches import Patch
+
+    axes = _new_axes(7.2, 5.2) if axes is None else axes
+    image = np.empty((*found.codes.shape, 3))
+    patches, orbits = [], 0
+    for code, name, share in found.classes:
+        color = FIXED.get(code) or ORBITS[orbits % len(ORBITS)]
+        orbits += code not in FIXED
+        image[found.codes == code] = to_rgb(color)
+        patches.append(Patch(facecolor=color, edgecolor="0.4", label=f"{name}, {100 * share:.3g} %"))
+    half_tau, half_v = np.diff(found.tau[:2])[0] / 2, np.diff(found.v[:2])[0] / 2
+    box = (found.tau[0] - half_tau, found.tau[-1] + half_tau, found.v[0] - half_v, found.v[-1] + half_v)
+    axes.imshow(image, origin="lower", extent=box, aspect="auto", interpolation="nearest")
+    axes.set_xlabel(r"launch phase $\tau$")
+    axes.set_ylabel("launch velocity $v$")
+    axes.legend(handles=patches[:12], loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False,
+                fontsize="small")  # fmt: skip
+    return axes
+
+
+def draw_bifurcation(found: Bifurcation, axes: Any = None) -> Any:
+    """Velocities after the impacts of settled orbits, ends of complete chatter on the axis."""
+    axes = _new_axes(8.0, 4.6) if axes is None else axes
+    values = np.repeat(found.values, found.events.shape[1])
+    _, v, ended = found.events.reshape(-1, 3).T
+    resting = ended == 1.0
+    axes.plot(values[~resting], v[~resting], ",", color=BLACK, label="impacts", rasterized=True)
+    axes.plot(values[~resting], v[~resting], "o", color=BLACK, markersize=0.7, markeredgewidth=0, rasterized=True)
+    if resting.any():
+        axes.plot(values[resting], v[resting], "|", color=VERMILLION, markersize=7, label="end of complete chatter",
+                  clip_on=False, rasterized=True)  # fmt: skip
+    axes.set_xlabel(LETTERS.get(found.over, found.over))
+    axes.set_ylabel("velocity $v$ after an impact")
+    axes.set_xlim(found.values[0], found.values[-1])
+    axes.set_ylim(bottom=0)
+    if not np.isfinite(v).any():
+        axes.text(0.5, 0.5, "no orbit of this window has an impact", transform=axes.transAxes, ha="center")
+    axes.legend(loc="best", fontsize="small", markerscale=2)
+    return axes
+
+
+def _new_axes(width: float, height: float) -> Any:
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), dpi=150, layout="constrained").add_subplot()

@@ -1,0 +1,119 @@
+"""What a figure is before it is drawn: panels of lines, regions and letters, in numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+Array = np.ndarray[Any, Any]
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A polyline. pen : its look. name : for the data. label : a letter set at the vertex `at` (a share of them)."""
+
+    points: Array
+    pen: str
+    name: str = ""
+    label: str = ""
+    at: float = 0.5
+    shift: Point = (5, 5)
+    arrow: bool = False
+
+
+@dataclass(frozen=True)
+class Region:
+    """A filled polygon. tone : a colour. hatch : tells it apart without colour."""
+
+    points: Array
+    tone: str = "#E3E3E3"
+    label: str = ""
+    place: Point | None = None
+    hatch: str = ""
+
+
+@dataclass(frozen=True)
+class Dot:
+    """A named point; `shift` of its letter is in points of print."""
+
+    letter: str
+    place: Point
+    shift: Point = (5, 5)
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One plane of a figure. box : what is shown, (x, y). lines, regions, dots : in the order of drawing."""
+
+    box: tuple[Point, Point]
+    x: str = r"$\tau$"
+    y: str = "$v$"
+    title: str = ""
+    lines: list[Line] = field(default_factory=list)
+    regions: list[Region] = field(default_factory=list)
+    dots: list[Dot] = field(default_factory=list)
+    mesh: tuple[Array, Array, Array] | None = None  # a surface in space, seen from the side
+    ticks: bool = True
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure of the paper.
+
+    Attributes
+    ----------
+    number : in the paper. title : what it shows. claims : ids of what it illustrates. model : text of the oscillator.
+    panels : with their rows and columns. facts : numbers that the figure shows, for tests.
+    """
+
+    number: int
+    title: str
+    claims: tuple[str, ...]
+    model: str
+    panels: list[Panel]
+    columns: int = 1
+    facts: dict[str, float] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The data as plain lists and numbers."""
+        return {
+            "figure": self.number, "title": self.title, "claims": list(self.claims), "model": self.model,
+            "facts": self.facts,
+            "panels": [
+                {"title": panel.title, "axes": [panel.x, panel.y], "box": panel.box,
+                 "curves": [{"name": line.name or line.label, "points": line.points.tolist()} for line in panel.lines],
+                 "regions": [{"name": region.label, "points": region.points.tolist()} for region in panel.regions],
+                 "points": {dot.letter: list(dot.place) for dot in panel.dots}}
+                for panel in self.panels
+            ],
+        }  # fmt: skip
+
+
+def arc(points: Array, start: Point, end: Point, avoid: Point) -> Array:
+    """The stretch of a closed polyline from the vertex nearest to a point to that nearest to another.
+
+    Parameters
+    ----------
+    avoid : a place on the other stretch.
+
+    Examples
+    --------
+    >>> square = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], dtype=float)
+    >>> arc(square, (0, 0), (1, 1), (0, 1)).tolist()
+    [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]
+    """
+    ring = points[:-1]
+    scale = np.ptp(ring, axis=0)
+
+    def nearest(place: Point) -> int:
+        return int(np.argmin(np.hypot(*((ring - place) / scale).T)))
+
+    first, last, other = nearest(start), nearest(end), nearest(avoid)
+    turned = np.roll(ring, -first, axis=0)
+    span, away = (last - first) % len(ring), (other - first) % len(ring)
+    if away > span:
+        return turned[: span + 1]
+    return np.vstack([turned[span:], turned[:1]])[::-1]

@@ -1,0 +1,79 @@
+"""Curves kept in the user's cache folder, under what they depend on; arrays alone, never pickled objects."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from singimpact.inputs import InputError
+from singimpact.store import cache_folder, folder, written
+from singimpact.surface.curve import Curve, Mark
+
+ABOVE = ("claims/", "documents/", "scenes/", "bench/", "cli/", "generated/")  # rooms that no curve depends on
+
+
+def key_of(*parts: Any) -> str:
+    """A digest of texts, of the source below the pictures and of the versions of what computes.
+
+    Examples
+    --------
+    >>> key_of("horizon", 1) == key_of("horizon", 1), len(key_of("horizon", 2))
+    (True, 64)
+    """
+    return hashlib.sha256(json.dumps([ground(), *map(repr, parts)]).encode()).hexdigest()
+
+
+@lru_cache(maxsize=1)
+def ground() -> str:
+    """The digest of the package's source below the claims, and of the libraries."""
+    root = Path(__file__).parents[1]
+    digest = hashlib.sha256(repr([version(name) for name in ("numpy", "numba", "contourpy")]).encode())
+    for path in sorted(root.rglob("*.py")):
+        part = path.relative_to(root).as_posix()
+        if not part.startswith(ABOVE):
+            digest.update(part.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+def recall(key: str) -> list[Curve] | None:
+    """The curves under a key, or None when there are none or the file is damaged."""
+    try:
+        with np.load(_place(key), allow_pickle=False) as found:
+            heads = json.loads(str(found["heads"]))
+            return [_curve(head, found[f"p{n}"], found[f"v{n}"]) for n, head in enumerate(heads)]
+    except (OSError, ValueError, KeyError, TypeError, EOFError):
+        return None
+
+
+def keep(key: str, curves: list[Curve]) -> None:
+    """Put curves on disk; a cache that cannot be written is no reason to fail."""
+    arrays: dict[str, Any] = {f"p{n}": curve.points for n, curve in enumerate(curves)}
+    arrays |= {f"v{n}": curve.visible for n, curve in enumerate(curves)}
+    try:
+        folder(_place(key).parent)
+        with written(_place(key)) as draft, draft.open("wb") as stream:
+            np.savez(stream, heads=json.dumps([_head(curve) for curve in curves]), **arrays)
+    except (InputError, OSError):
+        return
+
+
+def _place(key: str) -> Path:
+    return cache_folder() / "curves" / f"{key}.npz"
+
+
+def _head(curve: Curve) -> dict[str, Any]:
+    marks = [[mark.index, mark.name] for mark in curve.marks]
+    return {"name": curve.name, "axes": curve.axes, "marks": marks, "closed": curve.closed,
+            "tolerance": curve.tolerance}  # fmt: skip
+
+
+def _curve(head: dict[str, Any], points: Any, visible: Any) -> Curve:
+    marks = tuple(Mark(int(index), str(name)) for index, name in head["marks"])
+    first, second = head["axes"]
+    return Curve(head["name"], points, (first, second), marks, head["closed"], head["tolerance"], visible)

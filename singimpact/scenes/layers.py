@@ -1,0 +1,65 @@
+"""Layers of a scene: what each needs, the plane it lives in, and how it is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from singimpact.scenes.looks import PENS
+from singimpact.surface.curve import Curve
+
+SURFACE, STATES = ("tau", "t"), ("tau", "v")
+Drawer = Callable[[Any, list[Curve], str], None]
+
+
+@dataclass(frozen=True)
+class Layer:
+    """need : the curves it draws. plane : names of the two axes. label : in the legend. draw : puts them on axes."""
+
+    need: str
+    plane: tuple[str, str]
+    label: str
+    draw: Drawer
+
+
+def _strokes(pen: str) -> Drawer:
+    def draw(axes: Any, curves: list[Curve], label: str) -> None:
+        for n, curve in enumerate(curves):
+            axes.plot(*curve.points.T, **PENS[pen].line(), label=label if n == 0 else None)
+
+    return draw
+
+
+def _first_hits(pen: str) -> Drawer:
+    """The stretches that are first hits."""
+
+    def draw(axes: Any, curves: list[Curve], label: str) -> None:
+        given: str | None = label
+        for curve in curves:
+            for part in curve.parts(curve.visible):
+                look = PENS[pen].line() | {"linewidth": 3.2, "linestyle": "solid"}
+                axes.plot(*part.points.T, **look, label=given)
+                given = None
+
+    return draw
+
+
+def _steps(axes: Any, curves: list[Curve], label: str) -> None:
+    for n, curve in enumerate(curves):
+        look = PENS["orbit"].line()
+        axes.plot(*curve.points.T, **look, marker="o", markersize=3, label=label if n == 0 else None)
+
+
+LAYERS: dict[str, Layer] = {
+    "horizon": Layer("horizon", SURFACE, "horizon $H$", _strokes("H")),
+    "zero-set": Layer("zero-set", SURFACE, "zero set $Z$", _strokes("Z")),
+    "visible": Layer("horizon", SURFACE, "visible part of $H$", _first_hits("H")),
+    "shadow": Layer("shadow", SURFACE, "shadow of $H$", _strokes("shadow")),
+    "outline": Layer("outline", STATES, "outline $P$", _strokes("P")),
+    "discontinuities": Layer("discontinuities", STATES, "discontinuities of $G$", _strokes("jump")),
+    "gamma": Layer("gamma", STATES, r"invariant arc $\gamma$", _strokes("gamma")),
+    "stable-manifolds": Layer("stable-manifolds", STATES, r"$W^s_\tau$", _strokes("loop")),
+    "foliation": Layer("foliation", STATES, r"leaves $W^s_\tau$", _strokes("manifold")),
+    "orbits": Layer("orbits", STATES, "orbits", _steps),
+}

@@ -1,0 +1,139 @@
+"""What layers ask for: each need is computed when a layer first asks, once, or taken from the cache.
+
+A need is a list of curves.  What it is computed from are needs too, so that a further layer costs only what is new.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from singimpact.dynamics.invariant_arcs import Frame, gammas_within, stable_manifold
+from singimpact.dynamics.orbit import orbit
+from singimpact.flights.counted import counted
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.scenes.kept import keep, key_of, recall
+from singimpact.surface.curve import Curve
+from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface.named_vertices import NamedLine
+
+if TYPE_CHECKING:
+    from singimpact.scenes.scene import Scene
+
+STORED = ("lines", "zero-set", "horizon", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")
+
+
+class Results:
+    """The needs of a scene, each evaluated once.
+
+    Attributes
+    ----------
+    flights : computed for each need. seconds : spent on each, without those that it is computed from.
+    cached : needs taken from disk.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.found = scene, dict[str, list[Curve]]()
+        self.flights, self.seconds, self.cached = dict[str, int](), dict[str, float](), list[str]()
+
+    def get(self, need: str) -> list[Curve]:
+        """The curves of a need."""
+        if need not in self.found:
+            key = key_of(need, *self.scene.depends(need))
+            kept = recall(key) if need in STORED else None
+            if kept is not None:
+                self.found[need] = kept
+                self.cached.append(need)
+            else:
+                self.found[need] = self._computed(need)
+                if need in STORED:
+                    keep(key, self.found[need])
+        return self.found[need]
+
+    def _computed(self, need: str) -> list[Curve]:
+        compute, below = NEEDS[need]
+        for name in below:
+            self.get(name)
+        start = perf_counter()
+        with counted() as count:
+            curves = compute(self)
+        self.flights[need], self.seconds[need] = count.flights, perf_counter() - start
+        return curves
+
+    @cached_property
+    def surface(self) -> ImpactSurface:
+        """V_c' of the scene; what is known of it is not flown again."""
+        scene = self.scene
+        return ImpactSurface(scene.model, scene.tau, scene.times, scene.pixels)
+
+    @property
+    def frame(self) -> Frame:
+        """The window of the (tau, v)-plane as curves beyond their series want it."""
+        low, high = self.scene.tau
+        return Frame(low, high, self.scene.speeds[1], self.scene.pixels)
+
+
+def _lines(results: Results) -> list[Curve]:
+    return [_stored(line) for line in results.surface.lines]
+
+
+def _stored(line: NamedLine) -> Curve:
+    points = np.column_stack([line.points, line.column])
+    return Curve("lines", points, ("tau", "t"), line.marks, line.closed, line.tolerance)
+
+
+def _restored(curve: Curve) -> NamedLine:
+    return NamedLine(curve.points[:, :2], curve.points[:, 2], curve.closed, curve.tolerance, curve.marks)
+
+
+def _of_surface(name: str) -> Callable[[Results], list[Curve]]:
+    def compute(results: Results) -> list[Curve]:
+        known = {"lines": [_restored(curve) for curve in results.get("lines")]}
+        if "horizon" in results.found:
+            known["horizon"] = results.found["horizon"]  # type: ignore[assignment]
+        results.surface.take(**known)
+        found: list[Curve] = getattr(results.surface, name)
+        return found
+
+    return compute
+
+
+def _gamma(results: Results) -> list[Curve]:
+    return gammas_within(results.scene.model, results.frame)
+
+
+def _manifolds(results: Results, feet: Iterable[Any]) -> list[Curve]:
+    return [curve for foot in feet for curve in stable_manifold(results.scene.model, results.frame, foot)]
+
+
+def _leaves(results: Results) -> list[Curve]:
+    """Stable manifolds of evenly spaced points at which a_c < 0."""
+    low, high = results.scene.tau
+    count = results.scene.leaves
+    feet = low + (np.arange(count) + 0.5) * (high - low) / count
+    pressed = feet[acceleration(results.scene.model, feet) < 0]
+    return _manifolds(results, map(repr, pressed.tolist()))
+
+
+def _orbits(results: Results) -> list[Curve]:
+    flown = [orbit(results.scene.model, tau, v, results.scene.impacts) for tau, v in results.scene.orbits]
+    made = [np.stack([np.asarray(each.tau), np.asarray(each.v)], axis=1) for each in flown]
+    return [Curve("orbit", points, ("tau", "v")) for points in made]
+
+
+NEEDS: dict[str, tuple[Callable[[Results], list[Curve]], tuple[str, ...]]] = {
+    "lines": (_lines, ()),
+    "zero-set": (_of_surface("zero_set"), ("lines",)),
+    "horizon": (_of_surface("horizon"), ("lines",)),
+    "shadow": (_of_surface("shadow"), ("lines", "horizon")),
+    "outline": (_of_surface("outline"), ("lines", "horizon")),
+    "discontinuities": (_of_surface("discontinuities"), ("lines", "horizon")),
+    "gamma": (_gamma, ()),
+    "stable-manifolds": (lambda results: _manifolds(results, results.scene.feet), ()),
+    "foliation": (_leaves, ()),
+    "orbits": (_orbits, ()),
+}

@@ -1,0 +1,268 @@
+"""A scene: a model, a window, the layers to show and the size of the picture; it computes what these need, no more."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float, constant
+from singimpact.inputs import InputError, refuse, shown, unknown
+from singimpact.oscillator.files import FIELDS, read_fields
+from singimpact.oscillator.model import Oscillator
+from singimpact.scenes.layers import LAYERS, STATES, SURFACE
+from singimpact.scenes.needs import Results
+from singimpact.surface.curve import Window
+
+DPI = 100
+SIZES = (100, 8000)  # of a picture, in points
+LEAVES = 500
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A picture, before it is drawn.
+
+    Parameters
+    ----------
+    model : the oscillator. layers : their names, all in one plane: horizon, zero-set, visible, shadow in (tau, t);
+        outline, discontinuities, gamma, stable-manifolds, foliation, orbits in (tau, v).
+    tau : ends of the window. t : of either sign; flights of this length are looked at. v : ends, the lower one 0.
+    pixels : width of the picture; curves are computed as exactly as it can show.
+    feet : times whose W^s_tau the layer stable-manifolds draws. leaves : of the layer foliation.
+    orbits : states (tau, v) of the layer orbits, and how many impacts. marks : (letter, tau, t or v).
+
+    Examples
+    --------
+    >>> scene = Scene(Oscillator("0", "12*(t**2 - 1)", 0, "1/2"), ("zero-set",), (-4, 4), t=(-6, 6), pixels=200)
+    >>> [curve.closed for curve in scene.results.get("zero-set")], sorted(scene.results.flights)
+    ([True], ['lines', 'zero-set'])
+    """
+
+    model: Oscillator
+    layers: tuple[str, ...] = ()
+    tau: Any = (-1, 1)
+    t: Any = None
+    v: Any = None
+    pixels: int = 800
+    title: str = ""
+    feet: tuple[Any, ...] = ()
+    leaves: int = 16
+    orbits: tuple[tuple[Any, Any], ...] = ()
+    impacts: int = 50
+    marks: tuple[tuple[str, float, float], ...] = ()
+    plane: tuple[str, str] = field(init=False, default=STATES)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.model, Oscillator):
+            raise refuse("model", self.model, "an ImpactOscillator")
+        if isinstance(self.layers, str):
+            raise refuse("layers", self.layers, "a list of names of layers")
+        if isinstance(self.pixels, bool) or not isinstance(self.pixels, int) or not (
+            SIZES[0] <= self.pixels <= SIZES[1]
+        ):  # fmt: skip
+            raise refuse("pixels", self.pixels, f"an integer from {SIZES[0]} to {SIZES[1]}")
+        for name in self.layers:
+            if name not in LAYERS:
+                raise unknown("layer", str(name), LAYERS)
+        for name, value, most in (("leaves", self.leaves, LEAVES), ("impacts", self.impacts, 100_000)):
+            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+                raise refuse(name, value, f"an integer from 1 to {most}")
+        self._set("layers", tuple(self.layers))
+        self._set("plane", self._plane())
+        self._set("tau", _window("tau", self.tau))
+        self._check_second()
+        self._check_states()
+
+    def _set(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
+
+    def _plane(self) -> tuple[str, str]:
+        planes = {LAYERS[name].plane for name in self.layers}
+        if len(planes) > 1:
+            apart = [", ".join(n for n in self.layers if LAYERS[n].plane == plane) for plane in (SURFACE, STATES)]
+            raise InputError(f"layers of two planes: {apart[0]} in (tau, t), {apart[1]} in (tau, v): make two scenes")
+        return planes.pop() if planes else (STATES if self.t is None else SURFACE)
+
+    def _check_second(self) -> None:
+        for name in ("t", "v"):
+            given = getattr(self, name)
+            if given is not None:
+                self._set(name, _window(name, given))
+        if self.plane == SURFACE and self.t is None:
+            raise InputError("window of t is missing: layers of (tau, t) need it")
+        if self.plane == STATES and self.v is None:
+            raise InputError("window of v is missing: layers of (tau, v) need it")
+        if self.v is not None and self.v[1] <= 0:
+            raise refuse("window of v", self.v, "an upper end > 0")
+
+    def _check_states(self) -> None:
+        if "stable-manifolds" in self.layers and not self.feet:
+            raise InputError("feet is missing: layer stable-manifolds draws W^s_tau at the times named there")
+        if "orbits" in self.layers and not self.orbits:
+            raise InputError("orbits is missing: layer orbits draws those from the states (tau, v) named there")
+        for state in self.orbits:
+            if not isinstance(state, tuple | list) or len(state) != 2:
+                raise refuse("orbits", state, "states of two numbers, tau and v")
+        for mark in self.marks:
+            if not isinstance(mark, tuple | list) or len(mark) != 3:
+                raise refuse("marks", mark, "a letter and two numbers")
+        places = ((str(mark[0]), *(as_float(constant("marks", each)) for each in mark[1:])) for mark in self.marks)
+        self._set("marks", tuple(places))
+
+    @classmethod
+    def read(cls, path: str | Path) -> Scene:
+        """A scene from a TOML file: the fields of a scene, with [model] as in a model file, or model = "FILE.toml"."""
+        fields = _toml(path)
+        for key in fields:
+            if key not in FILE_KEYS:
+                raise unknown(f"key in scene file {shown(str(path))}:", key, FILE_KEYS)
+        if "model" not in fields or "tau" not in fields:
+            raise InputError(f"scene file {shown(str(path))} has no {'model' if 'model' not in fields else 'tau'}")
+        fields["model"] = _model(fields["model"], Path(path))
+        for key in ("layers", "feet", "orbits", "marks"):
+            if not isinstance(fields.get(key, []), list):
+                raise refuse(key, fields[key], "a list")
+            if key in fields:
+                fields[key] = tuple(tuple(each) if isinstance(each, list) else each for each in fields[key])
+        return cls(**fields)
+
+    @property
+    def times(self) -> tuple[float, float]:
+        """The window of flight times."""
+        wide = self.tau[1] - self.tau[0]
+        found: tuple[float, float] = self.t if self.t is not None else (-wide, wide)
+        return found
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """The window of velocities."""
+        found: tuple[float, float] = self.v if self.v is not None else (0.0, 1.0)
+        return found
+
+    def depends(self, need: str) -> tuple[Any, ...]:
+        """What the curves of a need depend on."""
+        ground = (self.model.to_dict(), self.tau, self.pixels)
+        more = {
+            "gamma": (self.speeds,),
+            "stable-manifolds": (self.speeds, list(map(str, self.feet))),
+            "foliation": (self.speeds, self.leaves),
+            "orbits": ([list(map(str, state)) for state in self.orbits], self.impacts),
+        }
+        return (*ground, *more.get(need, (self.times,)))
+
+    @cached_property
+    def results(self) -> Results:
+        """What the layers need, computed as they ask for it."""
+        return Results(self)
+
+    @cached_property
+    def seconds(self) -> dict[str, float]:
+        """Seconds by layer, filled by `draw`."""
+        return {}
+
+    def draw(self, axes: Any = None) -> Any:
+        """The matplotlib axes with the layers; they say what is not there."""
+        axes = self._axes() if axes is None else axes
+        missing = []
+        for name in self.layers:
+            start, layer = perf_counter(), LAYERS[name]
+            curves = self.results.get(layer.need)
+            if not any(_inside(curve.points, self._box()) for curve in curves):
+                missing.append(name)
+            layer.draw(axes, curves, layer.label)
+            self.seconds[name] = perf_counter() - start
+        self._dress(axes, missing)
+        return axes
+
+    def _box(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        return self.tau, self.times if self.plane == SURFACE else self.speeds
+
+    def _axes(self) -> Any:
+        from matplotlib.figure import Figure
+
+        size = self.pixels / DPI
+        return Figure(figsize=(size, 0.7 * size), dpi=DPI, layout="constrained").add_subplot()
+
+    def _dress(self, axes: Any, missing: list[str]) -> None:
+        from matplotlib import patheffects
+
+        (left, right), (low, high) = self._box()
+        axes.axhline(0, color="0.4", linewidth=0.8, zorder=1)
+        axes.set(xlim=(left, right), ylim=(low, high), xlabel=r"time $\tau$", title=self.title)
+        axes.set_ylabel("flight time $t$" if self.plane == SURFACE else "velocity $v$")
+        halo = [patheffects.withStroke(linewidth=3, foreground="white")]
+        for letter, x, y in self.marks:
+            axes.plot([x], [y], "o", color="black", markersize=4, zorder=6, clip_on=False)
+            axes.annotate(letter, (x, y), (5, 5), textcoords="offset points", path_effects=halo, zorder=7)
+        if told := self._absent(missing):
+            axes.text(0.5, 0.5, told, transform=axes.transAxes, ha="center", va="center", color="0.35", wrap=True)
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc="best", fontsize="small", framealpha=0.9)
+
+    def _absent(self, missing: list[str]) -> str:
+        if not self.layers:
+            return "no layer: nothing to show"
+        return f"in this window there is no {', no '.join(missing)}" if missing else ""
+
+    def report(self) -> dict[str, Any]:
+        """Flights computed, seconds by layer, what came from the cache, curves of each layer in the window."""
+        curves = {name: len(self.results.get(LAYERS[name].need)) for name in self.layers}
+        return {
+            "flights": sum(self.results.flights.values()),
+            "flights_by_need": dict(self.results.flights),
+            "seconds_by_layer": dict(self.seconds),
+            "from_cache": list(self.results.cached),
+            "curves": curves,
+        }
+
+
+FILE_KEYS = ("model", "layers", "tau", "t", "v", "pixels", "title", "feet", "leaves", "orbits", "impacts", "marks")
+
+
+def _inside(points: Any, box: Any) -> bool:
+    (left, right), (low, high) = box
+    x, y = np.asarray(points)[:, :2].T
+    return bool(np.any((x >= left) & (x <= right) & (y >= low) & (y <= high)))
+
+
+def _window(name: str, given: Any) -> tuple[float, float]:
+    return Window.read(given, (0, 1)).tau if name == "tau" else _named_window(name, given)
+
+
+def _named_window(name: str, given: Any) -> tuple[float, float]:
+    if not isinstance(given, tuple | list) or len(given) != 2:
+        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
+    low, high = (as_float(constant(f"window of {name}", end)) for end in given)
+    if not low < high:
+        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
+    return low, high
+
+
+def _toml(path: str | Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"), parse_float=str)
+    except OSError as error:
+        raise InputError(f"scene file {shown(str(path))} cannot be read: {error.strerror}") from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError(f"scene file {shown(str(path))} is not TOML: {' '.join(str(error).split())}") from None
+
+
+def _model(given: Any, path: Path) -> Oscillator:
+    """A table as in a model file, or the name of one, beside the scene."""
+    if isinstance(given, str):
+        return Oscillator(**read_fields(path.parent / given))
+    if not isinstance(given, dict):
+        raise refuse("model", given, "a table [model] or the name of a model file")
+    for key in given:
+        if key not in FIELDS:
+            raise unknown("key in [model]:", key, FIELDS)
+    for key in FIELDS[:4]:
+        if key not in given:
+            raise InputError(f"[model] has no {key}: a model needs {', '.join(FIELDS[:4])}")
+    return Oscillator(**given)

@@ -1,0 +1,75 @@
+"""scene, figure, basins, bifurcation on the command line: pictures, reports, one-line refusals."""
+
+import json
+
+import pytest
+
+from singimpact.cli import main
+
+SCENE = """
+layers = ["horizon", "zero-set"]
+tau = ["-pi/2", 1.0]
+t = [-2, 2]
+pixels = 200
+[model]
+f = "x"
+g = "cos(2*t)"
+clearance = 0.7
+restitution = 0.5
+"""
+
+
+def run(capsys, *words):
+    with pytest.raises(SystemExit) as left:
+        main([str(word) for word in words])
+    return left.value.code, *capsys.readouterr()
+
+
+def test_scene(capsys, tmp_path):
+    (tmp_path / "s.toml").write_text(SCENE)
+    code, out, _ = run(capsys, "scene", tmp_path / "s.toml", "-o", tmp_path / "s.png", "--json")
+    assert code == 0
+    assert (tmp_path / "s.png").stat().st_size > 1000
+    told = json.loads(out)
+    assert set(told["seconds_by_layer"]) == {"horizon", "zero-set"}
+    code, out, _ = run(capsys, "scene", tmp_path / "s.toml", "-o", tmp_path / "s.svg")
+    assert "0 flights computed" in out
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (("horizon", "horizn"), "unknown layer 'horizn': the nearest known are horizon"),
+        (("t = [-2, 2]", "t = [2, -2]"), "window of t"),
+        (("layers", "layer"), "unknown key"),
+        (("tau", "v"), "has no tau"),
+    ],
+)
+def test_refused_scenes(capsys, tmp_path, change, told):
+    (tmp_path / "s.toml").write_text(SCENE.replace(*change))
+    code, _, error = run(capsys, "scene", tmp_path / "s.toml", "-o", tmp_path / "s.png")
+    assert code == 2
+    assert error.count("\n") == 1
+    assert told in error
+    assert not (tmp_path / "s.png").exists()
+
+
+@pytest.mark.parametrize("words", [["figure", "18"], ["figure", "x"], ["scene", "none.toml", "-o", "a.png"],
+                                   ["scene", "none.toml", "-o", "a.gif"]])  # fmt: skip
+def test_refusals(capsys, tmp_path, monkeypatch, words):
+    monkeypatch.chdir(tmp_path)
+    code, _, error = run(capsys, *words)
+    assert code == 2
+    assert error.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_basins_and_bifurcation(capsys, tmp_path):
+    model = ["--omega", 2, "--clearance", "0.3", "--restitution", "0.5", "--workers", 1]
+    code, out, _ = run(capsys, "basins", *model, "--size", 20, "-o", tmp_path / "b.png", "--json")
+    assert code == 0
+    assert {each["class"] for each in json.loads(out)["classes"]} == {"complete chatter", "(1, 1) orbit"}
+    code, _, _ = run(capsys, "bifurcation", *model, "--from", "0.9", "--to", "1.1", "--points", 3, "--impacts", 40,
+                     "-o", tmp_path / "c.png")  # fmt: skip
+    assert code == 0
+    assert (tmp_path / "c.png").exists()

@@ -1,0 +1,137 @@
+"""Scenes: one layer runs nobody else's work, a coarse picture costs less, what was computed is not computed again."""
+
+import numpy as np
+import pytest
+
+import singimpact as si
+from singimpact.inputs import InputError
+from singimpact.scenes import Scene, plot
+from singimpact.scenes.layers import LAYERS
+
+NEGATIVE = si.linear(2, "0.7", "0.5")
+STATES = {"tau": (-1.2, 1), "v": (0, 0.3), "pixels": 300}
+SURFACE = {"tau": (-1.2, 1), "t": (-2, 2), "pixels": 300}
+ALONE = {
+    "horizon": {"lines", "horizon"},
+    "zero-set": {"lines", "zero-set"},
+    "outline": {"lines", "horizon", "outline"},
+    "gamma": {"gamma"},
+    "foliation": {"foliation"},
+    "stable-manifolds": {"stable-manifolds"},
+    "orbits": {"orbits"},
+}
+
+
+@pytest.fixture(autouse=True)
+def empty_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path / "cache"))
+
+
+def scene(*layers, **more):
+    window = SURFACE if LAYERS[layers[0]].plane == ("tau", "t") else STATES
+    return Scene(NEGATIVE, layers, **(window | {"feet": ("0.6",), "orbits": ((-0.9, 0.1),), "leaves": 4} | more))
+
+
+@pytest.mark.parametrize("layer", ALONE)
+def test_one_layer_runs_its_own_work_alone(layer):
+    made = scene(layer)
+    made.draw()
+    assert set(made.results.flights) == ALONE[layer]
+
+
+def test_a_further_layer_costs_only_itself():
+    alone = scene("horizon")
+    alone.draw()
+    both = scene("horizon", "zero-set")
+    both.draw()
+    assert set(both.results.cached) >= {"horizon", "lines"}
+    assert set(both.results.flights) == {"zero-set"}
+
+
+def test_a_layer_beside_another_in_one_scene(monkeypatch):
+    monkeypatch.setattr("singimpact.scenes.needs.recall", lambda _key: None)
+    one, two, both = scene("horizon"), scene("zero-set"), scene("horizon", "zero-set")
+    spent = []
+    for each in (one, two, both):
+        each.draw()
+        spent.append(each.results.flights)
+    assert spent[2] == spent[0] | spent[1]
+
+
+def test_what_is_kept_is_the_same_curve():
+    first, again = scene("outline"), scene("outline")
+    first.draw()
+    again.draw()
+    assert again.report()["flights"] == 0
+    for old, new in zip(first.results.get("outline"), again.results.get("outline"), strict=True):
+        assert np.array_equal(old.points, new.points)
+        assert old.marks == new.marks
+
+
+@pytest.mark.parametrize("layers", [("horizon", "zero-set"), ("outline",)])
+def test_a_coarse_picture_costs_a_third_of_a_fine_one(layers):
+    window = {"tau": (0, 6), "t": (-6, 6), "v": (0, 3)}
+    small, large = (Scene(si.linear(2, "0.3", "0.5"), layers, **window, pixels=pixels) for pixels in (400, 2000))
+    for each in (small, large):
+        each.draw()
+    assert 3 * small.report()["flights"] <= large.report()["flights"]
+
+
+def test_an_empty_scene_says_so():
+    axes = Scene(NEGATIVE, (), (-1, 1), v=(0, 1)).draw()
+    assert "no layer" in axes.texts[0].get_text()
+
+
+def test_a_window_without_curves_says_what_is_not_there():
+    made = Scene(si.linear(2, "1.01", "0.5"), ("zero-set", "horizon"), (-0.5, 0.5), t=(-0.5, 0.5), pixels=200)
+    assert "no zero-set, no horizon" in made.draw().texts[0].get_text()
+
+
+def test_a_curve_is_drawn_with_its_marks():
+    (curve,) = scene("horizon").results.get("horizon")
+    assert {text.get_text() for text in plot(curve).texts} >= {"tangency", "cusp"}
+
+
+def test_a_scene_file(tmp_path):
+    text = 'layers = ["orbits"]\ntau = [-1, 1]\nv = [0, "1/2"]\npixels = 200\norbits = [["0.1", "0.2"]]\n'
+    (tmp_path / "model.toml").write_text(NEGATIVE.to_toml())
+    (tmp_path / "scene.toml").write_text(text + 'model = "model.toml"\n')
+    made = Scene.read(tmp_path / "scene.toml")
+    assert made.model == NEGATIVE
+    made.draw().figure.canvas.draw()
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"layers": ("horizn",)}, "unknown layer 'horizn'.*horizon"),
+        ({"layers": ("horizon", "gamma")}, "layers of two planes"),
+        ({"layers": ("horizon",)}, "window of t is missing"),
+        ({"v": (1, 0)}, "window of v"),
+        ({"pixels": 3}, "pixels = 3"),
+        ({"layers": ("stable-manifolds",)}, "feet is missing"),
+        ({"orbits": (3,)}, "orbits = 3"),
+        ({"marks": (("A", 1),)}, "marks"),
+        ({"layers": "gamma"}, "layers = 'gamma'"),
+        ({"model": 3}, "model = 3"),
+    ],
+)
+def test_refusals(change, told):
+    with pytest.raises(InputError, match=told):
+        Scene(**({"model": NEGATIVE, "layers": ("gamma",), "tau": (-1, 1), "v": (0, 1)} | change))
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("tau = [0, 1]", "has no model"),
+        ('layer = ["horizon"]', "unknown key.*layers"),
+        ("tau = [0", "is not TOML"),
+        ("tau = [0, 1]\nmodel = 3", "model = 3"),
+        ('tau = [0, 1]\nlayers = "x"\n[model]\nf = "x"', "f, g, clearance|layers"),
+    ],
+)
+def test_refused_files(tmp_path, text, told):
+    (tmp_path / "scene.toml").write_text(text)
+    with pytest.raises(InputError, match=told):
+        Scene.read(tmp_path / "scene.toml")
