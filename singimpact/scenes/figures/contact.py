@@ -137,7 +137,7 @@ def figure_5() -> Picture:
     model, tau = oscillator(), tangency("gamma")
     low, high, v = tau - 0.62, tau + 0.1, 0.11
     frame = Frame(low, high, v)
-    surface = ImpactSurface(model, (low - 0.5, high), (-2, 2))
+    surface = ImpactSurface(model, (low - 0.5, high + 2), (-3, 3))  # H is shifted Z
     jump = next(c.points for c in surface.discontinuities if np.hypot(*(c.points - [tau, 0.0]).T).min() < 1e-9)
     (curve, *_) = gammas_within(model, frame)
     lines = leaves(model, frame, np.linspace(low, tau, 14)[1:-1].tolist())

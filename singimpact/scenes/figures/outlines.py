@@ -15,18 +15,18 @@ from singimpact.scenes.figures.sheet import launch_and_landing
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 
-LEFT, RIGHT, HIGH, LOW, LONG = 1.75, 2.8, 0.2, -0.1, 1.9  # times, velocities and flight times shown
+LEFT, RIGHT, HIGH, LOW, LONG = 1.95, 2.8, 0.25, -0.1, 1.6  # times, velocities and flight times shown
 
 
 def figure_1() -> Picture:
     """V_c over (tau, t), folded along H; the lines over w_1, w_2, w_3 touch it there."""
     model = oscillator()
-    surface = ImpactSurface(model, (LEFT, RIGHT), (-2.5, 2.5))
+    surface = ImpactSurface(model, (LEFT, RIGHT + LONG), (-2.5, 2.5))  # H is shifted Z
     folds = [np.column_stack([outline.points, horizon.points[:, 1]])[_shown(outline.points, horizon.points[:, 1])]
              for horizon, outline in zip(surface.horizon, surface.outline, strict=True)]  # fmt: skip
     fold = max(folds, key=len)
     fold = fold[np.argsort(fold[:, 0])]
-    lines = [Line(fold, "H", "H", "$H$", 0.02), Line(fold * [1, 1, 0], "P", "P", "$P$", 0.0)]
+    lines = [Line(fold, "H", "H", "$H$", 0.1), Line(fold * [1, 1, 0], "P", "P", "$P$", 0.12)]
     for n, share in enumerate((0.2, 0.45, 0.7)):
         place = fold[int(share * (len(fold) - 1))]
         over = np.array([place * [1, 1, 0], place + np.array([0, 0, 0.4])])

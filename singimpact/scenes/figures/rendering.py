@@ -103,7 +103,7 @@ def _solid(axes: Any, panel: Panel) -> None:
         if line.label:
             place = line.points[int(line.at * (len(line.points) - 1))]
             axes.text(
-                *(place + np.array([0.06, 0.03, 0.06])), line.label, fontsize=LETTER, path_effects=_halo(), zorder=20
+                *(place + np.array([0.015, 0.004, 0.02])), line.label, fontsize=LETTER, path_effects=_halo(), zorder=20
             )
     (left, right), (low, high) = panel.box
     axes.set(xlim=(left, right), ylim=(low, high))

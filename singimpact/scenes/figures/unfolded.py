@@ -123,7 +123,14 @@ def figure_17() -> Picture:
 
 
 def _named_foot(curve: Curve) -> Line:
-    return Line(curve.points, "loop", "lambda and its foot", r"$W^s(X)$", 0.35, (8, 4))
+    return Line(
+        curve.points, "loop", "lambda and its foot", r"$\lambda\subset W^s(X)$", _share(curve.points, 0.05), (10, -10)
+    )
+
+
+def _share(points: Array, tau: float) -> float:
+    """The place on the first stretch of a curve, by a share of its vertices, where it passes a time."""
+    return float(np.argmax(points[:, 0] < tau)) / (len(points) - 1)
 
 
 def _preimages(frame: Frame) -> list[Array]:
