@@ -21,6 +21,7 @@ COMMANDS = {
     "chatter": "when infinitely many impacts accumulate",
     "threshold": "the velocity that separates complete from incomplete chatter",
     "classify": "tangency, swan, fold and cusp points of a model",
+    "explore": "a page with a slider for the clearance",
     "sweep": "one question for many values of a number of the model",
     "bench": "run time against error, beside other tools",
     "errata": "what is misprinted, what holds instead, and why",
