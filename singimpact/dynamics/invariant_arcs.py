@@ -19,6 +19,7 @@ from singimpact.contact.points import tangency_points
 from singimpact.flights.hits import first_hit
 from singimpact.flights.inverse import backwards, inverse_map
 from singimpact.inputs import InputError
+from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.surface.curve import Curve, Mark
@@ -128,6 +129,8 @@ def _curved(model: Oscillator, tau: Any) -> str:
     order = points_of(model, tau)[0]
     if order == 0:
         raise InputError(f"tau = {tau}: a_c does not vanish there, so that no invariant curve ends there")
+    if order == 2 and acceleration(model, np.array([_foot(model, tau, "swan")]), 2)[0] > 0:
+        raise InputError(f"tau = {tau}: a_c'' > 0 at this swan, and no invariant curve ends at a positive one")
     return {1: "tangency", 2: "swan"}[order]
 
 

@@ -1,6 +1,7 @@
 """explore: a page in a file, its curves as JSON, a browser, a line for a mistake."""
 
 import json
+import sys
 import webbrowser
 
 import pytest
@@ -40,8 +41,8 @@ def test_window(singimpact, monkeypatch, opens):
     [
         (["model.toml", "--model", "other.toml"], "two models"),
         ([*LINEAR, "--html", "a.html", "-o", "b.html"], "two files"),
-        ([*LINEAR, "--between", "2", "3"], "no swan point"),
-        ([*LINEAR, "--between", "3", "2"], "between"),
+        ([*LINEAR, "--json", "--between", "2", "3"], "no swan point"),
+        ([*LINEAR, "--json", "--between", "3", "2"], "between"),
         ([*LINEAR, "--html", "/no/such/folder/page.html"], "/no/such/folder"),
     ],
 )
@@ -49,3 +50,11 @@ def test_refusals(singimpact, given, told):
     refused = singimpact("explore", *given)
     assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
     assert told in refused.stderr
+
+
+def test_without_plotly(singimpact, monkeypatch):
+    monkeypatch.setitem(sys.modules, "plotly", None)
+    monkeypatch.setitem(sys.modules, "plotly.graph_objects", None)
+    refused = singimpact("explore", *LINEAR)
+    assert refused.exit_code == 2
+    assert "extra `interactive`" in refused.stderr

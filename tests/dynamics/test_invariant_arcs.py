@@ -73,6 +73,7 @@ def test_gamma_of_a_swan_is_found_by_its_exact_time(tau):
     assert np.array_equal(curve.points[0], [0, 0])
 
 
-def test_no_gamma_at_a_regular_point():
-    with pytest.raises(si.InputError, match="does not vanish"):
-        grown_gamma(si.linear(2, "0.3", "0.5"), Frame(-1.3, 3, 2), 1)
+@pytest.mark.parametrize(("clearance", "tau", "told"), [("0.3", 1, "does not vanish"), (-1, "pi/2", "positive one")])
+def test_no_gamma_at_a_regular_point_or_a_positive_swan(clearance, tau, told):
+    with pytest.raises(si.InputError, match=told):
+        grown_gamma(si.linear(2, clearance, "0.5"), Frame(-1.3, 3, 2), tau)
