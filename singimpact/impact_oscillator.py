@@ -240,7 +240,7 @@ def swan_points(
     if over != "clearance":
         raise refuse("over", over, "'clearance'")
     model = ImpactOscillator(f, g, 0, 1, parameters)
-    return swan_points_over_clearance(model, None if between is None else _ends(between))
+    return swan_points_over_clearance(model, None if between is None else clearances(between))
 
 
 def _bound(end: Any) -> Fraction:
@@ -249,7 +249,14 @@ def _bound(end: Any) -> Fraction:
     return Fraction(as_float(tree)) if exact is None else exact
 
 
-def _ends(between: Any) -> tuple[Fraction, Fraction]:
+def clearances(between: Any) -> tuple[Fraction, Fraction]:
+    """Two clearances, the lower first, as exact fractions.
+
+    Examples
+    --------
+    >>> clearances(("-1/3", "0.5"))
+    (Fraction(-1, 3), Fraction(1, 2))
+    """
     try:
         low, high = (_bound(end) for end in between)
     except (TypeError, ValueError) as error:

@@ -22,6 +22,8 @@ COMMANDS = {
     "figure": "the paper's figures, from computed data",
     "scene": "draw the layers that a scene file names",
     "threshold": "the velocity that separates complete from incomplete chatter",
+    "classify": "tangency, swan, fold and cusp points of a model",
+    "explore": "a page with a slider for the clearance",
     "sweep": "one question for many values of a number of the model",
     "basins": "where the orbits of a grid of states end, as a picture",
     "bifurcation": "where an orbit settles as a number of the model moves",

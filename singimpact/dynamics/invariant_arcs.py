@@ -24,6 +24,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.surface.curve import Curve, Mark
 from singimpact.theory.formulas import dynamics_on_gamma, fibre, gamma
+from singimpact.theory.places import points_of
 from singimpact.theory.power_series import PowerSeries
 
 Array = np.ndarray[Any, Any]
@@ -157,15 +158,13 @@ def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
 
 
 def _curved(model: Oscillator, tau: Any) -> str:
-    """Whether the point is a tangency or a swan."""
-    for at in ("swan", "tangency"):  # at a swan point the equations of a tangency are singular
-        try:
-            gamma(3, at, model, tau)
-        except InputError as error:
-            told = error
-            continue
-        return at
-    raise told
+    """Whether the point is a tangency or a swan; a swan is asked for first, for a_c vanishes there too."""
+    order = points_of(model, tau)[0]
+    if order == 0:
+        raise InputError(f"tau = {tau}: a_c does not vanish there, so that no invariant curve ends there")
+    if order == 2 and acceleration(model, np.array([_foot(model, tau, "swan")]), 2)[0] > 0:
+        raise InputError(f"tau = {tau}: a_c'' > 0 at this swan, and no invariant curve ends at a positive one")
+    return {1: "tangency", 2: "swan"}[order]
 
 
 def _foot(model: Oscillator, tau: Any, at: str | None) -> float:

@@ -93,11 +93,11 @@ class ImpactSurface:
     @cached_property
     def tangencies(self) -> tuple[TangencyPoint, ...]:
         """The zeros of a_c with tau in the window, those of one period repeated."""
-        return tuple(point for point, _ in self._tangencies)
+        return tuple(point for point, _ in self.placed_tangencies)
 
     @cached_property
-    def _tangencies(self) -> list[tuple[TangencyPoint, float]]:
-        """Each zero with its time in the window."""
+    def placed_tangencies(self) -> list[tuple[TangencyPoint, float]]:
+        """Each zero of a_c with its time in the window: that of its own period, moved by whole ones."""
         points = tangency_points(self.model)
         low, high = self.window.tau
         if self.model.period is None:
@@ -112,7 +112,7 @@ class ImpactSurface:
         """Z with its named points and x' at the other end; everything else follows from it."""
         cell = 1 / (CELLS_A_RADIAN * _fastest(self.model))
         made = traced(self._rest.grid, self._rest.y_and_gradient, self.window, cell, self._speed)
-        zeros = [tau for _, tau in self._tangencies]
+        zeros = [tau for _, tau in self.placed_tangencies]
         return [named(line, zeros, self._rest) for line in made]
 
     @cached_property

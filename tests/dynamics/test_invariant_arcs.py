@@ -63,3 +63,17 @@ def test_before_undoes_the_map():
     points = np.array([[0.5, 0.3], [1.0, 0.1], [2.0, 0.4]])
     for model in (si.linear(2, "0.3", "0.5"), si.ImpactOscillator("x", "cos(2*t)", "0.3", "-0.5*v + 0.1*v**2")):
         assert np.abs(before(model, model_step(model, points)) - points).max() < 1e-10
+
+
+@pytest.mark.parametrize("tau", [None, 0, 0.0])
+def test_gamma_of_a_swan_is_found_by_its_exact_time(tau):
+    """a_c vanishes at a swan as at a tangency: a_c' tells them apart, however tau is given."""
+    (curve, *_) = grown_gamma(si.linear(2, 1, "0.5"), Frame(-1.3, 3, 2), tau)
+    assert np.isfinite(curve.points).all()
+    assert np.array_equal(curve.points[0], [0, 0])
+
+
+@pytest.mark.parametrize(("clearance", "tau", "told"), [("0.3", 1, "does not vanish"), (-1, "pi/2", "positive one")])
+def test_no_gamma_at_a_regular_point_or_a_positive_swan(clearance, tau, told):
+    with pytest.raises(si.InputError, match=told):
+        grown_gamma(si.linear(2, clearance, "0.5"), Frame(-1.3, 3, 2), tau)

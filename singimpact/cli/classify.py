@@ -1,0 +1,89 @@
+"""`singimpact classify`: the singular points of a model, and where P changes its kind."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.model import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.inputs import InputError
+
+if TYPE_CHECKING:
+    from singimpact.surface.classification import Classification
+    from singimpact.surface.transitions import Transition
+
+
+@click.command(short_help="tangency, swan, fold and cusp points of a model")
+@model_options
+@click.option("--window-tau", nargs=2, metavar="LOW HIGH", help="Ends of tau.  [default: one period]")
+@click.option("--window-t", nargs=2, metavar="LOW HIGH", help="Ends of t.  [default: one period to both sides]")
+@click.option("--over", metavar="NAME", help="Where P changes its kind as this moves: clearance or a parameter.")
+@click.option("--between", nargs=2, metavar="LOW HIGH", help="Ends of --over; without it, clearances of swans.")
+@output_options
+def command(
+    window_tau: tuple[str, str] | None, window_t: tuple[str, str] | None, over: str | None,
+    between: tuple[str, str] | None, as_json: bool, output: str | None, **options: Any,
+) -> None:  # fmt: skip
+    """The points of V_c' where p or phi is singular: tangencies, swans, cusps, and the fold lines between them.
+
+    Swan points are listed over the clearance. With --over and --between: the swans, swallowtails, lips and beaks met
+    on the way. Numbers may be expressions such as pi/2.8.
+    """
+    oscillator = take_model(options)
+    if over is not None and between is None:
+        raise InputError(f"--over {over} needs its ends: --between LOW HIGH")
+    from singimpact.impact_oscillator import clearances
+    from singimpact.surface.classification import classify
+    from singimpact.surface.transitions import transitions
+
+    swans_between = clearances(between) if between is not None and over in (None, "clearance") else None
+    found = classify(oscillator, window_tau, window_t, swans_between)
+    changes = None if over is None else transitions(oscillator, over, between, found.t)
+    if as_json:
+        emit(as_json_text({"model": oscillator.to_dict(), **_told(found, over, changes)}), output)
+    else:
+        emit(_text(found, over, changes), output)
+
+
+def _told(found: Classification, over: str | None, changes: list[Transition] | None) -> dict[str, Any]:
+    told: dict[str, Any] = {
+        "window": {"tau": found.tau, "t": found.t},
+        "points": [{"name": p.name, "maps": p.maps, "kind": p.kind, "tau": p.tau, "t": p.t, "image": p.image}
+                   for p in found.points],
+        "folds": [{"maps": f.maps, "from": f.start, "to": f.end, "bounds": f.bounds} for f in found.folds],
+        "swans": [{"clearance": s.clearance, "tau": s.tau, "kind": s.kind} for s in found.swans],
+        "notes": found.notes,
+        "flights": found.flights,
+    }  # fmt: skip
+    if changes is not None:
+        listed = [{"kind": c.kind, "value": c.value, "tau": c.tau, "t": c.t} for c in changes]
+        told["transitions"] = {"over": over, "found": listed}
+    return told
+
+
+def _text(found: Classification, over: str | None, changes: list[Transition] | None) -> str:
+    tables = [
+        _table("points of V_c' where p or phi is singular", ["point", "of", "kind", "tau", "t", "image tau", "image v"],
+               [[p.name, p.maps, p.kind, *_numbers(p.tau, p.t, *p.image)] for p in found.points]),
+        _table("fold lines", ["of", "from tau", "from t", "to tau", "to t", "ends"],
+               [[f.maps, *_numbers(*f.start, *f.end), " to ".join(dict.fromkeys(f.bounds))] for f in found.folds]),
+        _table("swan points over the clearance", ["c_0", "tau", "kind"],
+               [[*_numbers(s.clearance, s.tau), s.kind] for s in found.swans], found.notes),
+    ]  # fmt: skip
+    if changes is not None:
+        rows = [[c.kind, *_numbers(c.value, c.tau, c.t)] for c in changes]
+        tables.append(_table(f"where P changes as {over} moves", ["kind", str(over), "tau", "t"], rows))
+    low, high = _numbers(*found.tau), _numbers(*found.t)
+    return "\n\n".join([f"window: tau from {' to '.join(low)}, t from {' to '.join(high)}", *tables])
+
+
+def _table(title: str, header: list[str], rows: list[list[str]], notes: tuple[str, ...] = ()) -> str:
+    told = columns(header, rows) if rows else "not decided" if notes else "none"
+    return "\n".join([f"{title}:", told, *notes])
+
+
+def _numbers(*values: float) -> list[str]:
+    return [f"{value + 0.0:.12g}" for value in values]

@@ -1,0 +1,189 @@
+"""The curves of the impact surface for many clearances on both sides of a swan: what the page with a slider shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.expressions import evaluate, number, substitute
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import DOUBLES
+from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
+from singimpact.dynamics.invariant_arcs import Frame, grown_gamma
+from singimpact.impact_oscillator import clearances
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
+from singimpact.surface.curve import Curve
+from singimpact.surface.impact_surface import ImpactSurface
+
+Array = np.ndarray[Any, Any]
+Span = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class FilmSettings:
+    """What is shown of a swan that opens.
+
+    Attributes
+    ----------
+    opening : half the distance of the two tangency points at the ends of the slider, in periods: the window below is
+        then less than a period. alone : the same when there is no period.
+    reach_tau, reach_t : of the window, in those halves; the unfolded swan reaches to 3 and 4.
+    height : of the picture, in sizes of the cusp of P, (64/24) |a''| half^3.
+    steps : of the slider. pixels : of a panel.
+    """
+
+    opening: float = 1 / 12
+    alone: float = 0.5
+    reach_tau: float = 4.0
+    reach_t: float = 6.0
+    height: float = 1.5  # a swan that is opened wide is higher than its leading part
+    steps: int = 41
+    pixels: int = 500
+
+
+SETTINGS = FilmSettings()
+
+
+@dataclass(frozen=True)
+class ClearanceFrame:
+    """The curves at one clearance.
+
+    Attributes
+    ----------
+    clearance : c. curves : "Z", "H", "P", "jumps" (the visible part of P), "gamma". tangencies : their times.
+    """
+
+    clearance: float
+    curves: dict[str, list[Curve]]
+    tangencies: tuple[float, ...]
+
+    def line(self, name: str) -> tuple[Array, Array]:
+        """All pieces of a curve as one line with gaps, where nan stands for a gap."""
+        gap = np.full((1, 2), np.nan)
+        points = np.vstack([part for curve in self.curves[name] for part in (curve.points, gap)] or [gap])
+        return points[:, 0], points[:, 1]
+
+
+@dataclass(frozen=True)
+class ClearanceFilm:
+    """Frames in order of the clearance, one of them exactly at the swan.
+
+    Attributes
+    ----------
+    model : the oscillator. swan : the point in the middle. frames : the pictures.
+    tau, t, v : the window. flights : computed for Z, H and P.
+    """
+
+    model: Oscillator
+    swan: SwanPoint
+    frames: tuple[ClearanceFrame, ...]
+    tau: Span
+    t: Span
+    v: Span
+    flights: int
+
+
+def clearance_film(
+    model: Oscillator,
+    between: Any = None,
+    steps: int = SETTINGS.steps,
+    told: Callable[[int, int, str], None] = lambda done, total, text: None,  # noqa: ARG005
+) -> ClearanceFilm:
+    """Z, H, P and gamma as the clearance moves through the swan whose clearance is nearest to the model's.
+
+    Parameters
+    ----------
+    between : two numbers, ends of the clearance; as much on both sides of the swan as opens it well when not given.
+    steps : how many clearances. told : is called with what is being done.
+
+    Raises
+    ------
+    InputError : there is no swan point, or none between the ends.
+
+    Examples
+    --------
+    >>> film = clearance_film(Oscillator("x", "cos(2*t)", "0.9", "1/2"), steps=3)
+    >>> [(round(frame.clearance, 6), len(frame.tangencies)) for frame in film.frames]
+    [(0.862922, 2), (1.0, 1), (1.137078, 0)]
+    """
+    if not isinstance(model, Oscillator):
+        raise refuse("model", model, "an ImpactOscillator")
+    if isinstance(steps, bool) or not isinstance(steps, int) or not 2 <= steps <= 1001:
+        raise refuse("steps", steps, "a whole number from 2 to 1001")
+    ends = None if between is None else clearances(between)
+    swan = _nearest_swan(model, ends)
+    places, half, size = _reach(swan, ends, steps)
+    tau = (swan.tau - SETTINGS.reach_tau * half, swan.tau + SETTINGS.reach_tau * half)
+    t = (-SETTINGS.reach_t * half, SETTINGS.reach_t * half)
+    frames, flights = [], 0
+    for n, clearance in enumerate(places):
+        told(n, len(places), f"c = {clearance:.6g}")
+        at = swan.place if clearance == swan.clearance else clearance
+        surface = ImpactSurface(model.replace(clearance=at), tau, t, SETTINGS.pixels)
+        frames.append(_frame(surface, clearance, size))
+        flights += surface.flights
+    return ClearanceFilm(model, swan, tuple(frames), tau, t, (-size, size), flights)
+
+
+def _nearest_swan(model: Oscillator, between: tuple[Fraction, Fraction] | None) -> SwanPoint:
+    swans = swan_points_over_clearance(model, between)
+    if not swans:
+        where = "at any clearance" if between is None else f"for a clearance from {between[0]} to {between[1]}"
+        raise InputError(f"there is no swan point {where}: P keeps its kind and there is nothing to see")
+    here = as_float(model.clearance)
+    return min(swans, key=lambda swan: abs(swan.clearance - here))
+
+
+def _reach(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: int) -> tuple[list[float], float, float]:
+    """The clearances with c_0 among them, half the distance of A and B at the end, and the size of P there.
+
+    a = a'' (sigma^2 - half^2)/2 and a = -f_x (c - c_0) at the swan, to leading order.
+    """
+    curvature = abs(float(acceleration(swan.oscillator(1), np.array([swan.tau]), 2)[0]))
+    slope = abs(_stiffness(swan))
+    period = swan.model.period
+    widest = SETTINGS.alone if period is None else SETTINGS.opening * as_float(period)
+    if between is None:
+        away = curvature * widest**2 / (2 * slope)
+        low, high = swan.clearance - away, swan.clearance + away
+    else:
+        low, high = map(float, between)
+        away = max(swan.clearance - low, high - swan.clearance)
+    half = min(widest, (2 * slope * away / curvature) ** 0.5)
+    places = np.linspace(low, high, steps)
+    places[np.argmin(np.abs(places - swan.clearance))] = swan.clearance
+    return places.tolist(), half, SETTINGS.height * 64 / 24 * curvature * half**3
+
+
+def _stiffness(swan: SwanPoint) -> float:
+    """f_x at (c_0, 0)."""
+    rest = substitute(swan.model.force(), {"xdot": number(0)})
+    return float(evaluate(derivative(rest, "x"), {"x": swan.clearance}, DOUBLES))
+
+
+def _frame(surface: ImpactSurface, clearance: float, size: float) -> ClearanceFrame:
+    curves = {"Z": surface.zero_set, "H": surface.horizon, "P": surface.outline, "jumps": surface.discontinuities}
+    times = tuple(tau for _, tau in surface.placed_tangencies)
+    return ClearanceFrame(clearance, {**curves, "gamma": _gammas(surface, size)}, times)
+
+
+def _gammas(surface: ImpactSurface, size: float) -> list[Curve]:
+    """gamma at each point of the window that has one, cut to the picture."""
+    found = []
+    low, high = surface.window.tau
+    for point, tau in surface.placed_tangencies:
+        turns = tau - point.tau  # whole periods
+        swan = point.kind == "degenerate" and acceleration(surface.model, np.array([tau]), 2)[0] < 0
+        if point.kind == "gamma" or swan:
+            frame = Frame(low - turns, high - turns, size, surface.window.pixels)
+            for curve in grown_gamma(surface.model, frame, point.tau):
+                moved = curve.points + np.array([turns, 0.0])
+                found.append(Curve("gamma", moved, curve.axes, curve.marks))
+    return found

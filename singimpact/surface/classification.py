@@ -1,0 +1,161 @@
+"""`classify`: the singular points of p and phi in a window of V_c', each with its germ, and the fold lines between.
+
+(tau_*, 0)   a_c = 0: p and phi are folded; at a swan, a_c' = 0 too, both have a lips point
+(tau_*, t)   on Z, t != 0: phi has a cusp, p has one at the mirror image; above a swan, swallowtails
+H, Z         between these: p is folded along H, phi along Z
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.contact.points import tangency_points
+from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
+from singimpact.surface.curve import Curve
+from singimpact.surface.impact_surface import ImpactSurface
+
+Point = tuple[float, float]
+REACH = 1.5  # of the times between the outermost zeros of a_c: the default window of a forcing without a period
+NEAR = 1e-9  # a cusp this near to a degenerate zero in tau stands above it
+
+
+@dataclass(frozen=True)
+class SingularPoint:
+    """A point of V_c' where p or phi is no local diffeomorphism, other than a fold on the way.
+
+    Attributes
+    ----------
+    name : "tangency", "swan", "cusp", "swallowtail". maps : "p", "phi" or "p, phi". tau, t : where on V_c'.
+    image : (tau, v) under p, (tau, x') under phi. kind : of a tangency "gamma", "foliation"; of a swan its sign; "".
+    """
+
+    name: str
+    maps: str
+    tau: float
+    t: float
+    image: Point
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class FoldLine:
+    """A stretch of H (for p) or Z (for phi) between singular points, the edge of the window, or round.
+
+    Attributes
+    ----------
+    maps : "p" or "phi". start, end : (tau, t). bounds : what stands there: "cusp", "edge"; "closed" when it is round.
+    """
+
+    maps: str
+    start: Point
+    end: Point
+    bounds: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Classification:
+    """What `classify` finds.
+
+    Attributes
+    ----------
+    tau, t : the window. points : in order of tau, t. folds : of p, then of phi.
+    swans : where the clearance would have to be, for a swan. notes : what was not decided, and why. flights : computed.
+    """
+
+    tau: Point
+    t: Point
+    points: tuple[SingularPoint, ...]
+    folds: tuple[FoldLine, ...]
+    swans: tuple[SwanPoint, ...]
+    notes: tuple[str, ...]
+    flights: int
+
+
+def classify(model: Oscillator, tau: Any = None, t: Any = None, between: Any = None) -> Classification:
+    """The singular points of p and phi in a window.
+
+    Parameters
+    ----------
+    tau, t : ends of the window of Z, whose mirror images are listed with it; without them one period and as much on
+        both sides of t = 0, or what holds all zeros of a_c when g is a polynomial.
+    between : clearances to look for swans between, as two Fractions.
+
+    Examples
+    --------
+    >>> found = classify(Oscillator("0", "-12*(t**2 - 1)", 0, "1/2"))
+    >>> [(point.name, point.maps, point.tau, round(point.t, 9)) for point in found.points][:3]
+    [('cusp', 'p', -3.0, 4.0), ('tangency', 'p, phi', -1.0, 0.0), ('cusp', 'phi', -1.0, 4.0)]
+    """
+    if not isinstance(model, Oscillator):
+        raise refuse("model", model, "an ImpactOscillator")
+    usual_tau, usual_t = default_window(model)
+    surface = ImpactSurface(model, usual_tau if tau is None else tau, usual_t if t is None else t)
+    points = sorted([*_on_the_axis(surface), *_off_the_axis(surface)], key=lambda each: (each.tau, each.t))
+    folds = [
+        line for maps, curves in (("p", surface.horizon), ("phi", surface.zero_set)) for line in _folds(maps, curves)
+    ]
+    swans, notes = _swans(model, between)
+    return Classification(
+        surface.window.tau, surface.window.t, tuple(points), tuple(folds), swans, notes, surface.flights
+    )
+
+
+def default_window(model: Oscillator) -> tuple[Point, Point]:
+    """One period in tau and in t to both sides; or, of a polynomial, the zeros of a_c with room about them."""
+    if model.period is not None:
+        period = as_float(model.period)
+        return (0.0, period), (-period, period)
+    places = [point.tau for point in tangency_points(model)] or [0.0]
+    middle, half = (places[0] + places[-1]) / 2, (places[-1] - places[0]) / 2 or 1.0
+    # an unfolded swan reaches to three half distances in tau and to four in t
+    return (middle - 2 * REACH * half - half, middle + 2 * REACH * half + half), (-4 * REACH * half, 4 * REACH * half)
+
+
+def _on_the_axis(surface: ImpactSurface) -> Iterator[SingularPoint]:
+    for point, tau in surface.placed_tangencies:
+        if point.kind != "degenerate":
+            yield SingularPoint("tangency", "p, phi", tau, 0.0, (tau, 0.0), point.kind)
+            continue
+        curvature = float(acceleration(surface.model, np.array([tau]), 2)[0])
+        kind = "positive" if curvature > 0 else "negative" if curvature < 0 else "undecided"
+        yield SingularPoint("swan", "p, phi", tau, 0.0, (tau, 0.0), kind)
+
+
+def _off_the_axis(surface: ImpactSurface) -> Iterator[SingularPoint]:
+    double = [tau for point, tau in surface.placed_tangencies if point.kind == "degenerate"]
+    for cusp in surface.cusps:
+        name = "swallowtail" if any(abs(cusp.tau - tau) < NEAR for tau in double) else "cusp"
+        yield SingularPoint(name, "phi", cusp.tau, cusp.t, cusp.image)
+        yield SingularPoint(name, "p", *cusp.of_p, cusp.image)
+
+
+def _folds(maps: str, curves: list[Curve]) -> Iterator[FoldLine]:
+    """Each curve cut at its cusps."""
+    for curve in curves:
+        cuts = sorted(mark.index for mark in curve.marks if mark.name == "cusp")
+        if curve.closed:
+            pairs = list(zip(cuts, cuts[1:] + cuts[:1], strict=True)) or [(0, len(curve) - 1)]
+        else:
+            ends = [0, *cuts, len(curve) - 1]
+            pairs = list(pairwise(ends))
+        for pair in pairs:
+            kinds = ["cusp" if i in cuts else "closed" if curve.closed else "edge" for i in pair]
+            start, end = ((float(curve.points[i, 0]), float(curve.points[i, 1])) for i in pair)
+            yield FoldLine(maps, start, end, (kinds[0], kinds[1]))
+
+
+def _swans(model: Oscillator, between: Any) -> tuple[tuple[SwanPoint, ...], tuple[str, ...]]:
+    """The clearances of swans; where no list is possible, the reason instead of an empty one."""
+    try:
+        return swan_points_over_clearance(model, between), ()
+    except InputError as error:
+        return (), (f"swan points over the clearance: {error}",)
