@@ -48,7 +48,7 @@ def figure(number: Any) -> Any:
     Examples
     --------
     >>> len(figure(12).axes)
-    2
+    4
     """
     from singimpact.scenes.figures.rendering import drawn
 
