@@ -2,7 +2,8 @@
 
 Not here: what is drawn (`dynamics`, `surface`, `flights`), text with formulas (`documents`).
 Files: `drawing` (`plot`: one call for everything that can be drawn), `orbit` (x(t)), `scene` (a window and its layers),
-`needs` (what layers ask for), `layers`, `kept` (results on disk), `looks` (colours and lines), `figures/` 1 to 17, `clearance_frames`, `explore` (the page).
+`needs` (what layers ask for), `layers`, `kept` (results on disk), `looks` (colours and lines), `figures/` 1 to 17,
+`clearance_frames` and `explore` (the page).
 """
 
 from singimpact.scenes.drawing import plot as plot
