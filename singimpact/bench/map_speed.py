@@ -68,7 +68,21 @@ def compare(effort: Effort = EFFORT, told: Callable[[str], None] = lambda _: Non
                 few = problems[: effort.slow] if name.startswith("scipy") else problems
                 calls = 1 if name.startswith("scipy") else effort.calls
                 rows.append(_row(family, regime, name, [_peer(fly, p, calls) for p in few], few, effort))
+        rows += _all_regimes(family, rows)
     return rows
+
+
+def _all_regimes(family: str, rows: list[Row]) -> list[Row]:
+    """A row a method for all states of a family: the mean over regimes, weighted by their states."""
+    own = {row.regime: row.of for row in rows if (row.family, row.method) == (family, "singimpact")}
+    made = []
+    for method in dict.fromkeys(row.method for row in rows if row.family == family):
+        part = [row for row in rows if (row.family, row.method) == (family, method) and row.of]
+        weight = sum(own[row.regime] for row in part)
+        if weight:
+            mean = sum(row.microseconds * own[row.regime] for row in part) / weight
+            made.append(Row(family, "all", method, mean, sum(row.wrong for row in part), sum(row.of for row in part)))
+    return made
 
 
 def _row(
