@@ -40,12 +40,13 @@ def polished(osc: Oscillator, states: States, index: int, time: float) -> list[f
 
 @lru_cache(maxsize=64)
 def _linear(osc: Oscillator) -> LinearFlow | None:
+    """The flow of a linear model, whatever its restitution; None without a closed form."""
     balls = Balls(LIMITS.polish_bits)
-    try:
-        with precision_of(balls):
-            return LinearFlow(osc, balls.bits)
-    except ArithmeticError:
+    if kernel_of(osc).form is None:
         return None
+    plain_rebound = Oscillator(osc.force(), osc.forcing(), osc.clearance, 1, period=osc.period)
+    with precision_of(balls):
+        return LinearFlow(plain_rebound, balls.bits)
 
 
 def _by_steps(osc: Oscillator, balls: Balls, tau: Any, v: Any, near: float) -> tuple[Any, Any] | None:
