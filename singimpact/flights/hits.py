@@ -62,7 +62,7 @@ def first_hit(
     epsilon = _tolerance(tolerance)
     if digits is not None:
         found = manydigits.flights(osc, states, checked_digits(digits), limit)
-        return shaped(_conditioned(osc, states, found), states.shape)
+        return shaped(_conditioned(osc, states, found)[0], states.shape)
     return shaped(_flights(osc, states, limit, epsilon), states.shape)
 
 
@@ -161,26 +161,20 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     _escapes(osc, kernel.form, states, status, numbers)
     if _settle(osc, states, limit, status, numbers):
         _escapes(osc, kernel.form, states, status, numbers)
-    flight = _conditioned(osc, states, flight_of(status, numbers))
-    return _sharpened(osc, states, flight, limit)
+    flight, rough = _conditioned(osc, states, flight_of(status, numbers))
+    return _sharpened(osc, states, flight, rough, limit)
 
 
-def _sharpened(osc: Oscillator, states: States, flight: Flight, limit: float) -> Flight:
-    """Hits whose rounding is more than their condition explains are flown in many digits.
+def _sharpened(osc: Oscillator, states: States, flight: Flight, rough: Array, limit: float) -> Flight:
+    """Rough hits are polished in balls, and what balls do not confirm is flown in many digits.
 
     At near resonances all flights come back together: the state hardly matters, but the sums still cancel.
     """
-    answers = response(osc, states.tau, states.v, flight.flight_time, flight.velocity)
-    tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
-    kappas = answers.conditions(tau, states.v, flight.flight_time, flight.velocity)
     table = table_of(kernel_of(osc), doubles(kernel_of(osc)))
     # pressed back at once, a flight is a short series in t that loses nothing
     far = (flight.flight_time > (table.step if table else 0)) | (known_accelerations(osc, states) >= 0)
-    with np.errstate(all="ignore"):
-        rough = [part > np.maximum(least, 10 * kappa * EPSILON)
-                 for part, least, kappa in zip(answers.rounding, (1e-14, 1e-13), kappas, strict=True)]  # fmt: skip
     left = LIMITS.settled
-    for index in np.flatnonzero((flight.status == Status.hit) & far & (rough[0] | rough[1])).tolist():
+    for index in np.flatnonzero((flight.status == Status.hit) & far & rough).tolist():
         found = polished(osc, states, index, float(flight.flight_time[index]))
         if found is None and left:
             left -= 1
@@ -191,11 +185,16 @@ def _sharpened(osc: Oscillator, states: States, flight: Flight, limit: float) ->
     return flight
 
 
-def _conditioned(osc: Oscillator, states: States, flight: Flight) -> Flight:
+def _conditioned(osc: Oscillator, states: States, flight: Flight) -> tuple[Flight, Array]:
+    """The flight with its condition; and where its rounding is more than that condition explains."""
     time, velocity = (np.array(part, dtype=float) for part in (flight.flight_time, flight.velocity))
     answers = response(osc, states.tau, states.v, time, velocity)
     tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
-    return replace(flight, condition=answers.condition(tau, states.v, time))
+    kappas = answers.conditions(tau, states.v, time, velocity)
+    with np.errstate(all="ignore"):
+        late, dull = (part > np.maximum(least, 10 * kappa * EPSILON)
+                      for part, least, kappa in zip(answers.rounding, LIMITS.rough, kappas, strict=True))  # fmt: skip
+    return replace(flight, condition=kappas[0]), late | dull
 
 
 def _escapes(osc: Oscillator, form: LinearForm | None, states: States, status: Array, numbers: Array) -> None:

@@ -44,18 +44,12 @@ class Response:
     """Of the flight time and of x' at the hit, relative, as it usually is."""
 
     def conditions(self, tau: Array, v: Array, time: Array, velocity: Array) -> tuple[Array, Array]:
-        """kappa of the flight time and of x' at the hit."""
+        """kappa = 1 + (|dT/dtau| max(|tau|, |T|) + |dT/dv| v)/T, and so for x' at the hit; nan where there is none."""
         with np.errstate(all="ignore"):
             reach = np.maximum(np.abs(tau), time)
-            moved = np.abs(self.velocity_by_tau) * reach + np.abs(self.velocity_by_v) * v
-            return self.condition(tau, v, time), 1 + moved / np.abs(velocity)
-
-    def condition(self, tau: Array, v: Array, time: Array) -> Array:
-        """kappa = 1 + (|dT/dtau| max(|tau|, |T|) + |dT/dv| v)/T; nan where there is none."""
-        with np.errstate(all="ignore"):
-            reach = np.maximum(np.abs(tau), time)
-            kappa = 1 + (np.abs(self.time_by_tau) * reach + np.abs(self.time_by_v) * v) / time
-        return np.where(np.isfinite(kappa), kappa, np.nan)
+            late = 1 + (np.abs(self.time_by_tau) * reach + np.abs(self.time_by_v) * v) / time
+            moved = 1 + (np.abs(self.velocity_by_tau) * reach + np.abs(self.velocity_by_v) * v) / np.abs(velocity)
+        return np.where(np.isfinite(late), late, np.nan), moved
 
 
 def response(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array) -> Response:
