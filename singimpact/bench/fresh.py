@@ -1,4 +1,4 @@
-"""Python statements timed in a process of their own: a library's cache, and a warm allocator, would flatter a second run."""
+"""Statements timed in a process of their own: a library's cache and a warm allocator flatter a second run."""
 
 from __future__ import annotations
 

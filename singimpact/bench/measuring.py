@@ -32,7 +32,7 @@ class Effort:
     ----------
     quick : fewer cases and settings. rounds : timings of each method.
     least : CPU seconds of a timing at least, reached by calling again; the clock ticks in microseconds.
-    once : a method that takes so many seconds is timed in the first round only: its own noise is below its length.
+    once : a method that takes so many seconds is timed once after the first round: its noise is below its length.
     states : of a regime. copies : of a state in an array or a compiled loop.
     """
 
@@ -45,21 +45,19 @@ class Effort:
 
 
 FULL = Effort()
-QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.05, states=6, copies=30)
+QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, states=4, copies=8)
 
 
 @dataclass(frozen=True)
 class Judged:
-    """When an answer is missed, and the precision at which answers are compared.
+    """How answers are compared.
 
     Parameters
     ----------
-    missed : relative error of another answer altogether; the next impact is further away than this.
     digits : decimal digits of the comparison, beyond those of any truth.
     least : relative error that is always allowed: rounding of the answer and of what it is made of (DESIGN, Accuracy).
     """
 
-    missed: float = 1e-2
     digits: int = 400
     least: float = 1e-14
 
@@ -85,6 +83,7 @@ class Method:
     size : what the cost grows with. copies : how often a run solves each problem.
     epsilon : of the arithmetic; answers may be off by ten times their condition times this.
     problems : by which the time of a run is divided; without it by its answers.
+    first : the first round is what is asked: what is computed then is kept.
     """
 
     name: str
@@ -94,6 +93,7 @@ class Method:
     copies: int = 1
     epsilon: float = EPSILON
     problems: int | None = None
+    first: bool = False
 
 
 @dataclass(frozen=True)
@@ -104,6 +104,7 @@ class Case:
     ----------
     truth : a number or its decimal text a problem; empty where only time is measured.
     conditions : of the problems. skipped : peers that are not installed.
+    missed : relative error of another answer altogether: the next impact is further away than this.
     """
 
     name: str
@@ -111,6 +112,7 @@ class Case:
     truth: Sequence[Any] = ()
     conditions: Sequence[float] = ()
     skipped: Sequence[str] = ()
+    missed: float = 1e-2
 
 
 @dataclass(frozen=True)
@@ -171,10 +173,14 @@ def with_peers(own: Sequence[Method], *peers: Callable[[], Sequence[Method]]) ->
 def measure(group: str, case: Case, effort: Effort) -> list[Row]:
     """A row a method."""
     first = [_timed(method.run) for method in case.methods]
-    again = [at for at, (seconds, _, fresh) in enumerate(first)
-             if seconds < effort.once and not (fresh and effort.quick)]  # fmt: skip
     spent = np.array([[seconds for seconds, _, _ in first]] * effort.rounds)
-    calls = {at: _calls(case.methods[at].run, effort.least) for at in again if not first[at][2]}
+    final = [
+        method.first or (effort.quick and fresh) for method, (_, _, fresh) in zip(case.methods, first, strict=True)
+    ]
+    for at in (at for at, done in enumerate(final) if not done):
+        spent[:, at] = _timed(case.methods[at].run)[0]
+    again = [at for at, done in enumerate(final) if not done and spent[0, at] < effort.once]
+    calls = {at: max(ceil(effort.least / max(spent[0, at], 1e-7)), 1) for at in again if not first[at][2]}
     for turn in range(effort.rounds):
         for at in again:
             spent[turn, at] = _timed(case.methods[at].run, calls.get(at, 1))[0]
@@ -194,14 +200,7 @@ def _timed(run: Run, calls: int = 1) -> tuple[float, Sequence[Any], bool]:
     return (found.seconds, found.answers, True) if isinstance(found, Timed) else (spent, found, False)
 
 
-def _calls(run: Run, least: float) -> int:
-    """How many calls take `least` seconds; the first call, which compiled, does not tell."""
-    return ceil(least / max(_timed(run)[0], 1e-7))
-
-
-def _row(
-    group: str, case: Case, method: Method, answers: Sequence[Any], spent: Any, ratios: Any, rounds: int
-) -> Row:
+def _row(group: str, case: Case, method: Method, answers: Sequence[Any], spent: Any, ratios: Any, rounds: int) -> Row:
     error = wrong = missed = None
     of = min(len(answers), len(case.truth)) if case.truth else method.problems or len(answers)
     if case.truth:
@@ -209,7 +208,7 @@ def _row(
         conditions = case.conditions or [1.0] * len(errors)
         allowed = [max(_least(method), 10 * kappa * method.epsilon) for kappa in conditions]
         wrong = sum(not off <= most for off, most in zip(errors, allowed, strict=False))
-        missed = sum(not off <= JUDGED.missed for off in errors)
+        missed = sum(not off <= case.missed for off in errors)
         seen = [off for off in errors if isfinite(off)]
         error = float(np.median(seen)) if seen else None
     low, middle, high = np.quantile(ratios, [0.25, 0.5, 0.75]).tolist()

@@ -24,7 +24,7 @@ class Sheet:
     Parameters
     ----------
     width, height : inches of a panel. columns : panels side by side. bar : inches of a bar.
-    floor : where an error of zero is drawn, below every rounding.
+    floor : where an error of zero is drawn, unless others are smaller still.
     """
 
     width: float = 4.6
@@ -41,7 +41,9 @@ def plotted(found: Measured) -> Any:
     """The matplotlib figure of a group."""
     from matplotlib.figure import Figure
 
-    panels = {case: [row for row in found.rows if row.case == case] for case in dict.fromkeys(r.case for r in found.rows)}
+    panels = {
+        case: [row for row in found.rows if row.case == case] for case in dict.fromkeys(r.case for r in found.rows)
+    }
     drawn = {case: rows for case, rows in panels.items() if _axis(rows) != "none"}
     bars = [row for rows in panels.values() if _axis(rows) == "none" for row in rows]
     names = list(dict.fromkeys(row.method for rows in drawn.values() for row in rows))
@@ -73,12 +75,12 @@ def _look(names: Sequence[str], name: str) -> dict[str, Any]:
 
 
 def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> None:
-    kind = _axis(rows)
+    kind, floor = _axis(rows), min([SHEET.floor, *(row.error for row in rows if row.error)])
     for name in dict.fromkeys(row.method for row in rows):
         line = [row for row in rows if row.method == name and (kind == "size" or row.error is not None)]
         if kind == "error":
             line.sort(key=lambda row: row.microseconds)
-        across = [max(row.error or 0.0, SHEET.floor) if kind == "error" else float(row.size or 0) for row in line]
+        across = [row.error or floor if kind == "error" else float(row.size or 0) for row in line]
         look = _look(names, name)
         axes.loglog(across, [row.microseconds for row in line], **look)
         hollow = [(x, row.microseconds) for x, row in zip(across, line, strict=True) if row.missed]
@@ -87,17 +89,17 @@ def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> N
     axes.set_title(case, fontsize=10)
     axes.set_xlabel("relative error" if kind == "error" else "size", fontsize=9)
     axes.set_ylabel("microseconds of CPU", fontsize=9)
-    axes.tick_params(labelsize=8)
+    axes.tick_params(which="both", labelsize=7)
     axes.grid(True, which="major", color="0.9", linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
 
 
 def _bars(axes: Any, rows: Sequence[Row]) -> None:
-    labels = [row.case if len({other.method for other in rows}) == 1 else f"{row.case}, {row.method}" for row in rows]
-    axes.barh(labels, [row.microseconds for row in rows], color=SKY, edgecolor=BLACK, linewidth=0.6)
-    axes.set_xscale("log")
+    several = len({row.case for row in rows}) > 1
+    labels = [f"{row.case if several else row.method}, {row.setting}" for row in rows]
+    axes.barh(labels, [row.microseconds / 1e6 for row in rows], color=SKY, edgecolor=BLACK, linewidth=0.6)
     axes.invert_yaxis()
-    axes.set_xlabel("microseconds of CPU", fontsize=9)
+    axes.set_xlabel("seconds of CPU", fontsize=9)
     axes.tick_params(labelsize=8)
     axes.spines[["top", "right"]].set_visible(False)
 

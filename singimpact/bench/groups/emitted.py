@@ -77,7 +77,9 @@ def _horner(order: int, sigma: Any, t: Any, compensated: bool) -> Callable[[], A
 
 def _peers(terms: Any, order: int, sigma: Any, t: Any) -> list[Method]:
     few = slice(0, 20)  # a call of subs takes milliseconds
-    made = [(f"sympy lambdify{', cse' if shared else ''}", lambdified.function(terms, shared)) for shared in (False, True)]
+    made = [
+        (f"sympy lambdify{', cse' if shared else ''}", lambdified.function(terms, shared)) for shared in (False, True)
+    ]
     methods = [Method(name, f"order {order}", partial(function, sigma, t), order) for name, function in made]
     by_point = lambdified.substituting(terms)
     return [*methods, Method("sympy subs", f"order {order}", partial(by_point, sigma[few], t[few]), order)]

@@ -29,15 +29,18 @@ def cases(effort: Effort) -> Iterator[Case]:
 
     def peer() -> list[Method]:
         fly = taylor_events.stepper("linear")
-        return [Method("heyoka", f"{FEW} states, {FEW_IMPACTS} impacts", lambda: [_flown(fly, tau[chosen], v[chosen])],
+        return [Method("heyoka", f"{FEW} states, {FEW_IMPACTS} impacts", lambda: _flown(fly, tau[chosen], v[chosen]),
                        problems=FEW * FEW_IMPACTS)]  # fmt: skip
 
     methods, skipped = with_peers([own], peer)
     yield Case(f"linear, {side} x {side} states", methods, skipped=skipped)
 
 
-def _flown(fly: Callable[[Problem], tuple[float, float]], tau: Any, v: Any) -> None:
+def _flown(fly: Callable[[Problem], tuple[float, float]], tau: Any, v: Any) -> list[None]:
     for start, speed in zip(tau.tolist(), v.tolist(), strict=True):
         for _ in range(FEW_IMPACTS):
             time, velocity = fly(replace(START, tau=start, v=max(speed, 1e-3)))
+            if not time < taylor_events.LONGEST:  # it went through the wall
+                break
             start, speed = (start + time) % (2 * np.pi / 2.8), 0.8 * abs(velocity)
+    return [None]

@@ -49,6 +49,8 @@ def cases(effort: Effort) -> Iterator[Case]:
     states = (1000, 3000, 10_000) if short else (1000, 3000, 10_000, 30_000, 100_000)
     yield _grown("states of an array", "singimpact", states, _flown_array)
     yield _impacts(effort)
+    restitutions = ("0.8", "0.9", "0.95") if short else ("0.8", "0.9", "0.95", "0.98", "0.99")
+    yield Case("impacts of a chatter", [_chatter(r) for r in restitutions])
 
 
 def _contact(order: int) -> Contact:
@@ -69,6 +71,16 @@ def _grown(
     case: str, name: str, sizes: Sequence[int], run: Callable[[int], Any], *peers: list[Method], skipped: Any = ()
 ) -> Case:  # fmt: skip
     return Case(case, [*_line(name, sizes, run), *(method for peer in peers for method in peer)], skipped=skipped)
+
+
+def _chatter(r: str) -> Method:
+    """The closer r is to 1, the more impacts are flown before the rest is summed up."""
+    osc = linear(2, "0.3", r)
+
+    def run() -> list[Any]:
+        return [osc.chatter_limit("1.2", "0.002").tau]
+
+    return Method("singimpact", f"r = {r}", run, osc.chatter_limit("1.2", "0.002").impacts)
 
 
 def _findroot(digits: int) -> None:

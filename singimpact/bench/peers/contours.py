@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 
-def zero_set(function: Callable[[Any, Any], Any], x: tuple[float, float], y: tuple[float, float], side: int) -> list[Any]:
+def zero_set(
+    function: Callable[[Any, Any], Any], x: tuple[float, float], y: tuple[float, float], side: int
+) -> list[Any]:
     """Polylines, arrays (points, 2), from side x side values."""
     from contourpy import contour_generator
 
     across, up = np.linspace(*x, side), np.linspace(*y, side)
-    found: list[Any] = contour_generator(across, up, function(*np.meshgrid(across, up))).lines(0.0)
-    return found
+    return list(contour_generator(across, up, function(*np.meshgrid(across, up))).lines(0.0))

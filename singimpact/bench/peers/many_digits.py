@@ -8,6 +8,7 @@ from singimpact.bench.problems import Problem
 
 SCAN = 0.05  # step of the scan for a change of sign, as a user would choose it: a hundredth of a period
 LONGEST = 1000.0
+GUARD = 20  # digits that (x - c)/s may lose: without them the secant never settles for v below 1e-3, and fails
 
 
 def root_of_closed_form(problem: Problem) -> tuple[Any, Any]:
@@ -15,6 +16,14 @@ def root_of_closed_form(problem: Problem) -> tuple[Any, Any]:
 
     The guess is 2v/|a_c| where the obstacle presses, else the first change of sign of a scan.
     """
+    import mpmath
+
+    with mpmath.extradps(GUARD):
+        found = _closed(problem, mpmath.mpf(10) ** (GUARD - mpmath.mp.dps))
+    return +found[0], +found[1]
+
+
+def _closed(problem: Problem, precise: Any) -> tuple[Any, Any]:
     import mpmath
 
     omega, c, tau, v = (mpmath.mpf(value) for value in (problem.omega, problem.clearance, problem.tau, problem.v))
@@ -28,7 +37,7 @@ def root_of_closed_form(problem: Problem) -> tuple[Any, Any]:
     near = -2 * v / a if a < 0 else mpmath.inf
     guesses = (near, near * 1.05) if near < SCAN else _scanned(lifted)
     try:
-        time = mpmath.findroot(lifted, guesses)
+        time = mpmath.findroot(lifted, guesses, tol=precise * guesses[0])
     except (ValueError, ZeroDivisionError):  # there is none, or it did not converge
         return mpmath.nan, mpmath.nan
     slope = -size * omega * mpmath.sin(omega * (tau + time)) - by_cos * mpmath.sin(time) + by_sin * mpmath.cos(time)

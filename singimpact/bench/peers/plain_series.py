@@ -19,7 +19,7 @@ def cut(expression: Any, small: tuple[Any, ...], order: int) -> Any:
 
 
 def flight(force: Any, forcing: Any, clearance: Any, order: int) -> Any:
-    """x(sigma, v; t) from (clearance, v) at sigma, to total degree order + 1 in (sigma, t, v), by Picard's integrals."""
+    """x(sigma, v; t) from (clearance, v) at sigma, to degree order + 1 in (sigma, t, v), by Picard's integrals."""
     found, time = clearance + v * t, sympy.Symbol("time")
     for _ in range(order):
         pushed = forcing.subs(t, sigma + t) - force.subs({x: found, xdot: sympy.diff(found, t)}, simultaneous=True)
