@@ -48,7 +48,7 @@ def _findroot(r: str, digits: int) -> list[Any]:
     import mpmath
 
     with mpmath.workdps(digits):
-        return list(many_digits.fixed_points(r if "/" not in r else mpmath.mpf(1) / 2))
+        return list(many_digits.fixed_points(r))
 
 
 def _numpy(r: str) -> list[float]:
