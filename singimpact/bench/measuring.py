@@ -33,6 +33,7 @@ class Effort:
     quick : fewer cases and settings. rounds : timings of each method.
     least : CPU seconds of a timing at least, reached by calling again; the clock ticks in microseconds.
     once : a method that takes so many seconds is timed once after the first round: its noise is below its length.
+    fresh : rounds of a method that runs in a process of its own, which costs a second beside what is timed.
     states : of a regime. copies : of a state in an array or a compiled loop.
     """
 
@@ -40,12 +41,13 @@ class Effort:
     rounds: int = 7
     least: float = 2e-3
     once: float = 2.0
+    fresh: int = 3
     states: int = 40
     copies: int = 100
 
 
 FULL = Effort()
-QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, states=4, copies=8)
+QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, fresh=1, states=4, copies=8)
 
 
 @dataclass(frozen=True)
@@ -173,22 +175,30 @@ def with_peers(own: Sequence[Method], *peers: Callable[[], Sequence[Method]]) ->
 def measure(group: str, case: Case, effort: Effort) -> list[Row]:
     """A row a method."""
     first = [_timed(method.run) for method in case.methods]
+    rounds = [_rounds(method, fresh, effort) for method, (_, _, fresh) in zip(case.methods, first, strict=True)]
     spent = np.array([[seconds for seconds, _, _ in first]] * effort.rounds)
-    final = [
-        method.first or (effort.quick and fresh) for method, (_, _, fresh) in zip(case.methods, first, strict=True)
-    ]
-    for at in (at for at, done in enumerate(final) if not done):
-        spent[:, at] = _timed(case.methods[at].run)[0]
-    again = [at for at, done in enumerate(final) if not done and spent[0, at] < effort.once]
-    calls = {at: max(ceil(effort.least / max(spent[0, at], 1e-7)), 1) for at in again if not first[at][2]}
+    for at in (at for at, count in enumerate(rounds) if count):
+        if not first[at][2]:  # a process of its own is as cold the second time
+            spent[:, at] = _timed(case.methods[at].run)[0]
+        if spent[0, at] >= effort.once:
+            rounds[at] = 0
+    calls = [1 if fresh else max(ceil(effort.least / max(seconds, 1e-7)), 1)
+             for (_, _, fresh), seconds in zip(first, spent[0], strict=True)]  # fmt: skip
     for turn in range(effort.rounds):
-        for at in again:
-            spent[turn, at] = _timed(case.methods[at].run, calls.get(at, 1))[0]
+        for at in (at for at, count in enumerate(rounds) if count):
+            again = turn < rounds[at]
+            spent[turn, at] = _timed(case.methods[at].run, calls[at])[0] if again else spent[turn % rounds[at], at]
     for at, (method, (_, answers, _)) in enumerate(zip(case.methods, first, strict=True)):
         spent[:, at] /= method.copies * (method.problems or max(len(answers), 1))
-    rounds = [effort.rounds if at in again else 1 for at in range(len(first))]
-    return [_row(group, case, method, answers, spent[:, at], spent[:, at] / spent[:, 0], rounds[at])
+    return [_row(group, case, method, answers, spent[:, at], spent[:, at] / spent[:, 0], max(rounds[at], 1))
             for at, (method, (_, answers, _)) in enumerate(zip(case.methods, first, strict=True))]  # fmt: skip
+
+
+def _rounds(method: Method, fresh: bool, effort: Effort) -> int:
+    """How often a method is timed after the first round; not at all where that one is what is asked."""
+    if method.first or (fresh and effort.fresh == 1):
+        return 0
+    return min(effort.fresh, effort.rounds) if fresh else effort.rounds
 
 
 def _timed(run: Run, calls: int = 1) -> tuple[float, Sequence[Any], bool]:

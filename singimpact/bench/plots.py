@@ -24,6 +24,7 @@ class Sheet:
     Parameters
     ----------
     width, height : inches of a panel. columns : panels side by side. bar : inches of a bar.
+    least : ratio of the ends of an axis of errors, at least.
     floor : where an error of zero is drawn, unless others are smaller still.
     """
 
@@ -31,6 +32,7 @@ class Sheet:
     height: float = 3.5
     columns: int = 2
     bar: float = 0.28
+    least: float = 1e3
     floor: float = 1e-17
 
 
@@ -86,12 +88,25 @@ def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> N
         hollow = [(x, row.microseconds) for x, row in zip(across, line, strict=True) if row.missed]
         if hollow:
             axes.loglog(*zip(*hollow, strict=True), **{**look, "linestyle": "none", "markerfacecolor": "white"})
+    if kind == "error":
+        _widened(axes)
     axes.set_title(case, fontsize=10)
     axes.set_xlabel("relative error" if kind == "error" else "size", fontsize=9)
     axes.set_ylabel("microseconds of CPU", fontsize=9)
     axes.tick_params(which="both", labelsize=7)
     axes.grid(True, which="major", color="0.9", linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
+
+
+def _widened(axes: Any) -> None:
+    """Three decades at least: nobody reads a third of one, and labels between powers of ten would overlap."""
+    from matplotlib.ticker import NullFormatter
+
+    low, high = axes.get_xlim()
+    if high < SHEET.least * low:
+        middle = (low * high) ** 0.5
+        axes.set_xlim(middle / SHEET.least**0.5, middle * SHEET.least**0.5)
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _bars(axes: Any, rows: Sequence[Row]) -> None:

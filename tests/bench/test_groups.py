@@ -10,7 +10,7 @@ import pytest
 from singimpact.bench.groups import GROUPS, measured, series, usual
 from singimpact.bench.measuring import FULL, QUICK, Effort
 
-SMALL = Effort(quick=True, rounds=1, least=0, once=0, states=1, copies=2)
+SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, copies=2)
 COSTLY = ("series", "figures", "grid", "start")
 PEERS = {
     "map": {"scipy DOP853", "heyoka", "mpmath findroot", "mpmath odefun"},

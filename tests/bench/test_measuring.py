@@ -11,7 +11,7 @@ from singimpact.bench.exponents import exponents, fitted
 from singimpact.bench.measuring import EPSILON, Case, Effort, Measured, Method, Timed, condition, measure
 from singimpact.bench.plots import plotted
 
-EFFORT = Effort(rounds=5, least=0, once=100)
+EFFORT = Effort(rounds=5, least=0, once=100, fresh=5)
 
 
 def fixed(seconds, answers):

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -23,15 +24,15 @@ from singimpact.theory.frozen import sheet_functions
 from singimpact.theory.sheet import sheet
 
 POINTS, JUDGED = 1000, 50
-ORDERS = (2, 4, 6, 8)
+ORDERS = (3, 4, 6, 8)  # at a swan v_c begins with the third
 MODEL = ImpactOscillator("x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3", "0.3", "117/275")
 VALUES = {"a_d1": 1.0, "a_d2": 2 / 3, "f_01": 0.1, "f_10": 1.081, "f_20": 0.54, "f_30": 1.8}
 
 
 def cases(effort: Effort) -> Iterator[Case]:
-    """A case an order, on points of which a third lie next to the line where v_c vanishes."""
-    for order in ORDERS[1:3] if effort.quick else ORDERS:
-        sigma, t = _points()
+    """A case an order, on random points and on points next to the curve where v_c vanishes and its terms cancel."""
+    for order, near in product(ORDERS[1:3] if effort.quick else ORDERS, (False, True)):
+        sigma, t = _points(near)
         terms = sheet(Contact.of(MODEL, Fraction(0), 1, order, EXACT), order).v.terms
         exact = [_value(terms, s, u) for s, u in zip(sigma[:JUDGED].tolist(), t[:JUDGED].tolist(), strict=True)]
         setting = f"order {order}"
@@ -41,16 +42,16 @@ def cases(effort: Effort) -> Iterator[Case]:
             Method("singimpact, compensated", setting, _horner(order, sigma, t, True), order, problems=POINTS),
         ]
         methods, skipped = with_peers(own, partial(_peers, terms, order, sigma, t))
-        truth, conditions = [value for value, _ in exact], [kappa for _, kappa in exact]
-        yield Case("v_c at a tangency", methods, [f"{v.numerator}/{v.denominator}" for v in truth], conditions, skipped)
+        truth = [f"{value.numerator}/{value.denominator}" for value, _ in exact]
+        name = "v_c at a tangency" + (", next to its zeros" if near else "")
+        yield Case(name, methods, truth, [kappa for _, kappa in exact], skipped)
 
 
-def _points() -> tuple[Any, Any]:
-    """Random launches before the tangency; every third t such that v_c is small, for its terms cancel."""
+def _points(near: bool) -> tuple[Any, Any]:
+    """Random launches before the tangency, and flight times: any, or next to -3 sigma, where v_c begins to vanish."""
     rng = np.random.default_rng(1)
     sigma, t = -rng.uniform(0.01, 0.3, POINTS), rng.uniform(0.01, 0.3, POINTS)
-    t[::3] = -3 * sigma[::3] * (1 + 10 ** rng.uniform(-6, -2, t[::3].size))
-    return sigma, t
+    return sigma, -3 * sigma * (1 + 10 ** rng.uniform(-6, -2, POINTS)) if near else t
 
 
 def _value(terms: Any, sigma: float, t: float) -> tuple[Fraction, float]:
