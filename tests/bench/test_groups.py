@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from singimpact.bench.groups import GROUPS, measured, series, usual
-from singimpact.bench.measuring import FULL, QUICK, Effort
+from singimpact.bench.groups import GROUPS, flights, measured, series, usual
+from singimpact.bench.measuring import FULL, QUICK, Effort, measure
 
 SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, copies=2)
 COSTLY = ("series", "figures", "grid", "start")
@@ -40,6 +40,15 @@ def test_group_at_its_smallest_size(name):
     assert [row for row in judged if row.wrong] == []
     assert judged or name in ("series", "growth", "grid", "start")
     assert not found.skipped
+
+
+def test_duffing_too():
+    """A quick look leaves this family out; its tolerances trade error for time."""
+    rows = measure("map", flights._regime("duffing", "generic", SMALL), SMALL)
+    ours = {row.setting: row for row in rows if row.method == "singimpact"}
+    assert ours["compiled loop"].wrong == 0
+    assert ours["tolerance 1e-06"].error > ours["tolerance 1e-09"].error > ours["compiled loop"].error
+    assert ours["tolerance 1e-06"].missed == 0
 
 
 def test_groups_of_a_quick_look(singimpact):

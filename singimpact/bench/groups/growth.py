@@ -27,6 +27,7 @@ from singimpact.theory.sheet import sheet
 
 DUFFING = ImpactOscillator("x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3", "0.3", "117/275")
 LINEAR = linear(2, "0.3", "0.8")
+LOST = ("0.01", "0.003", "0.001", "0.0003", "0.0001")
 START = Problem("linear", "generic", 2.0, 0.3, 0.8, 0.0, 1.0, "", "")
 
 
@@ -49,8 +50,7 @@ def cases(effort: Effort) -> Iterator[Case]:
     states = (1000, 3000, 10_000) if short else (1000, 3000, 10_000, 30_000, 100_000)
     yield _grown("states of an array", "singimpact", states, _flown_array)
     yield _impacts(effort)
-    restitutions = ("0.8", "0.9", "0.95") if short else ("0.8", "0.9", "0.95", "0.98", "0.99")
-    yield Case("impacts of a chatter", [_chatter(r) for r in restitutions])
+    yield Case("impacts of a chatter", [_chatter(lost) for lost in (LOST[1:4] if short else LOST)])
 
 
 def _contact(order: int) -> Contact:
@@ -73,14 +73,14 @@ def _grown(
     return Case(case, [*_line(name, sizes, run), *(method for peer in peers for method in peer)], skipped=skipped)
 
 
-def _chatter(r: str) -> Method:
-    """The closer r is to 1, the more impacts are flown before the rest is summed up."""
-    osc = linear(2, "0.3", r)
+def _chatter(lost: str) -> Method:
+    """r = 1 - lost: the closer to 1, the more impacts are flown before the rest is summed up, here from v = lost/5."""
+    osc, v = linear(2, "0.3", f"1 - {lost}"), f"{lost}/5"
 
     def run() -> list[Any]:
-        return [osc.chatter_limit("1.2", "0.002").tau]
+        return [osc.chatter_limit("1.2", v).tau]
 
-    return Method("singimpact", f"r = {r}", run, osc.chatter_limit("1.2", "0.002").impacts)
+    return Method("singimpact", f"r = 1 - {lost}", run, osc.chatter_limit("1.2", v).impacts)
 
 
 def _findroot(digits: int) -> None:
