@@ -81,7 +81,7 @@ def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> N
     for name in dict.fromkeys(row.method for row in rows):
         line = [row for row in rows if row.method == name and (kind == "size" or row.error is not None)]
         if kind == "error":
-            line.sort(key=lambda row: row.microseconds)
+            line.sort(key=lambda row: (row.error, row.microseconds))
         across = [row.error or floor if kind == "error" else float(row.size or 0) for row in line]
         look = _look(names, name)
         axes.loglog(across, [row.microseconds for row in line], **look)
