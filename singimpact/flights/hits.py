@@ -13,12 +13,11 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.algebra.rings import DOUBLES
-from singimpact.codegen.kernels import compiled
 from singimpact.flights import counted, edges, manydigits
 from singimpact.flights.carriers import Derivative, Flight, Step
 from singimpact.flights.escape import never_returns
 from singimpact.flights.escape_polynomial import never_turns
-from singimpact.flights.kernel import Kernel, kernel_of
+from singimpact.flights.kernel import Kernel, kernel_of, ready
 from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
@@ -230,14 +229,15 @@ def _flown(
     p, table = doubles(kernel), table_of(kernel, doubles(kernel))
     part, flown = np.empty(moving.size, dtype=np.int8), np.empty((moving.size, 4))
     work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
-    space = compiled(kernel.text, kernel.names)
     given = (launches(osc, kernel, states.tau)[moving], states.v[moving], removed[moving],
              known_accelerations(osc, states)[moving])  # fmt: skip
     if table is None:
-        space["run"](*given, order, limit, LIMITS.safety * epsilon, p, *work, part, flown)
+        ready(kernel, "run", moving.size)(*given, order, limit, LIMITS.safety * epsilon, p, *work, part, flown)
     else:
-        space["stride_all"](*given, STRIDES.order, degree_for(EPSILON), limit, LIMITS.safety * EPSILON, p,
-                            table.step, table.rows, table.bound, *work, part, flown)  # fmt: skip
+        ready(kernel, "stride_all", moving.size)(
+            *given, STRIDES.order, degree_for(EPSILON), limit, LIMITS.safety * EPSILON, p, table.step, table.rows,
+            table.bound, *work, part, flown,
+        )  # fmt: skip
     status[moving], numbers[moving] = part, flown
     return numbers
 
