@@ -23,7 +23,7 @@ from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.surface.curve import Curve, Mark
-from singimpact.theory.formulas import dynamics_on_gamma, fibre, gamma
+from singimpact.theory.formulas import arc_in_numbers
 from singimpact.theory.places import points_of
 from singimpact.theory.power_series import PowerSeries
 
@@ -32,21 +32,28 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """order, trust : of the series, and how good it must be on the fundamental piece. start : points of it.
+    """order, trust : of the series, and how good it must be on the fundamental piece.
+    least, spread : a generation starts with so many points, or with one for so many points of the picture.
     apart : neighbours in s nearer than this share of the piece, still far apart in the picture, are torn.
+    ended : a stretch that a graze ends is followed to this height, in points of the picture.
+    beside : points are put this share of the distance to a tear before it and behind it.
     longest : chord, in points of the picture. most : points of one generation. generations : inverse images at most.
     """
 
     order: int = 12
     trust: float = 1e-13
-    start: int = 17
+    least: int = 7
+    spread: int = 80
     apart: float = 1e-11
-    longest: float = 16.0
+    ended: float = 0.25
+    beside: float = 0.03
+    longest: float = 10.0
     most: int = 4000
     generations: int = 60
 
 
 SETTINGS = GrowthSettings()
+CURVED = {"tangency": 1, "swan": 2}  # contact orders of the points where gamma may end
 
 
 @dataclass(frozen=True)
@@ -101,8 +108,7 @@ def grown_gamma(model: Oscillator, frame: Frame, tau: Any = None) -> list[Curve]
     (-1.385, True)
     """
     at = _curved(model, tau)
-    series = gamma(SETTINGS.order, at, model, tau)
-    motion = dynamics_on_gamma(SETTINGS.order, at, model, tau)
+    series, motion = arc_in_numbers(SETTINGS.order, CURVED[at], model, tau)
     foot = _foot(model, tau, at)
     size = min(series.valid_within(SETTINGS.trust), motion.valid_within(SETTINGS.trust))
     return _grown(model, frame, foot, series, -size, float(motion(-size)))
@@ -147,11 +153,11 @@ def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
     >>> curves[0].points[0].tolist()
     [0.5, 0.0]
     """
-    if not float(acceleration(model, np.array([_foot(model, tau, None)]))[0]) < 0:
-        raise refuse("tau", tau, "a time with a_c < 0: chatter comes to rest there, and W^s_tau exists")
-    series = fibre(SETTINGS.order, model, tau)
-    size = series.valid_within(SETTINGS.trust)
     foot = _foot(model, tau, None)
+    if not float(acceleration(model, np.array([foot]))[0]) < 0:
+        raise refuse("tau", tau, "a time with a_c < 0: chatter comes to rest there, and W^s_tau exists")
+    series, _ = arc_in_numbers(SETTINGS.order, 0, model, tau)
+    size = series.valid_within(SETTINGS.trust)
     # along the fibre the map contracts by r to first order; the exact image bounds the fundamental piece
     landed = model_step(model, np.array([[foot - size, float(series(-size))]]))[0, 0] - foot
     return _grown(model, frame, foot, series, -size, float(landed))
@@ -164,7 +170,7 @@ def _curved(model: Oscillator, tau: Any) -> str:
         raise InputError(f"tau = {tau}: a_c does not vanish there, so that no invariant curve ends there")
     if order == 2 and acceleration(model, np.array([_foot(model, tau, "swan")]), 2)[0] > 0:
         raise InputError(f"tau = {tau}: a_c'' > 0 at this swan, and no invariant curve ends at a positive one")
-    return {1: "tangency", 2: "swan"}[order]
+    return {j: at for at, j in CURVED.items()}[order]
 
 
 def _foot(model: Oscillator, tau: Any, at: str | None) -> float:
@@ -208,10 +214,11 @@ def _grown(
     """The series from its foot to the fundamental piece, then the inverse images of that."""
 
     def start(s: Array) -> Array:
-        return np.stack([foot + s, [float(series(each)) for each in s.tolist()]], axis=1)
+        return np.stack([foot + s, series(s)], axis=1)
 
-    s = np.linspace(inner, outer, SETTINGS.start)
-    whole = np.linspace(0.0, inner, 2 * SETTINGS.start)
+    count = max(SETTINGS.least, frame.pixels // SETTINGS.spread)
+    s = np.linspace(inner, outer, count)
+    whole = np.linspace(0.0, inner, 2 * count)
     pieces, done = [Piece(s, start(s), 0)], [Piece(whole, start(whole), 0)]
     for generation in range(SETTINGS.generations):
         if not pieces:
@@ -236,7 +243,7 @@ def _images(
     s, points = _refined(s, points, image, frame)
     known = np.isfinite(points).all(axis=1) & (points[:, 0] >= frame.tau_low - 0.2 * frame.scale[0])
     jump = np.hypot(*(np.diff(points, axis=0) / frame.scale).T) * frame.pixels > 8
-    torn = jump & (np.abs(np.diff(s)) <= SETTINGS.apart * np.ptp(piece.s))
+    torn = jump & ((np.abs(np.diff(s)) <= SETTINGS.apart * np.ptp(piece.s)) | _grazing(points, frame))
     cuts = np.flatnonzero(torn | ~known[1:] | ~known[:-1]) + 1
     parts = np.split(np.arange(len(s)), cuts)
     return [Piece(s[part], points[part], generation) for part in parts if len(part) > 1 and known[part].all()]
@@ -246,13 +253,44 @@ def _refined(s: Array, points: Array, image: Callable[[Array], Array], frame: Fr
     """Midpoints put in until chords are as short or as straight as the picture asks, or their ends as close in s."""
     least = SETTINGS.apart * np.ptp(s)
     for _ in range(60):
-        wanted = _too_coarse(points, frame) & (np.abs(np.diff(s)) > least)
+        wanted = _too_coarse(points, frame) & (np.abs(np.diff(s)) > least) & ~_grazing(points, frame)
         at = np.flatnonzero(wanted)
         if not at.size or len(s) + at.size > SETTINGS.most:
             break
-        middle = (s[at] + s[at + 1]) / 2
-        s, points = np.insert(s, at + 1, middle), np.insert(points, at + 1, image(middle), axis=0)
+        middle = np.concatenate([(s[at] + s[at + 1]) / 2, _beside_tears(s, points, at, frame, least)])
+        order = np.argsort(np.concatenate([s, middle]) * np.sign(s[-1] - s[0]), kind="stable")
+        s, points = np.concatenate([s, middle])[order], np.concatenate([points, image(middle)])[order]
     return s, points
+
+
+def _grazing(points: Array, frame: Frame) -> Array:
+    """Chords from the foot of a stretch, where the flight run back grazes, to another, with both sides settled."""
+    length = np.hypot(*(np.diff(points, axis=0) / frame.scale).T) * frame.pixels
+    height = points[:, 1] / frame.v_high * frame.pixels
+    settled = np.concatenate([[np.inf], length, [np.inf]]) <= SETTINGS.longest
+    with np.errstate(invalid="ignore"):
+        foot = np.minimum(height[1:], height[:-1]) < SETTINGS.ended
+        return np.asarray(foot & (length > 4 * SETTINGS.longest) & settled[:-2] & settled[2:])
+
+
+def _beside_tears(s: Array, points: Array, at: Array, frame: Frame, least: float) -> Array:
+    """Parameters on both sides of where the curve tears inside the chords `at`.
+
+    The flight run back grazes there, so that v^2 of its launch goes to zero like a straight line on one side.
+    """
+    found = []
+    for k in at.tolist():
+        for near, far, other in ((k, k - 1, k + 1), (k + 1, k + 2, k)):
+            if not 0 <= far < len(s) or not np.isfinite(points[[near, far, other]]).all():
+                continue
+            first, second = points[far, 1] ** 2, points[near, 1] ** 2
+            ahead = (s[near] - s[far]) * second / (first - second) if first > second else np.inf
+            within = abs(ahead) < abs(s[other] - s[near])
+            if within and frame.pixels * abs(points[other, 0] - points[near, 0]) > 8 * frame.scale[0]:
+                room = max(SETTINGS.beside * abs(ahead), least / 4)
+                found += [s[near] + ahead - room, s[near] + ahead + room]
+    low, high = np.minimum(s[at], s[at + 1]), np.maximum(s[at], s[at + 1])
+    return np.array([each for each in found if np.any((each > low) & (each < high))])
 
 
 def _too_coarse(points: Array, frame: Frame) -> Array:
@@ -267,7 +305,7 @@ def _too_coarse(points: Array, frame: Frame) -> Array:
     bend = np.zeros(len(length), dtype=bool)
     bend[:-1] |= off > 0.5
     bend[1:] |= off > 0.5
-    coarse = (length > min(SETTINGS.longest / frame.pixels, 1 / 25)) | (bend & (length * frame.pixels > 1))
+    coarse = (length > SETTINGS.longest / frame.pixels) | (bend & (length * frame.pixels > 1))
     return np.asarray((near[:-1] | near[1:]) & ((known[:-1] != known[1:]) | (known[:-1] & known[1:] & coarse)))
 
 

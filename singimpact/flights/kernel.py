@@ -60,12 +60,12 @@ class Prices:
     Attributes
     ----------
     stride : through the table of a linear model, measured from 16 to 23. place : of one flight after a known time, with
-        its derivatives, by the closed form, from 15 to 25. taylor : in Taylor steps, from 500 to 3000.
+        its derivatives, by the closed form, from 15 to 25. taylor : in Taylor steps, from 1700 to 4000.
     """
 
     stride: float = 25.0
     place: float = 25.0
-    taylor: float = 1500.0
+    taylor: float = 3000.0
 
 
 PRICES = Prices()

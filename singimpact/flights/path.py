@@ -74,7 +74,7 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any
         counts = [at.size for at in times]
         launch = np.repeat(launches(osc, kernel, tau), counts, axis=0)
         both = places(launch, np.repeat(v, counts), np.concatenate([*times, np.zeros(0)]), doubles(kernel))
-        return np.split(both, np.cumsum(counts)[:-1])
+        return np.split(both, np.cumsum(counts))[:-1]
     return _stepped(osc, tau, v, times)
 
 
