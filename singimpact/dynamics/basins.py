@@ -125,6 +125,8 @@ def basins(
 def classified(fields: Mapping[str, Any], times: tuple[float, ...], fast: float, speeds: tuple[float, ...]) -> Array:
     """The codes of some rows of states; a function of this module, so that another process can be sent it."""
     model = Oscillator(**fields)
+    assert model.period is not None
+    period = as_float(model.period)
     tau, v = np.tile(times, len(speeds)), np.repeat(speeds, len(times))
     codes, open_ = np.full(tau.size, OTHER, dtype=np.int32), np.arange(tau.size)
     r = as_float(model.slope_at_rest())
@@ -135,8 +137,9 @@ def classified(fields: Mapping[str, Any], times: tuple[float, ...], fast: float,
         block = min(block, most - flown)
         ends = after(model, tau[open_], v[open_], block)
         flown += block
-        tau[open_], v[open_] = ends.tau, ends.v
-        codes[open_] = _chattering(model, ends.tau, ends.v, fast)
+        # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
+        tau[open_], v[open_] = ends.tau - period * np.floor(ends.tau / period), ends.v
+        codes[open_] = _chattering(model, tau[open_], ends.v, fast)
         open_ = open_[(codes[open_] == OTHER) & (ends.status == 0) & np.isfinite(ends.tau) & (ends.v > 0)]
         if open_.size and flown < most:
             codes[open_] = _caught(known, model, tau[open_], v[open_], fast)

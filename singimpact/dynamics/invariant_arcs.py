@@ -32,22 +32,16 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """order, trust : of the series, and how good it must be on the fundamental piece.
-    least, spread : a generation starts with so many points, or with one for so many points of the picture.
+    """order, trust : of the series, and how good it must be on the fundamental piece. start : points of it.
     apart : neighbours in s nearer than this share of the piece, still far apart in the picture, are torn.
-    ended : a stretch that a graze ends is followed to this height, in points of the picture.
-    beside : points are put this share of the distance to a tear before it and behind it.
     longest : chord, in points of the picture. most : points of one generation. generations : inverse images at most.
     """
 
     order: int = 12
     trust: float = 1e-13
-    least: int = 7
-    spread: int = 80
+    start: int = 17
     apart: float = 1e-11
-    ended: float = 0.25
-    beside: float = 0.03
-    longest: float = 10.0
+    longest: float = 11.0
     most: int = 4000
     generations: int = 60
 
@@ -216,9 +210,8 @@ def _grown(
     def start(s: Array) -> Array:
         return np.stack([foot + s, series(s)], axis=1)
 
-    count = max(SETTINGS.least, frame.pixels // SETTINGS.spread)
-    s = np.linspace(inner, outer, count)
-    whole = np.linspace(0.0, inner, 2 * count)
+    s = np.linspace(inner, outer, SETTINGS.start)
+    whole = np.linspace(0.0, inner, 2 * SETTINGS.start)
     pieces, done = [Piece(s, start(s), 0)], [Piece(whole, start(whole), 0)]
     for generation in range(SETTINGS.generations):
         if not pieces:
@@ -243,7 +236,7 @@ def _images(
     s, points = _refined(s, points, image, frame)
     known = np.isfinite(points).all(axis=1) & (points[:, 0] >= frame.tau_low - 0.2 * frame.scale[0])
     jump = np.hypot(*(np.diff(points, axis=0) / frame.scale).T) * frame.pixels > 8
-    torn = jump & ((np.abs(np.diff(s)) <= SETTINGS.apart * np.ptp(piece.s)) | _grazing(points, frame))
+    torn = jump & (np.abs(np.diff(s)) <= SETTINGS.apart * np.ptp(piece.s))
     cuts = np.flatnonzero(torn | ~known[1:] | ~known[:-1]) + 1
     parts = np.split(np.arange(len(s)), cuts)
     return [Piece(s[part], points[part], generation) for part in parts if len(part) > 1 and known[part].all()]
@@ -253,44 +246,13 @@ def _refined(s: Array, points: Array, image: Callable[[Array], Array], frame: Fr
     """Midpoints put in until chords are as short or as straight as the picture asks, or their ends as close in s."""
     least = SETTINGS.apart * np.ptp(s)
     for _ in range(60):
-        wanted = _too_coarse(points, frame) & (np.abs(np.diff(s)) > least) & ~_grazing(points, frame)
+        wanted = _too_coarse(points, frame) & (np.abs(np.diff(s)) > least)
         at = np.flatnonzero(wanted)
         if not at.size or len(s) + at.size > SETTINGS.most:
             break
-        middle = np.concatenate([(s[at] + s[at + 1]) / 2, _beside_tears(s, points, at, frame, least)])
-        order = np.argsort(np.concatenate([s, middle]) * np.sign(s[-1] - s[0]), kind="stable")
-        s, points = np.concatenate([s, middle])[order], np.concatenate([points, image(middle)])[order]
+        middle = (s[at] + s[at + 1]) / 2
+        s, points = np.insert(s, at + 1, middle), np.insert(points, at + 1, image(middle), axis=0)
     return s, points
-
-
-def _grazing(points: Array, frame: Frame) -> Array:
-    """Chords from the foot of a stretch, where the flight run back grazes, to another, with both sides settled."""
-    length = np.hypot(*(np.diff(points, axis=0) / frame.scale).T) * frame.pixels
-    height = points[:, 1] / frame.v_high * frame.pixels
-    settled = np.concatenate([[np.inf], length, [np.inf]]) <= SETTINGS.longest
-    with np.errstate(invalid="ignore"):
-        foot = np.minimum(height[1:], height[:-1]) < SETTINGS.ended
-        return np.asarray(foot & (length > 4 * SETTINGS.longest) & settled[:-2] & settled[2:])
-
-
-def _beside_tears(s: Array, points: Array, at: Array, frame: Frame, least: float) -> Array:
-    """Parameters on both sides of where the curve tears inside the chords `at`.
-
-    The flight run back grazes there, so that v^2 of its launch goes to zero like a straight line on one side.
-    """
-    found = []
-    for k in at.tolist():
-        for near, far, other in ((k, k - 1, k + 1), (k + 1, k + 2, k)):
-            if not 0 <= far < len(s) or not np.isfinite(points[[near, far, other]]).all():
-                continue
-            first, second = points[far, 1] ** 2, points[near, 1] ** 2
-            ahead = (s[near] - s[far]) * second / (first - second) if first > second else np.inf
-            within = abs(ahead) < abs(s[other] - s[near])
-            if within and frame.pixels * abs(points[other, 0] - points[near, 0]) > 8 * frame.scale[0]:
-                room = max(SETTINGS.beside * abs(ahead), least / 4)
-                found += [s[near] + ahead - room, s[near] + ahead + room]
-    low, high = np.minimum(s[at], s[at + 1]), np.maximum(s[at], s[at + 1])
-    return np.array([each for each in found if np.any((each > low) & (each < high))])
 
 
 def _too_coarse(points: Array, frame: Frame) -> Array:
@@ -305,7 +267,7 @@ def _too_coarse(points: Array, frame: Frame) -> Array:
     bend = np.zeros(len(length), dtype=bool)
     bend[:-1] |= off > 0.5
     bend[1:] |= off > 0.5
-    coarse = (length > SETTINGS.longest / frame.pixels) | (bend & (length * frame.pixels > 1))
+    coarse = (length > min(SETTINGS.longest / frame.pixels, 1 / 25)) | (bend & (length * frame.pixels > 1))
     return np.asarray((near[:-1] | near[1:]) & ((known[:-1] != known[1:]) | (known[:-1] & known[1:] & coarse)))
 
 

@@ -55,8 +55,8 @@ def after(osc: Oscillator, tau: Any, v: Any, impacts: int) -> Ends:
     status = np.where(speeds > 0, np.int8(0), np.int8(Status.sticks))
     shift = np.zeros(times.size) if osc.period is None else times - reduced(times, osc.period)
     if table is None:
-        parts = _chained(osc, [times - shift, speeds, status], impacts)
-        return Ends(*(part.reshape(states.shape)[()] for part in (parts[0] + shift, *parts[1:])))
+        flown = _chained(osc, [times - shift, speeds, status], impacts)
+        return Ends(*(part.reshape(states.shape)[()] for part in (flown[0] + shift, *flown[1:])))
     padded = [np.resize(part, -(-times.size // lanes.LANES) * lanes.LANES) for part in (times - shift, speeds, status)]
     padded[2][times.size :] = Status.sticks
     _fly(osc, table, padded, impacts)
