@@ -44,8 +44,9 @@ def triple(a: complex, b: complex, c: complex, t: Array) -> Array:
     if far.any():
         found[far] = (pair(a, b, t[far]) - pair(b, c, t[far])) / (a - c)
     small, mean = t[~far], (a + b + c) / 3
-    one = np.ones(small.shape, dtype=complex)
-    h1, h2, h3, total, factorial = one, one, one, one / 2, 2.0
+    one: Any = np.ones(small.shape, dtype=complex)
+    h1, h2, h3, total = one, one, one, one / 2
+    factorial = 2.0
     for m in range(1, 14):
         h1 = h1 * (a - mean) * small
         h2 = h1 + (b - mean) * small * h2
