@@ -1,4 +1,4 @@
-"""A live line on a terminal that says what is being worked on; nothing when nobody looks."""
+"""A live line on a terminal or in a notebook that says what is being worked on; nothing when nobody looks."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import time
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Any
+
+from singimpact.notebook import CellLine, in_notebook
 
 
 @dataclass(frozen=True)
@@ -21,12 +23,12 @@ PACE = Pace()
 
 
 def watched() -> bool:
-    """Whether a person sees standard error."""
-    return sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+    """Whether a person sees standard error, or the cell of a notebook."""
+    return in_notebook() or (sys.stderr.isatty() and os.environ.get("TERM") != "dumb")
 
 
 class ProgressLine:
-    """Shows ``done/total text`` on standard error; it is gone when the work ends.
+    """Shows ``done/total text`` on standard error, or under the cell of a notebook; it is gone when the work ends.
 
     Parameters
     ----------
@@ -63,6 +65,8 @@ class ProgressLine:
 
 
 def _bar() -> Any:
+    if in_notebook():
+        return CellLine()
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
     from rich.table import Column

@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from singimpact.notebook import table
 
 
 class Status(IntEnum):
@@ -49,3 +54,30 @@ _SENTENCES = {
     "give a restitution that is positive at such velocities",
     Status.lifts_off: "contact is lost before the impacts accumulate",
 }
+
+
+class StatusArray(np.ndarray[Any, Any]):
+    """An int8 array of statuses that says in a notebook what its numbers mean; what is computed from it is plain.
+
+    Examples
+    --------
+    >>> statuses = status_array([0, 0, 3])
+    >>> (statuses == Status.hit).tolist(), type(statuses == Status.hit).__name__
+    ([True, True, False], 'ndarray')
+    >>> print(statuses)
+    [0 0 3]
+    """
+
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
+        return array[()] if return_scalar or not array.shape else np.asarray(array)
+
+    def _repr_html_(self) -> str:
+        counts = [(Status(value), np.count_nonzero(self == value)) for value in np.unique(np.asarray(self))]
+        rows = [(status.name, count, status.sentence) for status, count in counts]
+        return table(["status", "how many", "what it means"], rows, f"{self.size} statuses")
+
+
+def status_array(values: Any) -> Any:
+    """Statuses as a `StatusArray` of the same shape, a view where it can be; a scalar stays one."""
+    plain = np.asarray(values, dtype=np.int8)
+    return plain.view(StatusArray) if plain.shape else plain[()]

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from singimpact.notebook import table
+
 KINDS = ("proved", "certified", "supported", "cited", "corrected", "open", "error")
 STRENGTH = {"proved": 5, "certified": 4, "supported": 3, "cited": 2, "open": 1, "error": 0}
 
@@ -110,6 +112,10 @@ class Claim:
         """The equation label, when the claim is a displayed equation."""
         return self.id if self.id.startswith(("e:", "e3")) else None
 
+    def _repr_html_(self) -> str:
+        rows = [("printed", f"${self.printed.latex}$"), ("rests on", ", ".join(self.rests_on) or "no other claim")]
+        return table([], rows, f"{self.id}, section {self.section}: {self.title}")
+
 
 def in_section(section: str) -> Callable[..., Claim]:
     """A maker of claims of one section: id, title, printed, verify, mutants, then rests_on and corrected if any."""
@@ -160,6 +166,12 @@ class Verdict:
     def strength(self) -> str:
         """The kind that dependants rest on: of the corrected statement when the printed one fails."""
         return self.corrected_kind if self.kind == "corrected" and self.corrected_kind else self.kind
+
+    def _repr_html_(self) -> str:
+        rows = [("verdict", self.kind), ("printed", f"${self.printed}$")]
+        if self.corrected is not None:
+            rows.append((f"corrected ({self.corrected_kind})", f"${self.corrected}$"))
+        return table([], [*rows, ("evidence", self.evidence)], f"{self.id}, section {self.section}: {self.title}")
 
     def as_dict(self) -> dict[str, Any]:
         """The verdict as plain data; the kind is called "verdict" there."""

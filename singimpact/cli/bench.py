@@ -3,101 +3,106 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from dataclasses import asdict
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from singimpact.cli.columns import columns
+from singimpact.cli.columns import columns, markdown
 from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.pictures import save
 from singimpact.inputs import unknown
 from singimpact.progress import ProgressLine
+from singimpact.store import folder
 
-GROUPS = ("map", "series", "states")
-USUAL = ("map", "series")
+if TYPE_CHECKING:
+    from singimpact.bench.measuring import Effort, Measured
 
 
 @click.command(short_help="run time against error, beside other tools")
 @click.argument("groups", metavar="[GROUP]...", nargs=-1)
+@click.option("--quick", is_flag=True, help="Fewer cases and rounds, within a minute.")
+@click.option("--plots", metavar="DIR", help="Draw time against error there, a picture a group.")
+@click.option("--picture", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
+@click.option("--format", "form", type=click.Choice(["text", "markdown"]), default="text", show_default=True)
 @click.option("--states", type=click.IntRange(1, 10**9), default=100_000, show_default=True, help="How many states.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Which states.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
 @click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
 @output_options
 def command(
-    groups: tuple[str, ...], states: int, seed: int, workers: int | None, keep: str | None, as_json: bool,
-    output: str | None,
+    groups: tuple[str, ...], quick: bool, plots: str | None, picture: str, form: str, states: int, seed: int,
+    workers: int | None, keep: str | None, as_json: bool, output: str | None,
 ) -> None:  # fmt: skip
-    """Measure in one run: `map`, the impact map on the reference states; `series`, the exact series. CPU time.
+    """Measure in one run, in CPU time, beside other tools: map, chatter, threshold, series, fixed-points, emitted,
+    figures, growth, grid, start; all of them without a GROUP (with --quick all but the last two).
 
-    `states` flies random states and the same ones by a slow solver of 60 digits; the other options are its own. Exit
-    code 1 when an impact is wrong.
+    The group `states` flies random states and the same ones by a slow solver of 60 digits; --states, --seed, --workers
+    and --keep are its own. Exit code 1 when one of its impacts is wrong.
     """
-    for group in groups:
-        if group not in GROUPS:
-            raise unknown("group", group, GROUPS)
-    told: dict[str, Any] = {}
-    texts = []
-    made: dict[str, Callable[[], tuple[dict[str, Any], str]]] = {
-        "map": _map,
-        "series": _series,
-        "states": lambda: _states(states, seed, workers, keep),
-    }
-    for group in dict.fromkeys(groups or USUAL):
-        data, text = made[group]()
-        told |= data
+    from singimpact.bench.groups import GROUPS, usual
+    from singimpact.bench.measuring import FULL, QUICK
+
+    effort = QUICK if quick else FULL
+    chosen = list(dict.fromkeys(groups)) or usual(effort)
+    for group in chosen:
+        if group not in (*GROUPS, "states"):
+            raise unknown("group", group, (*GROUPS, "states"))
+    place = None if plots is None else folder(plots)
+    found = _measured([group for group in chosen if group != "states"], effort)
+    told = {"quick": quick, **_joined(found)}
+    texts = [_text(each, form) for each in found]
+    if "states" in chosen:
+        told["states"], text = _states(states, seed, workers, keep)
         texts.append(text)
+    if place is not None:
+        _draw(found, place, picture)
     emit(as_json_text(told) if as_json else "\n\n".join(texts), output)
     if any(row["wrong"] for row in told.get("states", [])):
         sys.exit(1)
 
 
-def _map() -> tuple[dict[str, Any], str]:
-    """The impact map, compile time left out."""
-    from singimpact.bench.grid_speed import compare_grid
-    from singimpact.bench.map_speed import compare, ratios
-    from singimpact.bench.warm_start import starts
+def _measured(chosen: list[str], effort: Effort) -> list[Measured]:
+    from singimpact.bench.groups import measured
 
     with ProgressLine() as line:
-        done = iter(range(1, 100))
-        rows = compare(told=lambda text: line.show(next(done), 10, text))
-        line.show(next(done), 10, "grid")
-        grid = compare_grid()
-        line.show(next(done), 10, "first calls")
-        first = starts()
-    times = ratios(rows)
-    header = ["family", "regime", "method", "microseconds", "wrong", "times singimpact"]
-    cells = [
-        [row.family, row.regime, row.method, f"{row.microseconds:.3f}", f"{row.wrong}/{row.of}",
-         f"{times[row.family, row.regime, row.method]:.1f}" if (row.family, row.regime, row.method) in times else ""]
-        for row in rows if row.of
-    ]  # fmt: skip
-    told: dict[str, list[Any]] = {"flights": [*rows], "grid": [*grid], "first_calls": [*first]}
-    text = "\n\n".join([columns(header, cells), _grid_table(grid), _start_table(first)])
-    return {name: [asdict(row) for row in part] for name, part in told.items()}, text
+        return [
+            measured(name, effort, lambda text, at=at: line.show(at, len(chosen), text))  # type: ignore[misc]
+            for at, name in enumerate(chosen)
+        ]
 
 
-def _start_table(first: list[Any]) -> str:
-    cells = [[row.what, f"{row.seconds:.2f}", f"{row.more:.2f}"] for row in first]
-    return columns(["first call in a new process, disk cache warm", "seconds", "more than numba's own"], cells)
+def _joined(found: list[Measured]) -> dict[str, Any]:
+    """One list of rows, of exponents and of skipped peers for all groups."""
+    from singimpact.bench.report import as_data
+
+    parts = [as_data(each) for each in found]
+    joined: dict[str, Any] = {key: [item for part in parts for item in part[key]] for key in ("rows", "exponents")}
+    return {**joined, "skipped": sorted({name for part in parts for name in part["skipped"]})}
 
 
-def _series() -> tuple[dict[str, Any], str]:
-    """The exact series, each task in a process of its own."""
-    from singimpact.bench.series import TASKS, measured
+def _text(found: Measured, form: str) -> str:
+    from singimpact.bench.report import NOTE, skipped, tables
 
-    with ProgressLine() as line:
-        found = []
-        for at, task in enumerate(TASKS, 1):
-            line.show(at, len(TASKS), task.name)
-            found.append(measured(task))
-    told = [{"task": x.task.name, "seconds": x.seconds, "megabytes": x.megabytes, "limit": x.task.limit} for x in found]
-    return {"series": told}, "\n".join(x.line() for x in found)
+    laid_out = markdown if form == "markdown" else columns
+    heading = f"## {found.group}" if form == "markdown" else found.group
+    parts = [heading, *(laid_out(header, cells) for header, cells in tables(found)), skipped(found)]
+    if any(row.wrong is not None for row in found.rows):
+        parts.append(NOTE)
+    return "\n\n".join(part for part in parts if part)
 
 
-def _states(states: int, seed: int, workers: int | None, keep: str | None) -> tuple[dict[str, Any], str]:
+def _draw(found: list[Measured], place: Path, picture: str) -> None:
+    from singimpact.bench.plots import plotted
+
+    for each in found:
+        save(plotted(each), place / f"bench-{each.group}.{picture}")
+
+
+def _states(states: int, seed: int, workers: int | None, keep: str | None) -> tuple[list[dict[str, Any]], str]:
     """Random states against the truth."""
+    from dataclasses import asdict
+
     from singimpact.bench.states import check
     from singimpact.cli.sweep import process_pool
 
@@ -110,11 +115,4 @@ def _states(states: int, seed: int, workers: int | None, keep: str | None) -> tu
     for row in rows:
         for tau, v, depth, bound in row.open:
             text += f"\nunresolved, {row.kind}: tau {tau!r}, v {v!r}, depth {depth:.3g}, known to {bound:.3g}"
-    return {"states": [asdict(row) for row in rows]}, text
-
-
-def _grid_table(grid: list[Any]) -> str:
-    own = grid[0].millions_a_second
-    cells = [[row.method, f"{row.states} x {row.impacts}", f"{row.millions_a_second:.3f}",
-              f"{own / row.millions_a_second:.1f}"] for row in grid]  # fmt: skip
-    return columns(["grid", "states x impacts", "million impacts/s", "singimpact is faster by"], cells)
+    return [asdict(row) for row in rows], text

@@ -20,3 +20,18 @@ def columns(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "\n".join(
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table
     )
+
+
+def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """The same as a table of Markdown.
+
+    Examples
+    --------
+    >>> print(markdown(["tau", "v"], [["0.5", "0.125"]]))
+    | tau | v |
+    |---|---|
+    | 0.5 | 0.125 |
+    """
+    lines = [list(header), *map(list, rows)]
+    text = ["| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines]
+    return "\n".join([text[0], "|" + "---|" * len(header), *text[1:]])

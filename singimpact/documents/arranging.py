@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.documents.formulas import first_positive, joined, latex, parenthesised
+from singimpact.theory.notation import first_positive, joined, latex, parenthesised
 
 
 def by_degree(expression: Any, *variables: Any) -> list[str]:

@@ -73,6 +73,9 @@ class Errata(Sequence[Erratum]):
     def __repr__(self) -> str:
         return self.text()
 
+    def _repr_markdown_(self) -> str:
+        return self.markdown()
+
     def text(self) -> str:
         """Plain text, for a terminal."""
         parts = [f"{len(self)} statements fail as printed"]

@@ -11,7 +11,6 @@ from typing import Any
 import sympy
 
 from singimpact.codegen.formulas import Coefficient, Exponents, function_source, module_source
-from singimpact.documents.formulas import latex
 from singimpact.documents.steps import Section, Step
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
@@ -20,6 +19,7 @@ from singimpact.theory.fold_form import FoldForm
 from singimpact.theory.formulas import LIMITS
 from singimpact.theory.frozen import COMMAND, curve_functions, sheet_functions
 from singimpact.theory.homogeneous import r_of_lambda
+from singimpact.theory.notation import latex
 from singimpact.theory.places import points_of
 from singimpact.theory.plane_forms import HIGHEST
 from singimpact.theory.power_series import PowerSeries

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.documents.layout import Painter, Row, laid_out, unpainted, wrapped
+from singimpact.notebook import table
 
 if TYPE_CHECKING:
     from singimpact.claims import Claim, Verdict
@@ -94,6 +95,10 @@ class VerdictTable(Sequence["Verdict"]):
         return self.text(shutil.get_terminal_size().columns if sys.stdout.isatty() else None)
 
     __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        rows = [(row.id, row.statement, row.verdict, row.evidence) for row in self._rows()]
+        return table(["claim", "what it says", "verdict", "evidence"], rows, self._summary(), most=len(rows))
 
     def _rows(self) -> list[Row]:
         titles = {claim.id: claim.title for claim in self.claims}

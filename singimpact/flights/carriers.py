@@ -5,6 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from singimpact.notebook import table
+from singimpact.status import Status, status_array
+
 
 @dataclass(frozen=True)
 class Flight:
@@ -27,6 +32,16 @@ class Flight:
     bound: Any
     condition: Any
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "status", status_array(self.status))
+
+    def _repr_html_(self) -> str:
+        names = [name for name in ("flight_time", "velocity", "tau", "v") if hasattr(self, name)]
+        columns = [np.ravel(getattr(self, name)) for name in names]
+        words = [Status(value).name for value in np.ravel(self.status).tolist()]
+        rows = [[*map(_shown, numbers), word] for *numbers, word in zip(*columns, words, strict=True)]
+        return table([*names, "status"], rows, f"{type(self).__name__} of {len(rows)}")
+
 
 @dataclass(frozen=True)
 class Step(Flight):
@@ -42,3 +57,10 @@ class Derivative:
 
     matrix: Any
     status: Any
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "status", status_array(self.status))
+
+
+def _shown(number: Any) -> str:
+    return f"{number:.12g}" if isinstance(number, float) else str(number)

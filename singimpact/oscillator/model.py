@@ -144,6 +144,11 @@ class Oscillator:
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{key}={value!r}' for key, value in self.to_dict().items())})"
 
+    def _repr_latex_(self) -> str:
+        from singimpact.oscillator.equation import equation
+
+        return f"${equation(self)}$"
+
     def __reduce__(self) -> tuple[Any, ...]:
         return (_rebuilt, (type(self), self.to_dict()))
 

@@ -180,6 +180,13 @@ class Scene:
         self._dress(axes, missing)
         return axes
 
+    def _repr_png_(self) -> bytes:
+        from io import BytesIO
+
+        file = BytesIO()
+        self.draw().figure.savefig(file, format="png")
+        return file.getvalue()
+
     def _box(self) -> tuple[tuple[float, float], tuple[float, float]]:
         return self.tau, self.times if self.plane == SURFACE else self.speeds
 

@@ -103,6 +103,14 @@ class PowerSeries:
                  for n, c in self.coefficients.items()}  # fmt: skip
         return sympy.Add(*(value * letter**power for power, value in shown.items()))
 
+    def _repr_latex_(self) -> str:
+        import sympy
+
+        from singimpact.theory.notation import latex, name_of
+
+        beyond = name_of(sympy.Symbol(self.variable))
+        return f"${latex(self.as_expr())} + O({beyond}^{{{self.order + 1}}})$"
+
     def valid_within(self, tolerance: float) -> float:
         """A radius within which the cut series is off by at most `tolerance`, and by `tolerance` times its value.
 

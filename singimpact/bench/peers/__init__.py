@@ -1,1 +1,6 @@
-"""What a user would pick instead: each as its own documentation shows it. They are imported when they are timed."""
+"""What a user would pick instead: each as its own documentation shows it. They are imported when they are timed.
+
+Files: `runge_kutta` (scipy), `taylor_events` (heyoka), `many_digits` (mpmath): a flight to its first event;
+`impacts` (chatter and thresholds, by any of these); `plain_series` (sympy). A peer that is not there raises
+`NotInstalled`.
+"""

@@ -1,16 +1,28 @@
-"""scipy's DOP853 at 1e-9 with a terminal event x - c."""
+"""scipy's DOP853 with a terminal event x - c."""
 
 from __future__ import annotations
 
 from math import cos
 from typing import Any
 
+from singimpact.bench.measuring import NotInstalled
 from singimpact.bench.problems import Problem
 
+TOLERANCES = (1e-6, 1e-9, 1e-12)
+LONGEST = 1000.0  # time after which a flight is given up
 
-def stepper(family: str) -> Any:
-    """A function from a problem to its first event: time since the launch, velocity."""
-    from scipy.integrate import solve_ivp
+
+def stepper(family: str, tolerance: float = 1e-9) -> Any:
+    """A function from a problem to its first event: time since the launch, velocity; nan when none is found.
+
+    Raises
+    ------
+    NotInstalled : scipy is not there.
+    """
+    try:
+        from scipy.integrate import solve_ivp
+    except ImportError:
+        raise NotInstalled("scipy") from None
 
     def fly(problem: Problem) -> tuple[float, float]:
         def field(t: float, y: Any) -> list[float]:
@@ -21,9 +33,11 @@ def stepper(family: str) -> Any:
             return float(y[0] - problem.clearance)
 
         event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
-        span = (problem.tau, problem.tau + 200.0)
+        span = (problem.tau, problem.tau + LONGEST)
         start = [problem.clearance, problem.v]
-        found = solve_ivp(field, span, start, method="DOP853", rtol=1e-9, atol=1e-9, events=event)
+        found = solve_ivp(field, span, start, method="DOP853", rtol=tolerance, atol=tolerance, events=event)
+        if found.status != 1:
+            return float("nan"), float("nan")
         return float(found.t[-1]) - problem.tau, float(found.y[1, -1])
 
     return fly

@@ -4,33 +4,37 @@ from __future__ import annotations
 
 from typing import Any
 
+from singimpact.bench.measuring import NotInstalled
 from singimpact.bench.problems import Problem
-from singimpact.inputs import InputError
+
+TOLERANCES = (1e-6, 1e-9, 1e-12, 2.0**-52)
+LONGEST = 1000.0  # time after which a flight is given up
 
 
-def stepper(family: str) -> Any:
+def stepper(family: str, tolerance: float = 2.0**-52) -> Any:
     """A function from a problem to its first event: time since the launch, velocity. The integrator is compiled here.
 
     Raises
     ------
-    InputError : heyoka is not installed.
+    NotInstalled : heyoka is not there.
     """
     try:
         import heyoka
     except ImportError:
-        raise InputError("heyoka is not installed: install the extra bench to compare with it") from None
+        raise NotInstalled("heyoka") from None
     x, u = heyoka.make_vars("x", "u")
     force = x if family == "linear" else x + 0.1 * u + 0.3 * x**3
     event = heyoka.t_event(x - heyoka.par[1], direction=heyoka.event_direction.negative)
     field = [(x, u), (u, heyoka.cos(heyoka.par[0] * heyoka.time) - force)]
-    flow = heyoka.taylor_adaptive(field, [0.0, 0.0], pars=[1.0, 0.0], t_events=[event])
+    flow = heyoka.taylor_adaptive(field, [0.0, 0.0], pars=[1.0, 0.0], t_events=[event], tol=tolerance)
 
     def fly(problem: Problem) -> tuple[float, float]:
         flow.time = problem.tau
         flow.state[:] = [problem.clearance, problem.v]
         flow.pars[:] = [problem.omega, problem.clearance]
         flow.reset_cooldowns()
-        flow.propagate_until(problem.tau + 1000.0)
+        if flow.propagate_until(problem.tau + LONGEST)[0] == heyoka.taylor_outcome.time_limit:
+            return float("nan"), float("nan")
         return float(flow.time) - problem.tau, float(flow.state[1])
 
     return fly

@@ -9,10 +9,10 @@ import sympy
 from singimpact.algebra.certificates import positive_on, value_at
 from singimpact.claims import true_orbits
 from singimpact.claims.claim import Check, Claim, Statement
-from singimpact.claims.notation import latex
 from singimpact.claims.verifiers import every, identity, is_zero, same
 from singimpact.theory import implicit_route as route
 from singimpact.theory.implicit_route import a_symbol, r, sigma, t
+from singimpact.theory.notation import latex
 
 a = a_symbol(0)
 _MAP = r"(\sigma,t)\mapsto"

@@ -11,12 +11,12 @@ from singimpact.algebra.parsing import parse
 from singimpact.algebra.rings import to_sympy
 from singimpact.claims import crosscheck
 from singimpact.claims.claim import Check, Claim, Statement
-from singimpact.claims.notation import latex
 from singimpact.claims.verifiers import every, identity, is_zero
 from singimpact.contact.contact import rest_acceleration
 from singimpact.theory import fold_route as fold
 from singimpact.theory import implicit_route as route
 from singimpact.theory.implicit_route import a_symbol, f_symbol, sigma, t, v
+from singimpact.theory.notation import latex
 from singimpact.theory.sheet import generic_sheet
 
 a, a1, a2 = (a_symbol(n) for n in range(3))

@@ -9,7 +9,6 @@ import sympy
 from singimpact.algebra.certificates import negative_on, positive_on, value_at
 from singimpact.claims import arcs, true_orbits
 from singimpact.claims.claim import Check, Claim, Statement
-from singimpact.claims.notation import latex
 from singimpact.claims.sections.section4a_blowup import HALF, THREE_HALVES
 from singimpact.claims.verifiers import every, is_zero
 from singimpact.theory import fold_route as fold
@@ -17,6 +16,7 @@ from singimpact.theory import implicit_route as route
 from singimpact.theory.fold_route import m
 from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
 from singimpact.theory.implicit_route import a_symbol, t
+from singimpact.theory.notation import latex
 
 REACHED = 1e-3  # relative error to which DOP853 finds a leading coefficient of gamma: double precision near Pi_0
 

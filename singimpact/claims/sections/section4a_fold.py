@@ -7,12 +7,12 @@ from typing import Any
 import sympy
 
 from singimpact.claims.claim import Check, Claim, Statement
-from singimpact.claims.notation import latex
 from singimpact.claims.verifiers import every, identity, is_zero
 from singimpact.theory import fold_route as fold
 from singimpact.theory.fold_form import cubic_terms, fold_form
 from singimpact.theory.fold_route import eta, k
 from singimpact.theory.implicit_route import r, sigma, t
+from singimpact.theory.notation import latex
 from singimpact.theory.sheet import generic_sheet
 
 HALF, QUARTERS = sympy.Rational(1, 2), sympy.Rational(9, 4)

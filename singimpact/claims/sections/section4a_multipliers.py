@@ -8,13 +8,13 @@ import sympy
 
 from singimpact.algebra.certificates import positive_on, value_at
 from singimpact.claims.claim import Check, Statement
-from singimpact.claims.notation import latex
 from singimpact.claims.sections.section4a_blowup import CUBIC, HALF, ROOT_SIGNS, THREE_HALVES, claim_4a, sign_chain
 from singimpact.claims.sections.section4a_rays import ray_m3
 from singimpact.claims.verifiers import every, identity, is_zero, same
 from singimpact.theory import fold_route as fold
 from singimpact.theory.fold_route import m
 from singimpact.theory.implicit_route import r
+from singimpact.theory.notation import latex
 
 Q = sympy.Symbol("Q")
 

@@ -9,11 +9,11 @@ import sympy
 from singimpact.algebra.certificates import definite, negative_on, positive_on, roots_inside, value_at
 from singimpact.claims import swans, true_orbits
 from singimpact.claims.claim import Check, Statement, in_section
-from singimpact.claims.notation import latex
 from singimpact.claims.verifiers import every, identity, is_zero
 from singimpact.theory import swan_route as swan
 from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient
 from singimpact.theory.implicit_route import r
+from singimpact.theory.notation import latex
 from singimpact.theory.sheet import generic_sheet
 
 m, s, ell, mbar = swan.m, swan.s, swan.ell, swan.mbar

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from singimpact.documents.arranging import by_degree
-from singimpact.documents.formulas import joined, latex
 from singimpact.documents.sections.letters import rows, with_b
 from singimpact.documents.steps import Section, Step
 from singimpact.theory import implicit_route as route
 from singimpact.theory.implicit_route import sigma, t, v
+from singimpact.theory.notation import joined, latex
 
 
 def told() -> Section:

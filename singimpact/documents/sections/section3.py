@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from singimpact.documents.arranging import factored
-from singimpact.documents.formulas import latex
 from singimpact.documents.steps import Section, Step
 from singimpact.theory import implicit_route as route
+from singimpact.theory.notation import latex
 
 
 def told() -> Section:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import sympy
 
 from singimpact.documents.arranging import by_degree, factored, in_powers
-from singimpact.documents.formulas import latex
 from singimpact.documents.sections.letters import rows, with_b
 from singimpact.documents.sections.section4_blowup import blow_up, in_lambda
 from singimpact.documents.steps import Section, Step
 from singimpact.theory import fold_route as fold
 from singimpact.theory import implicit_route as route
 from singimpact.theory.implicit_route import r, sigma, t
+from singimpact.theory.notation import latex
 
 u, w = sympy.symbols("u w")
 

@@ -7,12 +7,12 @@ from typing import Any
 import sympy
 
 from singimpact.documents.arranging import in_powers
-from singimpact.documents.formulas import latex
 from singimpact.documents.steps import Step
 from singimpact.theory import fold_route as fold
 from singimpact.theory.fold_route import m
 from singimpact.theory.homogeneous import DG_on_ray, P, Q, leading_coefficient, mu_of_lambda, r_of_lambda
 from singimpact.theory.implicit_route import a_symbol, r, sigma
+from singimpact.theory.notation import latex
 
 _Q, _Qdot = sympy.symbols("Q Qdot")
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import sympy
 
 from singimpact.documents.arranging import factored, in_powers
-from singimpact.documents.formulas import latex
 from singimpact.documents.steps import Section, Step
 from singimpact.theory import swan_route as swan
 from singimpact.theory.homogeneous import P, Q, leading_coefficient, mu_of_lambda, r_of_lambda
 from singimpact.theory.implicit_route import a_symbol, r, sigma
+from singimpact.theory.notation import latex
 from singimpact.theory.swan_route import ell, s
 
 

@@ -7,9 +7,9 @@ from typing import Any
 import sympy
 
 from singimpact.documents.arranging import factored, in_powers
-from singimpact.documents.formulas import latex, name_of
 from singimpact.documents.steps import Section, Step
 from singimpact.theory import unfolding as swan
+from singimpact.theory.notation import latex, name_of
 from singimpact.theory.unfolding import A, B, C, D, E, r, sigma, t
 
 

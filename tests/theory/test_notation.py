@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from singimpact.documents.arranging import by_degree, factored, in_powers
-from singimpact.documents.formulas import latex
+from singimpact.theory.notation import latex
 
 a, a1, a2, b, k, r, m, lam, sigma, eta, t = sympy.symbols("a a_d1 a_d2 b k r m lambda sigma eta t")
 Q = sympy.Symbol("Q")

@@ -1,0 +1,128 @@
+"""`bench growth`: how cost grows with the order, with digits, with the number of states and of impacts.
+
+Times alone, without a truth: each case ends in an exponent for each method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.rings import EXACT
+from singimpact.bench.groups.flights import closed
+from singimpact.bench.measuring import Case, Effort, Method, with_peers
+from singimpact.bench.peers import many_digits, runge_kutta, taylor_events
+from singimpact.bench.problems import Problem
+from singimpact.contact.contact import Contact
+from singimpact.flights.sequences import sequence
+from singimpact.impact_oscillator import ImpactOscillator, linear
+from singimpact.theory.fixed_points import tangency
+from singimpact.theory.invariant_curve import invariant_curve
+from singimpact.theory.sheet import sheet
+
+DUFFING = ImpactOscillator("x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3", "0.3", "117/275")
+LINEAR = linear(2, "0.3", "0.8")
+LOST = ("0.01", "0.003", "0.001", "0.0003", "0.0001")
+START = Problem("linear", "generic", 2.0, 0.3, 0.8, 0.0, 1.0, "", "")
+
+
+def cases(effort: Effort) -> Iterator[Case]:
+    """A case a kind of size; the smallest sizes are left out where a call still costs more than its work."""
+    short = effort.quick
+    symbols = (6, 8, 10) if short else (6, 8, 10, 12, 14)
+    yield _grown("order of v_c, symbols for the jets", "singimpact", symbols, lambda n: sheet(Contact.generic(1, n), n))
+    numbers = (8, 12, 16) if short else (8, 12, 16, 24, 32)
+    yield _grown("order of v_c, cubic model", "singimpact", numbers, lambda n: sheet(_contact(n), n))
+    yield _grown("order of gamma, cubic model", "singimpact", numbers,
+                 lambda n: invariant_curve(_contact(n), Fraction(3, 5), n))  # fmt: skip
+    digits = (100, 300, 1000) if short else (100, 300, 1000, 3000, 10_000)
+    yield _grown("digits of fixed points", "singimpact, certified", digits, lambda n: tangency("1/2", n),
+                 _line("mpmath findroot", digits[:4], _findroot))  # fmt: skip
+    few = (20, 40, 80) if short else (20, 40, 80, 160, 320)
+    yield _grown("digits of a flight", "singimpact", few, lambda n: LINEAR.first_hit(0, 1, digits=n),
+                 _line("mpmath findroot", few, partial(_at_digits, closed)),
+                 [] if short else _line("mpmath odefun", few[:3], partial(_at_digits, _integrated)))  # fmt: skip
+    states = (1000, 3000, 10_000) if short else (1000, 3000, 10_000, 30_000, 100_000)
+    yield _grown("states of an array", "singimpact", states, _flown_array)
+    yield _impacts(effort)
+    yield Case("impacts of a chatter", [_chatter(lost) for lost in (LOST[1:4] if short else LOST)])
+
+
+def _contact(order: int) -> Contact:
+    return Contact.of(DUFFING, Fraction(0), 1, order, EXACT)
+
+
+def _line(name: str, sizes: Sequence[int], run: Callable[[int], Any]) -> list[Method]:
+    """A method at each size; the time is that of the whole run."""
+    return [Method(name, str(n), partial(_alone, run, n), n) for n in sizes]
+
+
+def _alone(run: Callable[[int], Any], size: int) -> list[None]:
+    run(size)
+    return [None]
+
+
+def _grown(
+    case: str, name: str, sizes: Sequence[int], run: Callable[[int], Any], *peers: list[Method], skipped: Any = ()
+) -> Case:  # fmt: skip
+    return Case(case, [*_line(name, sizes, run), *(method for peer in peers for method in peer)], skipped=skipped)
+
+
+def _chatter(lost: str) -> Method:
+    """r = 1 - lost: the closer to 1, the more impacts are flown before the rest is summed up, here from v = lost/5."""
+    osc, v = linear(2, "0.3", f"1 - {lost}"), f"{lost}/5"
+
+    def run() -> list[Any]:
+        return [osc.chatter_limit("1.2", v).tau]
+
+    return Method("singimpact", f"r = 1 - {lost}", run, osc.chatter_limit("1.2", v).impacts)
+
+
+def _findroot(digits: int) -> None:
+    import mpmath
+
+    with mpmath.workdps(digits):
+        many_digits.fixed_points(mpmath.mpf(1) / 2)
+
+
+def _at_digits(fly: Callable[[Problem], Any], digits: int) -> None:
+    import mpmath
+
+    with mpmath.workdps(digits):
+        fly(START)
+
+
+def _integrated(problem: Problem) -> Any:
+    return many_digits.root_of_odefun(problem, "linear")
+
+
+def _flown_array(count: int) -> Any:
+    rng = np.random.default_rng(count)
+    return LINEAR.impact_map(rng.uniform(0, 3, count), rng.uniform(0.1, 2, count))
+
+
+def _impacts(effort: Effort) -> Case:
+    """r = 1, so that impacts never end; the peers fly through their first events."""
+    sizes = (1000, 3000, 10_000) if effort.quick else (1000, 3000, 10_000, 30_000, 100_000)
+    few = tuple(size // 100 for size in sizes)
+    methods, skipped = with_peers(
+        [],
+        lambda: _line("scipy DOP853, 1e-9", few[:3], partial(_chain, runge_kutta.stepper("linear", 1e-9))),
+        lambda: _line("heyoka, 1e-9", sizes[:3], partial(_chain, taylor_events.stepper("linear", 1e-9))),
+    )
+    endless = linear(2, "0.3", 1)
+    return _grown("impacts of an orbit", "singimpact", sizes, lambda n: sequence(endless, 0.0, 1.0, n), methods,
+                  skipped=skipped)  # fmt: skip
+
+
+def _chain(fly: Callable[[Problem], tuple[float, float]], count: int) -> None:
+    """Impacts in a row with r = 1; where a peer fails it starts again, for a length of time is what is measured."""
+    tau, v = START.tau, START.v
+    for _ in range(count):
+        time, velocity = fly(replace(START, tau=tau, v=v))
+        tau, v = (tau + time, abs(velocity)) if abs(velocity) > 1e-3 else (START.tau, START.v)

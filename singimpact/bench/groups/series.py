@@ -1,0 +1,172 @@
+"""`bench series`: v_c and gamma order by order, each made in a fresh process, beside the plain sympy way.
+
+x'' + x'/10 + x + 3x^3/10 = 0.3081 + t + t^2/3 with the wall at 0.3 has a tangency at 0; lambda is 3/5.  A series is
+judged by its value: v_c at the end of a flight from (-0.2, 0.01) that was flown in 45 digits, gamma over -0.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from itertools import groupby
+
+from singimpact.bench.fresh import Cost, cost
+from singimpact.bench.measuring import Case, Effort, Method, Timed
+from singimpact.bench.problems import values
+
+FLIGHT_TIME = values()["v_c.flight_time[cubic, polynomial forcing](-0.2,0.01)"]
+ON_GAMMA = values()["gamma.v[cubic, polynomial forcing](-0.1)"]
+
+OURS = """
+import flint, numpy
+from fractions import Fraction
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.rings import DOUBLES, EXACT
+from singimpact.contact.contact import Contact
+from singimpact.oscillator.model import Oscillator
+from singimpact.theory.invariant_curve import invariant_curve
+from singimpact.theory.sheet import sheet
+
+FORCE, FORCING = "x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3"
+DUFFING = Oscillator(FORCE, FORCING, "0.3", "1/2")
+LETTERED = Oscillator("x + d*xdot + k*x**3", "cos(t)", "0.3", "1/2", {"d": "0.1", "k": "0.3"})
+"""
+SYMPY = """
+import sympy
+from sympy import Rational
+from singimpact.bench.peers import plain_series as plain
+from singimpact.theory import implicit_route
+
+FORCE, CLEARANCE = plain.x + plain.xdot/10 + 3*plain.x**3/10, Rational(3, 10)
+FORCING = Rational(3081, 10000) + plain.t + plain.t**2/3
+
+def symbols(order):
+    terms = [(i, k) for i in range(order) for k in range(order) if i + k and 2*i + k + 1 <= order]
+    force = sum(sympy.Symbol(f"f_{i}{k}") * plain.x**i * plain.xdot**k / sympy.factorial(i) / sympy.factorial(k)
+                for i, k in terms)
+    return force, sum(sympy.Symbol(f"a_d{k}") * plain.t**k / sympy.factorial(k) for k in range(1, order + 1)), 0
+"""
+AT = f"""
+from fractions import Fraction
+SIGMA, T = Fraction(-1, 5), Fraction("{FLIGHT_TIME}")
+"""
+JETS = """
+import sympy
+KNOWN = {"a_d1": 1, "a_d2": Fraction(2, 3), "f_01": Fraction(1, 10), "f_10": Fraction(1081, 1000),
+         "f_20": Fraction(54, 100), "f_30": Fraction(18, 10), "sigma": SIGMA, "t": T}
+value = sympy.sympify(made).subs({s: sympy.Rational(KNOWN.get(s.name, 0)) for s in sympy.sympify(made).free_symbols})
+answer = [str(value)]
+"""
+OF_JET = "answer = [str(sum(c * SIGMA**i * T**k for (i, k), c in made.terms.items()))]"
+OF_GRAPH = "answer = [str(sum({} * Fraction(-1, 10)**n for n, c in made.graph.items()))]"
+OF_EXPRESSION = "answer = [str(sympy.Rational(made.subs({plain.sigma: SIGMA, plain.t: T})))]"
+
+
+@dataclass(frozen=True)
+class Task:
+    """One series.
+
+    Attributes
+    ----------
+    case, method, order : as the table shows them. made : the statement that is timed. before, judged : around it.
+    limit : CPU seconds that it may take; None for a peer, shown for comparison. long : not with `quick`.
+    """
+
+    case: str
+    method: str
+    order: int
+    made: str
+    before: str = OURS
+    judged: str = "answer = None"
+    limit: float | None = None
+    long: bool = False
+
+    def cost(self) -> Cost:
+        """CPU seconds, megabytes, and the value as text in a list."""
+        return cost(f"made = {self.made}", self.before + AT, self.judged)
+
+    def timed(self) -> Timed:
+        """As a method runs it."""
+        found = self.cost()
+        return Timed(found.seconds, found.answer)
+
+
+SYMBOLS, MODEL, GAMMA = "v_c, symbols for the jets", "v_c, cubic model", "gamma, cubic model"
+TRUTH = {SYMBOLS: ["0.01"], MODEL: ["0.01"], GAMMA: [ON_GAMMA]}
+
+
+def _symbols(order: int, limit: float | None = None, long: bool = False) -> Task:
+    made = f"sheet(Contact.generic(1, {order}), {order})"
+    return Task(SYMBOLS, "singimpact", order, made, OURS, f"made = made.v.to_sympy()\n{JETS}", limit, long)
+
+
+def _model(order: int, limit: float | None = None, long: bool = False) -> Task:
+    made = f"sheet(Contact.of(DUFFING, Fraction(0), 1, {order}, EXACT), {order}).v"
+    return Task(MODEL, "singimpact", order, made, OURS, OF_JET, limit, long)
+
+
+def _curve(order: int, ring: str, limit: float | None = None, long: bool = False) -> Task:
+    name, start, rate, coefficient = {
+        "EXACT": ("singimpact, exact", "Fraction(0)", "Fraction(3, 5)", "c"),
+        "Balls(256)": ("singimpact, 256-bit balls", "Fraction(0)", "Fraction(3, 5)", "as_rational(c)"),
+        "DOUBLES": ("singimpact, doubles", "0.0", "0.6", "Fraction(c)"),
+    }[ring]
+    made = f"invariant_curve(Contact.of(DUFFING, {start}, 1, {order}, {ring}), {rate}, {order})"
+    return Task(GAMMA, name, order, made, OURS, OF_GRAPH.format(coefficient), limit, long)
+
+
+def _implicit(order: int, long: bool = False) -> Task:
+    made = f"implicit_route.at_contact(implicit_route.v_c({order}), 1)"
+    return Task(SYMBOLS, "sympy, implicit function", order, made, SYMPY, JETS, None, long)
+
+
+def _plain(case: str, order: int, long: bool = False) -> Task:
+    given = f"*symbols({order})" if case == SYMBOLS else "FORCE, FORCING, CLEARANCE"
+    made, judged = f"plain.velocities({given}, {order})[0]", JETS if case == SYMBOLS else OF_EXPRESSION
+    if case == GAMMA:
+        made = f"plain.gamma({given}, Rational(3, 5), {order})"
+        judged = OF_EXPRESSION.replace("SIGMA", "Rational(-1, 10)")
+    return Task(case, "sympy, integrals and series", order, made, SYMPY, judged, None, long)
+
+
+# as the table shows them: by case, then by order, the method that the others are compared with first
+TASKS = (
+    _symbols(2), _plain(SYMBOLS, 2), _implicit(2),
+    _symbols(3, long=True), _plain(SYMBOLS, 3, True), _implicit(3, True),
+    _symbols(4, long=True), _plain(SYMBOLS, 4, True), _implicit(4, True),
+    _symbols(6, long=True), _implicit(6, True),
+    _symbols(8), _symbols(10, long=True), _symbols(12, long=True), _symbols(14, 1.0, True),
+    _model(2, long=True), _plain(MODEL, 2, True), _model(3, long=True), _plain(MODEL, 3, True),
+    _model(4, long=True), _plain(MODEL, 4, True), _model(5, long=True), _plain(MODEL, 5, True),
+    _model(8, long=True), _model(12, 0.05), _model(16, long=True), _model(20, long=True),
+    _curve(3, "EXACT"), _curve(3, "DOUBLES", long=True), _plain(GAMMA, 3),
+    _curve(4, "EXACT", long=True), _curve(4, "DOUBLES", long=True), _plain(GAMMA, 4, True),
+    _curve(5, "EXACT", long=True), _curve(5, "DOUBLES", long=True), _plain(GAMMA, 5, True),
+    _curve(8, "EXACT", long=True), _curve(8, "Balls(256)", long=True), _curve(8, "DOUBLES", long=True),
+    _curve(16, "EXACT"), _curve(16, "Balls(256)", long=True), _curve(16, "DOUBLES"),
+    _curve(32, "EXACT", 1.0, True), _curve(32, "Balls(256)", long=True), _curve(32, "DOUBLES", long=True),
+    _curve(64, "Balls(256)", 0.5, True), _curve(20, "DOUBLES", 0.01, True),
+)  # fmt: skip
+
+# what may not grow slower unseen, and has no value at a point to be judged by
+LIMITED = (
+    *(task for task in TASKS if task.limit is not None),
+    Task("v_c, generic jets", "singimpact", 8, "sheet(Contact.generic(0, 8), 8).xdot", limit=0.05),
+    Task("v_c, generic jets", "singimpact", 12, "sheet(Contact.generic(0, 12), 12).xdot", limit=0.5),
+    Task("v_c, cubic model, its parameters letters", "singimpact", 12,
+         'sheet(LetteredModel(LETTERED, ["d", "k"], 1).contact(12), 12).xdot',
+         OURS + "from singimpact.theory.letters import LetteredModel", limit=0.05),
+    Task("gamma, symbols for jets and r", "singimpact", 8, "symbolic_curve(1, 8)",
+         OURS + "from singimpact.theory.symbolic_curve import symbolic_curve", limit=3.0),
+    Task("chatter completion, symbols for jets and r", "singimpact", 6, "symbolic_completion(6)",
+         OURS + "from singimpact.theory.completion import symbolic_completion", limit=0.3),
+)  # fmt: skip
+
+
+def cases(effort: Effort) -> Iterator[Case]:
+    """A case a series and order."""
+    chosen = [task for task in TASKS if not (effort.quick and task.long)]
+    for (name, _), tasks in groupby(chosen, key=lambda task: (task.case, task.order)):
+        methods = [Method(task.method, f"order {task.order}", partial(Task.timed, task), task.order) for task in tasks]
+        yield Case(name, methods, TRUTH[name], missed=1.0)  # a cut series is coarse, and no other answer

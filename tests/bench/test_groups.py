@@ -1,0 +1,135 @@
+"""Every group at its smallest size: what is ours is right, what is absent is named, what is wrong is counted."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import pytest
+
+from singimpact.bench.groups import GROUPS, flights, measured, series, usual
+from singimpact.bench.measuring import FULL, QUICK, Effort, measure
+
+SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, copies=2)
+COSTLY = ("series", "figures", "grid", "start")
+PEERS = {
+    "map": {"scipy DOP853", "heyoka", "mpmath findroot", "mpmath odefun"},
+    "chatter": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 30"},
+    "threshold": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 15"},
+    "series": {"sympy, integrals and series", "sympy, implicit function"},
+    "fixed-points": {"mpmath findroot", "numpy roots"},
+    "emitted": {"sympy lambdify", "sympy lambdify, cse", "sympy subs"},
+    "figures": {"contour of a grid"},
+    "growth": {"mpmath findroot", "scipy DOP853, 1e-9", "heyoka, 1e-9"},
+    "grid": {"heyoka"},
+    "start": {"numba, a kernel of one line"},
+}
+CUT = ("order", "tolerance")  # settings at which an answer is not meant to have all digits
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name in COSTLY else ()) for name in GROUPS]
+)
+def test_group_at_its_smallest_size(name):
+    pytest.importorskip("heyoka")
+    found = measured(name, SMALL)
+    ours = [row for row in found.rows if row.method.startswith("singimpact")]
+    assert {row.method for row in found.rows} - {row.method for row in ours} == PEERS[name]
+    assert all(row.microseconds > 0 for row in found.rows)
+    judged = [row for row in ours if row.wrong is not None and (name == "emitted" or not row.setting.startswith(CUT))]
+    assert [row for row in judged if row.wrong] == []
+    assert judged or name in ("series", "growth", "grid", "start")
+    assert not found.skipped
+
+
+def test_duffing_too():
+    """A quick look leaves this family out; its tolerances trade error for time."""
+    rows = measure("map", flights._regime("duffing", "generic", SMALL), SMALL)
+    ours = {row.setting: row for row in rows if row.method == "singimpact"}
+    assert ours["compiled loop"].wrong == 0
+    assert ours["tolerance 1e-06"].error > ours["tolerance 1e-09"].error > ours["compiled loop"].error
+    assert ours["tolerance 1e-06"].missed == 0
+
+
+def test_groups_of_a_quick_look(singimpact):
+    assert set(GROUPS) == set(usual(FULL)) == set(PEERS)
+    assert set(GROUPS) - set(usual(QUICK)) == {"grid", "start"}
+    told = " ".join(singimpact("bench", "--help").stdout.split())
+    assert [name for name in GROUPS if name not in told] == []
+
+
+def test_peers_miss_what_they_are_known_to_miss():
+    """Chatter: the root is 1e-12 away from the trivial one, and a terminal event does not see it."""
+    rows = [row for row in measured("chatter", SMALL).rows if row.method.startswith(("scipy", "heyoka"))]
+    assert rows
+    assert all(row.wrong == row.missed == 1 for row in rows)
+
+
+def test_peer_that_is_not_installed_is_named(monkeypatch, singimpact):
+    monkeypatch.setitem(sys.modules, "heyoka", None)
+    found = measured("chatter", SMALL)
+    assert found.skipped == ["heyoka"]
+    assert not [row for row in found.rows if row.method.startswith("heyoka")]
+    told = singimpact("bench", "chatter", "--quick")
+    assert told.exit_code == 0
+    assert "chatter: heyoka is not installed, skipped" in told.stdout
+    assert "scipy DOP853" in told.stdout
+
+
+@pytest.mark.parametrize("task", [series._symbols(5), series._model(5), series._curve(5, "EXACT"),
+                                  series._curve(5, "Balls(256)"), series._curve(5, "DOUBLES"),
+                                  series._plain(series.MODEL, 2), series._implicit(3)],
+                         ids=lambda task: f"{task.case}, {task.method}")  # fmt: skip
+def test_series_gains_a_digit_and_more_by_orders(task):
+    """Against flights: order 2 is off by a twentieth, order 5 by a millionth."""
+    from singimpact.bench.measuring import relative_error
+
+    off = relative_error(task.timed().answers[0], series.TRUTH[task.case][0])
+    assert 0 < off < {2: 0.06, 3: 2e-3, 5: 1e-5}[task.order]
+
+
+def test_command_writes_table_data_and_pictures(singimpact, tmp_path):
+    told = singimpact(
+        "bench", "fixed-points", "--quick", "--json", "-o", tmp_path / "b.json", "--plots", tmp_path / "p"
+    )
+    assert told.exit_code == 0, told.output
+    data = json.loads((tmp_path / "b.json").read_text())
+    named = "group case method setting size microseconds error wrong missed of ratio spread rounds"
+    assert list(data["rows"][0]) == named.split()
+    assert data["quick"] is True
+    assert all(row["spread"][0] <= row["ratio"] <= row["spread"][1] for row in data["rows"])
+    assert [path.name for path in (tmp_path / "p").iterdir()] == ["bench-fixed-points.png"]
+    assert (tmp_path / "p" / "bench-fixed-points.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_markdown(singimpact):
+    told = singimpact("bench", "fixed-points", "--quick", "--format", "markdown")
+    lines = told.stdout.splitlines()
+    assert lines[0] == "## fixed-points"
+    assert lines[2].startswith("| case | method | setting | microseconds | error | wrong | missed |")
+    assert len({line.count("|") for line in lines[2:] if line.startswith("|")}) == 1
+
+
+def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("singimpact.bench.groups.measured", stopped)
+    told = singimpact("bench", "growth", "-o", tmp_path / "b.txt", "--plots", tmp_path / "p")
+    assert told.exit_code == 130
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [(("mapp",), "unknown group 'mapp': the nearest known are map"),
+     (("growth", "--plots", "{file}"), "cannot be written"),
+     (("growth", "-o", "{file}/absent/b.txt"), "cannot be written"),
+     (("growth", "--picture", "gif"), "'gif' is not one of")],
+)  # fmt: skip
+def test_refused_before_anything_is_measured(arguments, told, singimpact, tmp_path, monkeypatch):
+    monkeypatch.setattr("singimpact.bench.groups.measured", lambda *_: pytest.fail("it was measured"))
+    (tmp_path / "file").touch()
+    result = singimpact("bench", *(word.format(file=tmp_path / "file") for word in arguments))
+    assert result.exit_code == 2
+    assert told in result.stderr

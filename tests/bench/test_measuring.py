@@ -1,0 +1,114 @@
+"""Timer, judge, fit and picture on made-up methods whose cost and answers are known."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from singimpact.bench.exponents import exponents, fitted
+from singimpact.bench.measuring import EPSILON, Case, Effort, Measured, Method, Timed, condition, measure
+from singimpact.bench.plots import plotted
+
+EFFORT = Effort(rounds=5, least=0, once=100, fresh=5)
+
+
+def fixed(seconds, answers):
+    """A method that says what it took."""
+    return lambda: Timed(seconds, answers)
+
+
+def test_wrong_and_missed_answers_are_counted():
+    truth = ["1", "2", "3", "4"]
+    planted = Method("planted", "", fixed(1.0, [1 + 1e-10, 2.1, None, float("nan")]))
+    right = Method("right", "", fixed(1.0, [1, 2, 3, 4]))
+    right, wrong = measure("group", Case("case", [right, planted], truth), EFFORT)
+    assert (right.wrong, right.missed, right.error) == (0, 0, 0.0)
+    assert (wrong.wrong, wrong.missed, wrong.of) == (4, 3, 4)
+    assert wrong.error == pytest.approx((0.05 + 1e-10) / 2, rel=1e-6)
+
+
+def test_condition_allows_what_it_explains_and_no_more():
+    off = 1e4 * EPSILON
+    methods = [Method("near", "", fixed(1.0, [1 + off])), Method("digits", "", fixed(1.0, [1 + off]), epsilon=1e-30)]
+    allowed = measure("group", Case("case", methods, [1], [2e3]), EFFORT)
+    assert [row.wrong for row in allowed] == [0, 1]
+    assert measure("group", Case("case", methods[:1], [1], [5e2]), EFFORT)[0].wrong == 1
+
+
+def test_ratios_are_taken_within_a_round():
+    """A machine that slows down fourfold in the middle does not change them."""
+    slow = iter([1.0, 1, 1, 4, 4, 4, 1, 1, 1])
+    turns = {"first": [], "second": []}
+
+    def method(name, cost):
+        def run():
+            if name == "first":
+                turns["now"] = next(slow)
+            turns[name].append(cost * turns["now"])
+            return Timed(turns[name][-1], [1])
+
+        return Method(name, "", run)
+
+    case = Case("case", [method("first", 1.0), method("second", 3.0)])
+    first, second = measure("group", case, EFFORT)
+    assert (first.ratio, second.ratio, second.spread, second.rounds) == (1, 3, (3, 3), 5)
+    assert max(turns["first"]) == 4
+
+
+def test_cpu_time_of_a_problem():
+    """Sleep is not work; copies, problems and repeated calls divide."""
+
+    def work():
+        stop = time.process_time() + 2e-3
+        while time.process_time() < stop:
+            pass
+        return [None, None]
+
+    def sleep():
+        time.sleep(0.02)
+        return [None, None]
+
+    methods = [Method("work", "", work), Method("copies", "", work, copies=10), Method("sleep", "", sleep)]
+    one, copies, asleep = measure("group", Case("case", methods), Effort(rounds=3, least=0))
+    assert one.microseconds == pytest.approx(1000, rel=0.5)
+    assert copies.microseconds == pytest.approx(one.microseconds / 10, rel=0.5)
+    assert asleep.microseconds < 0.5 * one.microseconds
+
+
+def test_condition():
+    assert condition(lambda tau, v: tau**3 / v, 2.0, 0.1) == pytest.approx(5, rel=1e-6)
+
+
+@pytest.mark.parametrize("power", [-1.0, 0.5, 3.0])
+def test_exponent_with_noise_lies_within_its_error(power):
+    """Of 200 fits about 95 in a hundred lie within 2.5 standard errors (5 points: t with 3 degrees gives 91)."""
+    rng, sizes = np.random.default_rng(3), np.array([10, 30, 100, 300, 1000])
+    fits = [fitted(sizes, 7 * sizes**power * np.exp(rng.normal(0, 0.1, 5))) for _ in range(200)]
+    inside = sum(abs(slope - power) < 2.5 * error for slope, error in fits)
+    assert 170 < inside < 198
+
+
+def test_exponents_need_three_sizes():
+    def line(name, sizes):
+        return [Method(name, str(n), fixed(n**2.0, [None]), n) for n in sizes]
+
+    rows = measure("group", Case("case", [*line("three", (1, 2, 4)), *line("two", (1, 2))]), EFFORT)
+    (fit,) = exponents(rows)
+    assert (fit.method, fit.least, fit.most, fit.points) == ("three", 1, 4, 3)
+    assert fit.exponent == pytest.approx(2)
+
+
+def test_picture_shows_every_method_and_the_missed_ones_hollow():
+    cases = [Case("judged", [Method("a", "1", fixed(1.0, [1])), Method("b", "1", fixed(2.0, [2]))], [1]),
+             Case("grown", [Method("a", str(n), fixed(float(n), [None]), n) for n in (1, 2)]),
+             Case("timed", [Method("a", "once", fixed(3.0, [None]))])]  # fmt: skip
+    found = Measured("group", [row for case in cases for row in measure("group", case, EFFORT)])
+    judged, grown, timed = plotted(found).axes
+    assert [axes.get_title() for axes in (judged, grown)] == ["judged", "grown"]
+    hollow = [line for line in judged.lines if line.get_markerfacecolor() == "white"]
+    assert [(line.get_xdata()[0], line.get_ydata()[0]) for line in hollow] == [(1.0, 2e6)]
+    assert len({(line.get_color(), line.get_marker()) for line in judged.lines}) == 2
+    assert grown.lines[0].get_xdata().tolist() == [1, 2]
+    assert [bar.get_width() for bar in timed.patches] == [3.0]
