@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from time import process_time
 
 import click
 
@@ -18,7 +19,7 @@ from singimpact.store import folder, write_text
 @click.option("-o", "--output", metavar="DIR", default=".", show_default=True, help="A folder for the pictures.")
 @click.option("--format", "kind", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
 @click.option("--data", is_flag=True, help="Write the curves as JSON beside each picture.")
-@click.option("--json", "as_json", is_flag=True, help="Print what was written as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print what was written, with seconds of CPU, as JSON.")
 def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> None:
     """Draw figure N of the paper, 1 to 17, or all, each from a real oscillator, with the claims that it illustrates."""
     from singimpact.scenes.figures import FIGURES, picture
@@ -29,17 +30,17 @@ def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> No
         numbers = _numbers(which, list(FIGURES))
         for done, number in enumerate(numbers):
             line.show(done, len(numbers), f"figure {number}")
-            made = picture(number)
+            start, made = process_time(), picture(number)
             target = Path(place) / f"figure{number:02d}.{kind}"
             save(drawn(made), target)
             if data:
                 write_text(target.with_suffix(".json"), as_json_text(made.to_dict()) + "\n")
-            written.append((number, made.title, made.claims, str(target)))
+            written.append((number, made.title, made.claims, str(target), round(process_time() - start, 3)))
     if as_json:
-        keys = ("figure", "title", "claims", "file")
+        keys = ("figure", "title", "claims", "file", "seconds")
         click.echo(as_json_text({"figures": [dict(zip(keys, each, strict=True)) for each in written]}))
     else:
-        for _, title, claims, file in written:
+        for _, title, claims, file, _ in written:
             click.echo(f"{file}  {title} ({', '.join(claims)})")
 
 

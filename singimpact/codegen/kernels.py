@@ -17,16 +17,22 @@ from typing import Any
 from singimpact.inputs import InputError
 from singimpact.store import cache_folder, folder, passing_folder, write_text
 
+_READY: dict[tuple[str, tuple[str, ...]], dict[str, Any]] = {}
 FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "tanh", "atan")
 
 
 def filed(text: str) -> Path:
     """The file that holds a kernel's text; it is there whole or not at all, so two processes may race."""
-    name = f"kernel_{hashlib.sha256(text.encode()).hexdigest()[:24]}.py"
+    name = _file_name(text)
     try:
         return _placed(cache_folder() / "kernels", name, text)
     except InputError:  # a read-only home must not stop a computation
         return _placed(passing_folder(), name, text)
+
+
+@lru_cache(maxsize=256)
+def _file_name(text: str) -> str:
+    return f"kernel_{hashlib.sha256(text.encode()).hexdigest()[:24]}.py"
 
 
 def _placed(place: Path, name: str, text: str) -> Path:
@@ -58,7 +64,19 @@ def compiled(text: str, names: tuple[str, ...]) -> dict[str, Any]:
     exec(compile(text, str(path), "exec"), space)
     for name in names:
         space[name] = numba.njit(cache=True, error_model="numpy")(space[name])
+    _READY[text, names] = space
     return space
+
+
+def is_compiled(text: str, names: tuple[str, ...], name: str) -> bool:
+    """Whether this process has compiled, or read from the cache, a function of a kernel."""
+    return bool((text, names) in _READY and _READY[text, names][name].signatures)
+
+
+def was_compiled(text: str, name: str) -> bool:
+    """Whether numba's disk cache beside the kernel's file has the function."""
+    kept = cache_folder() / "kernels" / "__pycache__"
+    return any(kept.glob(f"{_file_name(text).removesuffix('.py')}.{name}-*.nbi"))
 
 
 def plain(text: str, functions: dict[str, Any]) -> dict[str, Any]:

@@ -11,35 +11,38 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.numbers import as_float
 from singimpact.cases import sweep
+from singimpact.dynamics.attractors import CHATTER, OTHER, PLACES, Attractor, caught, new_attractors, periodic_codes
 from singimpact.flights.grids import after
 from singimpact.inputs import refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
-OTHER, CHATTER = 0, 1
 
 
 @dataclass(frozen=True)
 class BasinSettings:
     """rest : an impact slower than this share of the fastest state shown, with a_c < 0, is in complete chatter.
     transient : impacts flown before an orbit is looked at, beyond those that chatter takes to get so slow.
-    most_impacts : n of the orbits that are told apart. close : two states nearer than this are the same, relative.
+    block : impacts flown before it is looked again which orbits are decided. sample : of those that are not, looked at
+        for an attractor that others are caught by.
     rows : of states a case; a call costs 3 ms before it flies. limit : of impacts flown; r = 0.99 wants 2000.
     """
 
     rest: float = 1e-7
+    slow: float = 1e-2
+    lasting: float = 0.02
     transient: int = 40
-    most_impacts: int = 8
-    close: float = 1e-6
+    block: int = 12
+    sample: int = 24
     rows: int = 10
     limit: int = 3000
 
 
 SETTINGS = BasinSettings()
-PLACES = 1000  # a class (n, k) is coded n * PLACES + k
 
 
 @dataclass(frozen=True)
@@ -107,8 +110,8 @@ def basins(
         raise refuse("model", model, "one with a period: periodic orbits are counted in periods")
     if isinstance(size, bool) or not isinstance(size, int) or not 2 <= size <= 10_000:
         raise refuse("size", size, "an integer from 2 to 10000")
-    low, high = (0.0, as_float(model.period)) if tau is None else _ends("tau", tau)
-    slow, fast = _ends("v", v)
+    low, high = (0.0, as_float(model.period)) if tau is None else window_ends("tau", tau)
+    slow, fast = window_ends("v", v)
     if slow < 0:
         raise refuse("window of v", v, "two numbers >= 0, the lower end first")
     times = low + (np.arange(size) + 0.5) * (high - low) / size
@@ -119,50 +122,56 @@ def basins(
     return Basins(model, times, speeds, codes.reshape(size, size))
 
 
-def _ends(name: str, given: Any) -> tuple[float, float]:
-    if not isinstance(given, tuple | list) or len(given) != 2:
-        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
-    low, high = (as_float(constant(f"window of {name}", end)) for end in given)
-    if not low < high:
-        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
-    return low, high
-
-
 def classified(fields: Mapping[str, Any], times: tuple[float, ...], fast: float, speeds: tuple[float, ...]) -> Array:
     """The codes of some rows of states; a function of this module, so that another process can be sent it."""
     model = Oscillator(**fields)
+    assert model.period is not None
+    period = as_float(model.period)
     tau, v = np.tile(times, len(speeds)), np.repeat(speeds, len(times))
+    codes, open_ = np.full(tau.size, OTHER, dtype=np.int32), np.arange(tau.size)
     r = as_float(model.slope_at_rest())
-    more = ceil(log(SETTINGS.rest) / log(r)) if r < 1 else 0
-    ends = after(model, tau, v, min(SETTINGS.transient + more, SETTINGS.limit))
-    codes = np.full(tau.size, OTHER, dtype=np.int32)
-    known = np.isfinite(ends.tau) & np.isfinite(ends.v)
-    slow = known & (np.nan_to_num(ends.v) <= SETTINGS.rest * fast)
-    codes[slow & (acceleration(model, np.where(known, ends.tau, 0.0)) < 0)] = CHATTER
-    flying = np.flatnonzero((codes == OTHER) & known & (ends.status == 0) & (ends.v > 0))
-    if flying.size:
-        codes[flying] = _periodic(model, ends.tau[flying], ends.v[flying], fast)
+    most = min(SETTINGS.transient + (ceil(log(SETTINGS.rest) / log(r)) if r < 1 else 0), SETTINGS.limit)
+    known: list[Attractor] = []
+    flown, block = 0, SETTINGS.block
+    while open_.size and flown < most:
+        block = min(block, most - flown)
+        ends = after(model, tau[open_], v[open_], block)
+        flown += block
+        # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
+        tau[open_], v[open_] = ends.tau - period * np.floor(ends.tau / period), ends.v
+        codes[open_] = _chattering(model, tau[open_], ends.v, fast)
+        open_ = open_[(codes[open_] == OTHER) & (ends.status == 0) & np.isfinite(ends.tau) & (ends.v > 0)]
+        if open_.size and flown < most:
+            codes[open_] = _caught(known, model, tau[open_], v[open_], fast)
+            block *= 1 if (codes[open_] != OTHER).any() else 2  # a search in vain is dear, and the next one more so
+            open_ = open_[codes[open_] == OTHER]
+    if open_.size:
+        codes[open_] = periodic_codes(model, tau[open_], v[open_], fast)
     return codes
 
 
-def _periodic(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """(n, k) of states that come back to themselves, else 0."""
-    assert model.period is not None
-    period = as_float(model.period)
+def _caught(known: list[Attractor], model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
+    """Codes of states near an attractor; those that a sample of the others has reached are added to the known ones."""
+    codes = caught(known, model, tau, v, fast)
+    left = np.flatnonzero(codes == OTHER)
+    sample = left[:: max(left.size // SETTINGS.sample, 1)]
+    known += new_attractors(model, tau[sample], v[sample], fast)
+    codes[left] = caught(known, model, tau[left], v[left], fast)
+    return codes
+
+
+def _chattering(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
+    """CHATTER where an orbit is slow, pressed to the obstacle, and at rest before the pressure can have gone.
+
+    What is left of chatter lasts about 2 v/((1 - r)|a|); over eight times that, a_c must keep its sign.
+    """
     codes = np.full(tau.size, OTHER, dtype=np.int32)
-    home = tau - period * np.floor(tau / period)
-    at, speed, turns = home, v, np.zeros(tau.size)
-    for n in range(1, SETTINGS.most_impacts + 1):
-        if (codes != OTHER).all():
-            break
-        ends = after(model, at, speed, 1)
-        # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
-        passed = np.floor(ends.tau / period)
-        at, speed, turns = ends.tau - passed * period, ends.v, turns + passed
-        around = np.rint((at - home) / period)
-        near = np.abs(at - home - around * period) < SETTINGS.close * period
-        near &= np.abs(speed - v) < SETTINGS.close * fast
-        k = turns + around
-        new = near & (codes == OTHER) & (k > 0) & (k < PLACES)
-        codes[new] = (n * PLACES + k[new]).astype(np.int32)
+    found = np.flatnonzero(np.isfinite(tau) & np.isfinite(v) & (np.nan_to_num(v) <= SETTINGS.slow * fast))
+    now, speed = acceleration(model, tau[found]), v[found]
+    with np.errstate(all="ignore"):
+        rest = np.where(now < 0, -2 * speed / (now * (1 - as_float(model.slope_at_rest()))), np.inf)
+    short = (now < 0) & (rest < SETTINGS.lasting * as_float(model.period)) if model.period is not None else now < 0
+    pressed = [acceleration(model, tau[found] + np.where(short, k * rest, 0.0)) < now / 2 for k in (2, 4, 8)]
+    settled = (now < 0) & (speed <= SETTINGS.rest * fast)
+    codes[found[settled | (short & np.all(pressed, axis=0))]] = CHATTER
     return codes

@@ -16,7 +16,7 @@ from singimpact.dynamics.orbit import orbit
 from singimpact.flights.sequences import sequence
 from singimpact.inputs import refuse, unknown
 from singimpact.oscillator.model import Oscillator
-from singimpact.surface.curve import Window
+from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
 SLOW = 1e-4  # of a period: what is left of a chatter that the compiled loop leaves to the orbit
@@ -65,7 +65,7 @@ def bifurcation(
     for name, value, least in (("points", points, 2), ("impacts", impacts, 1), ("kept", kept, 1)):
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise refuse(name, value, f"a whole number from {least}")
-    low, high = Window.read(between, (0, 1)).tau
+    low, high = window_ends("tau", between)
     values = np.linspace(low, high, points)
     ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), impacts, kept)
     return Bifurcation(over, values, sweep(ask, values.tolist(), executor, output))

@@ -23,7 +23,7 @@ from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.surface.curve import Curve, Mark
-from singimpact.theory.formulas import dynamics_on_gamma, fibre, gamma
+from singimpact.theory.formulas import arc_in_numbers
 from singimpact.theory.places import points_of
 from singimpact.theory.power_series import PowerSeries
 
@@ -41,12 +41,13 @@ class GrowthSettings:
     trust: float = 1e-13
     start: int = 17
     apart: float = 1e-11
-    longest: float = 16.0
+    longest: float = 11.0
     most: int = 4000
     generations: int = 60
 
 
 SETTINGS = GrowthSettings()
+CURVED = {"tangency": 1, "swan": 2}  # contact orders of the points where gamma may end
 
 
 @dataclass(frozen=True)
@@ -101,8 +102,7 @@ def grown_gamma(model: Oscillator, frame: Frame, tau: Any = None) -> list[Curve]
     (-1.385, True)
     """
     at = _curved(model, tau)
-    series = gamma(SETTINGS.order, at, model, tau)
-    motion = dynamics_on_gamma(SETTINGS.order, at, model, tau)
+    series, motion = arc_in_numbers(SETTINGS.order, CURVED[at], model, tau)
     foot = _foot(model, tau, at)
     size = min(series.valid_within(SETTINGS.trust), motion.valid_within(SETTINGS.trust))
     return _grown(model, frame, foot, series, -size, float(motion(-size)))
@@ -147,11 +147,11 @@ def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
     >>> curves[0].points[0].tolist()
     [0.5, 0.0]
     """
-    if not float(acceleration(model, np.array([_foot(model, tau, None)]))[0]) < 0:
-        raise refuse("tau", tau, "a time with a_c < 0: chatter comes to rest there, and W^s_tau exists")
-    series = fibre(SETTINGS.order, model, tau)
-    size = series.valid_within(SETTINGS.trust)
     foot = _foot(model, tau, None)
+    if not float(acceleration(model, np.array([foot]))[0]) < 0:
+        raise refuse("tau", tau, "a time with a_c < 0: chatter comes to rest there, and W^s_tau exists")
+    series, _ = arc_in_numbers(SETTINGS.order, 0, model, tau)
+    size = series.valid_within(SETTINGS.trust)
     # along the fibre the map contracts by r to first order; the exact image bounds the fundamental piece
     landed = model_step(model, np.array([[foot - size, float(series(-size))]]))[0, 0] - foot
     return _grown(model, frame, foot, series, -size, float(landed))
@@ -164,7 +164,7 @@ def _curved(model: Oscillator, tau: Any) -> str:
         raise InputError(f"tau = {tau}: a_c does not vanish there, so that no invariant curve ends there")
     if order == 2 and acceleration(model, np.array([_foot(model, tau, "swan")]), 2)[0] > 0:
         raise InputError(f"tau = {tau}: a_c'' > 0 at this swan, and no invariant curve ends at a positive one")
-    return {1: "tangency", 2: "swan"}[order]
+    return {j: at for at, j in CURVED.items()}[order]
 
 
 def _foot(model: Oscillator, tau: Any, at: str | None) -> float:
@@ -208,7 +208,7 @@ def _grown(
     """The series from its foot to the fundamental piece, then the inverse images of that."""
 
     def start(s: Array) -> Array:
-        return np.stack([foot + s, [float(series(each)) for each in s.tolist()]], axis=1)
+        return np.stack([foot + s, series(s)], axis=1)
 
     s = np.linspace(inner, outer, SETTINGS.start)
     whole = np.linspace(0.0, inner, 2 * SETTINGS.start)

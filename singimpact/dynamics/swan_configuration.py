@@ -6,6 +6,7 @@ negative one.  The letters are those of section 6.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -25,6 +26,7 @@ from singimpact.surface.impact_surface import Cusp, ImpactSurface
 from singimpact.surface.named_vertices import crossing
 from singimpact.surface.rest_flights import RestFlights
 
+Array = np.ndarray[Any, Any]
 Point = tuple[float, float]
 REACH_TAU, REACH_T = 4.0, 6.0  # of the picture, in half distances of A and B: the unfolded swan fits
 
@@ -128,8 +130,6 @@ class SwanConfiguration:
     @cached_property
     def N(self) -> Point:
         """Where the arc R(phi(AE)) ends on the outline (positive swan)."""
-        from scipy.optimize import root
-
         flights = RestFlights(self.model)
         length = self.B - self.A
 
@@ -139,13 +139,13 @@ class SwanConfiguration:
 
         start = self._first_guess()
 
-        def miss(unknown: Any) -> list[float]:
+        def miss(unknown: Array) -> Array:
             place, speed, _ = landed(unknown[0], start[1])
             launch, velocity, _ = landed(unknown[1], start[3])
-            return [(place - launch) / length, float(rebound(self.model, np.array(speed))) - velocity]
+            return np.array([(place - launch) / length, float(rebound(self.model, np.array(speed))) - velocity])
 
-        found = root(miss, [start[0], start[2]], tol=1e-14)
-        place, speed, _ = landed(found.x[0], start[1])
+        found = _zero(miss, np.array([start[0], start[2]]), length)
+        place, speed, _ = landed(found[0], start[1])
         return place, float(rebound(self.model, np.array(speed)))
 
     def _first_guess(self) -> tuple[float, float, float, float]:
@@ -163,6 +163,19 @@ class SwanConfiguration:
         i, j = np.unravel_index(int(np.argmin(gaps)), gaps.shape)
         first, second = curve.points[ahead][i], curve.points[behind][j]
         return float(first[0]), float(first[1]), float(second[0]), float(second[1])
+
+
+def _zero(miss: Callable[[Array], Array], place: Array, size: float) -> Array:
+    """Newton's method in two unknowns, with differences over a millionth of `size`: each step gains six digits."""
+    h = 1e-6 * size
+    for _ in range(20):
+        value = miss(place)
+        slopes = np.stack([(miss(place + step) - value) / h for step in h * np.eye(2)], axis=1)
+        move = np.linalg.solve(slopes, -value)
+        place = place + move
+        if not np.abs(move).max() > 4e-16 * (size + np.abs(place).max()):
+            break
+    return place
 
 
 def swan_configuration(model: Oscillator, near: Any = None) -> SwanConfiguration:

@@ -71,3 +71,18 @@ def taylor_chain(
         if not v > 0:
             return i + 1, 8
     return count, 0
+
+
+def taylor_ends(
+    tau: Any, v: Any, count: int, w: Any, launch: Any, order: int, horizon: float, ulp: float, p: Any,
+    X: Any, W: Any, q: Any, out: Any, status: Any,
+) -> None:  # fmt: skip
+    """`taylor_chain` for every state: tau, v become the last states, status what ended an orbit before, else 0."""
+    for i in range(len(tau)):
+        if status[i] != 0:
+            continue
+        flown, code = taylor_chain(tau[i], v[i], count, 0.0, w, launch, order, horizon, ulp, p, X, W, q, out)
+        status[i] = code
+        if flown > 0:
+            tau[i] += out[flown - 1, 0]
+            v[i] = out[flown - 1, 1]

@@ -12,15 +12,15 @@ import numpy as np
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import substitute
 from singimpact.algebra.numbers import as_float
+from singimpact.codegen.interpreted import function
 from singimpact.codegen.kernels import compiled
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import chains, lane_roots, lane_walk, lanes
 from singimpact.flights.hits import EPSILON, doubles, remainders
-from singimpact.flights.kernel import kernel_of, source
+from singimpact.flights.kernel import PRICES, kernel_of, source
 from singimpact.flights.launch import States, horizon_of
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
-from singimpact.flights.sequences import sequence
 from singimpact.flights.tables import LANES, STRIDES, Table, table_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.rebound import rho_of
@@ -53,19 +53,30 @@ def after(osc: Oscillator, tau: Any, v: Any, impacts: int) -> Ends:
     table = table_of(kernel, doubles(kernel), LANES)
     times, speeds = states.tau.copy(), states.v.copy()
     status = np.where(speeds > 0, np.int8(0), np.int8(Status.sticks))
-    if table is None or kernel.form is None:
-        for index in np.flatnonzero(status == 0):
-            found = sequence(osc, times[index], speeds[index], impacts)
-            status[index] = found.status
-            if found.tau.size:
-                times[index], speeds[index] = found.tau[-1], found.v[-1]
-        return Ends(*(part.reshape(states.shape)[()] for part in (times, speeds, status)))
     shift = np.zeros(times.size) if osc.period is None else times - reduced(times, osc.period)
+    if table is None:
+        flown = _chained(osc, [times - shift, speeds, status], impacts)
+        return Ends(*(part.reshape(states.shape)[()] for part in (flown[0] + shift, *flown[1:])))
     padded = [np.resize(part, -(-times.size // lanes.LANES) * lanes.LANES) for part in (times - shift, speeds, status)]
     padded[2][times.size :] = Status.sticks
     _fly(osc, table, padded, impacts)
     parts = (padded[0][: times.size] + shift, padded[1][: times.size], padded[2][: times.size])
     return Ends(*(part.reshape(states.shape)[()] for part in parts))
+
+
+def _chained(osc: Oscillator, parts: list[Any], impacts: int) -> list[Any]:
+    """One state after another in Taylor steps."""
+    kernel, order = kernel_of(osc), degree_for(EPSILON)
+    text, trees = scalar(rho_of(osc.restitution), "v", "rebound")
+    loops = (chains.taylor_chain, chains.taylor_ends)
+    whole = "\n\n".join([kernel.text, text, *(source(loop) for loop in loops)])
+    w = np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
+    names = (*kernel.names, "rebound", *(loop.__name__ for loop in loops))
+    function(whole, names, "taylor_ends", parts[0].size * impacts * PRICES.taylor)(
+        *parts[:2], impacts, w, np.zeros(1), order, horizon_of(osc, None), LIMITS.safety * EPSILON, doubles(kernel),
+        np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2), np.empty((impacts, 5)), parts[2],
+    )  # fmt: skip
+    return parts
 
 
 def _fly(osc: Oscillator, table: Table, padded: list[Any], impacts: int) -> None:

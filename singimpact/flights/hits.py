@@ -13,12 +13,11 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.algebra.rings import DOUBLES
-from singimpact.codegen.kernels import compiled
 from singimpact.flights import counted, edges, manydigits
 from singimpact.flights.carriers import Derivative, Flight, Step
 from singimpact.flights.escape import never_returns
 from singimpact.flights.escape_polynomial import never_turns
-from singimpact.flights.kernel import Kernel, kernel_of
+from singimpact.flights.kernel import Kernel, kernel_of, ready
 from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
@@ -156,25 +155,30 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     kernel = kernel_of(osc)
     status = np.zeros(states.v.size, dtype=np.int8)
     removed = _removed(osc, states, status)
-    numbers = _flown(osc, kernel, states, removed, status, limit, epsilon)
+    pushes = known_accelerations(osc, states)
+    numbers = _flown(osc, kernel, states, removed, pushes, status, limit, epsilon)
     # first: what left the range of doubles would be followed again in many digits
     _escapes(osc, kernel.form, states, status, numbers)
     if _settle(osc, states, limit, status, numbers):
         _escapes(osc, kernel.form, states, status, numbers)
     flight, rough = _conditioned(osc, states, flight_of(status, numbers))
-    return _sharpened(osc, states, flight, rough, limit)
+    return _sharpened(osc, states, flight, rough & (status == Status.hit), pushes, limit)
 
 
-def _sharpened(osc: Oscillator, states: States, flight: Flight, rough: Array, limit: float) -> Flight:
+def _sharpened(
+    osc: Oscillator, states: States, flight: Flight, rough: Array, pushes: Array, limit: float
+) -> Flight:  # fmt: skip
     """Rough hits are polished in balls, and what balls do not confirm is flown in many digits.
 
     At near resonances all flights come back together: the state hardly matters, but the sums still cancel.
     """
+    if not rough.any():
+        return flight
     table = table_of(kernel_of(osc), doubles(kernel_of(osc)))
     # pressed back at once, a flight is a short series in t that loses nothing
-    far = (flight.flight_time > (table.step if table else 0)) | (known_accelerations(osc, states) >= 0)
+    far = (flight.flight_time > (table.step if table else 0)) | (pushes >= 0)
     left = LIMITS.settled
-    for index in np.flatnonzero((flight.status == Status.hit) & far & rough).tolist():
+    for index in np.flatnonzero(far & rough).tolist():
         found = polished(osc, states, index, float(flight.flight_time[index]))
         if found is None and left:
             left -= 1
@@ -219,8 +223,9 @@ def _removed(osc: Oscillator, states: States, status: Array) -> Array:
 
 
 def _flown(
-    osc: Oscillator, kernel: Kernel, states: States, removed: Array, status: Array, limit: float, epsilon: float
-) -> Array:
+    osc: Oscillator, kernel: Kernel, states: States, removed: Array, pushes: Array, status: Array, limit: float,
+    epsilon: float,
+) -> Array:  # fmt: skip
     order = degree_for(EPSILON if kernel.form else epsilon) + int(removed.max(initial=1)) - 1
     numbers = np.zeros((states.v.size, 4))
     moving = np.flatnonzero(status == Status.hit)
@@ -230,14 +235,14 @@ def _flown(
     p, table = doubles(kernel), table_of(kernel, doubles(kernel))
     part, flown = np.empty(moving.size, dtype=np.int8), np.empty((moving.size, 4))
     work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
-    space = compiled(kernel.text, kernel.names)
-    given = (launches(osc, kernel, states.tau)[moving], states.v[moving], removed[moving],
-             known_accelerations(osc, states)[moving])  # fmt: skip
+    given = launches(osc, kernel, states.tau)[moving], states.v[moving], removed[moving], pushes[moving]
     if table is None:
-        space["run"](*given, order, limit, LIMITS.safety * epsilon, p, *work, part, flown)
+        ready(kernel, "run", moving.size)(*given, order, limit, LIMITS.safety * epsilon, p, *work, part, flown)
     else:
-        space["stride_all"](*given, STRIDES.order, degree_for(EPSILON), limit, LIMITS.safety * EPSILON, p,
-                            table.step, table.rows, table.bound, *work, part, flown)  # fmt: skip
+        ready(kernel, "stride_all", moving.size)(
+            *given, STRIDES.order, degree_for(EPSILON), limit, LIMITS.safety * EPSILON, p, table.step, table.rows,
+            table.bound, *work, part, flown,
+        )  # fmt: skip
     status[moving], numbers[moving] = part, flown
     return numbers
 

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, float_array
-from singimpact.codegen.kernels import compiled
 from singimpact.flights import counted
+from singimpact.flights.flow.closed_arrays import places
 from singimpact.flights.hits import EPSILON, doubles
-from singimpact.flights.kernel import kernel_of
+from singimpact.flights.kernel import kernel_of, ready
 from singimpact.flights.launch import States, launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.inputs import InputError
@@ -69,8 +69,21 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any
     [array([[2., 1.]]), array([[-1.,  2.]])]
     """
     counted.add(len(times))
+    kernel = kernel_of(osc)
+    if kernel.form is not None:
+        counts = [at.size for at in times]
+        launch = np.repeat(launches(osc, kernel, tau), counts, axis=0)
+        both = places(launch, np.repeat(v, counts), np.concatenate([*times, np.zeros(0)]), doubles(kernel))
+        return np.split(both, np.cumsum(counts))[:-1]
+    return _stepped(osc, tau, v, times)
+
+
+def _stepped(
+    osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any, Any]]
+) -> list[np.ndarray[Any, Any]]:  # fmt: skip
+    """`many_paths` in Taylor steps."""
     kernel, order = kernel_of(osc), degree_for(EPSILON)
-    follow = compiled(kernel.text, kernel.names)["follow"]
+    follow = ready(kernel, "follow", len(times))
     numbers, X, W = doubles(kernel), np.zeros(order + 2), np.zeros((kernel.rows, order + 2))
     found = []
     for launch, speed, at in zip(launches(osc, kernel, tau), v.tolist(), times, strict=True):

@@ -10,11 +10,11 @@ import numpy as np
 
 from singimpact.algebra.expressions import substitute
 from singimpact.algebra.numbers import as_float
-from singimpact.codegen.kernels import compiled
+from singimpact.codegen.interpreted import function
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import chains, counted
 from singimpact.flights.hits import EPSILON, doubles, remainders
-from singimpact.flights.kernel import kernel_of, source
+from singimpact.flights.kernel import PRICES, kernel_of, source
 from singimpact.flights.launch import horizon_of
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
@@ -71,18 +71,17 @@ def sequence(osc: Oscillator, tau: float, v: float, count: int, slow: float = 0.
     start = tau if osc.period is None else float(reduced(np.array([tau]), osc.period)[0])
     work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
     limit, ulp, loop = horizon_of(osc, None), LIMITS.safety * EPSILON, names[-1]
+    fly = function(text, names, loop, count * (PRICES.stride if loop == "chain" else PRICES.taylor))
     if loop == "chain":
         table = table_of(kernel, p)
         assert table is not None
         low, phases = remainders(kernel)
-        flown, status = compiled(text, names)[loop](
+        flown, status = fly(
             start, v, count, slow, w, low, phases, np.zeros(max(2 * phases.shape[1], 1)), STRIDES.order, order, limit,
             ulp, p, table.step, table.rows, table.bound, *work, out,
         )  # fmt: skip
     else:
-        flown, status = compiled(text, names)[loop](
-            start, v, count, slow, w, np.zeros(1), order, limit, ulp, p, *work, out
-        )
+        flown, status = fly(start, v, count, slow, w, np.zeros(1), order, limit, ulp, p, *work, out)
     counted.add(int(flown))
     since, speed, time, velocity, acceleration = out[:flown].T
     return Sequence(tau + since, speed, time, velocity, acceleration, int(status))

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.codegen.kernels import compiled
 from singimpact.flights.flow.table import EACH, FIXED
-from singimpact.flights.kernel import Kernel
+from singimpact.flights.kernel import Kernel, ready
 
 Array = np.ndarray[Any, Any]
 
@@ -63,13 +62,12 @@ def _laid(kernel: Kernel, numbers: bytes, strides: Strides) -> Table | None:
         return None
     fraction, exponent = frexp(strides.reach / rate)
     step = ldexp(int(ldexp(fraction, strides.bits)), exponent - strides.bits)
-    space = compiled(kernel.text, kernel.names)
     waves = (p.size - 5) // 3
     rows, bound = np.zeros((strides.rows, FIXED + EACH * waves)), np.zeros(6 + strides.order + 1)
     series = np.zeros((strides.order + 1, 3 + 2 * waves))
-    space["tabulate"](p.copy(), step, rows)
-    space["bounds"](p.copy(), step, bound)
-    space["expansions"](p.copy(), series)
+    ready(kernel, "tabulate", 1)(p.copy(), step, rows)
+    ready(kernel, "bounds", 1)(p.copy(), step, bound)
+    ready(kernel, "expansions", 1)(p.copy(), series)
     return Table(step, rows, bound, series)
 
 

@@ -18,11 +18,12 @@ from singimpact.algebra.derivatives import derivative as differentiated
 from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.rings import DOUBLES, Multiprecision
-from singimpact.codegen.kernels import FUNCTIONS, compiled, plain
+from singimpact.codegen.interpreted import function
+from singimpact.codegen.kernels import FUNCTIONS, plain
 from singimpact.flights import kernel as kernels
 from singimpact.flights import march, variation
 from singimpact.flights.flow import taylor
-from singimpact.flights.kernel import kernel_of
+from singimpact.flights.kernel import kernel_of, ready
 from singimpact.flights.launch import launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
@@ -99,15 +100,14 @@ def variations(osc: Oscillator, tau: Array, v: Array, time: Array) -> Array:
     """dx/dv, dx'/dv, dx/dtau, dx'/dtau at fixed flight times >= 0, and the sizes of x and x', shape (n, 6)."""
     kernel, out = kernel_of(osc), np.full((v.size, 6), np.nan)
     if kernel.form is not None:
-        space = compiled(kernel.text, kernel.names)
         p = np.array([as_float(tree) for tree in kernel.constants])
-        space["responses"](launches(osc, kernel, tau), v, time, p, out)
+        ready(kernel, "responses", v.size)(launches(osc, kernel, tau), v, time, p, out)
         return out
     text, names = _text(osc)
     emitted, order = taylor.variation_of(osc), degree_for(EPSILON)
     p = np.array([as_float(tree) for tree in taylor.values(osc, emitted)])
     rows = [np.zeros(order + 2) for _ in range(3)]
-    compiled(text, names)["respond_all"](
+    function(text, names, "respond_all", v.size * kernels.PRICES.taylor)(
         launches(osc, kernel, tau), v, time, order, LIMITS.safety * EPSILON, p, rows[0],
         np.zeros((emitted.rows, order + 2)), rows[1], rows[2], out,
     )  # fmt: skip

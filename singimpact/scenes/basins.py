@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.dynamics.basins import CHATTER, OTHER, Basins
+from singimpact.dynamics.attractors import CHATTER, OTHER
+from singimpact.dynamics.basins import Basins
 from singimpact.dynamics.bifurcation import Bifurcation
 from singimpact.scenes.looks import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
 

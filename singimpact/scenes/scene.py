@@ -17,7 +17,7 @@ from singimpact.oscillator.files import FIELDS, read_fields
 from singimpact.oscillator.model import Oscillator
 from singimpact.scenes.layers import LAYERS, STATES, SURFACE
 from singimpact.scenes.needs import Results
-from singimpact.surface.curve import Window
+from singimpact.surface.curve import window_ends
 
 DPI = 100
 SIZES = (100, 8000)  # of a picture, in points
@@ -75,7 +75,7 @@ class Scene:
                 raise refuse(name, value, f"an integer from 1 to {most}")
         self._set("layers", tuple(self.layers))
         self._set("plane", self._plane())
-        self._set("tau", _window("tau", self.tau))
+        self._set("tau", window_ends("tau", self.tau))
         self._check_second()
         self._check_states()
 
@@ -93,7 +93,7 @@ class Scene:
         for name in ("t", "v"):
             given = getattr(self, name)
             if given is not None:
-                self._set(name, _window(name, given))
+                self._set(name, window_ends(name, given))
         if self.plane == SURFACE and self.t is None:
             raise InputError("window of t is missing: layers of (tau, t) need it")
         if self.plane == STATES and self.v is None:
@@ -236,19 +236,6 @@ def _inside(points: Any, box: Any) -> bool:
     (left, right), (low, high) = box
     x, y = np.asarray(points)[:, :2].T
     return bool(np.any((x >= left) & (x <= right) & (y >= low) & (y <= high)))
-
-
-def _window(name: str, given: Any) -> tuple[float, float]:
-    return Window.read(given, (0, 1)).tau if name == "tau" else _named_window(name, given)
-
-
-def _named_window(name: str, given: Any) -> tuple[float, float]:
-    if not isinstance(given, tuple | list) or len(given) != 2:
-        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
-    low, high = (as_float(constant(f"window of {name}", end)) for end in given)
-    if not low < high:
-        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
-    return low, high
 
 
 def _toml(path: str | Path) -> dict[str, Any]:

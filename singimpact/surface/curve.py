@@ -14,6 +14,30 @@ from singimpact.inputs import refuse
 Array = np.ndarray[Any, Any]
 
 
+def window_ends(name: str, given: Any) -> tuple[float, float]:
+    """The two ends (low, high) of a window, as numbers.
+
+    Parameters
+    ----------
+    name : of what runs between them, for the refusal. given : two numbers in any form that the package takes.
+
+    Raises
+    ------
+    InputError : not two numbers, or not in rising order.
+
+    Examples
+    --------
+    >>> window_ends("v", (0, "1/2"))
+    (0.0, 0.5)
+    """
+    if not isinstance(given, tuple | list) or len(given) != 2:
+        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
+    low, high = (as_float(constant(f"window of {name}", end)) for end in given)
+    if not low < high:
+        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
+    return low, high
+
+
 @dataclass(frozen=True)
 class Window:
     """A part of the (tau, t)-plane, and how many points a picture of it is wide.
@@ -42,21 +66,12 @@ class Window:
         """
         if isinstance(pixels, bool) or not isinstance(pixels, int) or not 16 <= pixels <= 20000:
             raise refuse("pixels", pixels, "an integer from 16 to 20000")
-        return cls(_ends("tau", tau), _ends("t", t), pixels)
+        return cls(window_ends("tau", tau), window_ends("t", t), pixels)
 
     @property
     def pixel(self) -> float:
         """The size of a point of the picture, in units of time."""
         return max(self.tau[1] - self.tau[0], self.t[1] - self.t[0]) / self.pixels
-
-
-def _ends(name: str, given: Any) -> tuple[float, float]:
-    if not isinstance(given, tuple | list) or len(given) != 2:
-        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
-    low, high = (as_float(constant(f"window of {name}", end)) for end in given)
-    if not low < high:
-        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
-    return low, high
 
 
 @dataclass(frozen=True)

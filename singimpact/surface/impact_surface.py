@@ -158,7 +158,7 @@ class ImpactSurface:
         """The next hit behind the visible horizon, for the same launches: curves in (tau, t)."""
         found = []
         for line, curve in zip(self.lines, self.horizon, strict=True):
-            ahead = self._next(line.points[:, 0])
+            ahead = self._hits(self.model, line.points[:, 0], curve.visible)
             behind = np.stack([curve.points[:, 0], curve.points[:, 1] + ahead], axis=1)
             made = Curve("S", behind, ("tau", "t"), (), curve.closed, line.tolerance, curve.visible)
             found += [part for part in made.parts(curve.visible & np.isfinite(ahead)) if len(part) > 1]
@@ -170,29 +170,27 @@ class ImpactSurface:
     def _first_ahead(self, line: NamedLine) -> Array:
         """Whether t > 0 is the first hit of the flight from rest."""
         tau, t = line.points.T
-        return self._is_first(self._next(tau), t)
+        return _is_first(self._hits(self.model, tau, t > 0), t)
 
     def _first_back(self, line: NamedLine) -> Array:
         """Whether t < 0 is the first hit of the flight from rest run back, so that the graze is a first hit."""
         tau, t = line.points.T
-        return self._is_first(self._previous(tau), -t)
+        return _is_first(self._hits(backwards(self.model), -tau, t < 0), -t)
 
-    def _is_first(self, found: Array, t: Array) -> Array:
-        """A hit at the time of the vertex."""
-        with np.errstate(invalid="ignore"):
-            return np.asarray(np.isfinite(found) & (t > 0) & (np.abs(found - t) <= SAME * (1 + t)))
-
-    def _next(self, tau: Array) -> Array:
-        return self._hits(self.model, tau)
-
-    def _previous(self, tau: Array) -> Array:
-        return self._hits(backwards(self.model), -tau)
-
-    def _hits(self, model: Oscillator, tau: Array) -> Array:
-        self._rest.flown += len(tau)
-        hit = first_hit(model, tau, np.zeros(len(tau)))
+    def _hits(self, model: Oscillator, tau: Array, asked: Array) -> Array:
+        """The times of first hits from rest; nan where there is none or it is not asked for."""
+        self._rest.flown += int(asked.sum())
+        found = np.full(len(tau), np.nan)
+        hit = first_hit(model, tau[asked], np.zeros(int(asked.sum())))
         kept = np.isin(hit.status, (Status.hit, Status.graze))
-        return np.where(kept, hit.flight_time, np.nan)
+        found[asked] = np.where(kept, hit.flight_time, np.nan)
+        return found
+
+
+def _is_first(found: Array, t: Array) -> Array:
+    """A hit at the time of the vertex."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.isfinite(found) & (t > 0) & (np.abs(found - t) <= SAME * (1 + t)))
 
 
 def _to_the_end(curve: Curve) -> Array:

@@ -68,6 +68,11 @@ def as_digits(ball: Any, digits: int) -> Any:
         return mpmath.mpf(value.numerator) / value.denominator
 
 
+def as_double(ball: Any) -> float:
+    """A ball as a double; zero when it holds zero."""
+    return 0.0 if ball.contains(0) else float(ball.mid())
+
+
 def sympy_digits(ball: Any, digits: int) -> Any:
     """A ball as a sympy Float with this many digits."""
     import sympy

@@ -18,7 +18,7 @@ from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.inputs import InputError, refuse
 from singimpact.theory.completion import leaves, symbolic_completion
-from singimpact.theory.digits import all_certified, all_digits, sympy_digits, with_digits
+from singimpact.theory.digits import all_certified, all_digits, as_double, sympy_digits, with_digits
 from singimpact.theory.invariant_curve import InvariantCurve, invariant_curve
 from singimpact.theory.letters import LetteredModel
 from singimpact.theory.places import Place, exact_contact, multiplier, place
@@ -46,6 +46,7 @@ class OrderLimits:
 
 LIMITS = OrderLimits()
 TWO_DOUBLES = 34  # digits that two doubles hold
+DOUBLE = 20  # digits of which a double is the correct rounding, but for one in a thousand
 
 
 def _checked(name: str, value: Any, least: int, most: int) -> int:
@@ -301,6 +302,41 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
     if exact is not None:
         return PowerSeries("sigma", order, exact, digits, further, numbers, enclosures)
     return PowerSeries("sigma", order, numbers(), digits, further, enclosures=enclosures)
+
+
+def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[PowerSeries, PowerSeries]:
+    """The invariant curve and the motion on it in correctly rounded doubles: what `gamma` and `fibre` are at numbers.
+
+    Parameters
+    ----------
+    order : the last power of sigma. j : contact order, 0 for the stable fibre. model, tau : as for `v_c`.
+
+    Examples
+    --------
+    >>> from singimpact.oscillator.model import Oscillator
+    >>> graph, motion = arc_in_numbers(3, 1, Oscillator("x", "cos(2*t)", "0.3", "1/2"))
+    >>> round(graph[3], 15), motion[1] == float(multiplier(1, Fraction(1, 2)))
+    (-0.067753032788707, True)
+    """
+    _checked("order", order, j + 1, LIMITS.curve_numbers)
+    where = place(model, j, tau)
+    rough = _curve(where, order + j + TRUST.further, DOUBLES)
+
+    def doubles(found: InvariantCurve, _: int) -> list[PowerSeries]:
+        made = []
+        for part in ("graph", "motion"):
+            further = {n: abs(float(value)) for n, value in getattr(rough, part).items() if n > order}
+            known = {n: as_double(ball) for n, ball in getattr(found, part).items() if n <= order}
+            made.append(PowerSeries("sigma", order, known, DOUBLE, further))
+        return made
+
+    graph, motion = with_digits(
+        lambda ring: _curve(where, order + j, ring),
+        DOUBLE,
+        doubles,
+        lambda found: (*found.graph.values(), *found.motion.values()),
+    )
+    return graph, motion
 
 
 def _curve(where: Place, order: int, ring: Any) -> InvariantCurve:

@@ -67,3 +67,43 @@ def test_across_a_swan():
 def test_refusals(ask, told):
     with pytest.raises(InputError, match=told):
         ask()
+
+
+def to_the_end(model, size, v):
+    """Codes of a grid by flying every state as long as the slowest chatter takes, without a look in between."""
+    from singimpact.dynamics.attractors import periodic_codes
+    from singimpact.flights.grids import after
+    from singimpact.oscillator.acceleration import acceleration
+
+    found = basins(model, v=(0, v), size=size)
+    tau, speed = (part.ravel() for part in np.meshgrid(found.tau, found.v))
+    ends = after(model, tau, speed, 90)
+    codes = np.zeros(tau.size, dtype=int)
+    codes[(ends.v < 1e-7 * v) & (acceleration(model, ends.tau) < 0)] = 1
+    flying = np.flatnonzero((codes == 0) & (ends.status == 0) & (ends.v > 0))
+    codes[flying] = periodic_codes(model, ends.tau[flying], ends.v[flying], v)
+    return found.codes, codes.reshape(size, size)
+
+
+@pytest.mark.parametrize(("force", "forcing", "r"), [("x", "cos(2*t)", "1/2"), ("x", "cos(14*t/5)", "0.6")])
+def test_orbits_decided_early_are_those_decided_late(force, forcing, r):
+    early, late = to_the_end(si.ImpactOscillator(force, forcing, "0.3", r), 40, 2.0)
+    assert len(np.unique(late)) > 1
+    assert np.mean(early != late) == 0
+
+
+def test_an_attractor_catches_only_what_comes_in():
+    from singimpact.dynamics.attractors import SETTINGS, caught, new_attractors
+    from singimpact.flights.grids import after
+
+    model = si.ImpactOscillator("x", "cos(2*t)", "0.3", "1/2")
+    ends = after(model, np.array([0.3]), np.array([1.5]), 60)
+    (attractor,) = new_attractors(model, ends.tau, ends.v, 2.0)
+    assert attractor.code == 1001
+    assert SETTINGS.close <= attractor.catch <= SETTINGS.catch
+    place = attractor.tau[0] + 0.99 * attractor.catch * np.pi * np.array([1, -1, 0])
+    speed = attractor.v[0] + 0.99 * attractor.catch * 2.0 * np.array([1, -1, 0])
+    assert (caught([attractor], model, place, speed, 2.0) == 1001).all()
+    home = after(model, place, speed, 200)
+    assert np.abs(home.v - attractor.v[0]).max() < 1e-9
+    assert (caught([attractor], model, place + 0.5, speed, 2.0) == 0).all()

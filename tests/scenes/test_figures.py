@@ -66,12 +66,12 @@ def test_2_cusps_come_and_go():
 
 @pytest.mark.slow
 def test_2_shows_what_the_transitions_are():
-    from singimpact.scenes.figures.outlines import CHANGES, duffing
+    from singimpact.scenes.figures.outlines import CHANGES, damped
     from singimpact.surface.transitions import transitions
 
     for change in CHANGES:
         near = change.value - 0.01, change.value + 0.01
-        found = [each for each in transitions(duffing(), change.over, near, (0, 12)) if each.kind == change.kind]
+        found = [each for each in transitions(damped(), change.over, near, (0, 12)) if each.kind == change.kind]
         assert min(abs(each.value - change.value) + abs(each.t - change.t) for each in found) < 1e-4
 
 

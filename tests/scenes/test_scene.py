@@ -68,7 +68,7 @@ def test_what_is_kept_is_the_same_curve():
         assert old.marks == new.marks
 
 
-@pytest.mark.parametrize("layers", [("horizon", "zero-set"), ("outline",)])
+@pytest.mark.parametrize("layers", [("horizon", "zero-set"), ("outline",), ("outline", "gamma")])
 def test_a_coarse_picture_costs_a_third_of_a_fine_one(layers):
     window = {"tau": (0, 6), "t": (-6, 6), "v": (0, 3)}
     small, large = (Scene(si.linear(2, "0.3", "0.5"), layers, **window, pixels=pixels) for pixels in (400, 2000))

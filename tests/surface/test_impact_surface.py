@@ -132,3 +132,15 @@ def test_what_is_not_asked_for_is_not_flown():
 def test_refusals(ask, told):
     with pytest.raises(InputError, match=told):
         ask()
+
+
+def test_only_what_may_be_a_first_hit_is_asked_for():
+    from singimpact.flights.counted import counted
+
+    surface = ImpactSurface(si.ImpactOscillator("x", "cos(2*t)", "0.7", "1/2"), (-1.2, 1.0), (-3, 3), 400)
+    lines = surface.lines
+    with counted() as count:
+        curves = surface.zero_set
+    ahead = sum(int((line.points[:, 1] > 0).sum()) for line in lines)
+    assert 0 < count.flights <= ahead < sum(len(line.points) for line in lines)
+    assert all((curve.points[curve.visible][:, 1] > 0).all() for curve in curves)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 Array = np.ndarray[Any, Any]
+ARCS = 500  # points across, for invariant arcs: half of what a panel has, less than the width of a line
 Point = tuple[float, float]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from singimpact.dynamics.invariant_arcs import Frame, before, gammas_within, stable_manifold
 from singimpact.flights.hits import rebound
-from singimpact.scenes.figures.panel import Array, Dot, Line, Panel, Picture, Region, arc
+from singimpact.scenes.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Region, arc
 from singimpact.scenes.figures.sheet import rebounded, reset
 from singimpact.scenes.figures.swans import box, half, negative, positive, ring, shadow
 from singimpact.surface.curve import Curve
@@ -24,7 +24,7 @@ def figure_13() -> Picture:
     edge = arc(outline, places["E"], places["B"], places["D"])
     v = 1.35 * float(edge[:, 1].max())
     window = box(swan, -2.2, 1.7, -0.08 * v, v)
-    frame = Frame(window[0][0], window[0][1], v)
+    frame = Frame(window[0][0], window[0][1], v, ARCS)
     lines = [Line(edge, "jump", "arc BE' of P", "$P$", 0.35, (-16, 6))]
     for foot in np.linspace(swan.A, swan.B, LEAVES + 2)[1:-1].tolist():
         lines += [Line(curve.points, "manifold", "leaf") for curve in stable_manifold(swan.model, frame, repr(foot))]
@@ -101,7 +101,7 @@ def figure_17() -> Picture:
     swan, size = negative(), half(negative())
     v = 1.12 * swan.projected["D"][1]
     window = box(swan, -4.2, 5.6, -0.06 * v, v)
-    frame = Frame(window[0][0] - size, window[0][1], 1.3 * v)
+    frame = Frame(window[0][0] - size, window[0][1], 1.3 * v, ARCS)
     manifold = stable_manifold(swan.model, frame, repr(swan.X))
     lines = [Line(curve.points, "manifold", "beyond X") for foot in (1.02, 1.08, 1.16)
              for curve in stable_manifold(swan.model, frame, repr(swan.X + (foot - 1) * 5 * size))]  # fmt: skip

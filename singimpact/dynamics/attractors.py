@@ -1,0 +1,117 @@
+"""Periodic attractors that orbits settle on, and how near an orbit must come to one to be caught."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.flights.grids import after
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+OTHER, CHATTER = 0, 1
+PLACES = 1000  # a class (n, k) is coded n * PLACES + k
+
+
+@dataclass(frozen=True)
+class AttractorSettings:
+    """most_impacts : n of the orbits that are told apart. close : two states nearer than this are the same, relative.
+    catch : how near to an attractor an orbit is looked upon as caught, relative, when the corners of that neighbourhood
+        are seen to come in; a tenth of it is tried next, down to `close`.
+    turns : of the attractor, in which they must come into half of it.
+    """
+
+    most_impacts: int = 8
+    close: float = 1e-6
+    catch: float = 1e-2
+    turns: int = 6
+
+
+SETTINGS = AttractorSettings()
+
+
+@dataclass(frozen=True)
+class Attractor:
+    """code : its class. tau, v : its states, tau within a period. catch : how near an orbit is caught, relative."""
+
+    code: int
+    tau: Array
+    v: Array
+    catch: float
+
+
+def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
+    """(n, k) of states that come back to themselves, else OTHER."""
+    assert model.period is not None
+    period = as_float(model.period)
+    codes = np.full(tau.size, OTHER, dtype=np.int32)
+    home = tau - period * np.floor(tau / period)
+    at, speed, turns = home, v, np.zeros(tau.size)
+    for n in range(1, SETTINGS.most_impacts + 1):
+        if (codes != OTHER).all():
+            break
+        ends = after(model, at, speed, 1)
+        # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
+        passed = np.floor(ends.tau / period)
+        at, speed, turns = ends.tau - passed * period, ends.v, turns + passed
+        around = np.rint((at - home) / period)
+        near = np.abs(at - home - around * period) < SETTINGS.close * period
+        near &= np.abs(speed - v) < SETTINGS.close * fast
+        k = turns + around
+        new = near & (codes == OTHER) & (k > 0) & (k < PLACES)
+        codes[new] = (n * PLACES + k[new]).astype(np.int32)
+    return codes
+
+
+def caught(known: list[Attractor], model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
+    """The class of the attractor that holds a state in the neighbourhood seen to come in, else OTHER."""
+    codes = np.full(tau.size, OTHER, dtype=np.int32)
+    for attractor in known:
+        codes[_within(attractor, model, tau, v, fast, attractor.catch)] = attractor.code
+    return codes
+
+
+def _within(attractor: Attractor, model: Oscillator, tau: Array, v: Array, fast: float, size: float) -> Array:
+    assert model.period is not None
+    period, near = as_float(model.period), np.zeros(tau.size, dtype=bool)
+    for place, speed in zip(attractor.tau.tolist(), attractor.v.tolist(), strict=True):
+        away = (tau - place) / period
+        near |= (np.abs(away - np.rint(away)) < size) & (np.abs(v - speed) < size * fast)
+    return near
+
+
+def new_attractors(model: Oscillator, tau: Array, v: Array, fast: float) -> list[Attractor]:
+    """The attractors that some of these states have reached."""
+    found: list[Attractor] = []
+    codes = periodic_codes(model, tau, v, fast)
+    for index in np.flatnonzero(codes != OTHER).tolist():
+        if caught(found, model, tau[index : index + 1], v[index : index + 1], fast)[0] == OTHER:
+            found.append(_surrounded(model, int(codes[index]), tau[index], v[index], fast))
+    return found
+
+
+def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float) -> Attractor:
+    """An attractor with the largest neighbourhood whose border is seen to come in."""
+    assert model.period is not None
+    period, count = as_float(model.period), code // PLACES
+    states = [(tau, v)]
+    for _ in range(count - 1):
+        ends = after(model, *states[-1], 1)
+        states.append((float(ends.tau), float(ends.v)))
+    times, speeds = np.array(states).T
+    size = SETTINGS.catch
+    while size > SETTINGS.close:
+        made = Attractor(code, times, speeds, size)
+        edge = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]) * size
+        start = (
+            times[:, None] + period * edge[:, 0],
+            np.maximum(speeds[:, None] + fast * edge[:, 1], 1e-3 * speeds[:, None]),
+        )
+        ends = after(model, start[0].ravel(), start[1].ravel(), SETTINGS.turns * count)
+        if (ends.status == 0).all() and _within(made, model, ends.tau, ends.v, fast, size / 2).all():
+            return made
+        size /= 10
+    return Attractor(code, times, speeds, SETTINGS.close)

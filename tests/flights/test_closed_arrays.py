@@ -1,0 +1,52 @@
+"""The closed form over arrays against that of the kernels, and against an equation that it must solve."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from singimpact.codegen.kernels import plain
+from singimpact.flights.flow.closed_arrays import places
+from singimpact.flights.hits import doubles
+from singimpact.flights.kernel import kernel_of
+from singimpact.flights.launch import launches
+from singimpact.oscillator.model import Oscillator
+
+MODELS = {
+    "undamped": ("x", "cos(2*t)"),
+    "damped": ("x + 0.3*xdot", "cos(14*t/5) + sin(t)/3"),
+    "resonant": ("x", "cos(t)"),
+    "critical": ("x + 2*xdot", "cos(t)"),
+    "no spring": ("0.1*xdot", "cos(t)"),
+    "constant": ("0", "-2"),
+}
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_as_the_kernel_has_it(name):
+    import cmath
+    import math
+
+    model = Oscillator(*MODELS[name], "0.3", "1/2")
+    kernel, rng = kernel_of(model), np.random.default_rng(2)
+    p = doubles(kernel)
+    tau, v, t = rng.uniform(0, 6, 80), rng.uniform(0, 1, 80), 10 ** rng.uniform(-5, 1, 80)
+    launch = launches(model, kernel, tau)
+    space = plain(kernel.text, {name: getattr(math, name) for name in ("sin", "cos", "exp")})
+    space["complex_sqrt"] = cmath.sqrt
+    found = places(launch, v, t, p)
+    for row, start, speed, time in zip(found, launch, v, t, strict=True):
+        z, u, _ = space["restart"](start.tolist(), float(speed), float(time), 0.0, 0.0, 0.0, 2.0**-52, p.tolist())
+        assert abs(row[0] - z) <= 2e-14 * min(time, 1) * (1 + time)
+        assert abs(row[1] - u) <= 2e-14 * (1 + time)
+
+
+def test_there_and_back():
+    model = Oscillator("x + 0.3*xdot", "cos(14*t/5)", "0.3", "1/2")
+    kernel = kernel_of(model)
+    tau, v, t = np.array([0.4]), np.array([0.7]), np.array([1.3])
+    h = 1e-4
+    before, here, after = (places(launches(model, kernel, tau), v, t + s, doubles(kernel))[0] for s in (-h, 0, h))
+    bend = (after[1] - before[1]) / (2 * h)
+    pull = np.cos(2.8 * 1.7) - (here[0] + 0.3) - 0.3 * here[1]
+    assert bend == pytest.approx(pull, abs=1e-6)
