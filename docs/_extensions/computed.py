@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 from pathlib import Path
 from typing import Any
+
 
 def errata() -> str:
     """The misprints as the engine finds them now."""
@@ -19,7 +21,8 @@ def claims() -> str:
 
     found = si.verify()
     rows = [f"| `{v.id}` | {v.section} | {v.title} | {v.kind}{_worth(v)} |" for v in found]
-    return "\n".join(["# All claims", "", "| claim | section | what it says | verdict |", "|---|---|---|---|", *rows, ""])
+    head = ["# All claims", "", "| claim | section | what it says | verdict |", "|---|---|---|---|"]
+    return "\n".join([*head, *rows, ""])
 
 
 def _worth(verdict: Any) -> str:
@@ -36,7 +39,7 @@ def commands() -> str:
     parts = ["# Commands", ""]
     for name, short in COMMANDS.items():
         told = CliRunner().invoke(main, [name, "--help"], terminal_width=100).output
-        parts += [f"## `singimpact {name}`", "", f"{short[0].upper()}{short[1:]}.", "", "```text", told.rstrip(), "```", ""]
+        parts.append(f"## `singimpact {name}`\n\n{short[0].upper()}{short[1:]}.\n\n```text\n{told.rstrip()}\n```\n")
     return "\n".join(parts)
 
 
@@ -77,5 +80,6 @@ def _put(path: Path, text: str) -> None:
 
 def setup(app: Any) -> dict[str, Any]:
     """Before Sphinx looks for pages."""
+    logging.getLogger("matplotlib").setLevel(logging.WARNING)  # it tells of each letter taken from another font
     app.connect("builder-inited", build)
     return {"parallel_read_safe": True}
