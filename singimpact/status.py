@@ -48,7 +48,8 @@ _SENTENCES = {
     Status.no_return: "no impact before the horizon; the flight time is inf: give a larger horizon to look further",
     Status.escaped: "the flight is proved never to return; the flight time is inf",
     Status.unresolved: "a near graze that this precision cannot decide: depth and its bound say how near, ask with "
-    "digits=; or, without them, a flight that left the range of numbers before it returned; values are nan",
+    "digits=; or, without them, a flight that left the range of numbers before it returned; or, on chatter, a million "
+    "impacts that neither accumulate nor lift off: fly an orbit to see where they go; values are nan",
     Status.complete: "infinitely many impacts accumulate; the mass comes to rest at the accumulation time",
     Status.no_rebound: "the obstacle is hit, and rho gives no positive velocity there; v is nan: "
     "give a restitution that is positive at such velocities",

@@ -25,11 +25,18 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class BasinSettings:
-    """rest : an impact slower than this share of the fastest state shown, with a_c < 0, is in complete chatter.
+    """When an orbit is called decided, and how many are flown together.
+
+    Attributes
+    ----------
+    rest : an impact slower than this share of the fastest state shown, with a_c < 0, is in complete chatter.
+    slow : slower than this share, it is so too if what is left of chatter is short and a_c keeps pressing.
+    lasting : the part of a period that such a rest of chatter may last.
     transient : impacts flown before an orbit is looked at, beyond those that chatter takes to get so slow.
-    block : impacts flown before it is looked again which orbits are decided. sample : of those that are not, looked at
-        for an attractor that others are caught by.
-    rows : of states a case; a call costs 3 ms before it flies. limit : of impacts flown; r = 0.99 wants 2000.
+    block : impacts flown before it is looked again which orbits are decided.
+    sample : of those that are not, looked at for an attractor that others are caught by.
+    rows : of states a case; a call costs 3 ms before it flies.
+    limit : of impacts flown; r = 0.99 wants 2000.
     """
 
     rest: float = 1e-7

@@ -155,7 +155,7 @@ class ImpactSurface:
 
     @cached_property
     def shadow(self) -> list[Curve]:
-        """(tau, t): the next hit behind the visible horizon, for the same launches."""
+        """The next hit behind the visible horizon, for the same launches: curves in (tau, t)."""
         found = []
         for line, curve in zip(self.lines, self.horizon, strict=True):
             ahead = self._hits(self.model, line.points[:, 0], curve.visible)

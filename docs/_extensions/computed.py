@@ -1,0 +1,85 @@
+"""Pages and pictures that are computed when the documentation is built, so that they cannot be out of date."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+from pathlib import Path
+from typing import Any
+
+
+def errata() -> str:
+    """The misprints as the engine finds them now."""
+    import singimpact as si
+
+    return si.errata().markdown()
+
+
+def claims() -> str:
+    """Every claim with its verdict."""
+    import singimpact as si
+
+    found = si.verify()
+    rows = [f"| `{v.id}` | {v.section} | {v.title} | {v.kind}{_worth(v)} |" for v in found]
+    head = ["# All claims", "", "| claim | section | what it says | verdict |", "|---|---|---|---|"]
+    return "\n".join([*head, *rows, ""])
+
+
+def _worth(verdict: Any) -> str:
+    return f" ({verdict.corrected_kind})" if verdict.corrected_kind else ""
+
+
+def commands() -> str:
+    """What each command says of itself."""
+    from click.testing import CliRunner
+
+    from singimpact.cli import main
+    from singimpact.cli.group import COMMANDS
+
+    parts = ["# Commands", ""]
+    for name, short in COMMANDS.items():
+        told = CliRunner().invoke(main, [name, "--help"], terminal_width=100).output
+        parts.append(f"## `singimpact {name}`\n\n{short[0].upper()}{short[1:]}.\n\n```text\n{told.rstrip()}\n```\n")
+    return "\n".join(parts)
+
+
+def figures(place: Path) -> str:
+    """The paper's figures with what they show, and the claims that they illustrate; the pictures go beside the page."""
+    from singimpact.scenes.figures import FIGURES, picture
+    from singimpact.scenes.figures.rendering import drawn
+
+    parts = ["# The figures", "", "Drawn from computed data by `singimpact figure all -o FOLDER`.", ""]
+    for number in FIGURES:
+        shown = picture(number)
+        drawn(shown).savefig(place / f"figure{number}.png", dpi=110)
+        told = ", ".join(f"`{claim}`" for claim in shown.claims)
+        parts += [f"## {number}. {shown.title}", "", f"![{shown.title}](figure{number}.png)", "",
+                  f"Model: `{shown.model}`. Claims: {told}.", ""]  # fmt: skip
+    return "\n".join(parts)
+
+
+def build(app: Any) -> None:
+    """Write the pages into the folder `computed` beside those that are written by hand."""
+    from singimpact.store import folder
+
+    place = folder(Path(app.srcdir) / "computed")
+    pages = {"errata.md": errata, "claims.md": claims, "commands.md": commands, "figures.md": lambda: figures(place)}
+    for name, page in pages.items():
+        _put(place / name, page())
+
+
+def _put(path: Path, text: str) -> None:
+    """A page that has not changed is not read again."""
+    from singimpact.store import write_text
+
+    with contextlib.suppress(OSError):
+        if path.read_text(encoding="utf-8") == text:
+            return
+    write_text(path, text)
+
+
+def setup(app: Any) -> dict[str, Any]:
+    """Before Sphinx looks for pages."""
+    logging.getLogger("matplotlib").setLevel(logging.WARNING)  # it tells of each letter taken from another font
+    app.connect("builder-inited", build)
+    return {"parallel_read_safe": True}

@@ -1,0 +1,26 @@
+"""Sphinx settings; what the pages show of results is computed by `_extensions/computed.py` while they are built."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
+
+from singimpact import __version__
+
+project = "singimpact"
+author = copyright = "The singimpact authors"
+version = release = __version__
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "computed", "formulas"]
+extensions += ["sphinx.ext.mathjax", "sphinx-mathjax-offline"]  # the pages need no network
+myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence"]
+myst_heading_anchors = 3
+source_suffix = {".md": "markdown"}
+exclude_patterns = ["build"]
+html_theme = "furo"
+html_title = f"singimpact {__version__}"
+add_module_names = False
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+nitpicky = False
