@@ -9,8 +9,8 @@ from singimpact.inputs import InputError as InputError
 from singimpact.status import Status as Status
 
 if TYPE_CHECKING:
-    from singimpact import claims as claims
     from singimpact import theory as theory
+    from singimpact.claims import Claims as _Claims
     from singimpact.documents.errata import errata as errata
     from singimpact.documents.verdicts import verify as verify
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from singimpact.scenes import plot as plot
     from singimpact.scenes.figures import figure as figure
     from singimpact.theory import fixed_points as fixed_points
+
+    claims: _Claims
 
 __version__ = "0.1.0"
 

@@ -15,7 +15,7 @@ from singimpact.claims.engine import select as select
 from singimpact.claims.sections import CLAIMS as CLAIMS
 
 
-class _Claims(ModuleType):
+class Claims(ModuleType):
     """The room as a collection: `singimpact.claims["e:meq"]` is a claim, iteration gives ids."""
 
     def __getitem__(self, name: str) -> Claim:
@@ -28,4 +28,4 @@ class _Claims(ModuleType):
         return len(CLAIMS)
 
 
-sys.modules[__name__].__class__ = _Claims
+sys.modules[__name__].__class__ = Claims

@@ -64,7 +64,7 @@ class ChatterLimit:
     tau: Any
     impacts: int
     error: Any
-    status: np.int8
+    status: Any
     certified: Certified | None = None
 
 

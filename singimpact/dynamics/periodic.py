@@ -52,7 +52,7 @@ class PeriodicOrbit:
     v: Any
     multipliers: Any
     miss: Any
-    status: np.int8
+    status: Any
 
 
 def periodic(osc: Oscillator, n: int, k: int, *, digits: int | None = None) -> list[PeriodicOrbit]:

@@ -59,7 +59,7 @@ class Threshold:
 
     v: Any
     error: Any
-    status: np.int8
+    status: Any
     certified: Certified | None = None
 
 

@@ -1,0 +1,60 @@
+"""The public names are typed: a user's script passes mypy in strict mode, and a wrong one does not."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+SCRIPT = """
+import numpy as np
+
+import singimpact as si
+
+duffing = si.ImpactOscillator("x + 0.1*xdot + x**3", "cos(w*t)", "0.3", restitution=0.6, parameters={"w": 1.7})
+osc = si.linear(omega=2, clearance="0.3", restitution="0.5")
+step = osc.impact_map(np.array([1.2]), 0.01)
+print(step.tau, step.v, step.status, step.flight_time, step.condition, osc.derivative(1.2, 0.1).matrix)
+limit = osc.chatter_limit("1.2", "0.01")
+print(limit.tau, limit.error, limit.impacts, si.Status(limit.status).sentence)
+for kind, start, end in osc.orbit("1.2", "0.3", impacts=60).phases:
+    print(kind.upper(), end - start)
+for point in si.tangency_points(osc):
+    print(point.tau, point.kind)
+for swan in si.swan_points("x", "cos(2*t)", over="clearance"):
+    print(swan.clearance, swan.kind, swan.oscillator("0.5").clearance)
+print(si.threshold(osc, "1.5").v, si.universal(-1, "1/2").to_toml(), duffing.replace(w=2))
+print(si.theory.gamma(order=3, at="tangency")[2], si.theory.v_c(order=3, at="swan"))
+print(si.fixed_points.tangency("1/2", digits=50).lambda_.value)
+for verdict in si.verify("e:meq"):
+    print(verdict.id, verdict.kind, verdict.corrected)
+scene = si.Scene(osc, ("gamma",), (0, 3), v=(0, 1), pixels=200)
+print(scene.report()["flights"], len(si.errata()), si.claims["e:meq"].printed.latex, si.figure(12))
+print(osc.periodic(1, 1)[0].multipliers, osc.flight(1.2, 0.1, 0.05).x, osc.inverse_map(1.2, 0.1).tau)
+"""
+
+
+def checked(script, tmp_path, clone):
+    path = tmp_path / "user.py"
+    path.write_text(script)
+    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), str(path)]
+    return subprocess.run(
+        command, cwd=tmp_path, env=os.environ | {"MYPYPATH": str(clone)}, capture_output=True, text=True
+    )
+
+
+@pytest.mark.slow
+def test_a_users_script_is_typed(tmp_path, clone):
+    done = checked(SCRIPT, tmp_path, clone)
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.slow
+def test_a_wrong_script_is_told(tmp_path, clone):
+    done = checked(SCRIPT + 'osc.orbit("1.2", "0.3", impacts="60")\nsi.universal(1)\n', tmp_path, clone)
+    assert 'incompatible type "str"' in done.stdout
+    assert 'Missing positional argument "restitution"' in done.stdout
+
+
+def test_the_package_says_that_it_is_typed(clone):
+    assert (clone / "singimpact" / "py.typed").exists()
