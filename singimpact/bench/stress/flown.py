@@ -46,7 +46,7 @@ def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
     if found is None:
         return int(Status.no_return)
     (time, u), e = found, motion.at(found[0])[2]
-    by_tau, by_v = motion.variations(time) if v else (motion.variations(time)[0], (0 * u, 0 * u))
+    by_tau, by_v = motion.variations(time) if float(v) else (motion.variations(time)[0], (0 * u, 0 * u))
     rows = [(-by[0] / u, by[1] - e * by[0] / u) for by in (by_tau, by_v)]
     return Landing(time, u, ((rows[0][0], rows[1][0]), (rows[0][1], rows[1][1])))
 
@@ -140,7 +140,7 @@ def _derivative(launch: Launch) -> Trial | None:
     """
     import flint
 
-    if launch.v == 0:
+    if launch.v < SQUARED:
         return None
     found, true = launch.model.derivative(launch.tau, launch.v, horizon=launch.horizon), _matrix(launch, 0, 0)
     if isinstance(true, int):
