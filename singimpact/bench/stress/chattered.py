@@ -44,9 +44,9 @@ def _chatter_limit(place: str, points: int) -> Iterator[Trial]:
 
 
 def _threshold(place: str, points: int) -> Iterator[Trial]:
-    for at in _states(place, min(points, 3)):
+    for at in _states(place, min(points, 2)):
         slow = replace(at, restitution=0.5) if place not in ("r -> 0", "r -> 1") else at
-        found, true = threshold(slow.model, slow.tau), threshold(slow.model, slow.tau, digits=30)
+        found, true = threshold(slow.model, slow.tau), threshold(slow.model, slow.tau, digits=20)
         status = int(found.status), int(true.status)
         kappa = condition(lambda tau, _, of=slow: float(threshold(of.model, tau).v), slow.tau, 1.0, 1e-7)
         yield Trial(str(slow), [float(found.v)], [true.v], [(kappa - 1) * true.v], status)
@@ -57,9 +57,9 @@ def _gamma_grown(_: str, points: int) -> Iterator[Trial]:
     osc = linear("2.8", 0, "0.5")
     points_of = np.vstack([curve.points for curve in grown_gamma(osc, Frame(0.6, 2.0, 1.0))])
     far = np.abs(points_of[:, 0] - 1.6829)
-    for off in powers(min(points, 4), 3, 0.3):
+    for off in powers(min(points, 2), 3, 0.3):
         tau, v = points_of[int(np.argmin(np.abs(far - off)))].tolist()
-        true = threshold(osc, tau, digits=30)
+        true = threshold(osc, tau, digits=20)
         kappa = condition(lambda at, _: float(threshold(osc, at).v), tau, 1.0, 1e-7)
         yield Trial(f"tau = {tau!r}", [v], [true.v], [(kappa - 1) * true.v])
 

@@ -1,4 +1,4 @@
-"""Series at doubles: v_c on arrays, emitted source, gamma and the completion; the truth is the same cut series, exactly."""
+"""Series at doubles: v_c on arrays, emitted source, gamma, the completion; the truth is the same cut series, exactly."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from singimpact.theory.frozen import sheet_functions
 from singimpact.theory.sheet import sheet
 
 ORDER = 6
-JETS = {"a_d1": 1.0, "a_d2": 2 / 3, "f_01": 0.125, "f_10": 1.0, "f_30": 1.5}
+JETS = {"a_d2": 2 / 3, "f_01": 0.125, "f_10": 1.0, "f_30": 1.5}
 
 
 @cache
@@ -94,7 +94,9 @@ def _emitted_numpy(place: str, points: int) -> Iterator[Trial]:
     for bend, sigma, t in states(points):
         given = [{**JETS, "a_d1": float(3 * bend)}.get(name, 0.0) for name in names]
         values, rounding = moved(lambda *all_of: [function(*all_of)], [sigma, t, *given])
-        yield Trial(f"a' = {float(3 * bend):.3g}, sigma = {sigma!r}, t = {t!r}", [function(sigma, t, *given)], values, rounding)
+        yield Trial(
+            f"a' = {float(3 * bend):.3g}, sigma = {sigma!r}, t = {t!r}", [function(sigma, t, *given)], values, rounding
+        )
 
 
 def _cut(series: Any) -> Callable[[Any], list[Any]]:

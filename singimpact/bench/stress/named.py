@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import fields
-from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -39,7 +38,9 @@ def _tangency_points(place: str, points: int) -> Iterator[Trial]:
 
     for off in powers(points, 13):
         for family, clearance in (("linear", 1 - off), ("linear", off - 1), ("cubic", 0.8 - off)):
-            launch = Launch(family, 1 + off if place == "omega -> 1" else 2.8, off if place == "omega -> 1" else clearance)
+            launch = Launch(
+                family, 1 + off if place == "omega -> 1" else 2.8, off if place == "omega -> 1" else clearance
+            )
 
             def zeros(omega: Any, c: Any, family: str = family) -> list[Any]:
                 angle = mpmath.acos(c if family == "linear" else c + 3 * c**3 / 10)
