@@ -1,4 +1,4 @@
-"""Series at doubles: v_c on arrays, emitted source, gamma, the completion; the truth is the same cut series, exactly."""
+"""Series at doubles: v_c on arrays, emitted source, gamma, the completion; the truth is the same cut series."""
 
 from __future__ import annotations
 
