@@ -17,7 +17,8 @@ from singimpact.status import Status
 
 FEW = 5  # each of these truths takes a tenth of a second or more
 START = Launch("linear", tau=0.9, v=0.005)
-NEAR = {"v -> 0": (14, lambda at, off: replace(at, v=off)),
+NEAR: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
+        "v -> 0": (14, lambda at, off: replace(at, v=off)),
         "omega -> 1": (12, lambda at, off: replace(at, omega=1 + off, tau=2.5)),
         "r -> 0": (12, lambda at, off: replace(at, restitution=off)),
         "r -> 1": (2, lambda at, off: replace(at, restitution=1 - off, v=0.01 * off)),
@@ -40,8 +41,16 @@ def _chatter_limit(place: str, points: int) -> Iterator[Trial]:
         if status[0] != status[1] or true.status != Status.complete:
             yield Trial(str(at), status=status)
             continue
-        kappa = condition(lambda tau, v, at=at: float(at.model.chatter_limit(tau, v).tau), at.tau, at.v, 1e-4)
+        kappa = condition(partial(_end, at), at.tau, at.v, 1e-4)
         yield Trial(str(at), [float(found.tau)], [true.tau], [(kappa - 1) * abs(true.tau)], status)
+
+
+def _end(at: Launch, tau: float, v: float) -> float:
+    return float(at.model.chatter_limit(tau, v).tau)
+
+
+def _on_gamma(at: Launch, tau: float, _: float) -> float:
+    return float(threshold(at.model, tau).v)
 
 
 def _threshold(place: str, points: int) -> Iterator[Trial]:
@@ -49,7 +58,7 @@ def _threshold(place: str, points: int) -> Iterator[Trial]:
         slow = replace(at, restitution=max(at.restitution, 1e-3) if place == "r -> 0" else 0.5)
         found, true = threshold(slow.model, slow.tau), threshold(slow.model, slow.tau, digits=20)
         status = int(found.status), int(true.status)
-        kappa = condition(lambda tau, _, of=slow: float(threshold(of.model, tau).v), slow.tau, 1.0, 1e-7)
+        kappa = condition(partial(_on_gamma, slow), slow.tau, 1.0, 1e-7)
         yield Trial(str(slow), [float(found.v)], [true.v], [(kappa - 1) * true.v], status)
 
 
@@ -57,9 +66,9 @@ def _gamma_grown(_: str, points: int) -> Iterator[Trial]:
     """Vertices beside the threshold over the same phase."""
     osc = linear("2.8", 0, "0.5")
     points_of = np.vstack([curve.points for curve in grown_gamma(osc, Frame(0.6, 2.0, 1.0))])
-    far = np.abs(points_of[:, 0] - 1.6829)
+    far = 1.5 * np.pi / 2.8 - points_of[:, 0]
     for off in powers(min(points, 2), 3, 0.3):
-        tau, v = points_of[int(np.argmin(np.abs(far - off)))].tolist()
+        tau, v = points_of[int(np.argmin(np.abs(far - off) + (far < off / 2)))].tolist()
         true = threshold(osc, tau, digits=20)
         kappa = condition(lambda at, _: float(threshold(osc, at).v), tau, 1.0, 1e-7)
         yield Trial(f"tau = {tau!r}", [v], [true.v], [(kappa - 1) * true.v])

@@ -189,7 +189,7 @@ def _chained(launch: Launch, tau: Any, v: Any) -> Trial | None:
     r, at = flint.arb(launch.restitution), (flint.arb(launch.tau), flint.arb(launch.v))
     rounded: tuple[Any, Any] = (abs(at[0]), abs(at[1]))
     for _ in range(IMPACTS):
-        true = landing(launch, *(part.mid() for part in at))
+        true = landing(launch, at[0].mid(), at[1].mid())
         if isinstance(true, int):
             return None
         rounded = max(float(rounded[0]), float(true.time)), rounded[1]
