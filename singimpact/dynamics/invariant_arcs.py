@@ -22,7 +22,7 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-from singimpact.surface.curve import Curve, Mark
+from singimpact.surface.curve import Curve, Mark, distances
 from singimpact.theory.formulas import arc_in_numbers
 from singimpact.theory.places import points_of
 from singimpact.theory.power_series import PowerSeries
@@ -41,8 +41,9 @@ class GrowthSettings:
     trust: float = 1e-13
     start: int = 17
     apart: float = 1e-11
-    longest: float = 11.0
+    longest: float = 8.0
     most: int = 4000
+    told: float = 0.25
     generations: int = 60
 
 
@@ -68,6 +69,10 @@ class Frame:
     def scale(self) -> Array:
         """The size of the picture in both directions."""
         return np.array([self.tau_high - self.tau_low, self.v_high])
+
+    @property
+    def apart(self) -> float:
+        return (0.25 / self.pixels) ** 2
 
     def holds(self, points: Array) -> Array:
         """Which points lie inside."""
@@ -210,15 +215,27 @@ def _grown(
     def start(s: Array) -> Array:
         return np.stack([foot + s, series(s)], axis=1)
 
-    s = np.linspace(inner, outer, SETTINGS.start)
-    whole = np.linspace(0.0, inner, 2 * SETTINGS.start)
+    count = max(4, frame.pixels // 100 + 1)
+    s = np.linspace(inner, outer, count)
+    whole = np.linspace(0.0, inner, 2 * count)
     pieces, done = [Piece(s, start(s), 0)], [Piece(whole, start(whole), 0)]
     for generation in range(SETTINGS.generations):
         if not pieces:
             break
         done += pieces
-        pieces = [new for piece in pieces for new in _images(model, frame, start, piece, generation + 1)]
+        new = [image for piece in pieces for image in _images(model, frame, start, piece, generation + 1)]
+        pieces = [piece for piece in new if _tells(piece, pieces, frame)]
     return list(_joined(done, frame))
+
+
+def _tells(piece: Piece, before: list[Piece], frame: Frame) -> bool:
+    """Whether the picture tells a piece from those of one generation before, so that growing it shows something new.
+
+    Loops of stable manifolds accumulate on gamma: each generation has one more, soon nearer than a line is wide.
+    """
+    seen = piece.points[frame.holds(piece.points)] / frame.scale
+    gaps = [distances(seen, old.points / frame.scale) for old in before]
+    return not len(seen) or bool(np.min(gaps, axis=0).max() * frame.pixels > SETTINGS.told)
 
 
 def _images(
@@ -236,7 +253,7 @@ def _images(
     s, points = _refined(s, points, image, frame)
     known = np.isfinite(points).all(axis=1) & (points[:, 0] >= frame.tau_low - 0.2 * frame.scale[0])
     jump = np.hypot(*(np.diff(points, axis=0) / frame.scale).T) * frame.pixels > 8
-    torn = jump & (np.abs(np.diff(s)) <= SETTINGS.apart * np.ptp(piece.s))
+    torn = jump & (np.abs(np.diff(s)) <= frame.apart * np.ptp(piece.s))
     cuts = np.flatnonzero(torn | ~known[1:] | ~known[:-1]) + 1
     parts = np.split(np.arange(len(s)), cuts)
     return [Piece(s[part], points[part], generation) for part in parts if len(part) > 1 and known[part].all()]
@@ -244,7 +261,7 @@ def _images(
 
 def _refined(s: Array, points: Array, image: Callable[[Array], Array], frame: Frame) -> tuple[Array, Array]:
     """Midpoints put in until chords are as short or as straight as the picture asks, or their ends as close in s."""
-    least = SETTINGS.apart * np.ptp(s)
+    least = frame.apart * np.ptp(s)
     for _ in range(60):
         wanted = _too_coarse(points, frame) & (np.abs(np.diff(s)) > least)
         at = np.flatnonzero(wanted)
