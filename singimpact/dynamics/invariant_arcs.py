@@ -32,15 +32,16 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """order, trust : of the series, and how good it must be on the fundamental piece. start : points of it.
-    apart : neighbours in s nearer than this share of the piece, still far apart in the picture, are torn.
+    """order, trust : of the series, and how good it must be on the fundamental piece.
+    start, least : points of the picture for one of the fundamental piece, and how many it has at least.
     longest : chord, in points of the picture. most : points of one generation. generations : inverse images at most.
+    told : a piece nearer than this to the generation before, in points of the picture, is not told apart from it.
     """
 
     order: int = 12
     trust: float = 1e-13
-    start: int = 17
-    apart: float = 1e-11
+    start: int = 100
+    least: int = 4
     longest: float = 8.0
     most: int = 4000
     told: float = 0.25
@@ -72,7 +73,11 @@ class Frame:
 
     @property
     def apart(self) -> float:
-        return (0.25 / self.pixels) ** 2
+        """Neighbours in s nearer than this share of a piece, still far apart in the picture, are torn.
+
+        An arc ends at a graze like a square root: its end is then known to a hundredth of a point of the picture.
+        """
+        return (0.01 / self.pixels) ** 2
 
     def holds(self, points: Array) -> Array:
         """Which points lie inside."""
@@ -215,7 +220,7 @@ def _grown(
     def start(s: Array) -> Array:
         return np.stack([foot + s, series(s)], axis=1)
 
-    count = max(4, frame.pixels // 100 + 1)
+    count = max(SETTINGS.least, frame.pixels // SETTINGS.start + 1)
     s = np.linspace(inner, outer, count)
     whole = np.linspace(0.0, inner, 2 * count)
     pieces, done = [Piece(s, start(s), 0)], [Piece(whole, start(whole), 0)]

@@ -124,7 +124,7 @@ def distances(points: Array, line: Array) -> Array:
     Examples
     --------
     >>> distances(np.array([[0.5, 1.0], [3.0, 0.0]]), np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.5]])).tolist()
-    [0.7071067811865476, 2.0615528128088303]
+    [0.7071067811865476, 2.0]
     """
     start, step = line[:-1], np.diff(line, axis=0)
     away = points[:, None] - start
