@@ -33,6 +33,7 @@ Array = np.ndarray[Any, Any]
 @dataclass(frozen=True)
 class GrowthSettings:
     """order, trust : of the series, and how good it must be on the fundamental piece.
+    tolerance : of a flight; thousands are flown, and polishing their last digits shows in no picture.
     start, least : points of the picture for one of the fundamental piece, and how many it has at least.
     longest : chord, in points of the picture. most : points of one generation. generations : inverse images at most.
     told : a piece nearer than this to the generation before, in points of the picture, is not told apart from it.
@@ -40,6 +41,7 @@ class GrowthSettings:
 
     order: int = 12
     trust: float = 1e-13
+    tolerance: float = 1e-13
     start: int = 100
     least: int = 4
     longest: float = 8.0
@@ -191,7 +193,7 @@ def model_step(model: Oscillator, points: Array) -> Array:
     from singimpact.flights.hits import impact_map
 
     found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
-    step = impact_map(model, points[known, 0], points[known, 1])
+    step = impact_map(model, points[known, 0], points[known, 1], tolerance=SETTINGS.tolerance)
     good = np.isin(step.status, (Status.hit, Status.graze))
     found[known] = np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
     return found
@@ -205,7 +207,7 @@ def before(model: Oscillator, points: Array) -> Array:
         step = inverse_map(model, at, v_at)
         tau, v, status = step.tau, step.v, step.status
     else:
-        hit = first_hit(backwards(model), -at, v_at / as_float(model.restitution))
+        hit = first_hit(backwards(model), -at, v_at / as_float(model.restitution), tolerance=SETTINGS.tolerance)
         tau, v, status = at - hit.flight_time, -hit.velocity, hit.status
     good = np.isin(status, (Status.hit, Status.graze))
     found[known] = np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)
