@@ -28,6 +28,7 @@ COMMANDS = {
     "basins": "where the orbits of a grid of states end, as a picture",
     "bifurcation": "where an orbit settles as a number of the model moves",
     "bench": "run time against error, beside other tools",
+    "stress": "errors towards the bad places, in units of rounding",
     "errata": "what is misprinted, what holds instead, and why",
     "claims": "the claims: list, show, graph, impact",
     "fixed-points": "fixed points and multipliers, certified, to any digits",

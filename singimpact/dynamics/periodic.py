@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ class Starts:
     rounds : steps of Newton's method.
     closed : an orbit is closed when it misses by this much of its size, times its condition.
     apart : points nearer than this are one.
+    stiff, settling : where (D G^n - 1)^-1 is larger, the gap is computed with so many digits.
     """
 
     phases: int = 48
@@ -36,6 +37,8 @@ class Starts:
     rounds: int = 40
     closed: float = 1e-11
     apart: float = 1e-7
+    stiff: float = 20.0
+    settling: int = 20
 
 
 STARTS = Starts()
@@ -81,7 +84,9 @@ def periodic(osc: Oscillator, n: int, k: int, *, digits: int | None = None) -> l
     tau, v = _starts(osc, n, span)
     found = _distinct(osc, _closed(osc, *_newton(osc, tau, v, n, span), n, span))
     orbits = [_orbit(osc, tau, v, n, span) for tau, v in found]
-    return orbits if digits is None else [_precise(osc, one, n, k, checked_digits(digits)) for one in orbits]
+    if digits is None:
+        return [_settled(osc, one, n, k) for one in orbits]
+    return [_precise(osc, one, n, k, checked_digits(digits)) for one in orbits]
 
 
 def _starts(osc: Oscillator, n: int, span: float) -> tuple[Array, Array]:
@@ -160,14 +165,47 @@ def _orbit(osc: Oscillator, tau: float, v: float, n: int, span: float) -> Period
     return PeriodicOrbit(np.array(times[:-1]), np.array(speeds[:-1]), np.linalg.eigvals(matrix), miss, np.int8(0))
 
 
+def _settled(osc: Oscillator, rough: PeriodicOrbit, n: int, k: int) -> PeriodicOrbit:
+    """A state that closing determines badly, because multipliers are near 1, is found again from the exact gap."""
+    inverse = _inverse(osc, rough)
+    if not STARTS.stiff < np.abs(inverse).max() < np.inf:
+        return rough
+    times, speeds, _ = _corrected(osc, rough, inverse, n, k, STARTS.settling)
+    tau, v = (np.array([float(value) for value in part[:-1]]) for part in (times, speeds))
+    return replace(rough, tau=tau, v=v)
+
+
 def _precise(osc: Oscillator, rough: PeriodicOrbit, n: int, k: int, digits: int) -> PeriodicOrbit:
-    """The double Jacobian corrects twelve digits a round; the last round gives the multipliers."""
+    """The orbit and its multipliers in many digits."""
     import mpmath
 
+    times, speeds, miss = _corrected(osc, rough, _inverse(osc, rough), n, k, digits)
+    with mpmath.workdps(digits + 15):
+        multipliers = _multipliers(osc, times, speeds)
+        span = k * as_mpf(osc.period, mpmath.mp) if osc.period is not None else mpmath.nan
+        closes = miss < mpmath.mpf(10) ** (-digits - 3) * span
+    with mpmath.workdps(digits):
+        fields = (times[:-1], speeds[:-1], multipliers)
+        one, two, three = (np.array([+value for value in part], dtype=object) for part in fields)
+        return PeriodicOrbit(one, two, three, +miss, np.int8(0 if closes else Status.unresolved))
+
+
+def _inverse(osc: Oscillator, rough: PeriodicOrbit) -> Array:
+    """(D G^n - 1)^-1 in doubles; inf when it is singular."""
     matrix = np.eye(2)
     for tau, v in zip(rough.tau, rough.v, strict=True):
         matrix = derivative(osc, tau, v).matrix @ matrix
-    inverse = np.linalg.inv(matrix - np.eye(2))
+    (a, b), (c, d) = matrix - np.eye(2)
+    with np.errstate(all="ignore"):
+        return np.asarray(np.array([[d, -b], [-c, a]]) / (a * d - b * c))
+
+
+def _corrected(
+    osc: Oscillator, rough: PeriodicOrbit, inverse: Array, n: int, k: int, digits: int
+) -> tuple[list[Any], list[Any], Any]:
+    """Times and velocities in many digits, and by how much they miss; the inverse gives twelve digits a round."""
+    import mpmath
+
     with mpmath.workdps(digits + 15):
         span = k * as_mpf(osc.period, mpmath.mp) if osc.period is not None else mpmath.nan
         tau, v = mpmath.mpf(float(rough.tau[0])), mpmath.mpf(float(rough.v[0]))
@@ -180,11 +218,7 @@ def _precise(osc: Oscillator, rough: PeriodicOrbit, n: int, k: int, digits: int)
             v -= inverse[1, 0] * gap[0] + inverse[1, 1] * gap[1]
             if miss < small * span:
                 break
-        multipliers = _multipliers(osc, times, speeds)
-    with mpmath.workdps(digits):
-        fields = (times[:-1], speeds[:-1], multipliers)
-        one, two, three = (np.array([+value for value in part], dtype=object) for part in fields)
-        return PeriodicOrbit(one, two, three, +miss, np.int8(0 if miss < small * span else Status.unresolved))
+    return times, speeds, miss
 
 
 def _flown(osc: Oscillator, tau: Any, v: Any, n: int) -> tuple[list[Any], list[Any]]:

@@ -25,6 +25,8 @@ class Limits:
         launch costs about 20 ms, so a grid laid along a graze does not hang.
     settling_digits : digits of the first and of the last attempt; a touch that 120 digits do not tell from a graze is
         called a graze.
+    cancelled : where x'' at a hit is below this part of g, it has lost ten bits and is computed in balls (40 us);
+        next to a swan, 1e-12 from it, D G was off by 4e6 roundings without it.
     guard : digits beyond those asked for; half of the digits go in a square root at a graze, so agreement of two
         runs is what is trusted, not this number.
     """
@@ -41,6 +43,7 @@ class Limits:
     derivatives_at_rest: int = 12
     settled: int = 200
     settling_digits: tuple[int, int] = (50, 120)
+    cancelled: float = 2.0**-10
     guard: int = 15
 
 

@@ -15,6 +15,7 @@ from singimpact.flights.kernel import kernel_of, ready
 from singimpact.flights.launch import States, launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.inputs import InputError
+from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 
 
@@ -73,7 +74,8 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any
     if kernel.form is not None:
         counts = [at.size for at in times]
         launch = np.repeat(launches(osc, kernel, tau), counts, axis=0)
-        both = places(launch, np.repeat(v, counts), np.concatenate([*times, np.zeros(0)]), doubles(kernel))
+        speed, push = np.repeat(v, counts), np.repeat(acceleration(osc, tau), counts)
+        both = places(launch, speed, push, np.concatenate([*times, np.zeros(0)]), doubles(kernel))
         return np.split(both, np.cumsum(counts))[:-1]
     return _stepped(osc, tau, v, times)
 

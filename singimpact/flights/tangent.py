@@ -9,11 +9,13 @@ differences.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative as differentiated
 from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_float, as_mpf
@@ -135,8 +137,20 @@ def _acceleration(osc: Oscillator, tau: Array, time: Array, velocity: Array) -> 
     """x'' at the hits."""
     start = tau if osc.period is None else reduced(tau, osc.period)
     with np.errstate(all="ignore"):
-        forcing = evaluate(osc.forcing(), {"t": start + time}, DOUBLES)
-        return np.asarray(forcing - evaluate(osc.force(), {"x": as_float(osc.clearance), "xdot": velocity}, DOUBLES))
+        forcing = evaluate(osc.forcing(), {"t": start + time}, DOUBLES) + 0 * velocity
+        force = evaluate(osc.force(), {"x": as_float(osc.clearance), "xdot": velocity}, DOUBLES)
+        found = np.asarray(forcing - force)
+        for index in np.flatnonzero(np.abs(found) < LIMITS.cancelled * np.abs(forcing)):
+            found[index] = _cancelled(osc, start[index] + time[index], velocity[index])
+    return found
+
+
+def _cancelled(osc: Oscillator, at: float, velocity: float) -> float:
+    """x'' at a hit where g and f nearly cancel, from numbers that hold what doubles lose."""
+    balls = Balls(256)
+    speed, time = (balls.rational(Fraction(float(value))) for value in (velocity, at))
+    pull = balls.evaluate(osc.force(), {"x": balls.evaluate(osc.clearance, {}), "xdot": speed})
+    return float((balls.evaluate(osc.forcing(), {"t": time}) - pull).mid())
 
 
 def precise(osc: Oscillator, tau: Any, v: Any, time: Any, velocity: Any) -> Response:

@@ -10,6 +10,8 @@ from singimpact.flights.flow.closed_arrays import places
 from singimpact.flights.hits import doubles
 from singimpact.flights.kernel import kernel_of
 from singimpact.flights.launch import launches
+from singimpact.flights.path import path
+from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 
 MODELS = {
@@ -34,7 +36,7 @@ def test_as_the_kernel_has_it(name):
     launch = launches(model, kernel, tau)
     space = plain(kernel.text, {name: getattr(math, name) for name in ("sin", "cos", "exp")})
     space["complex_sqrt"] = cmath.sqrt
-    found = places(launch, v, t, p)
+    found = places(launch, v, acceleration(model, tau), t, p)
     for row, start, speed, time in zip(found, launch, v, t, strict=True):
         z, u, _ = space["restart"](start.tolist(), float(speed), float(time), 0.0, 0.0, 0.0, 2.0**-52, p.tolist())
         assert abs(row[0] - z) <= 2e-14 * min(time, 1) * (1 + time)
@@ -46,7 +48,23 @@ def test_there_and_back():
     kernel = kernel_of(model)
     tau, v, t = np.array([0.4]), np.array([0.7]), np.array([1.3])
     h = 1e-4
-    before, here, after = (places(launches(model, kernel, tau), v, t + s, doubles(kernel))[0] for s in (-h, 0, h))
+    launch, push = launches(model, kernel, tau), acceleration(model, tau)
+    before, here, after = (places(launch, v, push, t + s, doubles(kernel))[0] for s in (-h, 0, h))
     bend = (after[1] - before[1]) / (2 * h)
     pull = np.cos(2.8 * 1.7) - (here[0] + 0.3) - 0.3 * here[1]
     assert bend == pytest.approx(pull, abs=1e-6)
+
+
+@pytest.mark.parametrize("t", [1e-9, 1e-4, 0.1, 0.3, 0.35, 0.4, 1.0])
+def test_next_to_a_swan_nothing_cancels(t):
+    """x' = v + a t + a' t^2/2 + ... with a and a' next to nothing: against many digits."""
+    import mpmath
+
+    model = Oscillator("x", "cos(14*t/5)", "0.999999999999", "1/2")
+    with mpmath.workdps(50):
+        tau, v, time, w = mpmath.mpf(1e-6), mpmath.mpf(1e-12), mpmath.mpf(t), mpmath.mpf(14) / 5
+        amplitude, c = 1 / (1 - w**2), 1 - mpmath.mpf(10) ** -12
+        height, speed = c - amplitude * mpmath.cos(w * tau), v + amplitude * w * mpmath.sin(w * tau)
+        forced = -amplitude * w * mpmath.sin(w * (tau + time))
+        true = speed * mpmath.cos(time) - height * mpmath.sin(time) + forced
+        assert abs(path(model, 1e-6, 1e-12, t).xdot / true - 1) < 1e-14

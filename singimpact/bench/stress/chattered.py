@@ -1,0 +1,106 @@
+"""Flights after flights: chatter limits, thresholds, grown curves; the truth is `digits=`, by balls."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from singimpact.bench.measuring import condition
+from singimpact.bench.stress.judging import DIGITS, Function, Trial, powers
+from singimpact.bench.stress.launches import Launch
+from singimpact.dynamics.invariant_arcs import Frame, grown_gamma, stable_manifold
+from singimpact.impact_oscillator import linear, threshold
+from singimpact.status import Status
+
+FEW = 5  # each of these truths takes a tenth of a second or more
+START = Launch("linear", tau=0.9, v=0.005)
+NEAR: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
+        "v -> 0": (14, lambda at, off: replace(at, v=off)),
+        "omega -> 1": (12, lambda at, off: replace(at, omega=1 + off, tau=2.5)),
+        "r -> 0": (12, lambda at, off: replace(at, restitution=off)),
+        "r -> 1": (2, lambda at, off: replace(at, restitution=1 - off, v=0.01 * off)),
+        "a -> 0": (4, lambda at, off: replace(at, tau=0.5609986881410345 + off, v=off**2 / 20)),
+        "a' -> 0": (4, lambda at, off: replace(at, clearance=1 - off, tau=1.2 * off**0.5, v=off**1.5 / 50)),
+        "huge tau": (12, lambda at, off: replace(at, tau=0.9 + 1 / off, v=1e-6))}  # fmt: skip
+
+
+def _states(place: str, points: int) -> Iterator[Launch]:
+    last, moved = NEAR[place]
+    for off in powers(min(points, FEW), last):
+        yield moved(START, off)
+
+
+def _chatter_limit(place: str, points: int) -> Iterator[Trial]:
+    """tau_inf; the state and every phase until then are rounded relative to tau_inf itself."""
+    for at in _states(place, points):
+        found, true = at.model.chatter_limit(at.tau, at.v), at.model.chatter_limit(at.tau, at.v, digits=DIGITS)
+        status = int(found.status), int(true.status)
+        if status[0] != status[1] or true.status != Status.complete:
+            yield Trial(str(at), status=status)
+            continue
+        kappa = condition(partial(_end, at), at.tau, at.v, 1e-4)
+        yield Trial(str(at), [float(found.tau)], [true.tau], [(kappa - 1) * abs(true.tau)], status)
+
+
+def _end(at: Launch, tau: float, v: float) -> float:
+    return float(at.model.chatter_limit(tau, v).tau)
+
+
+def _on_gamma(at: Launch, tau: float, _: float) -> float:
+    return float(threshold(at.model, tau).v)
+
+
+def _threshold(place: str, points: int) -> Iterator[Trial]:
+    for at in _states(place, min(points, 2)):
+        slow = replace(at, restitution=max(at.restitution, 1e-3) if place == "r -> 0" else 0.5)
+        found, true = threshold(slow.model, slow.tau), threshold(slow.model, slow.tau, digits=20)
+        status = int(found.status), int(true.status)
+        kappa = condition(partial(_on_gamma, slow), slow.tau, 1.0, 1e-7)
+        yield Trial(str(slow), [float(found.v)], [true.v], [(kappa - 1) * true.v], status)
+
+
+def _gamma_grown(_: str, points: int) -> Iterator[Trial]:
+    """Vertices beside the threshold over the same phase."""
+    osc = linear("2.8", 0, "0.5")
+    points_of = np.vstack([curve.points for curve in grown_gamma(osc, Frame(0.6, 2.0, 1.0))])
+    far = 1.5 * np.pi / 2.8 - points_of[:, 0]
+    for off in powers(min(points, 2), 3, 0.3):
+        tau, v = points_of[int(np.argmin(np.abs(far - off) + (far < off / 2)))].tolist()
+        true = threshold(osc, tau, digits=20)
+        kappa = condition(lambda at, _: float(threshold(osc, at).v), tau, 1.0, 1e-7)
+        yield Trial(f"tau = {tau!r}", [v], [true.v], [(kappa - 1) * true.v])
+
+
+def _stable_manifold(_: str, points: int) -> Iterator[Trial]:
+    """Chatter from a vertex ends at the foot, to the condition of its end."""
+    osc, foot = linear("2.8", 0, "0.5"), 1.0
+    vertices = np.vstack([curve.points for curve in stable_manifold(osc, Frame(0.2, 1.5, 1.0), foot)])
+    for index in np.linspace(2, len(vertices) - 2, min(points, 6)).astype(int).tolist():
+        tau, v = vertices[index].tolist()
+        if not v > 0:
+            continue
+        end = osc.chatter_limit(tau, v, digits=DIGITS)
+        if end.status != Status.complete:
+            continue
+        kappa = condition(lambda at, speed: float(osc.chatter_limit(at, speed).tau), tau, v)
+        yield Trial(f"tau = {tau!r}, v = {v!r}", [float(end.tau)], [foot], [kappa - 1])
+
+
+def _function(name: str, judge: Callable[..., Iterator[Trial]], places: tuple[str, ...], left_out: str) -> Function:
+    return Function(name, {place: partial(judge, place) for place in places}, "digits=, in balls", left_out)
+
+
+FUNCTIONS = (
+    _function("chatter_limit", _chatter_limit, tuple(NEAR), "flights get short: P, Z and long flights are no chatter"),
+    _function(
+        "threshold",
+        _threshold,
+        ("omega -> 1", "r -> 0"),
+        "v is the answer; gamma ends where a = 0; r -> 1 not judged: its enclosure takes minutes",
+    ),
+    _function("gamma grown", _gamma_grown, ("a -> 0",), "a curve of one model that ends where a = 0"),
+    _function("stable manifold", _stable_manifold, ("v -> 0",), "a curve of one model that ends where v = 0"),
+)

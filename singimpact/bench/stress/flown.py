@@ -1,0 +1,212 @@
+"""Impacts in balls of 60 digits from `bench.truth`, with their derivatives, and the sweeps of what flies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from singimpact.bench.stress.judging import STEP, Function, Sweep, Trial
+from singimpact.bench.stress.launches import PLACES, Launch, both
+from singimpact.bench.truth.first_hit import first_hit
+from singimpact.flights.grids import after
+from singimpact.status import Status
+
+SQUARED = 1e-140  # the height of a flight is of the size of v squared, and below 1e-300 doubles lose digits
+IMPACTS = 4  # of an orbit: every impact multiplies the condition, and further ones would hide errors in it
+GONE = (Status.no_return, Status.escaped)
+
+
+@dataclass(frozen=True)
+class Landing:
+    """The next impact of a state in balls: flight time, velocity; their derivatives by (tau, v)."""
+
+    time: Any
+    velocity: Any
+    by_state: tuple[tuple[Any, Any], tuple[Any, Any]]
+
+    def moved(self, sizes: tuple[float, float]) -> list[Any]:
+        """What a change of the state by its size does to time and velocity."""
+        return [sum(abs(part) * size for part, size in zip(row, sizes, strict=True)) for row in self.by_state]
+
+
+def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
+    """The impact, or the status that is right: sticks, graze or no return.  Call it with the working precision set."""
+    motion = launch.motion(tau, v, sign)
+    if v == 0 and not motion.at(0)[2] > 0:
+        return int(Status.sticks)
+    try:
+        found = first_hit(motion, float(v), launch.horizon)
+    except ArithmeticError:
+        return int(Status.graze)
+    if found is None:
+        return int(Status.no_return)
+    (time, u), e = found, motion.at(found[0])[2]
+    by_tau, by_v = motion.variations(time) if float(v) else (motion.variations(time)[0], (0 * u, 0 * u))
+    rows = [(-by[0] / u, by[1] - e * by[0] / u) for by in (by_tau, by_v)]
+    return Landing(time, u, ((rows[0][0], rows[1][0]), (rows[0][1], rows[1][1])))
+
+
+def sizes(launch: Launch, time: Any) -> tuple[float, float]:
+    """What a rounding of the state is relative to: phases are counted from the nearest period, and while it flies."""
+    period = 2 * pi / launch.omega
+    return max(abs(launch.tau - period * round(launch.tau / period)), float(time)), launch.v
+
+
+def _status(found: Any, right: int) -> tuple[int, int]:
+    given = int(found)
+    # whether it never returns is another question than whether it has by the horizon
+    return (right, right) if given in GONE and right in GONE else (given, right)
+
+
+def _swept(place: str, judge: Callable[[Launch], Trial | None], points: int) -> Iterator[Trial]:
+    import flint
+
+    for launch in both(place, points):
+        with flint.ctx.workprec(launch.bits):
+            trial = judge(launch)
+        if trial is not None:
+            yield trial
+
+
+def _sweeps(judge: Callable[[Launch], Trial | None], without: tuple[str, ...] = ()) -> dict[str, Sweep]:
+    return {place: partial(_swept, place, judge) for place in PLACES if place not in without}
+
+
+def _first_hit(launch: Launch) -> Trial:
+    hit, true = launch.model.first_hit(launch.tau, launch.v, horizon=launch.horizon), landing(
+        launch, launch.tau, launch.v)  # fmt: skip
+    if isinstance(true, int) or hit.status != Status.hit:
+        return Trial(str(launch), status=_status(hit.status, true if isinstance(true, int) else int(Status.hit)))
+    found = [float(hit.flight_time), float(hit.velocity)]
+    return Trial(str(launch), found, [true.time, true.velocity], true.moved(sizes(launch, true.time)))
+
+
+def _impact_map(launch: Launch) -> Trial:
+    return _stepped(launch, launch.model.impact_map(launch.tau, launch.v, horizon=launch.horizon))
+
+
+def _stepped(launch: Launch, step: Any) -> Trial:
+    import flint
+
+    true = landing(launch, launch.tau, launch.v)
+    if isinstance(true, int) or step.status != Status.hit:
+        return Trial(str(launch), status=_status(step.status, true if isinstance(true, int) else int(Status.hit)))
+    r, late = flint.arb(launch.restitution), true.moved(sizes(launch, true.time))
+    values = [true.time + launch.tau, -r * true.velocity]
+    return Trial(str(launch), [float(step.tau), float(step.v)], values, [late[0], r * late[1]])
+
+
+def _inverse(launch: Launch) -> Trial:
+    import flint
+
+    landed = launch.v * launch.restitution  # so that r -> 0 does not send the flight to infinity
+    before = launch.model.inverse_map(launch.tau, landed, horizon=launch.horizon)
+    true = landing(launch, -launch.tau, flint.arb(landed) / flint.arb(launch.restitution), -1)
+    if isinstance(true, int) or before.status != Status.hit:
+        return Trial(str(launch), status=_status(before.status, true if isinstance(true, int) else int(Status.hit)))
+    size, speed = sizes(launch, true.time)
+    late = true.moved((size, speed))
+    return Trial(str(launch), [float(before.tau), float(before.v)], [launch.tau - true.time, -true.velocity], late)
+
+
+def _flight(launch: Launch) -> Trial | None:
+    """Where the mass is halfway to its hit, just before it, and soon after the launch."""
+    import flint
+
+    true = landing(launch, launch.tau, launch.v)
+    if isinstance(true, int) or launch.v < SQUARED:
+        return None
+    times = [float(true.time) * part for part in (1e-6, 0.5, 0.999)]
+    place, motion = launch.model.flight(launch.tau, launch.v, times), launch.motion(launch.tau, launch.v)
+    truth, slack = [], []
+    for t in times:
+        (z, u, e), (by_tau, by_v) = motion.at(flint.arb(t)), motion.variations(flint.arb(t))
+        size = sizes(launch, t)
+        truth += [z + launch.clearance, u]
+        slack += [abs(by_tau[n]) * size[0] + abs(by_v[n]) * size[1] + abs(rate) * t for n, rate in ((0, u), (1, e))]
+    found = np.stack([place.x, place.xdot], axis=1).ravel().tolist()
+    return Trial(str(launch), found, truth, slack)
+
+
+def _derivative(launch: Launch) -> Trial | None:
+    """D G times the sizes of the state, by rows; what a rounding of the state does to it by differences of 60 digits.
+
+    A short flight has d v'/d tau of the size of its square: that entry is right beside the others of its row.
+    """
+    import flint
+
+    if launch.v < SQUARED:
+        return None
+    found, true = launch.model.derivative(launch.tau, launch.v, horizon=launch.horizon), _matrix(launch, 0, 0)
+    if isinstance(true, int):
+        return Trial(str(launch), status=_status(found.status, true))
+    if found.status != Status.hit:
+        return Trial(str(launch), status=(int(found.status), int(Status.hit)))
+    values, time = true
+    small, size = flint.arb(10) ** -STEP, sizes(launch, time)
+    slack = [0 * value for value in values]
+    for change in ((size[0] * small, 0), (0, size[1] * small)):
+        moved = _matrix(launch, *change)
+        if isinstance(moved, int):
+            return None
+        slack = [so_far + abs(new - old) / small for so_far, new, old in zip(slack, moved[0], values, strict=True)]
+    beside = [values[at ^ 1] * size[at % 2 ^ 1] / size[at % 2] for at in range(4)]
+    slack = [so_far + abs(other) for so_far, other in zip(slack, beside, strict=True)]
+    return Trial(str(launch), found.matrix.ravel().tolist(), values, slack)
+
+
+def _matrix(launch: Launch, by_tau: Any, by_v: Any) -> tuple[list[Any], Any] | int:
+    import flint
+
+    true = landing(launch, flint.arb(launch.tau) + by_tau, flint.arb(launch.v) + by_v)
+    if isinstance(true, int):
+        return true
+    r, ((a, b), (c, d)) = -flint.arb(launch.restitution), true.by_state
+    return [1 + a, b, r * c, r * d], true.time
+
+
+def _orbit(launch: Launch) -> Trial | None:
+    found = launch.model.orbit(launch.tau, launch.v, IMPACTS)
+    if found.kind.tolist() != ["start"] + ["impact"] * IMPACTS:
+        return None  # chatter summed up, rest and lost contact are judged as chatter limits
+    return _chained(launch, found.tau[-1], found.v[-1])
+
+
+def _lanes(launch: Launch) -> Trial | None:
+    ends = after(launch.model, launch.tau, launch.v, IMPACTS)
+    return None if ends.status != 0 else _chained(launch, ends.tau, ends.v)
+
+
+def _chained(launch: Launch, tau: Any, v: Any) -> Trial | None:
+    """The state after IMPACTS impacts; each adds a rounding of its own, carried on by those that follow."""
+    import flint
+
+    r, at = flint.arb(launch.restitution), (flint.arb(launch.tau), flint.arb(launch.v))
+    rounded: tuple[Any, Any] = (abs(at[0]), abs(at[1]))
+    for _ in range(IMPACTS):
+        true = landing(launch, at[0].mid(), at[1].mid())
+        if isinstance(true, int):
+            return None
+        rounded = max(float(rounded[0]), float(true.time)), rounded[1]
+        (a, b), (c, d) = true.by_state
+        late = abs(1 + a) * rounded[0] + abs(b) * rounded[1], r * (abs(c) * rounded[0] + abs(d) * rounded[1])
+        at = at[0] + true.time, -r * true.velocity
+        rounded = late[0] + abs(at[0]), late[1] + abs(at[1])
+    return Trial(str(launch), [float(tau), float(v)], list(at), list(rounded))
+
+
+BALLS = "balls of bench/truth"
+FUNCTIONS = (
+    Function("first_hit", _sweeps(_first_hit), BALLS, ""),
+    Function("impact_map", _sweeps(_impact_map), BALLS, ""),
+    Function("flight", _sweeps(_flight, ("r -> 0", "r -> 1")), BALLS, "a flight knows no r"),
+    Function("derivative", _sweeps(_derivative), BALLS + ", differences", ""),
+    Function("inverse_map", _sweeps(_inverse), BALLS + ", backwards", ""),
+    Function("orbit", _sweeps(_orbit), BALLS + ", chained", ""),
+    Function("lanes", _sweeps(_lanes), BALLS + ", chained", ""),
+)

@@ -1,0 +1,160 @@
+"""Launches that run towards the bad places of a flight, of the linear and of the cubic oscillator.
+
+Places: v -> 0 pressed and free, short flights, near resonance, r -> 0 and 1, next to zeros of a and of a', next to the
+outline P (flights that graze) and to Z (launches that nearly rest), late phases, many periods without impact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import acos, pi
+from typing import Any
+
+from singimpact.bench.stress.judging import powers
+from singimpact.bench.truth.first_hit import first_hit
+from singimpact.bench.truth.motions import Cubic, Linear
+from singimpact.impact_oscillator import ImpactOscillator, linear
+
+CUBIC = "x + xdot/10 + 3*x**3/10"
+BITS = 320
+HORIZON = {"linear": 20000.0, "cubic": 60.0}  # the cubic one is damped: its truth follows slowly what never returns
+
+
+@dataclass(frozen=True)
+class Launch:
+    """A model and a state, all exact doubles."""
+
+    family: str
+    omega: float = 2.8
+    clearance: float = 0.0
+    restitution: float = 0.8
+    tau: float = 0.9
+    v: float = 0.5
+
+    @property
+    def model(self) -> ImpactOscillator:
+        """The oscillator."""
+        if self.family == "linear":
+            return linear(self.omega, self.clearance, self.restitution)
+        return ImpactOscillator(CUBIC, "cos(omega*t)", self.clearance, self.restitution, {"omega": self.omega})
+
+    def motion(self, tau: Any, v: Any, sign: int = 1) -> Any:
+        """The flight from another state, in balls; sign -1: backwards."""
+        if self.family == "linear":
+            return Linear(self.omega, self.clearance, tau, v)
+        return Cubic(self.omega, self.clearance, tau, v, sign)
+
+    @property
+    def horizon(self) -> float:
+        """The time after which a flight is given up."""
+        return HORIZON[self.family]
+
+    @property
+    def bits(self) -> int:
+        """Of the balls: small v take more."""
+        from math import log2
+
+        return BITS + (int(4 * max(-log2(self.v), 0)) if self.v else 0)
+
+    def __str__(self) -> str:
+        names = ("omega", "clearance", "restitution", "tau", "v")
+        return f"{self.family}, " + ", ".join(f"{name} = {getattr(self, name)!r}" for name in names)
+
+
+Launches = Callable[[str, int], Iterator[Launch]]
+
+
+def _small_v(family: str, points: int) -> Iterator[Launch]:
+    for v in powers(points, 13):
+        yield Launch(family, tau=0.9, v=v)
+        yield Launch(family, tau=0.1, v=v)
+    yield Launch(family, tau=0.9, v=1e-300)
+
+
+def _short(family: str, points: int) -> Iterator[Launch]:
+    for v in powers(points, 16, 0):
+        yield Launch(family, clearance=30.0, v=v)
+
+
+def _resonant(family: str, points: int) -> Iterator[Launch]:
+    for off in (0.0, *powers(points, 15)):
+        for omega in {1 + off, 1 - off}:
+            yield Launch(family, omega, -0.5, tau=0.3)
+
+
+def _dead(family: str, points: int) -> Iterator[Launch]:
+    for r in powers(points, 15):
+        yield Launch(family, restitution=r)
+
+
+def _elastic(family: str, points: int) -> Iterator[Launch]:
+    for off in powers(points, 15):
+        yield Launch(family, restitution=1 - off)
+
+
+def _tangent(family: str, points: int) -> Iterator[Launch]:
+    place = acos(0.3 if family == "linear" else 0.3 + 0.3 * 0.3**3) / 2.8
+    for off in powers(points, 15):
+        for tau in (place - off, place + off, -place - off, -place + off):
+            yield Launch(family, clearance=0.3, tau=tau, v=1e-3)
+            yield Launch(family, clearance=0.3, tau=tau, v=0.0)
+
+
+def _swan(family: str, points: int) -> Iterator[Launch]:
+    level = 1.0 if family == "linear" else 0.8  # 0.8 + 0.3 0.8^3 = 0.9536 at cos(omega tau)
+    place = 0.0 if family == "linear" else acos(0.8 + 0.3 * 0.8**3) / 2.8
+    for off in powers(points, 12):
+        for side in (1, -1):
+            yield Launch(family, clearance=level - side * off, tau=place + off, v=1e-3)
+            yield Launch(family, clearance=level - off, tau=place - side * off**0.5, v=off)
+
+
+def _grazing(family: str, points: int) -> Iterator[Launch]:
+    """A flight run backwards from a touch, moved off it."""
+    import flint
+
+    for touch in (0.1, 1.0):
+        at = Launch(family, clearance=-0.4, tau=touch)
+        with flint.ctx.workprec(BITS):
+            motion = at.motion(-touch, 0.0, -1)
+            found = first_hit(motion, 0.0, 60.0) if motion.at(0)[2] > 1e-3 else None
+        if found is None:
+            continue
+        for off in powers(points, 13):
+            for side in (1, -1):
+                v = -float(found[1]) * (1 + side * off)
+                yield Launch(family, clearance=-0.4, tau=touch - float(found[0]), v=v)
+
+
+def _resting(family: str, points: int) -> Iterator[Launch]:
+    """Launches with a > 0 whose velocity runs to 0: the flight is long, Z is where it left at rest."""
+    for v in (0.0, *powers(points, 16)):
+        yield Launch(family, clearance=-0.4, tau=0.2, v=v)
+        yield Launch(family, clearance=0.2, tau=0.4, v=v)
+
+
+def _late(family: str, points: int) -> Iterator[Launch]:
+    for size in powers(points, 15):
+        yield Launch(family, tau=0.9 + 1 / size)
+        yield Launch(family, tau=-1 / size)
+
+
+def _long(family: str, points: int) -> Iterator[Launch]:
+    for n, off in enumerate(powers(points, 12, 2)):
+        omega, deep = (1 + off, 3.0 + 5 * n) if family == "linear" else (1 + off, 0.7 + 0.8 * n / points)
+        yield Launch(family, omega, -deep, tau=2 * pi * 0.3, v=0.7)
+        yield Launch(family, 2 - omega, -deep, tau=0.1, v=0.2)
+
+
+PLACES: dict[str, Launches] = {
+    "v -> 0": _small_v, "t -> 0": _short, "omega -> 1": _resonant, "r -> 0": _dead, "r -> 1": _elastic,
+    "a -> 0": _tangent, "a' -> 0": _swan, "next to P": _grazing, "next to Z": _resting, "huge tau": _late,
+    "long flights": _long,
+}  # fmt: skip
+
+
+def both(place: str, points: int) -> Iterator[Launch]:
+    """Those of the linear oscillator, then a third as many of the cubic one, whose truth takes fifty times longer."""
+    yield from PLACES[place]("linear", points)
+    yield from PLACES[place]("cubic", max(points // 3, 2))

@@ -1,0 +1,81 @@
+"""What `singimpact stress` runs, and its table: a row a function, a column a place, the worst units in each cell.
+
+A new public function: a `Function` in one of the files here; a test compares the rows with the public names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from singimpact.bench.stress import chattered, expanded, flown, named, repeated
+from singimpact.bench.stress.judging import LIMITS, Cell, Function, worst
+from singimpact.bench.stress.launches import PLACES
+from singimpact.inputs import unknown
+
+FUNCTIONS: dict[str, Function] = {
+    each.name: each for room in (flown, repeated, chattered, expanded, named) for each in room.FUNCTIONS
+}
+POINTS, QUICK = 12, 4
+NOTE = (
+    f"Units: error over epsilon times (|value| + what a relative change of every input does to it); over"
+    f" {LIMITS.failure:.0f} is a failure, marked !; inf: a wrong status. -: the function does not depend on the place."
+)
+
+
+def chosen(names: Sequence[str], place: str | None) -> list[tuple[Function, str]]:
+    """The sweeps that are asked for, refused by name where there is none of that name.
+
+    Examples
+    --------
+    >>> [(function.name, place) for function, place in chosen(["acceleration"], "a -> 0")]
+    [('acceleration', 'a -> 0')]
+    """
+    for name in names:
+        if name not in FUNCTIONS:
+            raise unknown("function", name, tuple(FUNCTIONS))
+    if place is not None and place not in PLACES:
+        raise unknown("place", place, tuple(PLACES))
+    rows = [FUNCTIONS[name] for name in dict.fromkeys(names)] or list(FUNCTIONS.values())
+    return [(row, at) for row in rows for at in PLACES if at in row.sweeps and place in (None, at)]
+
+
+def stressed(
+    pairs: Sequence[tuple[Function, str]], points: int = POINTS, told: Callable[[int, str], None] = lambda *_: None
+) -> list[Cell]:
+    """A cell for each sweep; `told` hears its number and name before it runs."""
+    cells = []
+    for number, (function, place) in enumerate(pairs):
+        told(number, f"{function.name}, {place}")
+        cells.append(worst(function.name, place, function.sweeps[place], points))
+    return cells
+
+
+def table(cells: Sequence[Cell]) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of the table of worst units."""
+    places = [place for place in PLACES if any(cell.place == place for cell in cells)]
+    rows = []
+    for name in dict.fromkeys(cell.function for cell in cells):
+        known = {cell.place: cell for cell in cells if cell.function == name}
+        rows.append([name, *(_shown(known.get(place)) for place in places)])
+    return ["function", *places], rows
+
+
+def _shown(cell: Cell | None) -> str:
+    return "-" if cell is None else f"{cell.units:.2g}{' !' if cell.failed else ''}"
+
+
+def worst_states(cells: Sequence[Cell]) -> tuple[list[str], list[list[str]]]:
+    """Where each function is at its worst, where its 60 digits come from, and why places are left out."""
+    rows = []
+    for name in dict.fromkeys(cell.function for cell in cells):
+        at = max((cell for cell in cells if cell.function == name), key=lambda cell: cell.units)
+        function = FUNCTIONS[name]
+        rows.append([name, f"{at.units:.2g}", at.place, at.state, function.route, function.left_out or "-"])
+    return ["function", "worst", "place", "state", "60 digits from", "places left out (-)"], rows
+
+
+def as_data(cells: Sequence[Cell]) -> list[dict[str, Any]]:
+    """The cells as plain data."""
+    return [{**asdict(cell), "failed": cell.failed} for cell in cells]
