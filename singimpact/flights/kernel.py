@@ -22,7 +22,7 @@ COMMON = (first_root.sums, first_root.safe_step, first_root.polished, first_root
 STRIDES = (table.tabulate, table.bounds, table.expansions, strides.series, strides.falling, strides.launched,
            strides.turned,
            strides.inner_stride, strides.place, strides.newton, strides.lowest, strides.crossing,
-           strides.bent_stride, strides.stride, strides.stride_all,
+           strides.bent_stride, strides.renewed, strides.asked, strides.stride, strides.stride_all,
            pull.divided, pull.phase_of, pull.in_quarter, pull.wave,
            pull.wave_twice, pull.pull_twice, pull.pull)  # fmt: skip
 HEAD = '''"""Written by singimpact from the text of its own functions and from f and g: edit those, not this file."""

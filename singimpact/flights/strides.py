@@ -23,8 +23,7 @@ def stride(
     step, table : the step of the table and the table.
     bound : bounds of the fourth and the sixth derivative over a step, then 1/k!.
     """
-    waves = (len(p) - 5) // 3
-    last = len(table) - 1
+    waves, last = (len(p) - 5) // 3, len(table) - 1
     start, z0, u0, base = 0.0, 0.0, v, 0.0
     for j in range(waves):
         W[2 * j, 0], W[2 * j + 1, 0] = launch[2 * j], launch[2 * j + 1]
@@ -33,19 +32,13 @@ def stride(
         code, s, slope = launched(v, acceleration, order, -4 * v / acceleration, ulp, p, bound, X, W, q)
         if code == 1 and s <= horizon:
             return 0, s, slope * s, 0.0, 0.0
-    h2 = step * step / 20.0
-    fourth, sixth = step * step / 8.0, step * step * step * step * step * step / 46080.0
-    z, u, e, noise = 0.0, v, acceleration - p[1] * v, 0.0
-    m = 0
+    h2, sixth = step * step / 20.0, step * step * step * step * step * step / 46080.0
+    z, u, e, noise, m = 0.0, v, acceleration - p[1] * v, 0.0, 0
     while True:
         if m == last:
             # the table ends: its last state is the next start, from the closed form and so without accumulated error
             start += last * step
-            z0, u0, base = restart(launch, v, start, z, u, 0.0, ulp, p)
-            for j in range(waves):
-                turn_c, turn_s = cos(p[5 + 3 * j] * start), sin(p[5 + 3 * j] * start)
-                W[2 * j, 0] = launch[2 * j] * turn_c - launch[2 * j + 1] * turn_s
-                W[2 * j + 1, 0] = launch[2 * j + 1] * turn_c + launch[2 * j] * turn_s
+            z0, u0, base = renewed(launch, v, start, z, u, ulp, p, W)
             z, u, m = z0, u0, 0
             if not abs(z) < 1e100:
                 return 5, start, u, z, base
@@ -65,22 +58,8 @@ def stride(
         room = 2.3 * sixth * (bound[3] * abs(z) + bound[4] * abs(u) + bound[5]) + 2.0 * (noise + error)
         time = start + m * step
         if not (min(min(b1, b2), min(b3, b4)) > room and z1 > room and (z > room or time == 0.0)):
-            code, s, slope = 2, 0.0, 0.0
-            bend = fourth * (bound[0] * abs(z) + bound[1] * abs(u) + bound[2])
-            if time == 0.0:
-                # upwards and convex, or concave and above the obstacle at the end: no root
-                if min(e, e1) > bend or (z1 > room and max(e, e1) < -bend):
-                    code = 0
-                else:
-                    code, s, slope = launched(v, acceleration, order, step * 17 / 16, ulp, p, bound, X, W, q)
-                    slope *= s
-            else:
-                if z > room and abs(z1) > room:
-                    code, s, slope = bent_stride(
-                        z, u, e, z1, u1, e1, bend, error + noise, table, m, order, step, p, bound, X, W
-                    )
-                if code == 2:
-                    code, s, slope = inner_stride(z, u, table, m, order, step, noise, ulp, p, bound, W, q)
+            code, s, slope = asked(v, acceleration, time, room, error, noise, z, u, e, z1, u1, e1, m,
+                                   order, ulp, p, step, table, bound, X, W, q)  # fmt: skip
             if code == 2:
                 return march(launch, v, 1, acceleration, terms, horizon, ulp, p, X, W, q)
             if code == 1:
@@ -91,6 +70,36 @@ def stride(
             return 3, time, u, z, noise
         z, u, e, noise = z1, u1, e1, error
         m += 1
+
+
+def renewed(launch: Any, v: float, start: float, z: float, u: float, ulp: float, p: Any, W: Any) -> Any:
+    """(x - c, x', error) where a table begins again, and the waves turned to there."""
+    for j in range((len(p) - 5) // 3):
+        turn_c, turn_s = cos(p[5 + 3 * j] * start), sin(p[5 + 3 * j] * start)
+        W[2 * j, 0] = launch[2 * j] * turn_c - launch[2 * j + 1] * turn_s
+        W[2 * j + 1, 0] = launch[2 * j + 1] * turn_c + launch[2 * j] * turn_s
+    return restart(launch, v, start, z, u, 0.0, ulp, p)
+
+
+def asked(
+    v: float, acceleration: float, time: float, room: float, error: float, noise: float, z: float, u: float, e: float,
+    z1: float, u1: float, e1: float, m: int, order: int, ulp: float, p: Any, step: float, table: Any, bound: Any,
+    X: Any, W: Any, q: Any,
+) -> Any:  # fmt: skip
+    """(code, s, slope) of a stride from (z, u, e) to (z1, u1, e1) that the quintic does not settle."""
+    bend = step * step / 8.0 * (bound[0] * abs(z) + bound[1] * abs(u) + bound[2])
+    if time == 0.0:
+        # upwards and convex, or concave and above the obstacle at the end: no root
+        if min(e, e1) > bend or (z1 > room and max(e, e1) < -bend):
+            return 0, 0.0, 0.0
+        code, s, slope = launched(v, acceleration, order, step * 17 / 16, ulp, p, bound, X, W, q)
+        return code, s, slope * s
+    code, s, slope = 2, 0.0, 0.0
+    if z > room and abs(z1) > room:
+        code, s, slope = bent_stride(z, u, e, z1, u1, e1, bend, error + noise, table, m, order, step, p, bound, X, W)
+    if code == 2:
+        code, s, slope = inner_stride(z, u, table, m, order, step, noise, ulp, p, bound, W, q)
+    return code, s, slope
 
 
 def launched(

@@ -7,7 +7,7 @@ import pytest
 
 BANNED = {"series", "limit", "simplify", "solve", "integrate"}
 OTHERS = {"np", "numpy", "scipy", "flint"}
-LONGEST = 600
+LONGEST, LONGEST_FUNCTION = 600, 60
 IMPORTLIB_HOMES = ("__init__.py", "cli/")
 NAMELESS = {"utils.py", "helpers.py", "core.py", "common.py", "misc.py"}
 
@@ -90,6 +90,27 @@ def test_other_calls_are_not(text):
 def test_no_file_is_too_long(clone):
     long = {path: count for path, text in sources(clone).items() if (count := text.count("\n")) > LONGEST}
     assert long == {}
+
+
+def lengths(text):
+    """Lines of each function."""
+    return {node.name: node.end_lineno - node.lineno + 1 for node in ast.walk(ast.parse(text))
+            if isinstance(node, ast.FunctionDef)}  # fmt: skip
+
+
+def test_no_function_is_too_long(clone):
+    found = {(path, name): count for path, text in sources(clone).items() for name, count in lengths(text).items()}
+    assert {where: count for where, count in found.items() if count > LONGEST_FUNCTION} == {}
+    assert lengths("def f(x):\n" + "    x += 1\n" * 70)["f"] > LONGEST_FUNCTION
+
+
+def test_every_room_says_what_lives_there(clone):
+    """Its first lines name what is there, and send what is not to a neighbour."""
+    rooms = {path: text for path, text in sources(clone).items() if path.endswith("/__init__.py")}
+    told = {path: ast.get_docstring(ast.parse(text)) or "" for path, text in rooms.items()}
+    outer = {path: text for path, text in told.items() if path.count("/") == 1}
+    assert [path for path, text in told.items() if not text] == []
+    assert [path for path, text in outer.items() if "Not here" not in text and "Nothing" not in text] == []
 
 
 def test_every_file_is_named_for_its_content(clone):
