@@ -36,7 +36,8 @@ class SingularPoint:
 
     Attributes
     ----------
-    name : "tangency", "swan", "cusp", "swallowtail"; "singular" where V_c' itself has no tangent plane. maps : "p", "phi" or "p, phi". tau, t : where on V_c'.
+    name : "tangency", "swan", "cusp", "swallowtail"; "singular" where V_c' itself has no
+        tangent plane. maps : "p", "phi" or "p, phi". tau, t : where on V_c'.
     image : (tau, v) under p, (tau, x') under phi. kind : of a tangency "gamma", "foliation"; of a swan its sign; "".
     """
 

@@ -44,10 +44,10 @@ def test_points_above_a_swan_are_swallowtails():
     assert all(p.name == "swallowtail" for p in found.points if p.t)
 
 
-@pytest.mark.parametrize(("shift", "count"), [(0.0, 1), (1e-4, 0), (-1e-4, 0)])
+@pytest.mark.parametrize(("shift", "count"), [("", 1), (" + 1e-4", 0), (" - 1e-4", 0)])
 def test_where_the_surface_itself_is_singular(shift, count):
     """x'' + x = cos wt at c = A cos(w pi/2), A = 1/(1 - w^2): rest at tau = -pi/2 leads to rest after pi, dx/dv = 0."""
-    level = np.cos(1.1 * np.pi) / (1 - 2.2**2)
+    level = "cos(1.1*pi)/(1 - 2.2**2)"
     found = classify(si.linear("2.2", level + shift, "0.5"), (-2, "1.2"), ("0.5", 6))
     singular = [(point.tau, point.t) for point in found.points if point.name == "singular"]
     assert len(singular) == count
