@@ -13,7 +13,7 @@ from singimpact.inputs import InputError
 
 if TYPE_CHECKING:
     from singimpact.surface.classification import Classification
-    from singimpact.surface.transitions import Transition
+    from singimpact.surface.transitions import Transitions
 
 
 @click.command(short_help="tangency, swan, fold and cusp points of a model")
@@ -48,7 +48,7 @@ def command(
         emit(_text(found, over, changes), output)
 
 
-def _told(found: Classification, over: str | None, changes: list[Transition] | None) -> dict[str, Any]:
+def _told(found: Classification, over: str | None, changes: Transitions | None) -> dict[str, Any]:
     told: dict[str, Any] = {
         "window": {"tau": found.tau, "t": found.t},
         "points": [{"name": p.name, "maps": p.maps, "kind": p.kind, "tau": p.tau, "t": p.t, "image": p.image}
@@ -60,11 +60,12 @@ def _told(found: Classification, over: str | None, changes: list[Transition] | N
     }  # fmt: skip
     if changes is not None:
         listed = [{"kind": c.kind, "value": c.value, "tau": c.tau, "t": c.t} for c in changes]
-        told["transitions"] = {"over": over, "found": listed}
+        told["transitions"] = {"over": over, "found": listed, "swans_complete": changes.complete,
+                               "notes": changes.notes}  # fmt: skip
     return told
 
 
-def _text(found: Classification, over: str | None, changes: list[Transition] | None) -> str:
+def _text(found: Classification, over: str | None, changes: Transitions | None) -> str:
     tables = [
         _table("points of V_c' where p or phi is singular", ["point", "of", "kind", "tau", "t", "image tau", "image v"],
                [[p.name, p.maps, p.kind, *_numbers(p.tau, p.t, *p.image)] for p in found.points]),
@@ -75,7 +76,9 @@ def _text(found: Classification, over: str | None, changes: list[Transition] | N
     ]  # fmt: skip
     if changes is not None:
         rows = [[c.kind, *_numbers(c.value, c.tau, c.t)] for c in changes]
-        tables.append(_table(f"where P changes as {over} moves", ["kind", str(over), "tau", "t"], rows))
+        tables.append(_table(f"where P changes as {over} moves", ["kind", str(over), "tau", "t"], rows, changes.notes))
+        if changes.complete:
+            tables.append("no swan between these ends is missing (by interval bounds)")
     low, high = _numbers(*found.tau), _numbers(*found.t)
     return "\n\n".join([f"window: tau from {' to '.join(low)}, t from {' to '.join(high)}", *tables])
 

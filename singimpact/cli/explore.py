@@ -30,7 +30,8 @@ def command(
 ) -> None:  # fmt: skip
     """See Z, H, P and gamma change as the clearance moves through the swan nearest to the model's clearance.
 
-    MODEL is a TOML file, as for --model. The page is one file that needs no network.
+    A model without a swan is shown around its clearance. MODEL is a TOML file, as for --model. The page is one file
+    that needs no network.
     """
     place = _place(html, output)
     oscillator = take_model(_with_path(options, path))
@@ -89,6 +90,6 @@ def _told(film: ClearanceFilm) -> dict[str, Any]:
          "curves": {name: [curve.points.tolist() for curve in curves] for name, curves in frame.curves.items()}}
         for frame in film.frames
     ]  # fmt: skip
-    swan = {"clearance": film.swan.clearance, "tau": film.swan.tau, "kind": film.swan.kind}
-    return {"swan": swan, "window": {"tau": film.tau, "t": film.t, "v": film.v}, "frames": frames,
-            "flights": film.flights}  # fmt: skip
+    swan = film.swan and {"clearance": film.swan.clearance, "tau": film.swan.tau, "kind": film.swan.kind}
+    return {"swan": swan, "text": film.sentence, "window": {"tau": film.tau, "t": film.t, "v": film.v},
+            "frames": frames, "flights": film.flights}  # fmt: skip

@@ -25,9 +25,9 @@ def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> No
     from singimpact.scenes.figures import FIGURES, picture
     from singimpact.scenes.figures.rendering import drawn
 
+    numbers = _numbers(which, list(FIGURES))
     place, written = folder(output), []
     with ProgressLine() as line:
-        numbers = _numbers(which, list(FIGURES))
         for done, number in enumerate(numbers):
             line.show(done, len(numbers), f"figure {number}")
             start, made = process_time(), picture(number)

@@ -125,6 +125,7 @@ def basins(
     speeds = slow + (np.arange(size) + 0.5) * (fast - slow) / size
     rows = SETTINGS.rows if size % SETTINGS.rows == 0 else 1
     blocks = [tuple(speeds[i : i + rows].tolist()) for i in range(0, size, rows)]
+    after(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
     codes = sweep(partial(classified, dict(model.to_dict()), tuple(times.tolist()), fast), blocks, executor, output)
     return Basins(model, times, speeds, codes.reshape(size, size))
 

@@ -10,15 +10,16 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import evaluate, number, substitute
+from singimpact.algebra.expressions import evaluate, names_in, number, substitute
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.dynamics.invariant_arcs import Frame, grown_gamma
 from singimpact.impact_oscillator import clearances
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.surface.classification import default_window
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 
@@ -33,7 +34,7 @@ class FilmSettings:
     Attributes
     ----------
     opening : half the distance of the two tangency points at the ends of the slider, in periods: the window below is
-        then less than a period. alone : the same when there is no period.
+        then less than a period. alone : the same when there is no period. aside : of the clearance, where no swan is.
     reach_tau, reach_t : of the window, in those halves; the unfolded swan reaches to 3 and 4.
     height : of the picture, in sizes of the cusp of P, (64/24) |a''| half^3.
     steps : of the slider. pixels : of a panel.
@@ -41,6 +42,7 @@ class FilmSettings:
 
     opening: float = 1 / 12
     alone: float = 0.5
+    aside: float = 0.1
     reach_tau: float = 4.0
     reach_t: float = 6.0
     height: float = 1.5  # a swan that is opened wide is higher than its leading part
@@ -73,21 +75,43 @@ class ClearanceFrame:
 
 @dataclass(frozen=True)
 class ClearanceFilm:
-    """Frames in order of the clearance, one of them exactly at the swan.
+    """Frames in order of the clearance, one of them exactly at the swan, if there is one.
 
     Attributes
     ----------
-    model : the oscillator. swan : the point in the middle. frames : the pictures.
+    model : the oscillator. swan : the point that the slider goes through, or None. frames : the pictures.
     tau, t, v : the window. flights : computed for Z, H and P.
     """
 
     model: Oscillator
-    swan: SwanPoint
+    swan: SwanPoint | None
     frames: tuple[ClearanceFrame, ...]
     tau: Span
     t: Span
     v: Span
     flights: int
+
+    @property
+    def sentence(self) -> str:
+        """What the slider moves through."""
+        if self.swan is not None:
+            return (
+                f"At c_0 = {self.swan.clearance:.9g} the acceleration at the wall has a double zero at "
+                f"tau = {self.swan.tau:.9g}: a {self.swan.kind} swan. Move the slider through it."
+            )
+        low, high = self.frames[0].clearance, self.frames[-1].clearance
+        why = "" if _feels_clearance(self.model) else ": f does not contain x, and no curve depends on the clearance"
+        return f"No swan lies between c = {low:.9g} and c = {high:.9g}{why}."
+
+
+@dataclass(frozen=True)
+class _View:
+    """places : of the slider. tau, t : the window. size : of velocities."""
+
+    places: list[float]
+    tau: Span
+    t: Span
+    size: float
 
 
 def clearance_film(
@@ -98,14 +122,12 @@ def clearance_film(
 ) -> ClearanceFilm:
     """Z, H, P and gamma as the clearance moves through the swan whose clearance is nearest to the model's.
 
+    A model without a swan, or with none between the ends, is shown around its own clearance, or between the ends.
+
     Parameters
     ----------
     between : two numbers, ends of the clearance; as much on both sides of the swan as opens it well when not given.
     steps : how many clearances. told : is called with what is being done.
-
-    Raises
-    ------
-    InputError : there is no swan point, or none between the ends.
 
     Examples
     --------
@@ -119,30 +141,39 @@ def clearance_film(
         raise refuse("steps", steps, "a whole number from 2 to 1001")
     ends = None if between is None else clearances(between)
     swan = _nearest_swan(model, ends)
-    places, half, size = _reach(swan, ends, steps)
-    tau = (swan.tau - SETTINGS.reach_tau * half, swan.tau + SETTINGS.reach_tau * half)
-    t = (-SETTINGS.reach_t * half, SETTINGS.reach_t * half)
+    view = _across(model, ends, steps) if swan is None else _through(swan, ends, steps)
     frames, flights = [], 0
-    for n, clearance in enumerate(places):
-        told(n, len(places), f"c = {clearance:.6g}")
-        at = swan.place if clearance == swan.clearance else clearance
-        surface = ImpactSurface(model.replace(clearance=at), tau, t, SETTINGS.pixels)
-        frames.append(_frame(surface, clearance, size))
+    for n, clearance in enumerate(view.places):
+        told(n, len(view.places), f"c = {clearance:.6g}")
+        at = swan.place if swan is not None and clearance == swan.clearance else clearance
+        surface = ImpactSurface(model.replace(clearance=at), view.tau, view.t, SETTINGS.pixels)
+        frames.append(_frame(surface, clearance, view.size))
         flights += surface.flights
-    return ClearanceFilm(model, swan, tuple(frames), tau, t, (-size, size), flights)
+    return ClearanceFilm(model, swan, tuple(frames), view.tau, view.t, (-view.size, view.size), flights)
 
 
-def _nearest_swan(model: Oscillator, between: tuple[Fraction, Fraction] | None) -> SwanPoint:
-    swans = swan_points_over_clearance(model, between)
-    if not swans:
-        where = "at any clearance" if between is None else f"for a clearance from {between[0]} to {between[1]}"
-        raise InputError(f"there is no swan point {where}: P keeps its kind and there is nothing to see")
+def _feels_clearance(model: Oscillator) -> bool:
+    return "x" in names_in(substitute(model.force(), {"xdot": number(0)}))
+
+
+def _nearest_swan(model: Oscillator, between: tuple[Fraction, Fraction] | None) -> SwanPoint | None:
+    swans = swan_points_over_clearance(model, between) if _feels_clearance(model) else ()
     here = as_float(model.clearance)
-    return min(swans, key=lambda swan: abs(swan.clearance - here))
+    return min(swans, key=lambda swan: abs(swan.clearance - here), default=None)
 
 
-def _reach(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: int) -> tuple[list[float], float, float]:
-    """The clearances with c_0 among them, half the distance of A and B at the end, and the size of P there.
+def _across(model: Oscillator, between: tuple[Fraction, Fraction] | None, steps: int) -> _View:
+    """The clearances around the model's own, or between the ends, in the window that `classify` looks at."""
+    here = as_float(model.clearance)
+    low, high = (here - SETTINGS.aside, here + SETTINGS.aside) if between is None else map(float, between)
+    tau, t = default_window(model)
+    outline = ImpactSurface(model, tau, t, SETTINGS.pixels).outline
+    heights = [float(np.abs(curve.points[:, 1]).max()) for curve in outline]
+    return _View(np.linspace(low, high, steps).tolist(), tau, t, SETTINGS.height * max(heights, default=1.0))
+
+
+def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: int) -> _View:
+    """The clearances with c_0 among them; the window and the size of P from half the distance of A and B at the end.
 
     a = a'' (sigma^2 - half^2)/2 and a = -f_x (c - c_0) at the swan, to leading order.
     """
@@ -159,7 +190,9 @@ def _reach(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: in
     half = min(widest, (2 * slope * away / curvature) ** 0.5)
     places = np.linspace(low, high, steps)
     places[np.argmin(np.abs(places - swan.clearance))] = swan.clearance
-    return places.tolist(), half, SETTINGS.height * 64 / 24 * curvature * half**3
+    tau = (swan.tau - SETTINGS.reach_tau * half, swan.tau + SETTINGS.reach_tau * half)
+    t = (-SETTINGS.reach_t * half, SETTINGS.reach_t * half)
+    return _View(places.tolist(), tau, t, SETTINGS.height * 64 / 24 * curvature * half**3)
 
 
 def _stiffness(swan: SwanPoint) -> float:

@@ -72,8 +72,7 @@ def explore_page(film: ClearanceFilm) -> str:
     model = film.model
     text = (
         f"x'' + f(x, x') = g(t), x >= c, with f = {model.f}, g = {model.g}, restitution {model.restitution}. "
-        f"At c_0 = {film.swan.clearance:.9g} the acceleration at the wall has a double zero at "
-        f"tau = {film.swan.tau:.9g}: a {film.swan.kind} swan. Move the slider through it."
+        f"{film.sentence}"
     )
     named = ", ".join(f"{name} = {value}" for name, value in model.parameters.items())
     shown = text + (f" Parameters: {named}." if named else "")
@@ -81,7 +80,9 @@ def explore_page(film: ClearanceFilm) -> str:
         include_plotlyjs=True, include_mathjax=False, full_html=False, auto_play=False, div_id="explore",
         config={"displaylogo": False, "responsive": True},
     )  # fmt: skip
-    return PAGE.format(title="Through a swan", text=escape(shown), figure=figure)
+    return PAGE.format(
+        title="Across clearances" if film.swan is None else "Through a swan", text=escape(shown), figure=figure
+    )
 
 
 def _figure(film: ClearanceFilm) -> Any:
@@ -129,7 +130,9 @@ def _layout(film: ClearanceFilm, start: int) -> dict[str, Any]:
 
 
 def _label(film: ClearanceFilm, frame: ClearanceFrame) -> str:
-    return f"{frame.clearance:.6g}" + (" = c_0" if frame.clearance == film.swan.clearance else "")
+    return f"{frame.clearance:.6g}" + (
+        " = c_0" if film.swan is not None and frame.clearance == film.swan.clearance else ""
+    )
 
 
 def _traces(frame: ClearanceFrame) -> list[dict[str, Any]]:

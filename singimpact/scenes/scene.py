@@ -208,7 +208,8 @@ class Scene:
             axes.plot([x], [y], "o", color="black", markersize=4, zorder=6, clip_on=False)
             axes.annotate(letter, (x, y), (5, 5), textcoords="offset points", path_effects=halo, zorder=7)
         if told := self._absent(missing):
-            axes.text(0.5, 0.5, told, transform=axes.transAxes, ha="center", va="center", color="0.35", wrap=True)
+            look = {"ha": "center", "va": "center", "color": "0.35", "wrap": True, "path_effects": halo, "zorder": 8}
+            axes.text(0.5, 0.5, told, transform=axes.transAxes, **look)
         if axes.get_legend_handles_labels()[0]:
             axes.legend(loc="best", fontsize="small", framealpha=0.9)
 

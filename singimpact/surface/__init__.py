@@ -2,6 +2,6 @@
 
 Not here: one flight (`flights`), orbits and invariant curves (`dynamics`), germs and their normal forms (`germs`).
 Files: `rest_flights` (flights launched at rest), `tracing` (a level set as polylines), `curve`, `named_vertices`,
-`impact_surface` (Z and what follows from it by the involution), `transitions` (swans, swallowtails, lips, beaks),
-`classification` (every singular point in a window, with its germ).
+`impact_surface` (Z and what follows from it by the involution), `swan_families` (swans as one number moves, curves of
+them over two), `transitions` (those, swallowtails, lips, beaks), `classification` (singular points with their germs).
 """

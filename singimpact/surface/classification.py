@@ -22,9 +22,11 @@ from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface.rest_flights import RestFlights
 
 Point = tuple[float, float]
 REACH = 1.5  # of the times between the outermost zeros of a_c: the default window of a forcing without a period
+SINGULAR = 1e-6  # dx/dv and x' below this: curves are traced to 1e-8 beside a singular point of V_c'
 NEAR = 1e-9  # a cusp this near to a degenerate zero in tau stands above it
 
 
@@ -34,7 +36,8 @@ class SingularPoint:
 
     Attributes
     ----------
-    name : "tangency", "swan", "cusp", "swallowtail". maps : "p", "phi" or "p, phi". tau, t : where on V_c'.
+    name : "tangency", "swan", "cusp", "swallowtail"; "singular" where V_c' itself has no
+        tangent plane. maps : "p", "phi" or "p, phi". tau, t : where on V_c'.
     image : (tau, v) under p, (tau, x') under phi. kind : of a tangency "gamma", "foliation"; of a swan its sign; "".
     """
 
@@ -99,11 +102,14 @@ def classify(model: Oscillator, tau: Any = None, t: Any = None, between: Any = N
         raise refuse("model", model, "an ImpactOscillator")
     usual_tau, usual_t = default_window(model)
     surface = ImpactSurface(model, usual_tau if tau is None else tau, usual_t if t is None else t)
-    points = sorted([*_on_the_axis(surface), *_off_the_axis(surface)], key=lambda each: (each.tau, each.t))
+    singular = _of_the_surface(surface)
+    points = sorted([*_on_the_axis(surface), *_off_the_axis(surface), *singular], key=lambda each: (each.tau, each.t))
     folds = [
         line for maps, curves in (("p", surface.horizon), ("phi", surface.zero_set)) for line in _folds(maps, curves)
     ]
     swans, notes = _swans(model, between)
+    if singular:
+        notes += (f"V_c' is singular at {len(singular)} flights from rest to rest: curves are cut there",)
     return Classification(
         surface.window.tau, surface.window.t, tuple(points), tuple(folds), swans, notes, surface.flights
     )
@@ -136,6 +142,24 @@ def _off_the_axis(surface: ImpactSurface) -> Iterator[SingularPoint]:
         name = "swallowtail" if any(abs(cusp.tau - tau) < NEAR for tau in double) else "cusp"
         yield SingularPoint(name, "phi", cusp.tau, cusp.t, cusp.image)
         yield SingularPoint(name, "p", *cusp.of_p, cusp.image)
+
+
+def _of_the_surface(surface: ImpactSurface) -> list[SingularPoint]:
+    """Where x = c has no tangent plane in (tau, v, t): x' = 0 at the end, dx/dv = 0, and so dx/dtau = -v dx/dx_0 = 0.
+
+    The launch is at rest too, for the derivatives by place and velocity do not vanish together.  Z crosses itself
+    there or shrinks to the point: what was traced of it ends beside the point, or has it as a vertex.
+    """
+    flights, found = RestFlights(surface.model), list[SingularPoint]()
+    places = [tuple(place) for curve in surface.zero_set for name in ("rest", "end") for place in curve.marked(name)]
+    for tau, t in places:
+        at, end = np.array([tau]), np.array([t])
+        _, velocity = flights.ends(at, end)
+        by_speed = flights.by_speed(at, end)[0]
+        known = any(abs(point.tau - tau) + abs(point.t - t) < SINGULAR for point in found)
+        if abs(by_speed[0]) + abs(velocity[0]) < SINGULAR * abs(by_speed[1]) and t and not known:
+            found.append(SingularPoint("singular", "p, phi", float(tau), float(t), (float(tau), 0.0)))
+    return found
 
 
 def _folds(maps: str, curves: list[Curve]) -> Iterator[FoldLine]:

@@ -67,9 +67,9 @@ class RestFlights:
 
     def slopes(self, tau: Array, t: Array, velocity: Array) -> Array:
         """dF/dtau: the launch moved at rest is a launch with -a, so it is x' - a dx/dv."""
-        return np.asarray(velocity - self.acceleration(tau) * self._by_speed(tau, t)[:, 0])
+        return np.asarray(velocity - self.acceleration(tau) * self.by_speed(tau, t)[:, 0])
 
-    def _by_speed(self, tau: Array, t: Array) -> Array:
+    def by_speed(self, tau: Array, t: Array) -> Array:
         """Derivatives of x and x' at time t by the launch velocity, shape (n, 2)."""
         found = np.empty((len(tau), 2))
         for side, model, turn in ((t >= 0, self.model, 1), (t < 0, backwards(self.model), -1)):
@@ -81,7 +81,7 @@ class RestFlights:
 
     def rest_matrix(self, tau: Array, t: Array, velocity: Array) -> Array:
         """The derivative of (F, x') by (tau, t) for one flight, shape (2, 2)."""
-        by_speed, push = self._by_speed(tau, t)[0], float(self.acceleration(tau)[0])
+        by_speed, push = self.by_speed(tau, t)[0], float(self.acceleration(tau)[0])
         pull = evaluate(self.model.force(), {"x": as_float(self.model.clearance), "xdot": velocity[0]}, DOUBLES)
         there = float(evaluate(self.model.forcing(), {"t": tau[0] + t[0]}, DOUBLES) - pull)
         return np.array([[velocity[0] - push * by_speed[0], velocity[0]], [there - push * by_speed[1], there]])

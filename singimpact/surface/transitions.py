@@ -9,67 +9,66 @@ In flights launched at rest at a tangency point tau_*, a_c(tau_*) = 0:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import Expression, Name, evaluate
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.rings import DOUBLES
-from singimpact.algebra.zeros import isolate, refined
-from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.points import tangency_points
-from singimpact.contact.swans import swan_points_over_clearance
-from singimpact.inputs import InputError, unknown
+from singimpact.inputs import unknown
 from singimpact.oscillator.model import Oscillator
-from singimpact.surface.curve import Curve, Window
+from singimpact.surface.curve import Window
 from singimpact.surface.rest_flights import RestFlights
+from singimpact.surface.swan_families import STEPS, Family, Transition, swans_met
 
 Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
 class TransitionSettings:
-    """steps : of the parameter between its ends; a pair of transitions closer than one is not seen.
+    """same : two of them nearer than this are one; Newton's method ends a thousand times nearer.
     samples : of a flight in the window of t. settled : Newton's last step. flat : a Hessian below this share of its
     terms decides nothing.
     """
 
-    steps: int = 60
     samples: int = 400
     settled: float = 1e-12
+    same: float = 1e-9
     flat: float = 1e-6
 
 
 SETTINGS = TransitionSettings()
 
 
-@dataclass(frozen=True)
-class Transition:
-    """A change of P.
+class Transitions(tuple[Transition, ...]):
+    """Transitions in order, with what is argued of them.
 
-    Attributes
-    ----------
-    kind : "swan, positive", "swan, negative", "swallowtail", "lips", "beaks"; "undecided" where the Hessian is flat.
-    value : of the parameter. tau, t : the flight from rest; its mirror image is where P changes.
+    Swans are isolated by balls, so that `complete` is a proof; the other kinds are met on a grid of the parameter.
+    Flights from rest to rest with dx/dv = 0, over which V_c' itself is singular, are no transitions of this list:
+    `classify` marks them.
     """
 
-    kind: str
-    value: float
-    tau: float
-    t: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def complete(self) -> bool:
+        """Whether it is argued that no swan between the ends is missing."""
+        return not self.notes
 
 
-def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) -> list[Transition]:
+def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) -> Transitions:
     """The transitions of P as a parameter moves, one period of tau, in order of the parameter.
 
     Parameters
     ----------
     over : "clearance" or the name of a parameter. between : its two ends. t : window of flight times.
+
+    Returns
+    -------
+    Transitions : a tuple; `.complete` says whether no swan between the ends can be missing, `.notes` why one may.
 
     Raises
     ------
@@ -80,137 +79,35 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) ->
     >>> found = transitions(Oscillator("x", "cos(2*t)", 0, "1/2"), "clearance", ("0.9", "1.1"))
     >>> [(each.kind, round(each.value, 9), round(each.t, 6)) for each in found][:1]
     [('swan, negative', 1.0, 0.0)]
+    >>> found.complete
+    True
     """
     if over != "clearance" and over not in model.parameters:
         raise unknown("parameter", over, ["clearance", *model.parameters])
-    low, high = Window.read(between, t).tau
-    values = np.linspace(low, high, SETTINGS.steps + 1)
-    family = _Family(model, over)
-    swans = list(_swans(family, values))
-    times = Window.read(between, t).t
-    found = [*swans, *_swallowtails(family, swans, times), *_touches(family, values, times)]
-    return sorted(found, key=lambda each: (each.value, each.tau, each.t))
+    window = Window.read(between, t)
+    values = np.linspace(*window.tau, STEPS + 1)
+    family = Family(model, over)
+    swans, notes = swans_met(family, values)
+    found = [*swans, *_swallowtails(family, swans, window.t), *_each_once(_touches(family, values, window.t), window)]
+    made = Transitions(sorted(found, key=lambda each: (each.value, each.tau, each.t)))
+    made.notes = notes
+    return made
 
 
-def swan_curves(model: Oscillator, over: tuple[str, str], between: tuple[Any, Any]) -> list[Curve]:
-    """Curves of swan points in the plane of two numbers of a model.
-
-    Parameters
-    ----------
-    over : two names of parameters, or "clearance". between : the two ends of each.
-
-    Returns
-    -------
-    curves with the axes `over`; every vertex solves a_c = a_c' = 0.  Along a curve the second number rises.
-
-    Examples
-    --------
-    >>> model = Oscillator("x", "h*cos(2*t)", 0, "1/2", {"h": 1})
-    >>> curves = swan_curves(model, ("clearance", "h"), ((0, 2), ("0.5", "1.5")))
-    >>> [bool(abs(curve.points[:, 0] - curve.points[:, 1]).max() < 1e-12) for curve in curves]
-    [True]
-    """
-    first, second = over
-    for name in over:
-        if name != "clearance" and name not in model.parameters:
-            raise unknown("parameter", name, ["clearance", *model.parameters])
-    window = Window.read(between[0], between[1])
-    rows: list[list[tuple[float, float, Transition]]] = []
-    for value in np.linspace(*window.t, SETTINGS.steps + 1).tolist():
-        family = _Family(_Family(model, second).at(value), first)
-        found = list(_swans(family, np.linspace(*window.tau, SETTINGS.steps + 1)))
-        rows.append([(swan.value, value, swan) for swan in found])
-    return [Curve("swan", np.array(line), over) for line in _linked(rows) if len(line) > 1]
+def _each_once(found: Iterable[Transition], window: Window) -> list[Transition]:
+    """Those between the ends; Newton's method may leave them, or come to one place from two."""
+    kept: list[Transition] = []
+    for each in found:
+        twice = any(
+            max(abs(each.value - old.value), abs(each.tau - old.tau), abs(each.t - old.t)) < SETTINGS.same
+            for old in kept
+        )  # fmt: skip
+        if window.tau[0] <= each.value <= window.tau[1] and not twice:
+            kept.append(each)
+    return kept
 
 
-def _linked(rows: list[list[tuple[float, float, Transition]]]) -> list[list[tuple[float, float]]]:
-    """Swans of neighbouring rows joined when their times and kinds agree."""
-    open_: list[tuple[Transition, list[tuple[float, float]]]] = []
-    done: list[list[tuple[float, float]]] = []
-    for row in rows:
-        following = []
-        for value, other, swan in row:
-            same = [pair for pair in open_ if pair[0].kind == swan.kind]
-            near = min(same, key=lambda pair: abs(pair[0].tau - swan.tau), default=None)
-            line = near[1] if near is not None and abs(near[0].tau - swan.tau) < 0.3 else []
-            if near is not None and line:
-                open_.remove(near)
-            following.append((swan, [*line, (value, other)]))
-        done += [line for _, line in open_]
-        open_ = following
-    return done + [line for _, line in open_]
-
-
-@dataclass(frozen=True)
-class _Family:
-    """A model in which one number moves."""
-
-    model: Oscillator
-    over: str
-
-    def at(self, value: float) -> Oscillator:
-        """The model at a value, taken as its exact binary number."""
-        return self.model.replace(**{self.over: value})
-
-    def acceleration(self) -> Expression:
-        """a_c as a tree in t and the moving number."""
-        if self.over != "clearance":
-            return acceleration(self.model, (self.over,))
-        return rest_acceleration(self.model.force(), self.model.forcing(), Name("clearance"))
-
-
-def _swans(family: _Family, values: Array) -> Iterator[Transition]:
-    """Where a_c gets a double zero: over the clearance all of them, isolated with proof; else those that are met."""
-    if family.over == "clearance":
-        between = Fraction(float(values[0])), Fraction(float(values[-1]))
-        for swan in swan_points_over_clearance(family.model, between):
-            yield Transition(f"swan, {swan.kind}", swan.clearance, swan.tau, 0.0)
-    else:
-        yield from _met(family, values)
-
-
-def _met(family: _Family, values: Array) -> Iterator[Transition]:
-    """Extrema of a_c are followed from value to value; where one passes through zero Newton's method ends it."""
-    tree = family.acceleration()
-    before: list[tuple[float, float]] = []
-    for value in values.tolist():
-        now = _extrema(family.at(value))
-        for tau, height in now:
-            near = min(before, key=lambda each: abs(each[0] - tau), default=None)
-            if near is not None and (near[1] >= 0) != (height >= 0):
-                place = _double_zero(tree, family.over, (tau + near[0]) / 2, value)
-                if place is not None:
-                    yield place
-        before = now
-
-
-def _extrema(model: Oscillator) -> list[tuple[float, float]]:
-    """Zeros of a_c' in one period with a_c there."""
-    tree = acceleration(model)
-    if model.period is None:
-        raise InputError(f"g = {model.g} is not seen to be periodic: give period=")
-    end = Fraction(as_float(model.period))
-    zeros = isolate(tree, "t", Fraction(-1, 97) * end, Fraction(96, 97) * end, order=1)
-    tau = [float(refined(tree, "t", zero, 128, order=1).mid()) for zero in zeros if zero.slope]
-    return [(each, float(evaluate(tree, {"t": each}, DOUBLES))) for each in tau]
-
-
-def _double_zero(tree: Expression, over: str, tau: float, value: float) -> Transition | None:
-    """a = a' = 0 by Newton's method in (tau, value)."""
-    first = derivative(tree, "t")
-    second = derivative(first, "t")
-    parts = [tree, first, first, derivative(tree, over), second, derivative(first, over)]
-    for _ in range(40):
-        a, a1, a_t, a_p, a1_t, a1_p = (float(evaluate(part, {"t": tau, over: value}, DOUBLES)) for part in parts)
-        move = np.linalg.solve(np.array([[a_t, a_p], [a1_t, a1_p]]), [-a, -a1])
-        tau, value = tau + float(move[0]), value + float(move[1])
-        if np.abs(move).max() < SETTINGS.settled:
-            sign = "positive" if float(evaluate(second, {"t": tau, over: value}, DOUBLES)) > 0 else "negative"
-            return Transition(f"swan, {sign}", value, tau, 0.0)
-    return None
-
-
-def _swallowtails(family: _Family, swans: list[Transition], times: tuple[float, float]) -> Iterator[Transition]:
+def _swallowtails(family: Family, swans: list[Transition], times: tuple[float, float]) -> Iterator[Transition]:
     for swan in swans:
         flights = RestFlights(family.at(swan.value))
         for t in _crossings(flights, swan.tau, times):
@@ -248,7 +145,7 @@ def _root(ends: Callable[[float], tuple[Array, Array]], low: float, high: float)
     return float(at)
 
 
-def _touches(family: _Family, values: Array, times: tuple[float, float]) -> Iterator[Transition]:
+def _touches(family: Family, values: Array, times: tuple[float, float]) -> Iterator[Transition]:
     """Where an extremum of the flight from rest at a tangency point passes through c."""
     before: list[tuple[float, float, float]] = []
     for value in values.tolist():
@@ -277,7 +174,7 @@ def _humps(model: Oscillator, times: tuple[float, float]) -> Iterator[tuple[floa
                 yield point.tau, float(t[i + 1]), float(height[i + 1])
 
 
-def _touch(family: _Family, start: Array) -> Transition | None:
+def _touch(family: Family, start: Array) -> Transition | None:
     """a = 0, x = c, x' = 0 by Newton's method in (tau, t, value), the matrix by central differences."""
     tree = family.acceleration()
 

@@ -25,6 +25,11 @@ def test_curves_as_json(singimpact):
     assert set(told["frames"][0]["curves"]) == {"Z", "H", "P", "jumps", "gamma"}
 
 
+def test_a_range_without_a_swan_says_so(singimpact):
+    told = json.loads(singimpact("explore", *LINEAR, "--json", "--between", "2", "3").output)
+    assert (told["swan"], told["text"]) == (None, "No swan lies between c = 2 and c = 3.")
+
+
 @pytest.mark.parametrize("opens", [True, False])
 def test_window(singimpact, monkeypatch, opens):
     pytest.importorskip("plotly")
@@ -41,7 +46,6 @@ def test_window(singimpact, monkeypatch, opens):
     [
         (["model.toml", "--model", "other.toml"], "two models"),
         ([*LINEAR, "--html", "a.html", "-o", "b.html"], "two files"),
-        ([*LINEAR, "--json", "--between", "2", "3"], "no swan point"),
         ([*LINEAR, "--json", "--between", "3", "2"], "between"),
         ([*LINEAR, "--html", "/no/such/folder/page.html"], "/no/such/folder"),
     ],

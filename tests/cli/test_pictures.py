@@ -63,6 +63,12 @@ def test_refusals(capsys, tmp_path, monkeypatch, words):
     assert error.count("\n") == 1
 
 
+def test_a_figure_that_is_none_leaves_no_folder(capsys, tmp_path):
+    code, _, error = run(capsys, "figure", "18", "-o", tmp_path / "new")
+    assert (code, error.count("\n")) == (2, 1)
+    assert not (tmp_path / "new").exists()
+
+
 @pytest.mark.slow
 def test_basins_and_bifurcation(capsys, tmp_path):
     model = ["--omega", 2, "--clearance", "0.3", "--restitution", "0.5", "--workers", 1]

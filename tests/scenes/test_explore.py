@@ -54,8 +54,7 @@ def test_positive_swan_has_gamma_too():
 @pytest.mark.parametrize(
     ("model", "given", "told"),
     [
-        (si.universal(-1, "0.5"), {}, "does not contain x"),
-        (NEGATIVE, {"between": (2, 3)}, "no swan point"),
+        (NEGATIVE, {"between": (3, 2)}, "between"),
         (NEGATIVE, {"steps": 1}, "steps = 1"),
         (3, {}, "model = 3"),
     ],
@@ -63,6 +62,27 @@ def test_positive_swan_has_gamma_too():
 def test_refusals(model, given, told):
     with pytest.raises(InputError, match=told):
         clearance_film(model, **given)
+
+
+def test_a_model_without_a_swan_is_shown_around_its_clearance():
+    film = clearance_film(si.universal(-1, "0.5"), steps=2)
+    assert (film.swan, [round(frame.clearance, 9) for frame in film.frames]) == (None, [-0.1, 0.1])
+    assert all(len(frame.tangencies) == 2 for frame in film.frames)
+    assert "No swan lies between c = -0.1 and c = 0.1: f does not contain x" in film.sentence
+    cusps = film.frames[0].curves["P"][0].marked("cusp")
+    assert np.abs(cusps[:, 1]).max() == pytest.approx(64)
+    assert np.abs(cusps[:, 1]).max() < film.v[1]
+
+
+def test_ends_without_a_swan_between_them_are_shown():
+    film = clearance_film(NEGATIVE, between=("0.2", "0.4"), steps=2)
+    assert film.swan is None
+    assert film.sentence == "No swan lies between c = 0.2 and c = 0.4."
+    assert all(frame.curves["gamma"] for frame in film.frames)
+    pytest.importorskip("plotly")
+    page = explore_page(film)
+    assert "No swan lies between" in page
+    assert "<title>Across clearances</title>" in page
 
 
 def test_page_holds_everything(film):

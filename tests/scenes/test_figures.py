@@ -117,7 +117,7 @@ def test_15_the_edges_of_the_cut():
 
 
 def test_17_w_s_of_x_passes_a_and_q():
-    points = np.vstack(lines(17, "W^s(X)"))
+    points = np.vstack([*lines(17, "W^s(X)"), *lines(17, "lambda")])
     for name in ("A", "Q", "X"):
         assert np.hypot(*(points - dots(17)[name]).T).min() < 1e-2
     assert made(17).facts["pieces"] > 2
@@ -127,6 +127,22 @@ def test_17_w_s_of_x_passes_a_and_q():
     floor = np.interp(-0.3, *gamma[np.argsort(gamma[:, 0])].T)
     assert sorted(heights, reverse=True) == heights
     assert heights[-1] > floor
+
+
+def test_17_loops_close_around_delta_and_accumulate_on_gamma():
+    """G^{-1}(lambda) is a loop at A around delta; each further one is nearer to gamma by the multiplier across it."""
+    facts, size = made(17).facts, np.ptp([dots(17)["A"][0], dots(17)["X"][0]])
+    assert any(line.label == r"$G^{-1}(\lambda)$" for line in made(17).panels[0].lines)
+    (right,), (left,) = (lines(17, f"G^-1(lambda), {side} branch") for side in ("right", "left"))
+    assert max(np.hypot(*(end - dots(17)["A"])) for end in (right[0], left[-1])) < 0.02 * size
+    assert facts["gap 1 left"] < facts["gap delta"] < facts["gap 1 right"]
+    count = int(facts["generations"])
+    assert count >= 5
+    gaps = [facts[f"gap {n} {side}"] for n in range(1, count + 1) for side in ("right", "left")]
+    assert sorted(gaps, reverse=True) == gaps
+    assert gaps[-1] > 0
+    shrunk = float(1 / si.fixed_points.tangency("1/2").mu.value)
+    assert facts["gap 6 right"] / facts["gap 5 right"] == pytest.approx(shrunk, rel=0.02)
 
 
 @pytest.mark.parametrize("number", [2, 11, 16])

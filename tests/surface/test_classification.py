@@ -44,6 +44,17 @@ def test_points_above_a_swan_are_swallowtails():
     assert all(p.name == "swallowtail" for p in found.points if p.t)
 
 
+@pytest.mark.parametrize(("shift", "count"), [("", 1), (" + 1e-4", 0), (" - 1e-4", 0)])
+def test_where_the_surface_itself_is_singular(shift, count):
+    """x'' + x = cos wt at c = A cos(w pi/2), A = 1/(1 - w^2): rest at tau = -pi/2 leads to rest after pi, dx/dv = 0."""
+    level = "cos(1.1*pi)/(1 - 2.2**2)"
+    found = classify(si.linear("2.2", level + shift, "0.5"), (-2, "1.2"), ("0.5", 6))
+    singular = [(point.tau, point.t) for point in found.points if point.name == "singular"]
+    assert len(singular) == count
+    assert len([note for note in found.notes if "V_c' is singular" in note]) == count
+    assert all(np.abs(np.array(place) - (-np.pi / 2, np.pi)).max() < 1e-7 for place in singular)
+
+
 def test_nothing_there():
     found = classify(si.linear(2, "1.5", "0.5"), (0, 1), ("-0.5", "0.5"))
     assert (found.points, found.folds) == ((), ())

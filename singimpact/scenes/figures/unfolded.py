@@ -11,7 +11,6 @@ from singimpact.flights.hits import rebound
 from singimpact.scenes.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Region, arc
 from singimpact.scenes.figures.sheet import rebounded, reset
 from singimpact.scenes.figures.swans import box, half, negative, positive, ring, shadow
-from singimpact.surface.curve import Curve
 
 LEAVES = 9
 GENERATIONS = 3  # of inverse images of delta; further ones lie within a line's width of gamma
@@ -105,8 +104,13 @@ def figure_17() -> Picture:
     manifold = stable_manifold(swan.model, frame, repr(swan.X))
     lines = [Line(curve.points, "manifold", "beyond X") for foot in (1.02, 1.08, 1.16)
              for curve in stable_manifold(swan.model, frame, repr(swan.X + (foot - 1) * 5 * size))]  # fmt: skip
-    lines += [Line(curve.points, "loop", "W^s(X)") for curve in manifold]
-    lines.append(_named_foot(manifold[0]))
+    loops = _loops([curve.points for curve in manifold], swan.A)
+    lines += _foot_and_lambda(manifold[0].points, swan.A, swan.Q)
+    lines += [
+        Line(part, "loop", f"G^-{n}(lambda), {side} branch", r"$G^{-1}(\lambda)$" if label else "", 0.45, (14, 2))
+        for n, branches in enumerate(loops, 1)
+        for side, part, label in (("right", branches[0], n == 1), ("left", branches[1], False))
+    ]
     lines += [Line(points, "P", f"G^-{n + 1}(delta)", at=0.5) for n, points in enumerate(_preimages(frame))]
     lines.append(Line(delta(), "jump", "delta", r"$\delta$", 0.75, (8, 2)))
     arcs = gammas_within(swan.model, frame)
@@ -116,21 +120,55 @@ def figure_17() -> Picture:
     dots = [Dot("$A$", (swan.A, 0.0), (-4, -6)), Dot("$B=D''$", (swan.B, 0.0), (-4, -6)),
             Dot("$X$", (swan.X, 0.0), (2, -6)),
             Dot("$Q$", swan.Q, (6, 3)), Dot("$D'$", swan.projected["D"], (5, 2))]  # fmt: skip
-    facts = {"X": swan.X, "Q": swan.Q[0], "pieces": float(len(manifold))}
+    facts = {"X": swan.X, "Q": swan.Q[0], "pieces": float(len(manifold)), "generations": float(len(loops))}
+    facts |= _accumulation(loops, arcs[0].points, swan.projected["D"][1] / 2)
     return Picture(17, "Dynamics created at the unfolding of a negative swan",
                    ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate"), str(swan.model),
                    [Panel(window, lines=lines, dots=dots)], facts=facts)  # fmt: skip
 
 
-def _named_foot(curve: Curve) -> Line:
-    return Line(
-        curve.points, "loop", "lambda and its foot", r"$\lambda\subset W^s(X)$", _share(curve.points, 0.05), (10, -10)
-    )
+def _foot_and_lambda(points: Array, foot: float, crossing: tuple[float, float]) -> list[Line]:
+    """W^s(X) from X to Q, and lambda from Q to A."""
+    turn = _turn(points, foot)
+    met = int(np.argmin(np.abs(points[:turn, 0] - crossing[0])))
+    at = met if points[met, 0] > crossing[0] else met - 1
+    first, second = np.vstack([points[: at + 1], [crossing]]), np.vstack([[crossing], points[at + 1 : turn + 1]])
+    end = np.array([[foot, 0.0]])
+    return [
+        Line(first, "loop", "W^s(X)"),
+        Line(np.vstack([second, end]), "loop", "lambda", r"$\lambda\subset W^s(X)$", 0.5, (10, -10)),
+    ]
 
 
-def _share(points: Array, tau: float) -> float:
-    """The place on the first stretch of a curve, by a share of its vertices, where it passes a time."""
-    return float(np.argmax(points[:, 0] < tau)) / (len(points) - 1)
+def _turn(points: Array, foot: float) -> int:
+    """Where a stretch of W^s(X) comes nearest to A from the left."""
+    return int(np.argmin(np.where(points[:, 0] < foot, points[:, 1], np.inf)))
+
+
+def _loops(pieces: list[Array], foot: float) -> list[tuple[Array, Array]]:
+    """G^{-n}(lambda), n = 1, 2, ...: the branch from A up, to the right, and the one down to A again, to the left.
+
+    W^s(X) runs from X over lambda to A, up out of the picture and down again: it is parted where v is least, at A.
+    """
+    turns = [_turn(piece, foot) for piece in pieces]
+    up = [piece[turn:] for piece, turn in zip(pieces, turns, strict=True)]
+    down = [piece[: turn + 1] for piece, turn in zip(pieces, turns, strict=True)]
+    return [pair for pair in zip(up, down[1:], strict=False) if min(map(len, pair)) > 1]
+
+
+def _accumulation(loops: list[tuple[Array, Array]], gamma: Array, height: float) -> dict[str, float]:
+    """How far right of gamma the branches, and delta, pass a height."""
+
+    def at(points: Array) -> float:
+        order = np.argsort(points[:, 1])
+        return float(np.interp(height, points[order, 1], points[order, 0]))
+
+    names = ("right", "left")
+    return {"gap delta": at(delta()) - at(gamma)} | {
+        f"gap {n} {side}": at(part) - at(gamma)
+        for n, branches in enumerate(loops, 1)
+        for side, part in zip(names, branches, strict=True)
+    }
 
 
 def _preimages(frame: Frame) -> list[Array]:

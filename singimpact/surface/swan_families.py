@@ -1,0 +1,150 @@
+"""Swans of a model as one of its numbers moves, isolated with proof, and their curves as two move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.double_zeros import DoubleZero, DoubleZeros, double_zeros
+from singimpact.algebra.expressions import Expression, Name
+from singimpact.algebra.numbers import as_float
+from singimpact.contact.contact import acceleration, rest_acceleration
+from singimpact.contact.swans import swan_points_over_clearance
+from singimpact.inputs import InputError, unknown
+from singimpact.oscillator.model import Oscillator
+from singimpact.surface.curve import Curve, Window
+
+Array = np.ndarray[Any, Any]
+STEPS = 60  # between the ends of a number that is sampled: rows of a picture of curves, places where others are met
+SLACK = 1e-12  # of a period: a zero at 0 is found with a tiny sign
+MARGIN = 97  # the window of tau is longer than a period by this part at both ends, so that no zero falls on one
+
+
+@dataclass(frozen=True)
+class Transition:
+    """A change of P.
+
+    Attributes
+    ----------
+    kind : "swan, positive", "swan, negative", "swallowtail", "lips", "beaks"; "undecided" where the Hessian is flat.
+    value : of the parameter. tau, t : the flight from rest; its mirror image is where P changes.
+    """
+
+    kind: str
+    value: float
+    tau: float
+    t: float
+
+
+@dataclass(frozen=True)
+class Family:
+    """A model in which one number moves."""
+
+    model: Oscillator
+    over: str
+
+    def at(self, value: float) -> Oscillator:
+        """The model at a value, taken as its exact binary number."""
+        return self.model.replace(**{self.over: value})
+
+    def acceleration(self) -> Expression:
+        """a_c as a tree in t and the moving number."""
+        if self.over != "clearance":
+            return acceleration(self.model, (self.over,))
+        return rest_acceleration(self.model.force(), self.model.forcing(), Name("clearance"))
+
+
+def swans_met(family: Family, values: Array) -> tuple[list[Transition], tuple[str, ...]]:
+    """Where a_c gets a double zero, isolated with proof; with the reasons why one may be missing."""
+    between = Fraction(float(values[0])), Fraction(float(values[-1]))
+    if family.over == "clearance":
+        known = swan_points_over_clearance(family.model, between)
+        inside = [swan for swan in known if between[0] <= Fraction(swan.clearance) <= between[1]]
+        return [Transition(f"swan, {swan.kind}", swan.clearance, swan.tau, 0.0) for swan in inside], ()
+    periods = {_period(family.at(value)) for value in values.tolist()}
+    longest = Fraction(max(periods))
+    window = (-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN), *between)
+    made = double_zeros(family.acceleration(), ("t", family.over), window)
+    inside_period = [zero for zero in made.found if _in_period(family, zero)]
+    return [_as_transition(zero) for zero in inside_period], _doubts(made, family.over, len(periods))
+
+
+def _period(model: Oscillator) -> float:
+    if model.period is None:
+        raise InputError(f"g = {model.g} is not seen to be periodic: give period=")
+    return as_float(model.period)
+
+
+def _in_period(family: Family, zero: DoubleZero) -> bool:
+    period = _period(family.at(float(zero.value)))
+    return -SLACK * period <= float(zero.at) < period * (1 - SLACK)
+
+
+def _as_transition(zero: DoubleZero) -> Transition:
+    sign = "positive" if zero.curvature > 0 else "negative"  # not 0: the matrix of derivatives is regular there
+    return Transition(f"swan, {sign}", float(zero.value), float(zero.at) + 0.0, 0.0)
+
+
+def _doubts(made: DoubleZeros, over: str, periods: int) -> tuple[str, ...]:
+    notes = []
+    if periods > 1:
+        notes.append(f"the period moves with {over}: swans are listed in a window that is the longest one sampled")
+    if made.undecided:
+        low, high = (float(f(box[k] for box in made.undecided)) for f, k in ((min, 2), (max, 3)))
+        notes.append(
+            f"a_c may have zeros of order 3, or double ones that stay, for {over} from {low:.9g} to {high:.9g}: "
+            "swans there are not decided"
+        )
+    return tuple(notes)
+
+
+def swan_curves(model: Oscillator, over: tuple[str, str], between: tuple[Any, Any]) -> list[Curve]:
+    """Curves of swan points in the plane of two numbers of a model.
+
+    Parameters
+    ----------
+    over : two names of parameters, or "clearance". between : the two ends of each.
+
+    Returns
+    -------
+    curves with the axes `over`; every vertex solves a_c = a_c' = 0.  Along a curve the second number rises.
+
+    Examples
+    --------
+    >>> model = Oscillator("x", "h*cos(2*t)", 0, "1/2", {"h": 1})
+    >>> curves = swan_curves(model, ("clearance", "h"), ((0, 2), ("0.5", "1.5")))
+    >>> [bool(abs(curve.points[:, 0] - curve.points[:, 1]).max() < 1e-12) for curve in curves]
+    [True]
+    """
+    first, second = over
+    for name in over:
+        if name != "clearance" and name not in model.parameters:
+            raise unknown("parameter", name, ["clearance", *model.parameters])
+    window = Window.read(between[0], between[1])
+    rows: list[list[tuple[float, float, Transition]]] = []
+    for value in np.linspace(*window.t, STEPS + 1).tolist():
+        family = Family(Family(model, second).at(value), first)
+        found, _ = swans_met(family, np.linspace(*window.tau, STEPS + 1))
+        rows.append([(swan.value, value, swan) for swan in found])
+    return [Curve("swan", np.array(line), over) for line in _linked(rows) if len(line) > 1]
+
+
+def _linked(rows: list[list[tuple[float, float, Transition]]]) -> list[list[tuple[float, float]]]:
+    """Swans of neighbouring rows joined when their times and kinds agree."""
+    open_: list[tuple[Transition, list[tuple[float, float]]]] = []
+    done: list[list[tuple[float, float]]] = []
+    for row in rows:
+        following = []
+        for value, other, swan in row:
+            same = [pair for pair in open_ if pair[0].kind == swan.kind]
+            near = min(same, key=lambda pair: abs(pair[0].tau - swan.tau), default=None)
+            line = near[1] if near is not None and abs(near[0].tau - swan.tau) < 0.3 else []
+            if near is not None and line:
+                open_.remove(near)
+            following.append((swan, [*line, (value, other)]))
+        done += [line for _, line in open_]
+        open_ = following
+    return done + [line for _, line in open_]
