@@ -10,6 +10,10 @@ class InputError(ValueError):
     """The caller's mistake, told in one line."""
 
 
+class Unfinished(RuntimeError):
+    """Work that ended too early through no mistake in what was given, told in one line."""
+
+
 def refuse(name: str, value: object, accepted: str) -> InputError:
     """The error for an input that cannot be used; the caller raises it.
 
