@@ -37,14 +37,15 @@ class Limits:
 
     Parameters
     ----------
-    zeros : evaluations of a part of a function while its one root is told from others; 0.4 s measured. roots : in a text.
+    zeros : evaluations of a part of a function while its one root is told from others; 0.2 s measured.
+    roots : in a text.
     """
 
     characters: int = 10_000
     depth: int = 60
     digits: int = 4_000
     exponent: int = 1_000
-    zeros: int = 20_000
+    zeros: int = 8_000
     roots: int = 20
 
 
