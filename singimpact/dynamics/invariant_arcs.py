@@ -22,7 +22,7 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-from singimpact.surface.curve import Curve, Mark
+from singimpact.surface.curve import Curve, Mark, distances
 from singimpact.theory.formulas import arc_in_numbers
 from singimpact.theory.places import points_of
 from singimpact.theory.power_series import PowerSeries
@@ -32,17 +32,21 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """order, trust : of the series, and how good it must be on the fundamental piece. start : points of it.
-    apart : neighbours in s nearer than this share of the piece, still far apart in the picture, are torn.
+    """order, trust : of the series, and how good it must be on the fundamental piece.
+    tolerance : of a flight; thousands are flown, and polishing their last digits shows in no picture.
+    start, least : points of the picture for one of the fundamental piece, and how many it has at least.
     longest : chord, in points of the picture. most : points of one generation. generations : inverse images at most.
+    told : a piece nearer than this to the generation before, in points of the picture, is not told apart from it.
     """
 
     order: int = 12
     trust: float = 1e-13
-    start: int = 17
-    apart: float = 1e-11
-    longest: float = 11.0
+    tolerance: float = 1e-13
+    start: int = 100
+    least: int = 4
+    longest: float = 8.0
     most: int = 4000
+    told: float = 0.25
     generations: int = 60
 
 
@@ -68,6 +72,14 @@ class Frame:
     def scale(self) -> Array:
         """The size of the picture in both directions."""
         return np.array([self.tau_high - self.tau_low, self.v_high])
+
+    @property
+    def apart(self) -> float:
+        """Neighbours in s nearer than this share of a piece, still far apart in the picture, are torn.
+
+        An arc ends at a graze like a square root: its end is then known to a hundredth of a point of the picture.
+        """
+        return (0.01 / self.pixels) ** 2
 
     def holds(self, points: Array) -> Array:
         """Which points lie inside."""
@@ -181,7 +193,7 @@ def model_step(model: Oscillator, points: Array) -> Array:
     from singimpact.flights.hits import impact_map
 
     found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
-    step = impact_map(model, points[known, 0], points[known, 1])
+    step = impact_map(model, points[known, 0], points[known, 1], tolerance=SETTINGS.tolerance)
     good = np.isin(step.status, (Status.hit, Status.graze))
     found[known] = np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
     return found
@@ -195,7 +207,7 @@ def before(model: Oscillator, points: Array) -> Array:
         step = inverse_map(model, at, v_at)
         tau, v, status = step.tau, step.v, step.status
     else:
-        hit = first_hit(backwards(model), -at, v_at / as_float(model.restitution))
+        hit = first_hit(backwards(model), -at, v_at / as_float(model.restitution), tolerance=SETTINGS.tolerance)
         tau, v, status = at - hit.flight_time, -hit.velocity, hit.status
     good = np.isin(status, (Status.hit, Status.graze))
     found[known] = np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)
@@ -210,15 +222,27 @@ def _grown(
     def start(s: Array) -> Array:
         return np.stack([foot + s, series(s)], axis=1)
 
-    s = np.linspace(inner, outer, SETTINGS.start)
-    whole = np.linspace(0.0, inner, 2 * SETTINGS.start)
+    count = max(SETTINGS.least, frame.pixels // SETTINGS.start + 1)
+    s = np.linspace(inner, outer, count)
+    whole = np.linspace(0.0, inner, 2 * count)
     pieces, done = [Piece(s, start(s), 0)], [Piece(whole, start(whole), 0)]
     for generation in range(SETTINGS.generations):
         if not pieces:
             break
         done += pieces
-        pieces = [new for piece in pieces for new in _images(model, frame, start, piece, generation + 1)]
+        new = [image for piece in pieces for image in _images(model, frame, start, piece, generation + 1)]
+        pieces = [piece for piece in new if _tells(piece, pieces, frame)]
     return list(_joined(done, frame))
+
+
+def _tells(piece: Piece, before: list[Piece], frame: Frame) -> bool:
+    """Whether the picture tells a piece from those of one generation before, so that growing it shows something new.
+
+    Loops of stable manifolds accumulate on gamma: each generation has one more, soon nearer than a line is wide.
+    """
+    seen = piece.points[frame.holds(piece.points)] / frame.scale
+    gaps = [distances(seen, old.points / frame.scale) for old in before]
+    return not len(seen) or bool(np.min(gaps, axis=0).max() * frame.pixels > SETTINGS.told)
 
 
 def _images(
@@ -236,7 +260,7 @@ def _images(
     s, points = _refined(s, points, image, frame)
     known = np.isfinite(points).all(axis=1) & (points[:, 0] >= frame.tau_low - 0.2 * frame.scale[0])
     jump = np.hypot(*(np.diff(points, axis=0) / frame.scale).T) * frame.pixels > 8
-    torn = jump & (np.abs(np.diff(s)) <= SETTINGS.apart * np.ptp(piece.s))
+    torn = jump & (np.abs(np.diff(s)) <= frame.apart * np.ptp(piece.s))
     cuts = np.flatnonzero(torn | ~known[1:] | ~known[:-1]) + 1
     parts = np.split(np.arange(len(s)), cuts)
     return [Piece(s[part], points[part], generation) for part in parts if len(part) > 1 and known[part].all()]
@@ -244,7 +268,7 @@ def _images(
 
 def _refined(s: Array, points: Array, image: Callable[[Array], Array], frame: Frame) -> tuple[Array, Array]:
     """Midpoints put in until chords are as short or as straight as the picture asks, or their ends as close in s."""
-    least = SETTINGS.apart * np.ptp(s)
+    least = frame.apart * np.ptp(s)
     for _ in range(60):
         wanted = _too_coarse(points, frame) & (np.abs(np.diff(s)) > least)
         at = np.flatnonzero(wanted)

@@ -43,7 +43,7 @@ def first_hit(
     osc : the model.
     tau : launch times, any finite numbers. v : launch velocities >= 0; they broadcast.
     digits : decimal digits; the result then holds mpmath numbers.
-    tolerance : relative error allowed in a step of a Taylor flow; a linear model does not use it.
+    tolerance : relative error allowed in a step of a Taylor flow, and, times ten, of a hit before it is polished.
     horizon : time after which a flight is given up.
 
     Returns
@@ -61,7 +61,7 @@ def first_hit(
     epsilon = _tolerance(tolerance)
     if digits is not None:
         found = manydigits.flights(osc, states, checked_digits(digits), limit)
-        return shaped(_conditioned(osc, states, found)[0], states.shape)
+        return shaped(_conditioned(osc, states, found, epsilon)[0], states.shape)
     return shaped(_flights(osc, states, limit, epsilon), states.shape)
 
 
@@ -161,7 +161,7 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     _escapes(osc, kernel.form, states, status, numbers)
     if _settle(osc, states, limit, status, numbers):
         _escapes(osc, kernel.form, states, status, numbers)
-    flight, rough = _conditioned(osc, states, flight_of(status, numbers))
+    flight, rough = _conditioned(osc, states, flight_of(status, numbers), epsilon)
     return _sharpened(osc, states, flight, rough & (status == Status.hit), pushes, limit)
 
 
@@ -189,14 +189,14 @@ def _sharpened(
     return flight
 
 
-def _conditioned(osc: Oscillator, states: States, flight: Flight) -> tuple[Flight, Array]:
-    """The flight with its condition; and where its rounding is more than that condition explains."""
+def _conditioned(osc: Oscillator, states: States, flight: Flight, epsilon: float) -> tuple[Flight, Array]:
+    """The flight with its condition; and where its rounding is more than that condition and the tolerance explain."""
     time, velocity = (np.array(part, dtype=float) for part in (flight.flight_time, flight.velocity))
     answers = response(osc, states.tau, states.v, time, velocity)
     tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
     kappas = answers.conditions(tau, states.v, time, velocity)
     with np.errstate(all="ignore"):
-        late, dull = (part > np.maximum(least, 10 * kappa * EPSILON)
+        late, dull = (part > np.maximum(least, 10 * kappa * epsilon)
                       for part, least, kappa in zip(answers.rounding, LIMITS.rough, kappas, strict=True))  # fmt: skip
     return replace(flight, condition=kappas[0]), late | dull
 

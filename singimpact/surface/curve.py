@@ -116,3 +116,19 @@ class Curve:
             whole = self.closed and stop - start == len(self)
             yield Curve(self.name, self.points[start:stop], self.axes, marks, whole, self.tolerance,
                         self.visible[start:stop])  # fmt: skip
+
+
+def distances(points: Array, line: Array) -> Array:
+    """Of points, shape (n, 2), from a polyline, shape (m, 2) with m > 1.
+
+    Examples
+    --------
+    >>> distances(np.array([[0.5, 1.0], [3.0, 0.0]]), np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.5]])).tolist()
+    [0.7071067811865476, 2.0]
+    """
+    start, step = line[:-1], np.diff(line, axis=0)
+    away = points[:, None] - start
+    along = np.sum(away * step, axis=2) / np.maximum(np.sum(step**2, axis=1), 1e-300)
+    off = away - np.clip(along, 0.0, 1.0)[..., None] * step
+    found: Array = np.sqrt(np.sum(off**2, axis=2)).min(axis=1)
+    return found

@@ -143,20 +143,20 @@ def _small_ones(
 
 def _followed(seed: Array, gradient: Gradient, window: Window, size: float) -> Array:
     """The curve through the point next to a seed, step by step along it, until it closes or leaves the window."""
-    place, _, step = newton(seed[None], gradient)
+    place, _, step, slope = newton(seed[None], gradient)
     if step[0] > SETTINGS.close:
         return place[:0]
-    ahead = _walked(place[0], 1, gradient, window, size)
+    ahead = _walked(place[0], _along(slope[0]), 1, gradient, window, size)
     if len(ahead) > 1 and np.array_equal(ahead[0], ahead[-1]):
         return ahead
-    return np.vstack([_walked(place[0], -1, gradient, window, size)[:0:-1], ahead])
+    return np.vstack([_walked(place[0], _along(slope[0]), -1, gradient, window, size)[:0:-1], ahead])
 
 
-def _walked(start: Array, side: int, gradient: Gradient, window: Window, size: float) -> Array:
-    line, h, ahead = [start], size / 4, side * _along(start, gradient)
+def _walked(start: Array, along: Array, side: int, gradient: Gradient, window: Window, size: float) -> Array:
+    line, h, ahead = [start], size / 4, side * along
     for _ in range(SETTINGS.most_steps):
-        found, _, step = newton((line[-1] + h * ahead)[None], gradient)
-        turned = side * _along(found[0], gradient)
+        found, _, step, slope = newton((line[-1] + h * ahead)[None], gradient)
+        turned = side * _along(slope[0])
         if step[0] > SETTINGS.close or ahead @ turned < SETTINGS.turn or np.hypot(*(found[0] - line[-1])) > 2 * h:
             h /= 2
             continue
@@ -169,9 +169,8 @@ def _walked(start: Array, side: int, gradient: Gradient, window: Window, size: f
     return np.array(line)
 
 
-def _along(place: Array, gradient: Gradient) -> Array:
+def _along(slope: Array) -> Array:
     """The unit tangent, y > 0 at its left."""
-    slope = gradient(place[None])[1][0]
     return np.asarray(np.array([slope[1], -slope[0]]) / np.hypot(*slope))
 
 
@@ -195,12 +194,12 @@ def _extrema(values: Array) -> list[tuple[int, int]]:
 def _on_curve(line: Array, gradient: Gradient, window: Window, scale: float, cell: float) -> Polyline | None:
     if len(line) < 2:
         return None
-    points, column, step = newton(line, gradient)
-    if not _in_order(points, step, gradient):  # thinner than a cell: the sketch has cut it to pieces
-        line = _followed(line[0], gradient, window, cell / 4)
+    points, column, step, slope = newton(line, gradient)
+    if not _in_order(points, step, slope):  # thinner than a cell: the sketch has cut it to pieces
+        line = _followed(line[0], gradient, window, max(cell / 4, SETTINGS.longest * window.pixel))
         if len(line) < 3:
             return None
-        points, column, step = newton(line, gradient)
+        points, column, step, _ = newton(line, gradient)
     closed = bool(np.abs(points[0] - points[-1]).max() < 1e-9) and len(points) > 3
     if closed:
         points[-1], column[-1] = points[0], column[0]
@@ -208,11 +207,10 @@ def _on_curve(line: Array, gradient: Gradient, window: Window, scale: float, cel
     return Polyline(points, column, closed, float(step.max()))
 
 
-def _in_order(points: Array, step: Array, gradient: Gradient) -> bool:
+def _in_order(points: Array, step: Array, slope: Array) -> bool:
     """Whether all vertices have settled, and every chord runs along the curve at both of its ends."""
     if step.max() > SETTINGS.close:
         return False
-    slope = gradient(points)[1]
     chord = np.diff(points, axis=0)
     length = np.hypot(*chord.T)
     with np.errstate(all="ignore"):
@@ -220,13 +218,17 @@ def _in_order(points: Array, step: Array, gradient: Gradient) -> bool:
     return bool(np.all((np.maximum(*along) < SETTINGS.across) | (length < 1e-9)))
 
 
-def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array]:
-    """Points moved onto the curve along the gradient; the further column there; the last step over 1 + |place|."""
-    points, step = points.copy(), np.full(len(points), np.inf)
+def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array, Array]:
+    """Points moved onto the curve, the further column and the gradient there; the last step over 1 + |place|.
+
+    In the order points, column, last step, gradient.
+    """
+    points, step, slopes = points.copy(), np.full(len(points), np.inf), np.full(points.shape, np.nan)
     column = np.full(len(points), np.nan)
     moving = np.arange(len(points))
     for _ in range(SETTINGS.rounds):
         y, slope, column[moving] = gradient(points[moving])
+        slopes[moving] = slope
         with np.errstate(all="ignore"):
             move = -(y / (slope**2).sum(axis=1))[:, None] * slope
         size = np.hypot(*move.T) / (1 + np.abs(points[moving]).max(axis=1))
@@ -236,7 +238,7 @@ def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array]:
         moving = moving[sound & (size > SETTINGS.close / 8)]
         if not moving.size:
             break
-    return points, column, step
+    return points, column, step, slopes
 
 
 def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, scale: float) -> tuple[Array, Array]:
@@ -248,7 +250,7 @@ def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, sc
         if not open_.size:
             return points, column
         middle = (points[open_] + points[open_ + 1]) / 2
-        place, value, step = newton(middle, gradient)
+        place, value, step, _ = newton(middle, gradient)
         half = (column[open_] + column[open_ + 1]) / 2
         far = np.hypot(np.hypot(*(place - middle).T), (value - half) / scale * window.pixel * window.pixels)
         chord = np.hypot(*(points[open_ + 1] - points[open_]).T)

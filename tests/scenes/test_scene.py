@@ -68,13 +68,38 @@ def test_what_is_kept_is_the_same_curve():
         assert old.marks == new.marks
 
 
-@pytest.mark.parametrize("layers", [("horizon", "zero-set"), ("outline",), ("outline", "gamma")])
-def test_a_coarse_picture_costs_a_third_of_a_fine_one(layers):
-    window = {"tau": (0, 6), "t": (-6, 6), "v": (0, 3)}
-    small, large = (Scene(si.linear(2, "0.3", "0.5"), layers, **window, pixels=pixels) for pixels in (400, 2000))
+WIDE = {"tau": (0, 6), "t": (-6, 6), "v": (0, 3)}
+NEAR_SWAN = {"tau": (-1.2, 1), "t": (-2, 2), "v": (0, 0.3)}
+
+
+@pytest.mark.parametrize(
+    ("layers", "clearance", "window"),
+    [
+        *((layers, "0.3", WIDE) for layers in (("horizon", "zero-set"), ("outline",), ("visible",), ("shadow",))),
+        (("gamma",), "0.3", WIDE),
+        (("stable-manifolds",), "0.3", {"tau": (0, 2.5), "v": (0, 0.5), "feet": ("1.5", "1.8")}),
+        *((layers, "0.7", NEAR_SWAN) for layers in (("gamma",), ("foliation",), ("discontinuities",))),
+        (("discontinuities", "gamma", "foliation"), "0.7", NEAR_SWAN),
+    ],
+)
+def test_a_coarse_picture_costs_a_third_of_a_fine_one(layers, clearance, window, monkeypatch, tmp_path):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))  # what another scene has kept costs no flight
+    small, large = (Scene(si.linear(2, clearance, "0.5"), layers, **window, pixels=pixels) for pixels in (400, 2000))
     for each in (small, large):
         each.draw()
-    assert 3 * small.report()["flights"] <= large.report()["flights"]
+    assert 0 < 3 * small.report()["flights"] <= large.report()["flights"]
+
+
+def test_growth_ends_where_the_picture_tells_nothing_new():
+    """Loops of W^s accumulate on gamma: a fine picture shows more of them, and none without end."""
+    model, frame = si.linear(2, "0.95", "0.5"), (-1.2, 1.0, 0.06)
+    from singimpact.dynamics.invariant_arcs import Frame, stable_manifold
+    from singimpact.dynamics.swan_configuration import swan_configuration
+
+    foot = repr(swan_configuration(model, near=0).X)
+    coarse, fine = (stable_manifold(model, Frame(*frame, pixels), foot) for pixels in (300, 1500))
+    assert 2 < len(coarse) < len(fine) < 40
+    assert sum(map(len, fine)) < 20_000
 
 
 def test_an_empty_scene_says_so():
