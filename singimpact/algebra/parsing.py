@@ -14,6 +14,7 @@ from typing import Any
 
 from singimpact.algebra.expressions import (
     BOUND,
+    FOLDING,
     FUNCTIONS,
     MINUS_ONE,
     Call,
@@ -23,6 +24,7 @@ from singimpact.algebra.expressions import (
     Pi,
     Root,
     add,
+    bits_of_power,
     multiply,
     negate,
     power,
@@ -254,10 +256,8 @@ def bounded_power(base: Expression, exponent: Expression) -> Expression:
             raise InputError(
                 f"the exponent {shown(exponent.value)} is too large; at most {LIMITS.exponent} is accepted"
             )
-        if isinstance(base, Number):
-            size = max(base.value.numerator.bit_length(), base.value.denominator.bit_length())
-            if size * abs(exponent.value) > 4 * LIMITS.digits:
-                raise InputError(f"a constant power has more than {LIMITS.digits} digits")
+        if isinstance(base, Number) and bits_of_power(base, exponent) > FOLDING.bits:
+            raise InputError(f"a constant power has more than {FOLDING.bits} bits")
     try:
         return power(base, exponent)
     except ZeroDivisionError:
