@@ -179,12 +179,25 @@ def _executor(given: Executor | None, width: int | None) -> Iterator[Executor]:
     import multiprocessing
 
     # a forked child shares locks of threads that it does not have
-    with ProcessPoolExecutor(width, mp_context=multiprocessing.get_context("spawn")) as pool:
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(width, mp_context=context, initializer=end_with_parent) as pool:
         try:
             yield pool
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+def end_with_parent() -> None:
+    """A worker ends when the process it works for is gone: one that waits for cases would wait for ever."""
+    import multiprocessing
+    import threading
+    from multiprocessing.connection import wait
+
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        sentinel = parent.sentinel
+        threading.Thread(target=lambda: (wait([sentinel]), os._exit(1)), daemon=True).start()
 
 
 def _key(function: Callable[[Any], Any], items: list[Any]) -> str:

@@ -57,7 +57,7 @@ def drafts(folder):
     return list(folder.rglob(".draft-*"))
 
 
-def wait_for(found, seconds=60):
+def wait_for(found, seconds=300):
     end = time.monotonic() + seconds
     while not found():
         assert time.monotonic() < end
@@ -70,7 +70,7 @@ def test_an_interrupted_verify_keeps_whole_verdicts_and_resumes(number, tmp_path
     run = command(tmp_path, "verify", "s3-slope-r", "e:lin", "e:swan", "-o", output)
     wait_for(lambda: place.is_dir() and len(list(place.glob("*.verdict"))) > 1)
     run.send_signal(number)
-    _, told = run.communicate(timeout=60)
+    _, told = run.communicate(timeout=300)
     assert "Traceback" not in told
     assert not output.exists() or run.returncode == 0
     assert number == signal.SIGKILL or not drafts(tmp_path)
@@ -78,20 +78,23 @@ def test_an_interrupted_verify_keeps_whole_verdicts_and_resumes(number, tmp_path
     assert before
     assert all(cache.recall(path) is not None for path in before)
     again = command(tmp_path, "verify", "s3-slope-r", "e:lin", "e:swan", "-o", output)
-    again.communicate(timeout=120)
+    again.communicate(timeout=300)
     assert again.returncode == 0
     assert {path: path.stat().st_mtime_ns for path in before} == before
     assert output.read_text().strip()
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_an_interrupted_sweep_leaves_a_whole_file_and_resumes(number, tmp_path):
+@pytest.mark.parametrize(
+    ("number", "all_of_them"),
+    [(signal.SIGINT, True), (signal.SIGTERM, True), (signal.SIGTERM, False), (signal.SIGKILL, False)],
+)
+def test_an_interrupted_sweep_leaves_a_whole_file_and_resumes(number, all_of_them, tmp_path):
     results, output = tmp_path / "kept.npz", tmp_path / "table.txt"
     run = command(tmp_path, *SWEEP, "--keep", results, "-o", output, start_new_session=True)
     wait_for(results.exists)
-    (os.killpg if number == signal.SIGINT else os.kill)(run.pid, number)  # a terminal interrupts the workers too
-    _, told = run.communicate(timeout=60)
+    (os.killpg if all_of_them else os.kill)(run.pid, number)  # a terminal interrupts the workers too
+    _, told = run.communicate(timeout=300)
     assert "Traceback" not in told
     assert not output.exists()
     assert number == signal.SIGKILL or not drafts(tmp_path)
@@ -99,7 +102,7 @@ def test_an_interrupted_sweep_leaves_a_whole_file_and_resumes(number, tmp_path):
         done = dict(zip(found["index"].tolist(), found["result"].tolist(), strict=True))
     assert 0 < len(done) < 1000
     again = command(tmp_path, *SWEEP, "--keep", results, "-o", output)
-    again.communicate(timeout=120)
+    again.communicate(timeout=300)
     assert again.returncode == 0
     with np.load(results) as found:
         assert found["index"].tolist() == list(range(1000))
@@ -129,7 +132,7 @@ def test_damaged_curves_are_named(damage, tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_damaged_machine_code_is_named_and_made_again(damage, tmp_path):
     def ran():
-        return started(["-c", MACHINE], tmp_path).communicate(timeout=60)
+        return started(["-c", MACHINE], tmp_path).communicate(timeout=300)
 
     assert ran() == ("3.0\n", "")
     (path,) = (tmp_path / "cache" / "kernels" / "__pycache__").glob("*.nbc")
@@ -153,10 +156,10 @@ def test_a_damaged_kernel_is_named_and_written_again(tmp_path, monkeypatch, caps
 def test_two_processes_share_a_cold_cache(tmp_path):
     runs = [command(tmp_path, "verify", "s3-dvdt") for _ in range(2)]
     codes = [started(["-c", MACHINE], tmp_path) for _ in range(2)]
-    told = [run.communicate(timeout=120) for run in runs]
+    told = [run.communicate(timeout=300) for run in runs]
     assert [run.returncode for run in runs] == [0, 0]
     assert [err for _, err in told] == ["", ""]
-    assert [run.communicate(timeout=60) for run in codes] == [("3.0\n", "")] * 2
+    assert [run.communicate(timeout=300) for run in codes] == [("3.0\n", "")] * 2
 
 
 FULL = """
@@ -167,7 +170,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
 
 
 def test_work_is_done_on_a_full_disk_and_told_once(tmp_path):
-    answer, told = started(["-c", FULL + MACHINE], tmp_path).communicate(timeout=60)
+    answer, told = started(["-c", FULL + MACHINE], tmp_path).communicate(timeout=300)
     assert answer == "3.0\n"
     assert told.count("\n") == 1, told
     assert "the work goes on" in told
@@ -177,7 +180,7 @@ def test_an_output_on_a_full_disk_is_one_line(tmp_path):
     output = tmp_path / "told.txt"
     script = FULL + f"from singimpact.cli import main\nmain(['verify', 'e:yeq', '-o', {str(output)!r}])\n"
     run = started(["-c", script], tmp_path)
-    _, told = run.communicate(timeout=60)
+    _, told = run.communicate(timeout=300)
     assert run.returncode == 2
     assert "Traceback" not in told
     assert sum("cannot be written" in line for line in told.splitlines() if "cache" not in line) == 1
@@ -187,7 +190,7 @@ def test_an_output_on_a_full_disk_is_one_line(tmp_path):
 
 def test_an_unwritable_cache_folder_is_told_once(tmp_path):
     (tmp_path / "cache").touch()
-    answer, told = started(["-c", MACHINE], tmp_path).communicate(timeout=60)
+    answer, told = started(["-c", MACHINE], tmp_path).communicate(timeout=300)
     assert answer == "3.0\n"
     assert told.count("\n") == 1
 
