@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import os
+import zipfile
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.inputs import InputError, shown
+from singimpact.inputs import InputError, Unfinished, shown
 from singimpact.progress import ProgressLine
 from singimpact.store import require_writable, written
 
@@ -26,10 +28,14 @@ class Portions:
     ----------
     each : chunks a worker gets on the average: more even out unequal cases, fewer send less.
     most : cases in a chunk; what an interruption can lose is a chunk a worker.
+    pools : that are tried in full width; when each has lost a worker, the guilty case is looked for in pools of one.
+    deaths : of a worker alone with one case; then the case is guilty. A worker killed from outside dies once.
     """
 
     each: int = 8
     most: int = 4096
+    pools: int = 2
+    deaths: int = 2
 
 
 PORTIONS = Portions()
@@ -55,6 +61,11 @@ def sweep(
     -------
     array : results stacked along the first axis.
 
+    Raises
+    ------
+    Unfinished : cases end their process. A worker that is killed is no error: what it had not given back is computed
+        again in a new pool.
+
     Examples
     --------
     >>> from concurrent.futures import ThreadPoolExecutor
@@ -65,9 +76,60 @@ def sweep(
     items = list(cases)
     kept = _Kept(output, _key(function, items), len(items))
     missing = [index for index in range(len(items)) if index not in kept.results]
-    with _executor(executor) as pool, ProgressLine() as line:
-        _run(function, items, missing, pool, kept, line)
+    with ProgressLine() as line:
+        _run_all(function, items, missing, executor, kept, line)
     return np.stack([kept.results[index] for index in range(len(items))]) if items else np.empty(0)
+
+
+def _run_all(
+    function: Callable[[Any], Any],
+    items: list[Any],
+    missing: list[int],
+    executor: Executor | None,
+    kept: _Kept,
+    line: ProgressLine,
+) -> None:
+    """Every missing case once; pools that lose a worker are replaced, and what is done stays done."""
+    if executor is not None and not isinstance(executor, ProcessPoolExecutor):
+        _run(function, items, missing, executor, kept, line)
+        return
+    width = None if executor is None else getattr(executor, "_max_workers", None)
+    given = executor
+    for _ in range(PORTIONS.pools):
+        try:
+            with _executor(given, width) as pool:
+                _run(function, items, missing, pool, kept, line)
+            return
+        except BrokenExecutor:
+            given, missing = None, [index for index in missing if index not in kept.results]
+    guilty = _one_by_one(function, items, missing, kept, line)
+    if guilty:
+        raise Unfinished(
+            f"{len(guilty)} of {len(items)} cases ended their process each time, the first is case {guilty[0]} = "
+            f"{shown(items[guilty[0]])}; the other {len(kept.results)} are done"
+        )
+
+
+def _one_by_one(
+    function: Callable[[Any], Any], items: list[Any], missing: list[int], kept: _Kept, line: ProgressLine
+) -> list[int]:
+    """Compute in pools of one worker, halving each portion that ends it, down to the cases that do."""
+    guilty, deaths, stack = [], Counter[int](), [missing]
+    while stack:
+        part = [index for index in stack.pop() if index not in kept.results]
+        try:
+            with _executor(None, 1) as pool:
+                _run(function, items, part, pool, kept, line)
+        except BrokenExecutor:
+            left = [index for index in part if index not in kept.results]
+            half = len(left) // 2
+            stack += [left[half:], left[:half]] if half else []
+            if not half:
+                deaths.update(left)
+                again = [index for index in left if deaths[index] < PORTIONS.deaths]
+                stack += [again] if again else []
+                guilty += [index for index in left if index not in again]
+    return guilty
 
 
 def _run(
@@ -110,19 +172,32 @@ def _portions(indices: list[int], pool: Executor) -> Iterator[list[int]]:
 
 
 @contextmanager
-def _executor(given: Executor | None) -> Iterator[Executor]:
+def _executor(given: Executor | None, width: int | None) -> Iterator[Executor]:
     if given is not None:
         yield given  # the caller's: the caller ends it
         return
     import multiprocessing
 
     # a forked child shares locks of threads that it does not have
-    with ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn")) as pool:
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(width, mp_context=context, initializer=end_with_parent) as pool:
         try:
             yield pool
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+def end_with_parent() -> None:
+    """A worker ends when the process it works for is gone: one that waits for cases would wait for ever."""
+    import multiprocessing
+    import threading
+    from multiprocessing.connection import wait
+
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        sentinel = parent.sentinel
+        threading.Thread(target=lambda: (wait([sentinel]), os._exit(1)), daemon=True).start()
 
 
 def _key(function: Callable[[Any], Any], items: list[Any]) -> str:
@@ -149,10 +224,10 @@ class _Kept:
         if not path.exists():
             return
         try:
-            with np.load(path) as found:
+            with path.open("rb") as stream, np.load(stream) as found:
                 same = str(found["key"]) == self.key
                 pairs = list(zip(found["index"].tolist(), found["result"], strict=True))
-        except (OSError, ValueError, KeyError) as error:
+        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
             raise InputError(f"output = {shown(str(path))} is not a file of results ({error}): name another") from None
         if not same:
             raise InputError(f"output = {shown(str(path))} holds results of other cases: name another file")

@@ -113,11 +113,11 @@ class ImpactOscillator(Oscillator):
 
         return inverse_map(self, tau, v, digits=digits, horizon=horizon)
 
-    def chatter_limit(self, tau: Any, v: Any, *, digits: int | None = None) -> ChatterLimit:
+    def chatter_limit(self, tau: Any, v: Any, *, digits: int | None = None, impacts: int = 1_000_000) -> ChatterLimit:
         """Where infinitely many impacts accumulate: see `singimpact.dynamics.chatter.chatter_limit`."""
         from singimpact.dynamics.chatter import chatter_limit
 
-        return chatter_limit(self, tau, v, digits=digits)
+        return chatter_limit(self, tau, v, digits=digits, impacts=impacts)
 
     def periodic(self, n: int, k: int, *, digits: int | None = None) -> list[PeriodicOrbit]:
         """Orbits of n impacts in k periods: see `singimpact.dynamics.periodic.periodic`."""
@@ -125,11 +125,11 @@ class ImpactOscillator(Oscillator):
 
         return periodic(self, n, k, digits=digits)
 
-    def orbit(self, tau: Any, v: Any, impacts: int = 200) -> Orbit:
+    def orbit(self, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None) -> Orbit:
         """Impacts, chatter and rest in order: see `singimpact.dynamics.orbit.orbit`."""
         from singimpact.dynamics.orbit import orbit
 
-        return orbit(self, tau, v, impacts)
+        return orbit(self, tau, v, impacts, horizon=horizon)
 
     def to_toml(self) -> str:
         """The model as the text of a model file.
@@ -266,7 +266,7 @@ def clearances(between: Any) -> tuple[Fraction, Fraction]:
     return low, high
 
 
-def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None) -> Threshold:
+def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = 640_000) -> Threshold:
     """The v on gamma over tau: see `singimpact.dynamics.threshold.threshold`.
 
     Examples
@@ -276,7 +276,7 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None) -> Thresh
     """
     from singimpact.dynamics.threshold import threshold
 
-    return threshold(osc, tau, digits=digits)
+    return threshold(osc, tau, digits=digits, impacts=impacts)
 
 
 def sweep(function: Any, cases: Any, executor: Executor | None = None, output: str | FilePath | None = None) -> Any:

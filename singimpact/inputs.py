@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from numbers import Integral
 
 
 class InputError(ValueError):
     """The caller's mistake, told in one line."""
+
+
+class Unfinished(RuntimeError):
+    """Work that ended too early through no mistake in what was given, told in one line."""
 
 
 def refuse(name: str, value: object, accepted: str) -> InputError:
@@ -19,6 +24,19 @@ def refuse(name: str, value: object, accepted: str) -> InputError:
     restitution = 1.5 is not accepted: give a number in (0, 1]
     """
     return InputError(f"{name} = {shown(value)} is not accepted: give {accepted}")
+
+
+def whole(name: str, value: object, least: int, most: int) -> int:
+    """A whole number from least to most, or a refusal.
+
+    Examples
+    --------
+    >>> whole("impacts", 3, 1, 10)
+    3
+    """
+    if isinstance(value, bool) or not isinstance(value, Integral) or not least <= int(value) <= most:
+        raise refuse(name, value, f"a whole number from {least} to {most}")
+    return int(value)
 
 
 def shown(value: object, limit: int = 60) -> str:

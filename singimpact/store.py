@@ -12,6 +12,8 @@ from pathlib import Path
 
 from singimpact.inputs import InputError, shown
 
+DRAFT = ".draft-"
+
 
 @contextmanager
 def written(path: str | Path) -> Iterator[Path]:
@@ -112,7 +114,7 @@ def _draft(target: Path, special: bool) -> Path:
     # the ending stays, because writers of pictures read the format from it
     try:
         place = tempfile.gettempdir() if special else target.parent
-        handle, name = tempfile.mkstemp(prefix=".draft-", suffix=target.suffix, dir=place)
+        handle, name = tempfile.mkstemp(prefix=DRAFT, suffix=target.suffix, dir=place)
     except (OSError, ValueError) as error:
         raise _unwritable(target, error) from None
     os.close(handle)

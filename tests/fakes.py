@@ -91,7 +91,7 @@ def oscillator_room():
                     time = np.array([mpmath.mpf(1) / 3 for _ in tau])
             return SimpleNamespace(tau=tau + 0.25, v=v, flight_time=time, status=np.where(gone, 3, 0).astype(np.int8))
 
-        def orbit(self, tau, v, impacts=200):  # noqa: ARG002
+        def orbit(self, tau, v, impacts=200, horizon=None):  # noqa: ARG002
             tau, v = float_array("tau", tau), float_array("v", v)
             return SimpleNamespace(
                 tau=np.array([tau, tau + 0.5]),

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from functools import partial
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
 
 from singimpact.cases import sweep
 from singimpact.impact_oscillator import linear
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, Unfinished
 
 CALLS = []
 
@@ -82,3 +84,53 @@ def test_dask_cluster(tmp_path):
     ):
         found = sweep(landing, CASES, client.get_executor())
     assert np.array_equal(found, [landing(case) for case in CASES])
+
+
+def dies_once(place, case):
+    import os
+    import signal
+
+    with (place / f"{case}").open("a") as log:
+        log.write("flown\n")
+    if case == 13 and not (place / "died").exists():
+        (place / "died").touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return case * case
+
+
+def dies_at_seven(case):
+    import os
+
+    if case == 7:
+        os._exit(3)
+    return case * case
+
+
+def test_a_killed_worker_is_replaced_and_nothing_is_lost_or_doubled(tmp_path):
+    output = tmp_path / "kept.npz"
+    pool = ProcessPoolExecutor(2, mp_context=get_context("spawn"))
+    with pool:
+        found = sweep(partial(dies_once, tmp_path), range(40), pool, output)
+    assert (tmp_path / "died").exists()
+    assert found.tolist() == [case * case for case in range(40)]
+    with np.load(output) as kept:
+        assert kept["index"].tolist() == list(range(40))
+        assert kept["result"].tolist() == found.tolist()
+
+
+def test_a_case_that_ends_its_process_each_time_is_named(tmp_path):
+    output = tmp_path / "kept.npz"
+    with pytest.raises(Unfinished, match="1 of 12 cases ended their process each time, the first is case 7 = 7"):
+        sweep(dies_at_seven, range(12), None, output)
+    with np.load(output) as kept:
+        assert kept["index"].tolist() == [case for case in range(12) if case != 7]
+
+
+@pytest.mark.parametrize("keep", [0, 1, 100, -1])
+def test_a_damaged_file_of_results_is_refused_by_name(keep, tmp_path):
+    output = tmp_path / "kept.npz"
+    with ThreadPoolExecutor(1) as pool:
+        sweep(abs, [1.0, 2.0], pool, output)
+    output.write_bytes(output.read_bytes()[:keep])
+    with pytest.raises(InputError, match="is not a file of results"):
+        sweep(abs, [1.0, 2.0], None, output)

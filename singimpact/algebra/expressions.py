@@ -14,6 +14,16 @@ from typing import Any, Protocol
 FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "atan", "abs")
 
 
+@dataclass(frozen=True)
+class Folding:
+    """`bits` of a power of rationals that is multiplied out; (1e-300)**17000 has 17 million bits and takes 4 s."""
+
+    bits: int = 16_000
+
+
+FOLDING = Folding()
+
+
 @dataclass(frozen=True, slots=True)
 class Number:
     """An exact rational."""
@@ -180,15 +190,22 @@ def multiply(*factors: Expression) -> Expression:
 
 
 def power(base: Expression, exponent: Expression) -> Expression:
-    """The power; rational ** integer is folded (the parser bounds its size)."""
+    """The power; rational ** integer is folded unless it is huge."""
     if isinstance(exponent, Number):
         if exponent.value == 1:
             return base
         if isinstance(base, Number) and exponent.value.denominator == 1:
             if exponent.value < 0 and not base.value:
                 raise ZeroDivisionError("division by zero")
-            return Number(base.value ** int(exponent.value))
+            if bits_of_power(base, exponent) <= FOLDING.bits:
+                return Number(base.value ** int(exponent.value))
     return Power(base, exponent)
+
+
+def bits_of_power(base: Number, exponent: Number) -> Fraction:
+    """About how many bits numerator or denominator of rational ** exponent have; 0 of a power of 1, 0 and -1."""
+    largest = max(abs(base.value.numerator), base.value.denominator)
+    return largest.bit_length() * abs(exponent.value) if largest > 1 else Fraction(0)
 
 
 def negate(part: Expression) -> Expression:

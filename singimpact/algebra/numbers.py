@@ -6,6 +6,7 @@ a constant expression tree, so ``pi/2.8`` and ``sqrt(2)`` are numbers too.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
@@ -14,7 +15,7 @@ import numpy as np
 
 from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number
 from singimpact.algebra.parsing import from_sympy, parse
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, refuse, shown
 
 ACCEPTED = "a finite real number, or text such as '0.3', '1/3' or 'pi/2.8'"
 
@@ -103,14 +104,22 @@ def as_fraction(tree: Expression) -> Fraction | None:
 def as_float(tree: Expression) -> float:
     """The nearest double of a constant tree.
 
+    Raises
+    ------
+    InputError : the number is larger than every double.
+
     Examples
     --------
     >>> as_float(constant("tau", "pi/2"))
     1.5707963267948966
     """
-    if isinstance(tree, Number):
-        return float(tree.value)
-    return float(_ball(tree, 160).mid())
+    try:
+        value = float(tree.value) if isinstance(tree, Number) else float(_ball(tree, 160).mid())
+    except OverflowError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise InputError(f"number = {shown(str(tree))} is not accepted: give one that a double holds, below 1.8e308")
+    return value
 
 
 def as_mpf(tree: Expression, context: Any) -> Any:

@@ -14,6 +14,7 @@ from typing import Any
 
 from singimpact.algebra.expressions import (
     BOUND,
+    FOLDING,
     FUNCTIONS,
     MINUS_ONE,
     Call,
@@ -23,21 +24,31 @@ from singimpact.algebra.expressions import (
     Pi,
     Root,
     add,
+    bits_of_power,
     multiply,
     negate,
     power,
+    walk,
 )
 from singimpact.inputs import InputError, nearest, shown
 
 
 @dataclass(frozen=True)
 class Limits:
-    """How much an expression may ask for; a model of mechanics stays far below each of these."""
+    """How much an expression may ask for; a model of mechanics stays far below each of these.
+
+    Parameters
+    ----------
+    zeros : evaluations of a part of a function while its one root is told from others; 0.2 s measured.
+    roots : in a text.
+    """
 
     characters: int = 10_000
     depth: int = 60
     digits: int = 4_000
     exponent: int = 1_000
+    zeros: int = 8_000
+    roots: int = 20
 
 
 LIMITS = Limits()
@@ -82,6 +93,7 @@ class _Parser:
         self.text, self.names, self.what = text.rstrip(), names, what
         self.at = 0
         self.depth = 0
+        self.roots = 0
         self.token, self.kind = "", ""
         self.advance()
 
@@ -119,7 +131,7 @@ class _Parser:
             return "'^' has no meaning here; write a power as **"
         if self.token == ".":
             return f"'.' has no meaning here (there are no attributes); accepted are {_LANGUAGE}"
-        return f"{self.token!r} is out of place" if self.token else "it ends too early"
+        return f"{shown(self.token)} is out of place" if self.token else "it ends too early"
 
     def sum(self) -> Expression:
         self.depth += 1
@@ -202,7 +214,11 @@ class _Parser:
             raise self.refusal("root takes a function of u and two rationals, root(u**2 - 2, 1, 2)")
         low, high = (end.value for end in ends if isinstance(end, Number))
         found = Root(function, low, high)
-        if not low < high or not is_one_root(found):
+        self.roots += 1
+        if self.roots > LIMITS.roots:
+            raise self.refusal(f"it has more than {LIMITS.roots} roots")
+        pieces = LIMITS.zeros // (self.roots**2 * sum(1 for _ in walk(function)))
+        if not low < high or not is_one_root(found, pieces):
             raise self.refusal(f"{found} is not one zero: the function must change sign once between the two numbers")
         return found
 
@@ -240,10 +256,8 @@ def bounded_power(base: Expression, exponent: Expression) -> Expression:
             raise InputError(
                 f"the exponent {shown(exponent.value)} is too large; at most {LIMITS.exponent} is accepted"
             )
-        if isinstance(base, Number):
-            size = max(base.value.numerator.bit_length(), base.value.denominator.bit_length())
-            if size * abs(exponent.value) > 4 * LIMITS.digits:
-                raise InputError(f"a constant power has more than {LIMITS.digits} digits")
+        if isinstance(base, Number) and bits_of_power(base, exponent) > FOLDING.bits:
+            raise InputError(f"a constant power has more than {FOLDING.bits} bits")
     try:
         return power(base, exponent)
     except ZeroDivisionError:

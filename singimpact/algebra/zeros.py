@@ -15,6 +15,7 @@ from typing import Any
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import BOUND, Expression, Root
 from singimpact.algebra.jets import JetSpace
+from singimpact.inputs import InputError, shown
 
 BITS = 128  # of the balls that isolate; far more than the least width needs
 LEAST_WIDTH = Fraction(1, 2**26)  # of the window: below it a double zero is suspected and handed on as undecided
@@ -42,8 +43,14 @@ def derivatives(tree: Expression, variable: str, at: Any, order: int, ring: Any)
     return [jet.coefficient((k,)) for k in range(order + 1)]
 
 
-def isolate(tree: Expression, variable: str, low: Fraction, high: Fraction, order: int = 0) -> list[Zero]:
+def isolate(
+    tree: Expression, variable: str, low: Fraction, high: Fraction, order: int = 0, pieces: int | None = None
+) -> list[Zero]:
     """All zeros in [low, high) of the derivative of this order of a tree in one variable.
+
+    Raises
+    ------
+    InputError : more than `pieces` pieces were looked at, when a number of them is given.
 
     Examples
     --------
@@ -60,6 +67,10 @@ def isolate(tree: Expression, variable: str, low: Fraction, high: Fraction, orde
         stack = [(low, high)]
         while stack:
             left, right = stack.pop()
+            if pieces is not None:
+                pieces -= 1
+                if pieces < 0:
+                    raise InputError(f"the zeros of {shown(str(tree))} cost too much to tell apart: give closer ends")
             window = balls.interval(left, right)
             value, slope = derivatives(tree, variable, window, order + 1, balls)[order : order + 2]
             if value > 0 or value < 0:
@@ -139,10 +150,10 @@ def ball_of(tree: Root, bits: int) -> Any:
     return refined(tree.function, BOUND, Zero(tree.low, tree.high, rising), bits)
 
 
-def is_one_root(tree: Root) -> bool:
+def is_one_root(tree: Root, pieces: int | None = None) -> bool:
     """Whether the function has exactly one zero in the interval, with opposite signs at the ends."""
     ends = [sign_at(tree.function, BOUND, end, 0) for end in (tree.low, tree.high)]
-    found = isolate(tree.function, BOUND, tree.low, tree.high)
+    found = isolate(tree.function, BOUND, tree.low, tree.high, pieces=pieces)
     return ends[0] * ends[1] < 0 and len(found) == 1 and found[0].slope != 0
 
 

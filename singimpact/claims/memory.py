@@ -1,4 +1,4 @@
-"""Verdicts kept in the user's cache folder, one JSON file a claim, under the claim's canonical key."""
+"""Verdicts kept in the user's cache folder, one sealed file of JSON a claim, under the claim's canonical key."""
 
 from __future__ import annotations
 
@@ -7,22 +7,26 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
+from singimpact import cache
 from singimpact.algebra.checking import accepts
 from singimpact.claims.claim import KINDS, Trial, Verdict
-from singimpact.inputs import InputError
-from singimpact.store import cache_folder, folder, write_text
+from singimpact.store import cache_folder
 
 
 def _place(name: str) -> Path:
-    return cache_folder() / "verdicts" / f"{name.replace(':', '_')}.json"
+    return cache_folder() / "verdicts" / f"{name.replace(':', '_')}.verdict"
 
 
 def recall(name: str, key: str) -> Verdict | None:
     """The kept verdict of a claim, or None when there is none for this key or the file is damaged."""
+    content = cache.recall(_place(name))
+    if content is None:
+        return None
     try:
-        data = json.loads(_place(name).read_text(encoding="utf-8"))
+        data = json.loads(content)
         return _verdict(data["verdict"]) if data["key"] == key else None
-    except (OSError, ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError) as error:
+        cache.damaged(_place(name), str(error))
         return None
 
 
@@ -41,11 +45,5 @@ def keep(verdict: Verdict, key: str) -> None:
 
     A cache that cannot be written is no reason to fail: the verdict stands, it is only not kept.
     """
-    if verdict.kind == "error":
-        return
-    try:
-        place = _place(verdict.id)
-        folder(place.parent)
-        write_text(place, json.dumps({"key": key, "verdict": asdict(verdict)}))
-    except (InputError, OSError):
-        return
+    if verdict.kind != "error":
+        cache.keep(_place(verdict.id), json.dumps({"key": key, "verdict": asdict(verdict)}).encode())

@@ -19,11 +19,14 @@ if TYPE_CHECKING:
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
 @click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits; a double is given without it.")
+@click.option("--impacts", type=click.IntRange(1, 10_000_000), default=1_000_000, show_default=True, help="At most.")
 @output_options
-def command(tau: str, v: str, digits: int | None, as_json: bool, output: str | None, **options: Any) -> None:
+def command(
+    tau: str, v: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: Any
+) -> None:
     """The accumulation time of a chatter sequence, its error, and the impacts flown before the rest was summed up."""
     oscillator = take_model(options)
-    found = oscillator.chatter_limit(tau, v, digits=digits)
+    found = oscillator.chatter_limit(tau, v, digits=digits, impacts=impacts)
     status = Status(int(found.status))
     if as_json:
         told = {"tau": number(found.tau, digits), "error": float(found.error), "impacts": found.impacts}

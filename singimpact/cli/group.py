@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -10,7 +11,7 @@ from typing import Any, NoReturn
 import click
 
 from singimpact import __version__
-from singimpact.inputs import InputError, unknown
+from singimpact.inputs import InputError, Unfinished, unknown
 
 # The short helps stand here, so that `singimpact --help` opens no command and no room.
 COMMANDS = {
@@ -54,6 +55,8 @@ class Commands(click.Group):
 
     def main(self, args: Sequence[str] | None = None, *_: Any, **__: Any) -> NoReturn:
         """Run and leave with an exit code: 2 for the caller's mistakes, each in one line without a traceback."""
+        # a plain end by SIGTERM would leave drafts behind; an exception lets every block that writes clean up
+        signal.signal(signal.SIGTERM, _ended)
         sys.exit(self._code(args))
 
     def _code(self, args: Sequence[str] | None) -> int:
@@ -67,9 +70,16 @@ class Commands(click.Group):
         except (click.Abort, KeyboardInterrupt):
             click.echo("singimpact: interrupted", err=True)
             return 130
+        except Unfinished as error:
+            click.echo(f"singimpact: {error}", err=True)
+            return 1
         except OSError as error:
             click.echo(f"singimpact: the system refused: {error}", err=True)
             return 1
+
+
+def _ended(number: int, frame: Any) -> NoReturn:  # noqa: ARG001
+    sys.exit(128 + number)
 
 
 def _refused(message: str) -> int:

@@ -20,14 +20,17 @@ PICTURES = (".png", ".pdf", ".svg")
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
 @click.option("--impacts", type=click.IntRange(1, 10_000_000), default=200, show_default=True, help="How many.")
+@click.option("--horizon", metavar="NUMBER", help="Look no further than this flight time.")
 @output_options
-def command(tau: str, v: str, impacts: int, as_json: bool, output: str | None, **options: Any) -> None:
+def command(
+    tau: str, v: str, impacts: int, horizon: str | None, as_json: bool, output: str | None, **options: Any
+) -> None:
     """An orbit of the impact map: impacts, rests on the obstacle, chatter.
 
     With -o FILE.png (or .pdf, .svg) the orbit is drawn. Numbers may be expressions such as pi/2.8.
     """
     oscillator = take_model(options)
-    orbit = oscillator.orbit(tau, v, impacts=impacts)
+    orbit = oscillator.orbit(tau, v, impacts=impacts, horizon=horizon)
     if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
         draw(orbit, output)
     elif as_json:

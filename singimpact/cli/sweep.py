@@ -61,7 +61,9 @@ def process_pool(workers: int | None) -> Any:
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
+    from singimpact.cases import end_with_parent
+
+    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"), initializer=end_with_parent)
 
 
 def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int, value: float) -> Any:

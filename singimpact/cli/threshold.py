@@ -16,13 +16,14 @@ from singimpact.status import Status
 @model_options
 @click.option("--tau", metavar="NUMBER", required=True, help="A phase at which the mass is pressed, a_c < 0.")
 @click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits; a double is given without it.")
+@click.option("--impacts", type=click.IntRange(1, 10_000_000), default=640_000, show_default=True, help="At most.")
 @output_options
-def command(tau: str, digits: int | None, as_json: bool, output: str | None, **options: Any) -> None:
+def command(tau: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: Any) -> None:
     """The v on gamma over tau: just below it chatter completes, just above it contact is lost before."""
     oscillator = take_model(options)
     from singimpact.impact_oscillator import threshold
 
-    found = threshold(oscillator, tau, digits=digits)
+    found = threshold(oscillator, tau, digits=digits, impacts=impacts)
     status = Status(int(found.status))
     if as_json:
         told = {"v": number(found.v, digits), "error": float(found.error), "status": status.name}

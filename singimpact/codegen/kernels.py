@@ -14,6 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from singimpact import cache
 from singimpact.inputs import InputError
 from singimpact.store import cache_folder, folder, passing_folder, write_text
 
@@ -21,13 +22,15 @@ _READY: dict[tuple[str, tuple[str, ...]], dict[str, Any]] = {}
 FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "tanh", "atan")
 
 
-def filed(text: str) -> Path:
-    """The file that holds a kernel's text; it is there whole or not at all, so two processes may race."""
+def filed(text: str) -> Path | None:
+    """The file that holds a kernel's text, whole, so two processes may race; None when no folder takes it."""
     name = _file_name(text)
-    try:
-        return _placed(cache_folder() / "kernels", name, text)
-    except InputError:  # a read-only home must not stop a computation
-        return _placed(passing_folder(), name, text)
+    for passing in (False, True):
+        try:
+            return _placed(passing_folder() if passing else cache_folder() / "kernels", name, text)
+        except (InputError, OSError) as error:  # a read-only home or a full disk must not stop a computation
+            cache.not_kept(error)
+    return None
 
 
 @lru_cache(maxsize=256)
@@ -37,8 +40,11 @@ def _file_name(text: str) -> str:
 
 def _placed(place: Path, name: str, text: str) -> Path:
     path = folder(place) / name
-    # an equal file stays: numba's disk cache looks at its time
-    if not path.is_file() or path.read_text(encoding="utf-8") != text:
+    # the name is a digest of the text, so another text under it is damage
+    there = path.read_bytes() if path.is_file() else None
+    if there != text.encode():
+        if there is not None:
+            cache.damaged(path, "its text is not what was written")
         write_text(path, text)
     return path
 
@@ -54,16 +60,21 @@ def compiled(text: str, names: tuple[str, ...]) -> dict[str, Any]:
     """
     import numba
 
+    from singimpact.codegen.machine_code import keep_machine_code
+
     path = filed(text)
-    module = types.ModuleType(f"singimpact_{path.stem}")
-    module.__file__ = str(path)
+    place = str(path or f"<{_file_name(text)}>")
+    module = types.ModuleType(f"singimpact_{_file_name(text).removesuffix('.py')}")
+    module.__file__ = place
     # code from numba's disk cache looks for the module of its function by name, in a process that never ran its text
     sys.modules[module.__name__] = module
     space = vars(module)
     space.update({name: getattr(math, name) for name in FUNCTIONS})
-    exec(compile(text, str(path), "exec"), space)
+    exec(compile(text, place, "exec"), space)
     for name in names:
-        space[name] = numba.njit(cache=True, error_model="numpy")(space[name])
+        space[name] = numba.njit(error_model="numpy")(space[name])
+        if path is not None:
+            keep_machine_code(space[name])
     _READY[text, names] = space
     return space
 
@@ -76,7 +87,7 @@ def is_compiled(text: str, names: tuple[str, ...], name: str) -> bool:
 def was_compiled(text: str, name: str) -> bool:
     """Whether numba's disk cache beside the kernel's file has the function."""
     kept = cache_folder() / "kernels" / "__pycache__"
-    return any(kept.glob(f"{_file_name(text).removesuffix('.py')}.{name}-*.nbi"))
+    return any(kept.glob(f"{_file_name(text).removesuffix('.py')}.{name}-*.nbc"))
 
 
 def plain(text: str, functions: dict[str, Any]) -> dict[str, Any]:

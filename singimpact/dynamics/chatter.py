@@ -17,7 +17,7 @@ from singimpact.flights.hits import checked_digits, derivative, impact_map
 from singimpact.flights.kernel import kernel_of
 from singimpact.flights.launch import States
 from singimpact.flights.sequences import Sequence, sequence
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
@@ -33,7 +33,7 @@ class Ending:
     ----------
     order, many : terms of the completion map in doubles and with digits=; its cost grows with the fourth power.
     near : the rest must be below this part of the time on which a_c changes; the terms then fall by more than ten.
-    impacts : impacts flown at most; r = 0.9999 from v = 1 to 1e-17 takes 400 000.
+    impacts : impacts flown at most unless told otherwise; r = 0.9999 from v = 1 to 1e-17 takes 400 000.
     trust : the error is called so many times the last term and the rounding of every impact carried to the end.
     """
 
@@ -68,12 +68,15 @@ class ChatterLimit:
     certified: Certified | None = None
 
 
-def chatter_limit(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None) -> ChatterLimit:
+def chatter_limit(
+    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, impacts: int = ENDING.impacts
+) -> ChatterLimit:
     """The time at which infinitely many impacts accumulate.
 
     Parameters
     ----------
     osc : the model. tau, v : one state, v >= 0. digits : decimal digits of tau, which is then an mpmath number.
+    impacts : flown at most before the status is `unresolved`; a number bounds the time that an unknown state can take.
 
     Notes
     -----
@@ -89,7 +92,7 @@ def chatter_limit(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = Non
     states = States.read(tau, v)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: chatter starts from one state, give two numbers")
-    flown = _Flown(osc, float(states.tau[0]), float(states.v[0]))
+    flown = _Flown(osc, float(states.tau[0]), float(states.v[0]), whole("impacts", impacts, 1, 10**7))
     found = flown.limit()
     if digits is None or found.status not in (Status.complete, Status.lifts_off):
         return found
@@ -165,8 +168,8 @@ def _last(terms: list[Any]) -> Any:
 class _Flown:
     """A chatter sequence in doubles."""
 
-    def __init__(self, osc: Oscillator, tau: float, v: float) -> None:
-        self.osc, self.start = osc, (tau, v)
+    def __init__(self, osc: Oscillator, tau: float, v: float, most: int) -> None:
+        self.osc, self.start, self.most = osc, (tau, v), most
         self.times, self.speeds = [tau], [v]
 
     def limit(self) -> ChatterLimit:
@@ -181,11 +184,10 @@ class _Flown:
                 left, error = _rest(self.osc, tau, v, ENDING.order)
                 if error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290:
                     return self._ended(tau + left, error, Status.complete)
-                status = self._fly(self._more(error, tau), 0.0)
+                wanted = self._more(error, tau), 0.0
             else:
-                status = self._fly(256, min(_slow(self.osc, tau) * lost, 1e300) if a < 0 else 0.0)
-            if len(self.times) > ENDING.impacts:
-                status = Status.unresolved
+                wanted = 256, min(_slow(self.osc, tau) * lost, 1e300) if a < 0 else 0.0
+            status = self._fly(*wanted) if len(self.times) <= self.most else Status.unresolved
         return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status))
 
     def _more(self, error: float, tau: float) -> int:
@@ -206,7 +208,7 @@ class _Flown:
 
     def _fly(self, count: int, slow: float) -> Status:
         """Fly on; where the acceleration changes sign the sequence is cut just after the first impact there."""
-        found = sequence(self.osc, self.times[-1], self.speeds[-1], min(count, 4096), slow)
+        found = sequence(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self.most), slow)
         kept = self._kept(found)
         self.times += found.tau[:kept].tolist()
         self.speeds += found.v[:kept].tolist()

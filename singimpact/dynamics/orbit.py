@@ -11,7 +11,7 @@ from singimpact.dynamics.chatter import summed
 from singimpact.dynamics.rest import release
 from singimpact.flights.hits import impact_map
 from singimpact.flights.launch import States, horizon_of
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
@@ -52,13 +52,14 @@ class _Record:
         self.phases.append((phase, self.events[-1][0], tau))
 
 
-def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200) -> Orbit:
+def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None) -> Orbit:
     """The orbit of a state through at most `impacts` flights.
 
     Parameters
     ----------
     osc : the model. tau, v : the state, v >= 0.
     impacts : how many flights are flown; chatter that is summed up costs none.
+    horizon : flight time at which a flight is given up; None for the package default.
 
     Returns
     -------
@@ -73,19 +74,17 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200) -> Orbit:
     states = States.read(tau, v)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
-    if isinstance(impacts, bool) or not isinstance(impacts, int | np.integer) or not 0 <= impacts <= 10**7:
-        raise refuse("impacts", impacts, "a whole number from 0 to 10000000")
     record = _Record([(float(states.tau[0]), float(states.v[0]), "start")])
     given: tuple[Any, Any] | None = (tau, v)
-    for _ in range(int(impacts)):
-        if not _advance(osc, record, given):
+    for _ in range(whole("impacts", impacts, 0, 10**7)):
+        if not _advance(osc, record, given, horizon):
             break
         given = None
     times, velocities, kinds = zip(*record.events, strict=True)
     return Orbit(osc, np.array(times), np.array(velocities), np.array(kinds), record.phases)
 
 
-def _advance(osc: Oscillator, record: _Record, given: tuple[Any, Any] | None) -> bool:
+def _advance(osc: Oscillator, record: _Record, given: tuple[Any, Any] | None, horizon: Any) -> bool:
     """One flight with the rest or the end of chatter before it; False: the orbit ends here."""
     tau, v, _ = record.events[-1]
     if v > 0:
@@ -94,7 +93,7 @@ def _advance(osc: Oscillator, record: _Record, given: tuple[Any, Any] | None) ->
         if left is not None:
             record.go("chatter", tau + left, 0.0, "complete")
             return _rested(osc, record)
-    step = impact_map(osc, *(given or (tau, v)))
+    step = impact_map(osc, *(given or (tau, v)), horizon=horizon)
     match step.status:
         case Status.hit | Status.graze:
             record.go("flight", float(step.tau), float(step.v), Status(int(step.status)).name.replace("hit", "impact"))

@@ -87,7 +87,9 @@ def _pressure(osc: Oscillator, tau: float) -> Any:
 def _width(series: Any, longest: float) -> float:
     """A step on which the last terms are below rounding."""
     width = longest
-    size = sum(abs(part) * width**k for k, part in enumerate(series[:4]))
+    size = 0.0
+    for part in reversed(series[:4]):
+        size = size * width + abs(part)
     for k in range(ORDER - 2, ORDER + 1):
         if series[k]:
             width = min(width, (EPSILON * size / abs(series[k])) ** (1.0 / k))

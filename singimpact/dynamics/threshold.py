@@ -17,7 +17,7 @@ from singimpact.dynamics.rest import release
 from singimpact.flights.hits import checked_digits, derivative, impact_map
 from singimpact.flights.launch import horizon_of
 from singimpact.flights.sequences import sequence
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
@@ -32,14 +32,17 @@ class Search:
     Parameters
     ----------
     narrow : the last bracket, relative; narrower ones are decided by rounding.
-    block, blocks : impacts flown at a time, and how often.
+    block, longest : impacts flown at a time, twice as many each time up to the longest; blocks of 64 spent three
+        quarters of the time between the blocks.
+    impacts : flown at most from one velocity, unless told otherwise; r = 0.9999 takes 400 000.
     short : chatter that would end in this part of the time to the end of gamma does; on gamma the part is above 1/2.
     first, more, rounds : impacts of the first refinement, more each time, at most.
     """
 
     narrow: float = 4 * EPSILON
     block: int = 64
-    blocks: int = 1000
+    longest: int = 4096
+    impacts: int = 640_000
     short: float = 1 / 64
     first: int = 6
     more: int = 4
@@ -63,12 +66,13 @@ class Threshold:
     certified: Certified | None = None
 
 
-def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None) -> Threshold:
+def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = SEARCH.impacts) -> Threshold:
     """The v whose orbit runs along gamma into the next zero of a_c with a_c' > 0.
 
     Parameters
     ----------
     osc : the model, r < 1. tau : a phase with a_c(tau) < 0. digits : decimal digits; v is then an mpmath number.
+    impacts : flown at most from one velocity; where they do not tell the sides apart the status is `unresolved`.
 
     Examples
     --------
@@ -76,7 +80,7 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None) -> Thresh
     >>> print(f"{found.v:.13f}")
     0.1008699912693
     """
-    place = constant("tau", tau)
+    place, most = constant("tau", tau), whole("impacts", impacts, 1, 10**7)
     if sign_of_acceleration(osc, place) >= 0:
         raise InputError(f"tau = {tau} is not accepted: give a phase at which a_c presses, a_c(tau) < 0")
     if compare(osc.slope_at_rest(), 1) == 0:
@@ -85,7 +89,7 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None) -> Thresh
     end = release(osc, start, horizon_of(osc, None))
     if not np.isfinite(end):
         return Threshold(np.nan, np.nan, np.int8(Status.unresolved))
-    found = _bisected(osc, start, end)
+    found = _bisected(osc, start, end, most)
     if digits is None or found.status != Status.complete:
         return found
     return _enclosed(osc, place, found, end, checked_digits(digits)) or _refined(osc, place, found, digits)
@@ -103,26 +107,30 @@ def _enclosed(osc: Oscillator, place: Expression, rough: Threshold, end: float, 
         return Threshold(+found.value, error, np.int8(Status.complete), found)
 
 
-def _bisected(osc: Oscillator, tau: float, end: float) -> Threshold:
+def _bisected(osc: Oscillator, tau: float, end: float, impacts: int) -> Threshold:
     low, high = 0.0, -float(acceleration(osc, np.array([tau]))[0]) * (end - tau) / 4
-    while not _lifts(osc, tau, high, end):
+    while not (lifted := _lifts(osc, tau, high, end, impacts)):
         low, high = high, 2 * high
-        if high > 1e12:
+        if lifted is None or high > 1e12:
             return Threshold(np.nan, np.nan, np.int8(Status.unresolved))
     while high - low > SEARCH.narrow * high:
         middle = (low + high) / 2
-        low, high = (low, middle) if _lifts(osc, tau, middle, end) else (middle, high)
+        lifted = _lifts(osc, tau, middle, end, impacts)
+        if lifted is None:
+            return Threshold(np.nan, np.nan, np.int8(Status.unresolved))
+        low, high = (low, middle) if lifted else (middle, high)
     v = (low + high) / 2
     # gamma is at most quadratic in the distance to its end, so a rounding of tau moves v by 2 v/(end - tau) of it
     error = high - low + EPSILON * (8 * v + 4 * v * abs(tau) / (end - tau))
     return Threshold(np.float64(v), np.float64(error), np.int8(Status.complete))
 
 
-def _lifts(osc: Oscillator, tau: float, v: float, end: float) -> bool:
-    """Whether contact is lost before chatter from (tau, v) completes."""
+def _lifts(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> bool | None:
+    """Whether contact is lost before chatter from (tau, v) completes; None when the impacts flown do not tell."""
     lost = 1 - as_float(osc.slope_at_rest())
-    for _ in range(SEARCH.blocks):
-        found = sequence(osc, tau, v, SEARCH.block)
+    block, remaining = SEARCH.block, impacts
+    while remaining > 0:
+        found = sequence(osc, tau, v, block)
         if found.status or np.any(found.tau >= end):
             return True
         with np.errstate(divide="ignore"):
@@ -130,7 +138,8 @@ def _lifts(osc: Oscillator, tau: float, v: float, end: float) -> bool:
         if np.any(left < SEARCH.short * (end - found.tau[:-1])):
             return False
         tau, v = float(found.tau[-1]), float(found.v[-1])
-    return False
+        block, remaining = min(2 * block, SEARCH.longest), remaining - block
+    return None
 
 
 def _refined(osc: Oscillator, place: Any, rough: Threshold, digits: int) -> Threshold:

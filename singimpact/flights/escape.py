@@ -51,9 +51,10 @@ def never_returns(osc: Oscillator, form: LinearForm, tau: Array, time: Array, z:
         for wave in form.harmonics:
             rate = as_float(wave.rate)
             angle = rate * (reduced(tau, turn(wave.rate)) + time) + as_float(wave.phase)
-            answer = (as_float(wave.cosine) - 1j * as_float(wave.sine)) / (
-                stiffness - rate * rate + 1j * damping * rate
-            )
+            reply = stiffness - rate * rate + 1j * damping * rate
+            if not reply:
+                return np.zeros(z.shape, bool)  # resonance: the forced motion grows without a bound
+            answer = (as_float(wave.cosine) - 1j * as_float(wave.sine)) / reply
             turned = answer * np.exp(1j * angle)
             place, speed, bound = place + turned.real, speed + (1j * rate * turned).real, bound + abs(answer)
         low, size = _lowest(sign_of(form.stiffness), sign_of(form.damping), stiffness, damping, h, z - place, u - speed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from functools import lru_cache
 from math import frexp
@@ -26,7 +27,10 @@ def reduced(tau: np.ndarray[Any, Any], period: Expression) -> np.ndarray[Any, An
     >>> reduced(np.array([1e22, -1e-20]), constant("period", "2*pi")).tolist()
     [-1.020177392559087, -1e-20]
     """
-    size = float(_scaled(period, 64)) / 2.0**64
+    try:
+        size = _scaled(period, 64) / 2**64
+    except OverflowError:  # no double is beyond such a period
+        size = math.inf
     result = np.array(tau, dtype=float)
     for index in np.flatnonzero(np.abs(result) > size):
         result[index] = _reduced(float(result[index]), period)

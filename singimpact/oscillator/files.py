@@ -26,7 +26,7 @@ def fields_of(text: str, source: str = "model file") -> dict[str, Any]:
     """
     try:
         fields = tomllib.loads(text, parse_float=str)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # an integer of 5000 digits is a plain ValueError
         raise InputError(f"{source} is not TOML: {' '.join(str(error).split())}") from None
     for key in fields:
         if key not in FIELDS:

@@ -6,13 +6,14 @@ import hashlib
 import json
 from functools import lru_cache
 from importlib.metadata import version
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from singimpact.inputs import InputError
-from singimpact.store import cache_folder, folder, written
+from singimpact import cache
+from singimpact.store import cache_folder
 from singimpact.surface.curve import Curve, Mark
 
 ABOVE = ("claims/", "documents/", "scenes/", "bench/", "cli/", "generated/")  # rooms that no curve depends on
@@ -43,28 +44,25 @@ def ground() -> str:
 
 def recall(key: str) -> list[Curve] | None:
     """The curves under a key, or None when there are none or the file is damaged."""
-    try:
-        with np.load(_place(key), allow_pickle=False) as found:
-            heads = json.loads(str(found["heads"]))
-            return [_curve(head, found[f"p{n}"], found[f"v{n}"]) for n, head in enumerate(heads)]
-    except (OSError, ValueError, KeyError, TypeError, EOFError):
+    content = cache.recall(_place(key))
+    if content is None:
         return None
+    with np.load(BytesIO(content), allow_pickle=False) as found:
+        heads = json.loads(str(found["heads"]))
+        return [_curve(head, found[f"p{n}"], found[f"v{n}"]) for n, head in enumerate(heads)]
 
 
 def keep(key: str, curves: list[Curve]) -> None:
     """Put curves on disk; a cache that cannot be written is no reason to fail."""
     arrays: dict[str, Any] = {f"p{n}": curve.points for n, curve in enumerate(curves)}
     arrays |= {f"v{n}": curve.visible for n, curve in enumerate(curves)}
-    try:
-        folder(_place(key).parent)
-        with written(_place(key)) as draft, draft.open("wb") as stream:
-            np.savez(stream, heads=json.dumps([_head(curve) for curve in curves]), **arrays)
-    except (InputError, OSError):
-        return
+    stream = BytesIO()
+    np.savez(stream, heads=json.dumps([_head(curve) for curve in curves]), **arrays)
+    cache.keep(_place(key), stream.getvalue())
 
 
 def _place(key: str) -> Path:
-    return cache_folder() / "curves" / f"{key}.npz"
+    return cache_folder() / "curves" / f"{key}.curves"
 
 
 def _head(curve: Curve) -> dict[str, Any]:

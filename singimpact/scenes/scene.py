@@ -68,7 +68,7 @@ class Scene:
         ):  # fmt: skip
             raise refuse("pixels", self.pixels, f"an integer from {SIZES[0]} to {SIZES[1]}")
         for name in self.layers:
-            if name not in LAYERS:
+            if not isinstance(name, str) or name not in LAYERS:
                 raise unknown("layer", str(name), LAYERS)
         for name, value, most in (("leaves", self.leaves, LEAVES), ("impacts", self.impacts, 100_000)):
             if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
@@ -244,7 +244,7 @@ def _toml(path: str | Path) -> dict[str, Any]:
         return tomllib.loads(Path(path).read_text(encoding="utf-8"), parse_float=str)
     except OSError as error:
         raise InputError(f"scene file {shown(str(path))} cannot be read: {error.strerror}") from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # an integer of 5000 digits is a plain ValueError
         raise InputError(f"scene file {shown(str(path))} is not TOML: {' '.join(str(error).split())}") from None
 
 

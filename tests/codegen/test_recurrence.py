@@ -69,6 +69,8 @@ def test_the_disk_cache_serves_a_new_process() -> None:
     import sys
 
     script = (
+        "from singimpact.codegen import interpreted\n"
+        "interpreted.PATIENCE = interpreted.Patience(0, 0)\n"
         "from singimpact.impact_oscillator import linear\n"
         "print(linear(2, '0.3', '0.5').impact_map(0, 1).tau)\n"
         "from singimpact.codegen.kernels import compiled\n"

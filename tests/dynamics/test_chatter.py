@@ -85,3 +85,25 @@ def test_bad_input() -> None:
         threshold(linear("2.8", 0, 1), "pi/2.8")
     with pytest.raises(InputError, match="one state"):
         chatter_limit(linear("2.8", 0, "0.5"), [0, 1], 1)
+
+
+def test_a_threshold_near_restitution_one_is_right_or_unresolved() -> None:
+    """v/(1 - r) has a limit for r -> 1, which 64 000 impacts missed in silence."""
+    near = {r: threshold(linear("2.8", 0, r), "pi/2.8") for r in ("0.999", "0.9998")}
+    slope = {r: float(found.v) / (1 - float(r)) for r, found in near.items()}
+    assert abs(slope["0.999"] / slope["0.9998"] - 1) < 1e-7
+    assert threshold(linear("2.8", 0, "0.9998"), "pi/2.8", impacts=1000).status == Status.unresolved
+
+
+def test_a_million_impacts_may_be_made_fewer() -> None:
+    osc = linear("pi/2.8", "1e5", "0.999999")
+    found = chatter_limit(osc, "0.3", "0.3", impacts=500)
+    assert found.status == Status.unresolved
+    assert 500 <= found.impacts < 1000
+    for wrong in (0, 1.5, True):
+        with pytest.raises(InputError, match="impacts"):
+            chatter_limit(osc, "0.3", "0.3", impacts=wrong)  # type: ignore[arg-type]
+
+
+def test_a_forcing_slower_than_any_number_is_no_error() -> None:
+    assert threshold(linear("1e-300", 1, "0.5"), "0.3").status == Status.unresolved

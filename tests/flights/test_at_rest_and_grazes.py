@@ -58,3 +58,8 @@ def test_both_sides_of_a_graze_are_told_apart(model, offset):
             allowed = max(1e-14, 40 * 2.0**-52 / np.sqrt(offset))
             assert abs(times[side] / float(truth[side]) - 1) < allowed, (side, float(flight))
     assert abs(float(truth[1]) - float(truth[-1])) > 0.1
+
+
+def test_no_bound_is_claimed_at_resonance():
+    osc = si.ImpactOscillator("x", "sin(t) + sin(3*t)/2", "-0.7", "0.8")
+    assert osc.impact_map(0.3, 0.1, horizon=2.0).status == Status.no_return

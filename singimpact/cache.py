@@ -1,0 +1,97 @@
+"""Entries of the user's cache: sealed by a digest of their content; what is damaged is named and made again.
+
+A cache is a convenience: when it cannot be read or written, one line says so and the work goes on without it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+import time
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from singimpact.inputs import InputError, shown
+from singimpact.store import DRAFT, folder, written
+
+
+@dataclass(frozen=True)
+class Ages:
+    """When what a killed process left is taken away.
+
+    Parameters
+    ----------
+    draft : seconds; no entry takes a day to write, so an older draft has no writer any more.
+    """
+
+    draft: float = 86_400.0
+
+
+AGES = Ages()
+_SAID: list[str] = []  # why results are not kept, once in a process
+
+
+def keep(place: Path, content: bytes) -> None:
+    """Put an entry under a name, whole or not at all; a cache that cannot be written is told once and is no failure."""
+    try:
+        _swept(folder(place.parent))
+        with written(place) as draft:
+            draft.write_bytes(_seal(content) + content)
+    except (InputError, OSError) as error:
+        not_kept(error)
+
+
+def recall(place: Path) -> bytes | None:
+    """The content of an entry, or None when there is none; a damaged one is named on standard error.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> place = Path(tempfile.mkdtemp()) / "entry"
+    >>> keep(place, b"42")
+    >>> recall(place), recall(place.with_name("other"))
+    (b'42', None)
+    """
+    try:
+        found = place.read_bytes()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        damaged(place, error.strerror or str(error))
+        return None
+    seal, content = found[: len(_seal(b""))], found[len(_seal(b"")) :]
+    if seal != _seal(content):
+        damaged(place, "its content is not what was written")
+        return None
+    return content
+
+
+def damaged(place: Path, reason: str) -> None:
+    """Name an entry that cannot be used."""
+    tell(f"cache entry {shown(str(place), 300)} is damaged ({reason}): it is made again")
+
+
+def not_kept(error: Exception) -> None:
+    """Say once in a process that results are not kept."""
+    if not _SAID:
+        _SAID.append(str(error))
+        reason = str(error).removeprefix("output = ").partition(": give")[0]
+        tell(f"cache: {reason}; the work goes on and keeps nothing (SINGIMPACT_CACHE names another folder)")
+
+
+def tell(sentence: str) -> None:
+    """One line on standard error."""
+    print(f"singimpact: {' '.join(sentence.split())}", file=sys.stderr)
+
+
+def _seal(content: bytes) -> bytes:
+    return b"sha256 " + hashlib.sha256(content).hexdigest().encode() + b"\n"
+
+
+@lru_cache(maxsize=64)
+def _swept(place: Path) -> None:
+    """Take away drafts of processes that were killed; once a folder and process."""
+    for draft in place.glob(f"{DRAFT}*"):
+        if draft.stat().st_mtime < time.time() - AGES.draft:
+            draft.unlink(missing_ok=True)

@@ -1,0 +1,72 @@
+"""A small run of the fuzzer, and what it has found; `python tests/fuzzing/run.py` is the long run."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from singimpact import InputError
+from singimpact.algebra.numbers import float_array
+from singimpact.algebra.parsing import parse
+from singimpact.impact_oscillator import linear
+from singimpact.oscillator.files import fields_of
+from singimpact.scenes.scene import Scene
+
+RUN = [sys.executable, str(Path(__file__).parent / "run.py"), "--workers", "1"]
+
+
+@pytest.mark.parametrize("inputs", [300, pytest.param(2000, marks=pytest.mark.slow)])
+def test_no_input_is_a_fault(inputs):
+    found = subprocess.run([*RUN, "--inputs", str(inputs)], capture_output=True, text=True, timeout=600)
+    assert found.returncode == 0, found.stdout + found.stderr
+
+
+@pytest.mark.slow
+def test_the_fuzzer_sees_execution_and_tracebacks():
+    script = (
+        f"import sys; sys.path[:0] = [{str(Path(__file__).parent)!r}]\n"
+        "import trial\n"
+        "one = trial.Trial()\n"
+        "one._claim = lambda text, fly: eval(text)\n"
+        "told = [one.fault('claim', text) for text in ('canary()', '1/0', 'bytearray(10**9)', 'sum(range(10**9))', 'exec(\"1\")')]\n"
+        "print(told[0], told[1][:17], *told[2:], sep='\\n')\n"
+    )
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
+    lines = found.stdout.splitlines()
+    assert len(lines) == 5, found.stderr
+    assert "exec of <string>" in lines[0]
+    assert all(lines)
+
+
+@pytest.mark.parametrize("text", ["1e4000", "10**1000", "1" * 400, "exp(1000)"])
+def test_numbers_beyond_the_doubles_are_refused(text):
+    with pytest.raises(InputError, match=r"1\.8e308"):
+        float_array("tau", text)
+
+
+@pytest.mark.parametrize("text", ["root(exp(u*1000)-2, -900, 900)", "root(tan(u)-u, 1, 4000)", "root(sin(u), 1, 1e9)"])
+def test_a_root_that_is_dear_to_isolate_is_refused(text):
+    with pytest.raises(InputError, match="give closer ends"):
+        parse(text)
+
+
+def test_an_unexpected_token_is_shown_short():
+    with pytest.raises(InputError) as found:
+        parse("1" + "a" * 5000)
+    assert len(str(found.value)) < 300
+
+
+def test_an_integer_of_many_digits_is_not_toml():
+    with pytest.raises(InputError, match="is not TOML"):
+        fields_of("f = " + "9" * 5000)
+
+
+@pytest.mark.parametrize("layers", [[[1]], [{}], [1]])
+def test_a_layer_that_is_no_name(layers):
+    with pytest.raises(InputError, match="unknown layer"):
+        Scene(linear(2, 0, 1), tuple(layers), v=(0, 1))
+
+
+def test_a_period_beyond_the_doubles():
+    assert linear("1e-300", "0.999999", "1/2").impact_map(1, 0.3).status in range(6)

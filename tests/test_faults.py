@@ -1,0 +1,205 @@
+"""Faults: killed runs, damaged entries, one cache for two processes, disks that are full."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from singimpact import cache
+from singimpact.codegen import kernels
+from singimpact.scenes import kept
+from singimpact.surface.curve import Curve
+
+SWEEP = [
+    "sweep",
+    "--omega",
+    "2",
+    "--clearance",
+    "0.3",
+    "--restitution",
+    "0.5",
+    "--over",
+    "clearance",
+    "--from",
+    "0.1",
+    "--to",
+    "0.5",
+    "--points",
+    "1000",
+]
+SWEEP += ["--tau", "1", "--v", "0.1", "--impacts", "20", "--workers", "1"]
+MACHINE = """
+import os, sys
+from singimpact.codegen.kernels import compiled
+print(compiled("def twice(x):\\n    return 2 * x\\n", ("twice",))["twice"](1.5))
+"""
+
+
+def started(arguments, folder, **more):
+    environment = os.environ | {"SINGIMPACT_CACHE": str(folder / "cache"), "NUMBA_CACHE_DIR": ""}
+    return subprocess.Popen(
+        [sys.executable, *arguments], env=environment, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, **more
+    )
+
+
+def command(folder, *arguments, **more):
+    return started(["-m", "singimpact", *map(str, arguments)], folder, **more)
+
+
+def drafts(folder):
+    return list(folder.rglob(".draft-*"))
+
+
+def wait_for(found, seconds=300):
+    end = time.monotonic() + seconds
+    while not found():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_an_interrupted_verify_keeps_whole_verdicts_and_resumes(number, tmp_path):
+    place, output = tmp_path / "cache" / "verdicts", tmp_path / "verdicts.txt"
+    run = command(tmp_path, "verify", "s3-slope-r", "e:lin", "e:swan", "-o", output)
+    wait_for(lambda: place.is_dir() and len(list(place.glob("*.verdict"))) > 1)
+    run.send_signal(number)
+    _, told = run.communicate(timeout=300)
+    assert "Traceback" not in told
+    assert not output.exists() or run.returncode == 0
+    assert number == signal.SIGKILL or not drafts(tmp_path)
+    before = {path: path.stat().st_mtime_ns for path in place.glob("*.verdict")}
+    assert before
+    assert all(cache.recall(path) is not None for path in before)
+    again = command(tmp_path, "verify", "s3-slope-r", "e:lin", "e:swan", "-o", output)
+    again.communicate(timeout=300)
+    assert again.returncode == 0
+    assert {path: path.stat().st_mtime_ns for path in before} == before
+    assert output.read_text().strip()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("number", "all_of_them"),
+    [(signal.SIGINT, True), (signal.SIGTERM, True), (signal.SIGTERM, False), (signal.SIGKILL, False)],
+)
+def test_an_interrupted_sweep_leaves_a_whole_file_and_resumes(number, all_of_them, tmp_path):
+    results, output = tmp_path / "kept.npz", tmp_path / "table.txt"
+    run = command(tmp_path, *SWEEP, "--keep", results, "-o", output, start_new_session=True)
+    wait_for(results.exists)
+    (os.killpg if all_of_them else os.kill)(run.pid, number)  # a terminal interrupts the workers too
+    _, told = run.communicate(timeout=300)
+    assert "Traceback" not in told
+    assert not output.exists()
+    assert number == signal.SIGKILL or not drafts(tmp_path)
+    with np.load(results) as found:
+        done = dict(zip(found["index"].tolist(), found["result"].tolist(), strict=True))
+    assert 0 < len(done) < 1000
+    again = command(tmp_path, *SWEEP, "--keep", results, "-o", output)
+    again.communicate(timeout=300)
+    assert again.returncode == 0
+    with np.load(results) as found:
+        assert found["index"].tolist() == list(range(1000))
+        assert {at: found["result"][at].tolist() for at in done} == done
+
+
+DAMAGES = {
+    "empty": lambda old: old[:0],
+    "cut": lambda old: old[:-7],
+    "one bit": lambda old: old[:-30] + bytes([old[-30] ^ 4]) + old[-29:],
+    "no seal": lambda old: old[72:],
+    "other": lambda old: b"{}" + old[:0],
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_damaged_curves_are_named(damage, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
+    kept.keep("key", [Curve("a", np.array([[0.0, 1.0], [2.0, 3.0]]), ("tau", "t"), (), False, 0.1)])
+    assert kept.recall("key")[0].points.tolist() == [[0, 1], [2, 3]]
+    (path,) = (tmp_path / "curves").iterdir()
+    path.write_bytes(DAMAGES[damage](path.read_bytes()))
+    assert kept.recall("key") is None
+    assert str(path) in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_damaged_machine_code_is_named_and_made_again(damage, tmp_path):
+    def ran():
+        return started(["-c", MACHINE], tmp_path).communicate(timeout=300)
+
+    assert ran() == ("3.0\n", "")
+    (path,) = (tmp_path / "cache" / "kernels" / "__pycache__").glob("*.nbc")
+    whole = path.read_bytes()
+    path.write_bytes(DAMAGES[damage](whole))
+    answer, told = ran()
+    assert answer == "3.0\n"
+    assert told.count("\n") == 1
+    assert str(path) in told
+    assert ran() == ("3.0\n", "")
+
+
+def test_a_damaged_kernel_is_named_and_written_again(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
+    path = kernels.filed("y = 1\n")
+    path.write_bytes(b"y = 2\n\xff")
+    assert kernels.filed("y = 1\n").read_text() == "y = 1\n"
+    assert str(path) in capsys.readouterr().err
+
+
+def test_two_processes_share_a_cold_cache(tmp_path):
+    runs = [command(tmp_path, "verify", "s3-dvdt") for _ in range(2)]
+    codes = [started(["-c", MACHINE], tmp_path) for _ in range(2)]
+    told = [run.communicate(timeout=300) for run in runs]
+    assert [run.returncode for run in runs] == [0, 0]
+    assert [err for _, err in told] == ["", ""]
+    assert [run.communicate(timeout=300) for run in codes] == [("3.0\n", "")] * 2
+
+
+FULL = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+"""
+
+
+def test_work_is_done_on_a_full_disk_and_told_once(tmp_path):
+    answer, told = started(["-c", FULL + MACHINE], tmp_path).communicate(timeout=300)
+    assert answer == "3.0\n"
+    assert told.count("\n") == 1, told
+    assert "the work goes on" in told
+
+
+def test_an_output_on_a_full_disk_is_one_line(tmp_path):
+    output = tmp_path / "told.txt"
+    script = FULL + f"from singimpact.cli import main\nmain(['verify', 'e:yeq', '-o', {str(output)!r}])\n"
+    run = started(["-c", script], tmp_path)
+    _, told = run.communicate(timeout=300)
+    assert run.returncode == 2
+    assert "Traceback" not in told
+    assert sum("cannot be written" in line for line in told.splitlines() if "cache" not in line) == 1
+    assert not output.exists()
+    assert not drafts(tmp_path)
+
+
+def test_an_unwritable_cache_folder_is_told_once(tmp_path):
+    (tmp_path / "cache").touch()
+    answer, told = started(["-c", MACHINE], tmp_path).communicate(timeout=300)
+    assert answer == "3.0\n"
+    assert told.count("\n") == 1
+
+
+def test_old_drafts_are_taken_away(tmp_path):
+    old, new = tmp_path / ".draft-old", tmp_path / ".draft-new"
+    for draft in (old, new):
+        draft.touch()
+    os.utime(old, (0, 0))
+    cache.keep(Path(tmp_path) / "entry", b"1")
+    assert not old.exists()
+    assert new.exists()
