@@ -7,6 +7,7 @@ import sys
 import pytest
 from tampering import bumped, changed, leaves
 
+from singimpact import cache
 from singimpact.algebra import certificates
 from singimpact.algebra.checking import accepts
 from singimpact.claims import CLAIMS, run, select
@@ -254,8 +255,10 @@ def test_a_kept_verdict_with_a_damaged_certificate_is_decided_again(tmp_path, mo
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
     run(select(["s4b-M"]), kept=True)
     (path,) = (tmp_path / "verdicts").iterdir()
-    path.write_text(path.read_text().replace('"sign": 1', '"sign": -1'))
-    assert recall("s4b-M", json.loads(path.read_text())["key"]) is None
+    kept = cache.recall(path)
+    assert recall("s4b-M", json.loads(kept)["key"]) is not None
+    cache.keep(path, kept.replace(b'"sign": 1', b'"sign": -1'))
+    assert recall("s4b-M", json.loads(kept)["key"]) is None
     assert run(select(["s4b-M"]), kept=True)[0].kind == "proved"
 
 
