@@ -37,7 +37,17 @@ print(osc.periodic(1, 1)[0].multipliers, osc.flight(1.2, 0.1, 0.05).x, osc.inver
 def checked(script, tmp_path, clone):
     path = tmp_path / "user.py"
     path.write_text(script)
-    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), str(path)]
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--strict",
+        "--follow-imports",
+        "silent",
+        "--cache-dir",
+        str(tmp_path / "cache"),
+        str(path),
+    ]
     return subprocess.run(
         command, cwd=tmp_path, env=os.environ | {"MYPYPATH": str(clone)}, capture_output=True, text=True
     )
