@@ -12,7 +12,8 @@ from singimpact import store
 from singimpact.codegen import kernels
 
 FLIES = (
-    "import singimpact as si; "
+    "import singimpact as si; from singimpact.codegen import interpreted; "
+    "interpreted.PATIENCE = interpreted.Patience(0.0, 0.0); "  # two flights would not pay for compiling
     "print(repr(float(si.linear('2.8', 0, '0.8').impact_map(0.9, 0.005).v)), "
     "repr(float(si.ImpactOscillator('x + x**3', 'cos(2*t)', 0, '0.8').impact_map(0.9, 0.005).v)))"
 )
