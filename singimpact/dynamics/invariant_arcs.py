@@ -309,6 +309,6 @@ def _joined(pieces: list[Piece], frame: Frame) -> list[Curve]:
     for n, chain in enumerate(chains):
         points = np.vstack([chain[0].points, *(piece.points[1:] for piece in chain[1:])])
         marks = (Mark(0, "foot"),) if n == 0 else ()
-        whole = Curve(f"history {chain[0].generation}", points, ("tau", "v"), marks, visible=frame.holds(points))
-        curves += [replace(part, visible=np.ones(len(part), dtype=bool)) for part in whole.parts(whole.visible)]
+        whole = Curve(f"history {chain[0].generation}", points, ("tau", "v"), marks, first_hits=frame.holds(points))
+        curves += [replace(part, first_hits=np.ones(len(part), dtype=bool)) for part in whole.parts(whole.visible)]
     return [curve for curve in curves if len(curve) > 1]

@@ -54,7 +54,7 @@ def _steps(axes: Any, curves: list[Curve], label: str) -> None:
 LAYERS: dict[str, Layer] = {
     "horizon": Layer("horizon", SURFACE, "horizon $H$", _strokes("H")),
     "zero-set": Layer("zero-set", SURFACE, "zero set $Z$", _strokes("Z")),
-    "visible": Layer("horizon", SURFACE, "visible part of $H$", _first_hits("H")),
+    "visible": Layer("visible", SURFACE, "visible part of $H$", _first_hits("H")),
     "shadow": Layer("shadow", SURFACE, "shadow of $H$", _strokes("shadow")),
     "outline": Layer("outline", STATES, "outline $P$", _strokes("P")),
     "discontinuities": Layer("discontinuities", STATES, "discontinuities of $G$", _strokes("jump")),

@@ -6,6 +6,7 @@ A need is a list of curves.  What it is computed from are needs too, so that a f
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import cached_property
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -24,7 +25,7 @@ from singimpact.surface.named_vertices import NamedLine
 if TYPE_CHECKING:
     from singimpact.scenes.scene import Scene
 
-STORED = ("lines", "zero-set", "horizon", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")
+STORED = ("lines", "visible", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")  # the rest costs no flight
 
 
 class Results:
@@ -92,14 +93,20 @@ def _restored(curve: Curve) -> NamedLine:
 
 def _of_surface(name: str) -> Callable[[Results], list[Curve]]:
     def compute(results: Results) -> list[Curve]:
-        known = {"lines": [_restored(curve) for curve in results.get("lines")]}
-        if "horizon" in results.found:
-            known["horizon"] = results.found["horizon"]  # type: ignore[assignment]
+        known: dict[str, list[Any]] = {"lines": [_restored(curve) for curve in results.get("lines")]}
+        if "visible" in results.found:
+            known["horizon"] = results.found["visible"]
         results.surface.take(**known)
         found: list[Curve] = getattr(results.surface, name)
         return found
 
     return compute
+
+
+def _visible(results: Results) -> list[Curve]:
+    """The horizon, with its first hits flown."""
+    curves = _of_surface("horizon")(results)
+    return [replace(curve, first_hits=curve.visible) for curve in curves]
 
 
 def _gamma(results: Results) -> list[Curve]:
@@ -129,9 +136,10 @@ NEEDS: dict[str, tuple[Callable[[Results], list[Curve]], tuple[str, ...]]] = {
     "lines": (_lines, ()),
     "zero-set": (_of_surface("zero_set"), ("lines",)),
     "horizon": (_of_surface("horizon"), ("lines",)),
-    "shadow": (_of_surface("shadow"), ("lines", "horizon")),
-    "outline": (_of_surface("outline"), ("lines", "horizon")),
-    "discontinuities": (_of_surface("discontinuities"), ("lines", "horizon")),
+    "visible": (_visible, ("lines",)),
+    "shadow": (_of_surface("shadow"), ("lines", "visible")),
+    "outline": (_of_surface("outline"), ("lines",)),
+    "discontinuities": (_of_surface("discontinuities"), ("lines", "visible")),
     "gamma": (_gamma, ()),
     "stable-manifolds": (lambda results: _manifolds(results, results.scene.feet), ()),
     "foliation": (_leaves, ()),

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -90,7 +91,8 @@ class Curve:
     ----------
     name : Z, H, P, ... points : shape (n, 2). axes : names of the two columns.
     marks : named vertices. closed : the last vertex is the first again.
-    tolerance : bound on the distance of a vertex from the curve, measured. visible : bool for each vertex, first hits.
+    tolerance : bound on the distance of a vertex from the curve, measured.
+    first_hits : what `visible` is, or a function that finds it: its flights are flown when somebody asks.
     """
 
     name: str
@@ -99,7 +101,12 @@ class Curve:
     marks: tuple[Mark, ...] = ()
     closed: bool = False
     tolerance: float = 0.0
-    visible: Array = field(default_factory=lambda: np.zeros(0, dtype=bool), repr=False)
+    first_hits: Array | Callable[[], Array] = field(default_factory=lambda: np.zeros(0, dtype=bool), repr=False)
+
+    @cached_property
+    def visible(self) -> Array:
+        """Bool for each vertex: it is a first hit."""
+        return self.first_hits() if callable(self.first_hits) else self.first_hits
 
     def __len__(self) -> int:
         return len(self.points)

@@ -6,8 +6,9 @@ velocity x' at the other end takes it to the outline P = p(H) = phi(Z).  Nothing
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,7 @@ class Cusp:
         return self.tau + self.t, self.velocity
 
 
+SURFACE = ("tau", "t")
 CELLS_A_RADIAN = 6  # of the sketch, of the fastest rate that the model shows
 SAME = 1e-6  # a vertex is the first hit when that comes at its time: two crossings nearer than this meet on the picture
 
@@ -124,19 +126,21 @@ class ImpactSurface:
     @cached_property
     def zero_set(self) -> list[Curve]:
         """Z: (tau, t) with v_c = 0, t != 0; `visible` where it is a first hit [s2-zero-set]."""
-        return [self._curve("Z", line.points, ("tau", "t"), line, self._first_ahead(line)) for line in self.lines]
+        return [_curve("Z", line.points, SURFACE, line, partial(self._first_ahead, line)) for line in self.lines]
 
     @cached_property
     def horizon(self) -> list[Curve]:
         """H = iota(Z): (tau, t) where the flight lands with velocity 0; `visible` where it does so first."""
-        return [self._curve("H", _involved(line.points), ("tau", "t"), line, self._first_back(line))
-                for line in self.lines]  # fmt: skip
+        return [
+            _curve("H", _involved(line.points), SURFACE, line, partial(self._first_back, line)) for line in self.lines
+        ]
 
     @cached_property
     def outline(self) -> list[Curve]:
         """P = p(H) = phi(Z): (tau, v) of the launches that graze."""
-        return [self._curve("P", np.stack([line.points.sum(axis=1), line.column], axis=1), ("tau", "v"), line,
-                            back.visible) for line, back in zip(self.lines, self.horizon, strict=True)]  # fmt: skip
+        pairs = ((line, partial(getattr, back, "visible")) for line, back in zip(self.lines, self.horizon, strict=True))
+        return [_curve("P", np.stack([line.points.sum(axis=1), line.column], axis=1), ("tau", "v"), line, visible)
+                for line, visible in pairs]  # fmt: skip
 
     @cached_property
     def discontinuities(self) -> list[Curve]:
@@ -160,12 +164,9 @@ class ImpactSurface:
         for line, curve in zip(self.lines, self.horizon, strict=True):
             ahead = self._hits(self.model, line.points[:, 0], curve.visible)
             behind = np.stack([curve.points[:, 0], curve.points[:, 1] + ahead], axis=1)
-            made = Curve("S", behind, ("tau", "t"), (), curve.closed, line.tolerance, curve.visible)
+            made = Curve("S", behind, SURFACE, (), curve.closed, line.tolerance, curve.visible)
             found += [part for part in made.parts(curve.visible & np.isfinite(ahead)) if len(part) > 1]
         return found
-
-    def _curve(self, name: str, points: Array, axes: tuple[str, str], line: NamedLine, visible: Array) -> Curve:
-        return Curve(name, points, axes, line.marks, line.closed, line.tolerance, visible)
 
     def _first_ahead(self, line: NamedLine) -> Array:
         """Whether t > 0 is the first hit of the flight from rest."""
@@ -185,6 +186,10 @@ class ImpactSurface:
         kept = np.isin(hit.status, (Status.hit, Status.graze))
         found[asked] = np.where(kept, hit.flight_time, np.nan)
         return found
+
+
+def _curve(name: str, points: Array, axes: tuple[str, str], line: NamedLine, first: Callable[[], Array]) -> Curve:
+    return Curve(name, points, axes, line.marks, line.closed, line.tolerance, first)
 
 
 def _is_first(found: Array, t: Array) -> Array:

@@ -14,7 +14,9 @@ SURFACE = {"tau": (-1.2, 1), "t": (-2, 2), "pixels": 300}
 ALONE = {
     "horizon": {"lines", "horizon"},
     "zero-set": {"lines", "zero-set"},
-    "outline": {"lines", "horizon", "outline"},
+    "visible": {"lines", "visible"},
+    "outline": {"lines", "outline"},
+    "discontinuities": {"lines", "visible", "discontinuities"},
     "gamma": {"gamma"},
     "foliation": {"foliation"},
     "stable-manifolds": {"stable-manifolds"},
@@ -44,8 +46,11 @@ def test_a_further_layer_costs_only_itself():
     alone.draw()
     both = scene("horizon", "zero-set")
     both.draw()
-    assert set(both.results.cached) >= {"horizon", "lines"}
-    assert set(both.results.flights) == {"zero-set"}
+    assert both.results.cached == ["lines"]
+    assert both.results.flights == {"horizon": 0, "zero-set": 0}
+    seen = scene("visible", "zero-set")
+    seen.draw()
+    assert {need for need, count in seen.results.flights.items() if count} == {"visible"}
 
 
 def test_a_layer_beside_another_in_one_scene(monkeypatch):

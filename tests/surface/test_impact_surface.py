@@ -141,6 +141,8 @@ def test_only_what_may_be_a_first_hit_is_asked_for():
     lines = surface.lines
     with counted() as count:
         curves = surface.zero_set
+        assert count.flights == 0  # nobody has asked what is visible
+        assert any(curve.visible.any() for curve in curves)
     ahead = sum(int((line.points[:, 1] > 0).sum()) for line in lines)
     assert 0 < count.flights <= ahead < sum(len(line.points) for line in lines)
     assert all((curve.points[curve.visible][:, 1] > 0).all() for curve in curves)
