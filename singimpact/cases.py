@@ -8,7 +8,7 @@ import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -147,9 +147,12 @@ def _run(
         for done in _completed(waiting):
             kept.add(waiting[done], done.result())
             line.show(len(kept.results), len(items), "cases")
-    finally:
-        for future in waiting:
-            future.cancel()
+    except BaseException as error:
+        # a process pool that breaks ends its futures itself, and stumbles over one that somebody else has cancelled
+        if not isinstance(error, BrokenExecutor) and not isinstance(pool, WorkerPool):
+            for future in waiting:
+                future.cancel()
+        raise
 
 
 def _completed(waiting: dict[Future[Any], list[int]]) -> Iterator[Future[Any]]:
@@ -171,24 +174,34 @@ def _portions(indices: list[int], pool: Executor) -> Iterator[list[int]]:
         yield indices[start : start + size]
 
 
-@contextmanager
-def _executor(given: Executor | None, width: int | None) -> Iterator[Executor]:
-    if given is not None:
-        yield given  # the caller's: the caller ends it
-        return
-    import multiprocessing
+class WorkerPool(ProcessPoolExecutor):
+    """Processes that share no locks with this one and end with it; left by an error, it drops what waits.
 
-    # a forked child shares locks of threads that it does not have
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(width, mp_context=context, initializer=end_with_parent) as pool:
-        try:
-            yield pool
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+    Parameters
+    ----------
+    workers : how many; as many as there are cores without it.
+    """
+
+    def __init__(self, workers: int | None = None) -> None:
+        import multiprocessing
+
+        # a forked child shares locks of threads that it does not have
+        super().__init__(workers, mp_context=multiprocessing.get_context("spawn"), initializer=_end_with_parent)
+
+    def __exit__(self, kind: Any, *rest: Any) -> bool | None:
+        if kind is None:
+            return super().__exit__(kind, *rest)
+        # the thread that cancels is then the one that finds a worker dead
+        self.shutdown(wait=False, cancel_futures=True)
+        return None
 
 
-def end_with_parent() -> None:
+def _executor(given: Executor | None, width: int | None) -> AbstractContextManager[Executor]:
+    """The caller's, which the caller ends, or one of our own."""
+    return WorkerPool(width) if given is None else nullcontext(given)
+
+
+def _end_with_parent() -> None:
     """A worker ends when the process it works for is gone: one that waits for cases would wait for ever."""
     import multiprocessing
     import threading

@@ -10,7 +10,6 @@ from singimpact.cli.columns import columns
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import save, suffix_of
-from singimpact.cli.sweep import process_pool
 from singimpact.store import require_writable
 
 
@@ -31,10 +30,11 @@ def command(
     suffix_of(output)
     require_writable(output)
     model = take_model(options)
+    from singimpact.cases import WorkerPool
     from singimpact.dynamics.basins import basins
     from singimpact.scenes.basins import draw_basins
 
-    with process_pool(workers) as pool:
+    with WorkerPool(workers) as pool:
         found = basins(model, tau, v, size, pool, keep)
     save(draw_basins(found).figure, output)
     told = [{"class": name, "share": share} for _, name, share in found.classes]

@@ -104,9 +104,9 @@ def _states(states: int, seed: int, workers: int | None, keep: str | None) -> tu
     from dataclasses import asdict
 
     from singimpact.bench.states import check
-    from singimpact.cli.sweep import process_pool
+    from singimpact.cases import WorkerPool
 
-    with process_pool(workers) as pool:
+    with WorkerPool(workers) as pool:
         rows = check(states, seed, pool, keep)
     header = ["states", "flown", "wrong", "unresolved", "flight time, worst", "v, worst"]
     cells = [[row.kind, str(row.states), str(row.wrong), str(row.unresolved), f"{row.time_error:.3f}",

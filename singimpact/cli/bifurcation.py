@@ -9,7 +9,6 @@ import click
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import save, suffix_of
-from singimpact.cli.sweep import process_pool
 from singimpact.store import require_writable
 
 
@@ -36,10 +35,11 @@ def command(
     suffix_of(output)
     require_writable(output)
     model = take_model(options)
+    from singimpact.cases import WorkerPool
     from singimpact.dynamics.bifurcation import bifurcation
     from singimpact.scenes.basins import draw_bifurcation
 
-    with process_pool(workers) as pool:
+    with WorkerPool(workers) as pool:
         found = bifurcation(model, over, (low, high), points, start, impacts, kept, pool)
     save(draw_bifurcation(found).figure, output)
     if as_json:

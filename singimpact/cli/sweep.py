@@ -37,6 +37,7 @@ def command(
     import numpy as np
 
     from singimpact.algebra.numbers import as_float, constant
+    from singimpact.cases import WorkerPool
     from singimpact.impact_oscillator import sweep
 
     oscillator = take_model(options)
@@ -46,7 +47,7 @@ def command(
     first, last = as_float(constant("--from", low)), as_float(constant("--to", high))
     values = np.linspace(first, last, points).tolist()
     ask = partial(last_state, oscillator.to_dict(), over, tau, v, impacts)
-    with process_pool(workers) as pool:
+    with WorkerPool(workers) as pool:
         found = sweep(ask, values, pool, keep)
     rows = [[value, *map(float, row[:2]), Status(int(row[2])).name] for value, row in zip(values, found, strict=True)]
     if as_json:
@@ -54,16 +55,6 @@ def command(
         emit(as_json_text({"model": oscillator.to_dict(), "impacts": impacts, "cases": told}), output)
     else:
         emit(columns([over, "tau", "v", "status"], [[str(cell) for cell in row] for row in rows]), output)
-
-
-def process_pool(workers: int | None) -> Any:
-    """Processes that share no locks with this one."""
-    import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor
-
-    from singimpact.cases import end_with_parent
-
-    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"), initializer=end_with_parent)
 
 
 def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int, value: float) -> Any:
