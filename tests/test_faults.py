@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -15,6 +16,7 @@ import pytest
 from singimpact import cache
 from singimpact.codegen import kernels
 from singimpact.scenes import kept
+from singimpact.scenes.figures import kept as kept_figures
 from singimpact.surface.curve import Curve
 
 SWEEP = [
@@ -107,6 +109,104 @@ def test_an_interrupted_sweep_leaves_a_whole_file_and_resumes(number, all_of_the
     with np.load(results) as found:
         assert found["index"].tolist() == list(range(1000))
         assert {at: found["result"][at].tolist() for at in done} == done
+
+
+def whole(picture):
+    return picture.read_bytes().endswith(b"IEND\xaeB`\x82")
+
+
+@pytest.mark.slow
+def test_interrupted_figures_are_whole_and_go_on_where_they_were(tmp_path):
+    place, kept_ones = tmp_path / "pictures", tmp_path / "cache" / "figures"
+    run = command(tmp_path, "figure", "all", "-o", place)
+    wait_for(lambda: len(list(place.glob("figure*.png"))) > 1)
+    run.send_signal(signal.SIGINT)
+    _, told = run.communicate(timeout=300)
+    assert "Traceback" not in told
+    assert not drafts(tmp_path)
+    drawn = list(place.glob("figure*.png"))
+    assert 1 < len(drawn) < 17
+    assert all(map(whole, drawn))
+    before = {path: path.stat().st_mtime_ns for path in kept_ones.glob("*.figure")}
+    assert len(before) >= len(drawn)
+    pictures = {path: path.read_bytes() for path in drawn}
+    again = command(tmp_path, "figure", "all", "-o", place)
+    again.communicate(timeout=300)
+    assert again.returncode == 0
+    assert len(list(place.glob("figure*.png"))) == len(list(kept_ones.glob("*.figure"))) == 17
+    assert {path: path.stat().st_mtime_ns for path in before} == before
+    assert {path: path.read_bytes() for path in pictures} == pictures
+
+
+def test_a_figure_that_is_kept_is_not_computed_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
+    first = kept_figures.kept_picture(4)
+    asked = []
+    monkeypatch.setattr(kept_figures, "picture", lambda number: asked.append(number) or first)
+    assert kept_figures.kept_picture(4).to_dict() == first.to_dict()
+    assert asked == []
+    (entry,) = (tmp_path / "figures").iterdir()
+    entry.write_bytes(entry.read_bytes()[:-1])
+    kept_figures.kept_picture(4)
+    assert asked == [4]
+
+
+SCENE = """layers = ["gamma", "stable-manifolds", "foliation"]
+tau = [-1.2, 1.0]
+v = [0, 0.3]
+pixels = 2000
+feet = ["0.6"]
+leaves = 48
+[model]
+f = "x"
+g = "cos(2*t)"
+clearance = "0.7"
+restitution = "0.5"
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_an_interrupted_scene_keeps_its_curves(number, tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    asked = ("scene", tmp_path / "scene.toml", "-o", tmp_path / "scene.png", "--json")
+    run = command(tmp_path, *asked)
+    wait_for(lambda: list((tmp_path / "cache" / "curves").glob("*.curves")))
+    run.send_signal(number)
+    _, told = run.communicate(timeout=300)
+    assert "Traceback" not in told
+    assert not (tmp_path / "scene.png").exists()
+    again = command(tmp_path, *asked)
+    answer, _ = again.communicate(timeout=300)
+    report = json.loads(answer)
+    assert whole(tmp_path / "scene.png")
+    assert "gamma" in report["from_cache"]
+    assert "foliation" not in report["from_cache"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("asked", ["basins", "bifurcation"])
+def test_an_interrupted_picture_of_a_sweep_resumes(asked, tmp_path):
+    output = tmp_path / "picture.png"
+    given = ["--omega", "2.8", "--clearance", "0", "--restitution", "0.8", "--workers", "1"]
+    given += {"basins": ["--size", "280"], "bifurcation": ["--from", "0.1", "--to", "0.3", "--points", "700"]}[asked]
+    given += ["--keep", tmp_path / "kept.npz", "-o", output]
+    run = command(tmp_path, asked, *given)
+    wait_for((tmp_path / "kept.npz").exists)
+    run.send_signal(signal.SIGTERM)
+    _, told = run.communicate(timeout=300)
+    assert "Traceback" not in told
+    assert not output.exists()
+    with np.load(tmp_path / "kept.npz") as found:
+        done = dict(zip(found["index"].tolist(), found["result"], strict=True))
+    again = command(tmp_path, asked, *given)
+    again.communicate(timeout=300)
+    assert again.returncode == 0
+    assert whole(output)
+    with np.load(tmp_path / "kept.npz") as found:
+        everything = dict(zip(found["index"].tolist(), found["result"], strict=True))
+    assert 0 < len(done) < len(everything)
+    assert all(np.array_equal(everything[at], done[at], equal_nan=True) for at in done)
 
 
 DAMAGES = {

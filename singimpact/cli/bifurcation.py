@@ -22,11 +22,12 @@ from singimpact.store import require_writable
 @click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Flown for each.")
 @click.option("--kept", type=click.IntRange(1, 100_000), default=60, show_default=True, help="Of them, shown.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
+@click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give phase, v and end of chatter for each value as JSON.")
 def command(
     over: str, low: str, high: str, points: int, start: tuple[str, str], impacts: int, kept: int, workers: int | None,
-    output: str, as_json: bool, **options: Any,
+    keep: str | None, output: str, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
     """The last impacts of an orbit for values of a number of the model, the clearance if no other is named.
 
@@ -40,7 +41,7 @@ def command(
     from singimpact.scenes.basins import draw_bifurcation
 
     with WorkerPool(workers) as pool:
-        found = bifurcation(model, over, (low, high), points, start, impacts, kept, pool)
+        found = bifurcation(model, over, (low, high), points, start, impacts, kept, pool, keep)
     save(draw_bifurcation(found).figure, output)
     if as_json:
         rows = zip(found.values.tolist(), found.events.tolist(), strict=True)

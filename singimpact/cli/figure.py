@@ -21,8 +21,12 @@ from singimpact.store import folder, write_text
 @click.option("--data", is_flag=True, help="Write the curves as JSON beside each picture.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was written, with seconds of CPU, as JSON.")
 def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> None:
-    """Draw figure N of the paper, 1 to 17, or all, each from a real oscillator, with the claims that it illustrates."""
-    from singimpact.scenes.figures import FIGURES, picture
+    """Draw figure N of the paper, 1 to 17, or all, each from a real oscillator, with the claims that it illustrates.
+
+    What a figure shows is kept in the cache as numbers: a run that was cut off goes on where it was.
+    """
+    from singimpact.scenes.figures import FIGURES
+    from singimpact.scenes.figures.kept import kept_picture
     from singimpact.scenes.figures.rendering import drawn
 
     numbers = _numbers(which, list(FIGURES))
@@ -30,7 +34,7 @@ def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> No
     with ProgressLine() as line:
         for done, number in enumerate(numbers):
             line.show(done, len(numbers), f"figure {number}")
-            start, made = process_time(), picture(number)
+            start, made = process_time(), kept_picture(number)
             target = Path(place) / f"figure{number:02d}.{kind}"
             save(drawn(made), target)
             if data:

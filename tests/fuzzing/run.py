@@ -30,8 +30,10 @@ def main() -> int:
     start, faults, context = time.monotonic(), [], multiprocessing.get_context("spawn")
     parts = [range(at, min(at + PORTION, options.inputs)) for at in range(0, options.inputs, PORTION)]
     with ProcessPoolExecutor(options.workers, mp_context=context) as pool:
-        for done in as_completed(pool.submit(tried, options.seed, part) for part in parts):
+        for at, done in enumerate(as_completed(pool.submit(tried, options.seed, part) for part in parts), 1):
             faults += done.result()
+            if at % 10 == 0:
+                print(f"{at * PORTION} inputs, {len(faults)} faults, {time.monotonic() - start:.0f} s", file=sys.stderr)
     for kind, number, fault in sorted(faults, key=lambda each: each[1])[:100]:
         print(f"{kind} {number}: {fault}\n    {made(kind, options.seed, number)!r:.160}")
     told = ", ".join(f"{count} {kind}" for kind, count in Counter(kind for kind, _, _ in faults).items()) or "none"
