@@ -10,7 +10,7 @@ import numpy as np
 from singimpact.dynamics.chatter import summed
 from singimpact.dynamics.rest import release
 from singimpact.flights.hits import impact_map
-from singimpact.flights.launch import States, horizon_of
+from singimpact.flights.launch import States
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
@@ -109,7 +109,7 @@ def _advance(osc: Oscillator, record: _Record, given: tuple[Any, Any] | None, ho
 
 def _rested(osc: Oscillator, record: _Record) -> bool:
     tau = record.events[-1][0]
-    lifted = release(osc, tau, horizon_of(osc, None) if osc.period is None else 2 * horizon_of(osc, None) / 1000)
+    lifted = release(osc, tau)
     if not np.isfinite(lifted):
         record.end("sticking" if np.isinf(lifted) else "unresolved", lifted)
         return False

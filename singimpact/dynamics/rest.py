@@ -21,13 +21,13 @@ ORDER = 22
 EPSILON = 2.0**-52
 
 
-def release(osc: Oscillator, tau: float, horizon: float) -> float:
+def release(osc: Oscillator, tau: float, horizon: float | None = None) -> float:
     """The first time after tau at which a_c becomes positive; inf when that is not before the horizon.
 
     Parameters
     ----------
     osc : the model. tau : a time at which the mass is pressed against the obstacle.
-    horizon : time after tau at which the search ends.
+    horizon : time after tau at which the search ends; two periods, in which a_c has done all it does, if it has one.
 
     Returns
     -------
@@ -39,6 +39,8 @@ def release(osc: Oscillator, tau: float, horizon: float) -> float:
     >>> release(Oscillator("x", "sin(t)", 0, 1), 4.0, 100.0)
     6.283185307179587
     """
+    if horizon is None:
+        horizon = LIMITS.horizon_time if osc.period is None else 2 * as_float(osc.period)
     start = tau
     longest = 1.0
     while start - tau < horizon:

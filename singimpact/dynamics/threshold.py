@@ -15,7 +15,6 @@ from singimpact.contact.contact import acceleration_jet, force_jet
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.rest import release
 from singimpact.flights.hits import checked_digits, derivative, impact_map
-from singimpact.flights.launch import horizon_of
 from singimpact.flights.sequences import sequence
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
@@ -86,7 +85,7 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     if compare(osc.slope_at_rest(), 1) == 0:
         raise InputError(f"restitution = {osc.restitution} is not accepted: chatter completes only for rho'(0) > -1")
     start = as_float(place)
-    end = release(osc, start, horizon_of(osc, None))
+    end = release(osc, start)
     if not np.isfinite(end):
         return Threshold(np.nan, np.nan, np.int8(Status.unresolved))
     found = _bisected(osc, start, end, most)
@@ -148,7 +147,7 @@ def _refined(osc: Oscillator, place: Any, rough: Threshold, digits: int) -> Thre
 
     with mpmath.workdps(digits + 20):
         tau, v = as_mpf(place, mpmath.mp), mpmath.mpf(float(rough.v))
-        goal = _Gamma(osc, release(osc, float(tau), horizon_of(osc, None)))
+        goal = _Gamma(osc, release(osc, float(tau)))
         small, change = mpmath.mpf(10) ** (-digits - 1), mpmath.inf
         for count in range(SEARCH.first, SEARCH.rounds, SEARCH.more):
             miss, slope = goal.miss(tau, v, count)

@@ -44,7 +44,8 @@ def first_hit(
     tau : launch times, any finite numbers. v : launch velocities >= 0; they broadcast.
     digits : decimal digits; the result then holds mpmath numbers.
     tolerance : relative error allowed in a step of a Taylor flow, and, times ten, of a hit before it is polished.
-    horizon : time after which a flight is given up.
+    horizon : time after which a flight is given up; 1000 periods of g if not given, or 2e5 radians of the fastest
+        motion where those come first.
 
     Returns
     -------

@@ -15,6 +15,7 @@ from singimpact.flights.limits import LIMITS
 from singimpact.flights.phase import reduced
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
+from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 
 
@@ -117,7 +118,22 @@ def horizon_of(osc: Oscillator, horizon: Any) -> float:
         return as_float(tree)
     if osc.period is None:
         return LIMITS.horizon_time
-    return LIMITS.horizon_periods * as_float(osc.period)
+    return min(LIMITS.horizon_periods * as_float(osc.period), LIMITS.horizon_radians / fastest_rate(osc))
+
+
+def fastest_rate(osc: Oscillator) -> float:
+    """A rate that flights show: of the waves and of the free motion; without a closed form, of the period.
+
+    Examples
+    --------
+    >>> fastest_rate(Oscillator("9*x", "cos(2*t)", 0, 1))
+    3.0
+    """
+    form = linear_form(osc)
+    if form is not None:
+        waves = [abs(as_float(wave.rate)) for wave in form.harmonics]
+        return float(max([abs(as_float(form.stiffness)) ** 0.5, abs(as_float(form.damping)), 0.5, *waves]))
+    return max(2.0, 0.0 if osc.period is None else 4 * np.pi / as_float(osc.period))
 
 
 def exact_number(value: float) -> Number:

@@ -17,8 +17,8 @@ from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.flights.hits import first_hit
 from singimpact.flights.inverse import backwards
+from singimpact.flights.launch import fastest_rate
 from singimpact.inputs import refuse
-from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.surface.curve import Curve, Window
@@ -112,7 +112,7 @@ class ImpactSurface:
     @cached_property
     def lines(self) -> list[NamedLine]:
         """Z with its named points and x' at the other end; everything else follows from it."""
-        cell = 1 / (CELLS_A_RADIAN * _fastest(self.model))
+        cell = 1 / (CELLS_A_RADIAN * fastest_rate(self.model))
         made = traced(self._rest.grid, self._rest.y_and_gradient, self.window, cell, self._speed)
         zeros = [tau for _, tau in self.placed_tangencies]
         return [named(line, zeros, self._rest) for line in made]
@@ -210,13 +210,3 @@ def _to_the_end(curve: Curve) -> Array:
 
 def _involved(points: Array) -> Array:
     return np.stack([points.sum(axis=1), -points[:, 1]], axis=1)
-
-
-def _fastest(model: Oscillator) -> float:
-    """A rate that flights at rest show: of the waves and of the free motion, or of the period."""
-    form = linear_form(model)
-    if form is not None:
-        waves = [abs(as_float(wave.rate)) for wave in form.harmonics]
-        return float(max([abs(as_float(form.stiffness)) ** 0.5, abs(as_float(form.damping)), 0.5, *waves]))
-    period = None if model.period is None else as_float(model.period)
-    return max(2.0, 0.0 if period is None else 4 * np.pi / period)

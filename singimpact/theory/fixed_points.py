@@ -22,6 +22,7 @@ from singimpact.inputs import InputError, refuse
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
 MOST_DIGITS = 100_000
+LEAST = Fraction(1, 10**308)  # isolating the roots of a smaller r takes minutes, then hours
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:
 
     Parameters
     ----------
-    r : restitution, a rational number in (0, 1): text, int, Fraction, or a float for its binary value.
+    r : restitution, a rational number from 1e-308 to below 1: text, int, Fraction, or a float for its binary value.
     digits : significant digits, 1 to 100000; radius <= 10^-digits |value|.
 
     Examples
@@ -137,12 +138,12 @@ def __getattr__(name: str) -> Any:
 
 
 def _restitution(value: Any) -> Fraction:
-    accepted = "a rational number with 0 < r < 1, such as '1/2', '0.7' or 0.5"
+    accepted = "a rational number with 1e-308 <= r < 1, such as '1/2', '0.7' or 0.5"
     try:
         rate = as_fraction(constant("r", value))
     except InputError:
         raise refuse("r", value, accepted) from None
-    if rate is None or not 0 < rate < 1:
+    if rate is None or not LEAST <= rate < 1:
         raise refuse("r", value, accepted)
     return rate
 

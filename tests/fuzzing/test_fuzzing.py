@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from singimpact import InputError
+from singimpact import InputError, Status
 from singimpact.algebra.numbers import float_array
 from singimpact.algebra.parsing import parse
 from singimpact.impact_oscillator import linear
 from singimpact.oscillator.files import fields_of
 from singimpact.scenes.scene import Scene
+from singimpact.theory.fixed_points import swan
 
 RUN = [sys.executable, str(Path(__file__).parent / "run.py"), "--workers", "1"]
 
@@ -66,6 +67,20 @@ def test_an_integer_of_many_digits_is_not_toml():
 def test_a_layer_that_is_no_name(layers):
     with pytest.raises(InputError, match="unknown layer"):
         Scene(linear(2, 0, 1), tuple(layers), v=(0, 1))
+
+
+def test_a_forcing_that_hardly_moves_does_not_keep_a_flight_busy():
+    from time import process_time
+
+    start = process_time()
+    step = linear("1e-12", 0, "0.9", damping="0.1").impact_map(0, "0.001")
+    assert step.status == Status.no_return
+    assert process_time() - start < 10
+
+
+def test_a_restitution_whose_roots_take_hours():
+    with pytest.raises(InputError, match="1e-308 <= r < 1"):
+        swan("/".join(["7"] * 1000))
 
 
 def test_a_period_beyond_the_doubles():
