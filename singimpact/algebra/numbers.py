@@ -106,7 +106,7 @@ def as_float(tree: Expression) -> float:
 
     Raises
     ------
-    InputError : the number is larger than every double.
+    InputError : the number is larger than every double, or out of the range of balls too.
 
     Examples
     --------
@@ -114,12 +114,17 @@ def as_float(tree: Expression) -> float:
     1.5707963267948966
     """
     try:
-        value = float(tree.value) if isinstance(tree, Number) else float(_ball(tree, 160).mid())
+        value = float(tree.value) if isinstance(tree, Number) else _middle(_ball(tree, 160))
     except OverflowError:
         value = math.inf
     if not math.isfinite(value):
         raise InputError(f"number = {shown(str(tree))} is not accepted: give one that a double holds, below 1.8e308")
     return value
+
+
+def _middle(ball: Any) -> float:
+    """The middle of a ball that has one: flint puts 0 where a number is out of its range."""
+    return float(ball.mid()) if ball.is_finite() else math.nan
 
 
 def as_mpf(tree: Expression, context: Any) -> Any:

@@ -219,7 +219,9 @@ class _Parser:
             raise self.refusal(f"it has more than {LIMITS.roots} roots")
         pieces = LIMITS.zeros // (self.roots**2 * sum(1 for _ in walk(function)))
         if not low < high or not is_one_root(found, pieces):
-            raise self.refusal(f"{found} is not one zero: the function must change sign once between the two numbers")
+            raise self.refusal(
+                f"{shown(str(found))} is not one zero: the function must change sign once between the two numbers"
+            )
         return found
 
     def named(self, token: str) -> Expression:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,10 @@ class Doubles:
         raise TypeError(f"{value!r} is not a double")
 
     def rational(self, value: Fraction) -> float:
-        return float(value)
+        try:
+            return float(value)
+        except OverflowError:  # atan of such a number is a double all the same
+            return inf if value > 0 else -inf
 
     def pi(self) -> float:
         return np.pi

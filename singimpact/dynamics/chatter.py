@@ -184,6 +184,9 @@ class _Flown:
                 left, error = _rest(self.osc, tau, v, ENDING.order)
                 if error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290:
                     return self._ended(tau + left, error, Status.complete)
+                if not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
+                    status = Status.unresolved
+                    continue
                 wanted = self._more(error, tau), 0.0
             else:
                 wanted = 256, min(_slow(self.osc, tau) * lost, 1e300) if a < 0 else 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from fractions import Fraction
 from functools import lru_cache
 from math import factorial
@@ -13,6 +14,7 @@ from singimpact.algebra.expressions import Expression, Number, evaluate, names_i
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
+from singimpact.algebra.taylor import NotSmooth
 from singimpact.oscillator.model import Oscillator
 
 CANCELLATION = 1 / 32
@@ -47,7 +49,8 @@ def acceleration(osc: Oscillator, tau: np.ndarray[Any, Any], order: int = 0) -> 
     # a big tau loses its phase in double arithmetic, and a derivative has no size to compare with
     doubtful = ~(np.abs(values) >= CANCELLATION * size) | (np.abs(tau) > 64) | (order > 0)
     for index in np.flatnonzero(doubtful):
-        values[index] = float(as_ball(osc, Number(Fraction(float(tau[index]))), order).mid())
+        with suppress(NotSmooth):  # then inf or nan stays, as of any numpy function
+            values[index] = float(as_ball(osc, Number(Fraction(float(tau[index]))), order).mid())
     return values
 
 
@@ -72,12 +75,19 @@ def _resting_float(osc: Oscillator) -> float:
 
 
 def as_ball(osc: Oscillator, tau: Expression, order: int = 0) -> Any:
-    """The derivative of a_c as a ball that is relatively narrow, or that is zero or tiny beyond doubt."""
+    """The derivative of a_c as a ball that is relatively narrow, or that is zero or tiny beyond doubt.
+
+    Raises
+    ------
+    NotSmooth : it is no number there, or out of the range of balls.
+    """
     ball: Any = None
     for bits in BITS:
         ball = _ball(osc, tau, order, bits)
         if ball == 0 or (ball.is_finite() and ball.rel_accuracy_bits() > 64):
             return ball
+    if not ball.is_finite():
+        raise NotSmooth(f"a_c is no finite number at tau = {tau!s:.40}: the model must be smooth there")
     return ball
 
 

@@ -4,12 +4,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from singimpact import InputError, Status
 from singimpact.algebra.numbers import float_array
 from singimpact.algebra.parsing import parse
-from singimpact.impact_oscillator import linear
+from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.files import fields_of
 from singimpact.scenes.scene import Scene
 from singimpact.theory.fixed_points import swan
@@ -81,6 +82,33 @@ def test_a_forcing_that_hardly_moves_does_not_keep_a_flight_busy():
 def test_a_restitution_whose_roots_take_hours():
     with pytest.raises(InputError, match="1e-308 <= r < 1"):
         swan("/".join(["7"] * 1000))
+
+
+@pytest.mark.parametrize("g", ["exp(exp(1000))", "exp(exp(1000))*cos(t)", "cos(t) + exp(exp(1000))"])
+def test_a_number_beyond_the_balls_is_not_zero(g):
+    """flint's ball around such a number has its middle at 0."""
+    with pytest.raises(InputError, match=r"1\.8e308|no finite number"):
+        ImpactOscillator("x", g, "1", "0.5").impact_map(0.3, [0.0, 0.1], horizon=2.0)
+
+
+def test_rest_where_the_forcing_is_no_number():
+    model = ImpactOscillator("x", "log(t)", "1", "0.5")
+    with pytest.raises(InputError, match="a_c is no finite number at tau = -1"):
+        model.impact_map(-1, 0)
+    assert np.isnan(model.acceleration(-1))
+    assert model.impact_map(-1, 0.1, horizon=2.0).status == Status.unresolved
+
+
+def test_a_large_number_within_a_function():
+    assert (
+        linear(1, "atan(1e3000)", "1/2").impact_map(0, 0.1).status == linear(1, "pi/2", "1/2").impact_map(0, 0.1).status
+    )
+
+
+def test_a_refused_root_is_shown_short():
+    with pytest.raises(InputError, match="is not one zero") as found:
+        parse("root(u - 1, 0, 2e-3000)")
+    assert len(str(found.value)) < 500
 
 
 def test_a_period_beyond_the_doubles():
