@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.flights.launch import States, known_accelerations
+from singimpact.flights.launch import States
 from singimpact.flights.tangent import rebound_slope, touching
+from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
@@ -20,7 +21,7 @@ def fill(osc: Oscillator, states: States, time: Array, status: Array, matrix: Ar
     if touch.size:
         matrix[touch] = _at_touch(*touching(osc, states.tau[touch], states.v[touch], time[touch]))
     if rest.size:
-        matrix[rest] = _at_rest(osc, known_accelerations(osc, states)[rest])
+        matrix[rest] = _at_rest(osc, acceleration(osc, states.tau[rest]))
 
 
 def _at_touch(by_tau: Array, by_v: Array) -> Array:
@@ -30,10 +31,10 @@ def _at_touch(by_tau: Array, by_v: Array) -> Array:
     return np.stack([1 + steep[0], steep[1], -steep[0], -steep[1]], axis=-1).reshape(-1, 2, 2)
 
 
-def _at_rest(osc: Oscillator, acceleration: Array) -> Array:
+def _at_rest(osc: Oscillator, push: Array) -> Array:
     """From v > 0: G = (tau - 2 v/a + ..., r v + ...)."""
-    slope = rebound_slope(osc, np.zeros(acceleration.shape))
+    slope = rebound_slope(osc, np.zeros(push.shape))
     with np.errstate(divide="ignore"):
-        delay = np.where(acceleration < 0, -2 / acceleration, np.inf)
-    one = np.ones(acceleration.shape)
+        delay = np.where(push < 0, -2 / push, np.inf)
+    one = np.ones(push.shape)
     return np.stack([one, delay, 0 * one, -slope], axis=-1).reshape(-1, 2, 2)

@@ -18,13 +18,14 @@ from singimpact.flights.carriers import Derivative, Flight, Step
 from singimpact.flights.escape import never_returns
 from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.kernel import Kernel, kernel_of, ready
-from singimpact.flights.launch import States, at_rest, horizon_of, known_accelerations, launches
+from singimpact.flights.launch import States, at_rest, horizon_of, launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
 from singimpact.flights.polish import polished
 from singimpact.flights.tables import STRIDES, table_of
 from singimpact.flights.tangent import rebound_slope, response
 from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.linear import LinearForm
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
@@ -156,7 +157,7 @@ def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> F
     kernel = kernel_of(osc)
     status = np.zeros(states.v.size, dtype=np.int8)
     removed = _removed(osc, states, status)
-    pushes = known_accelerations(osc, states)
+    pushes = acceleration(osc, states.tau)
     numbers = _flown(osc, kernel, states, removed, pushes, status, limit, epsilon)
     # first: what left the range of doubles would be followed again in many digits
     _escapes(osc, kernel.form, states, status, numbers)

@@ -14,7 +14,7 @@ from singimpact.flights.kernel import Kernel, turn
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.phase import reduced
 from singimpact.inputs import InputError, refuse
-from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
+from singimpact.oscillator.acceleration import sign_of_acceleration
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 
@@ -87,11 +87,6 @@ def launches(osc: Oscillator, kernel: Kernel, tau: np.ndarray[Any, Any]) -> np.n
         angle = as_float(wave.rate) * reduced(tau, turn(wave.rate)) + as_float(wave.phase)
         columns += [np.cos(angle), np.sin(angle)]
     return np.stack(columns, axis=1) if columns else np.zeros((tau.size, 1))
-
-
-def known_accelerations(osc: Oscillator, states: States) -> np.ndarray[Any, Any]:
-    """a_c at every launch, to full relative accuracy."""
-    return acceleration(osc, states.tau)
 
 
 def at_rest(osc: Oscillator, tau: Expression) -> tuple[int, int]:

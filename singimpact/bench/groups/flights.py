@@ -14,9 +14,10 @@ from singimpact.bench.problems import FAMILIES, REGIMES, Problem, states
 from singimpact.codegen.kernels import compiled
 from singimpact.flights.hits import doubles
 from singimpact.flights.kernel import kernel_of
-from singimpact.flights.launch import States, known_accelerations, launches
+from singimpact.flights.launch import States, launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.tables import STRIDES, table_of
+from singimpact.oscillator.acceleration import acceleration
 
 TOLERANCES = (1e-6, 1e-9, 1e-12)
 WIDE = 10  # states of an array; some flights take 15 ms each, for doubles cannot tell their digits
@@ -87,7 +88,7 @@ def _loop(problem: Problem, copies: int, tolerance: float) -> Callable[[], float
     kernel, given = kernel_of(osc), States.read(np.full(copies, problem.tau), problem.v)
     p, order = doubles(kernel), degree_for(tolerance)
     start = (launches(osc, kernel, given.tau), given.v.copy(), np.ones(copies, dtype=np.int64),
-             known_accelerations(osc, given))  # fmt: skip
+             acceleration(osc, given.tau))  # fmt: skip
     work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
     status, numbers = np.empty(copies, dtype=np.int8), np.empty((copies, 4))
     space, table = compiled(kernel.text, kernel.names), table_of(kernel, p)
