@@ -1,11 +1,14 @@
-"""The impact map in mpmath arithmetic, from nothing but the exact state: the kernel's own text on mpf.
+"""The impact map in many digits, from nothing but the exact state.
 
-Two runs at different precision must agree to the digits asked for, else the precision grows: half of the digits go in a
-square root at a graze, and no formula is trusted to know how near it is.
+Linear models are flown in balls, which prove the hit.  Where they decide nothing, and for other models, it is the
+kernel's own text on numbers of mpmath: two runs at different precision must agree to the digits asked for, else the
+precision grows: half of the digits go in a square root at a graze, and no formula is trusted to know how near it is.
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -17,12 +20,16 @@ from singimpact.codegen.kernels import FUNCTIONS, plain
 from singimpact.flights.carriers import Flight, Step
 from singimpact.flights.escape import never_returns
 from singimpact.flights.escape_polynomial import never_turns
+from singimpact.flights.flow.balls import linear_flow
 from singimpact.flights.kernel import Kernel, kernel_of
 from singimpact.flights.launch import States, at_rest
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
+
+BITS_A_DIGIT = 3.3219281
+SPARE_BITS = (64, 320)  # beside the digits asked for: at first, and for a phase or a graze that costs more
 
 Outcome = tuple[int, tuple[Any, Any, Any, Any]]
 
@@ -35,7 +42,7 @@ def flights(osc: Oscillator, states: States, digits: int, limit: float) -> Fligh
     status = np.zeros(size, dtype=np.int8)
     fields = [np.empty(size, dtype=object) for _ in range(5)]
     for index in range(size):
-        status[index], numbers = agreed(osc, states, index, digits, limit)
+        status[index], numbers = found(osc, states, index, digits, limit)
         with mpmath.workdps(digits):
             for field, value in zip(fields, (*_shown(status[index], numbers), mpmath.nan), strict=True):
                 field[index] = +mpmath.mpf(value)
@@ -84,6 +91,38 @@ def rebound(osc: Oscillator, velocity: Any) -> Any:
     if not names_in(osc.restitution):
         return abs(as_mpf(osc.restitution, mpmath.mp) * velocity)
     return mpmath.re(evaluate(osc.rho(), {"v": velocity}, Multiprecision(mpmath.mp)))
+
+
+def found(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome:
+    """One flight to `digits` digits: in balls where they prove the hit, else by two precisions that agree."""
+    return _proved(osc, states, index, digits, limit) or agreed(osc, states, index, digits, limit)
+
+
+def _proved(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome | None:
+    """The first hit of a linear model in balls that are narrow enough; None where they decide nothing.
+
+    They take a twentieth of the time of mpmath.
+    """
+    import flint
+    import mpmath
+
+    tau, v = states.exact_tau(index), states.exact_v(index)
+    sign, order = at_rest(osc, tau) if states.v[index] == 0 else (1, -1)
+    for bits in (ceil(digits * BITS_A_DIGIT) + spare for spare in SPARE_BITS):
+        flow = linear_flow(osc, bits)
+        if flow is None or sign <= 0:
+            return None
+        with flint.ctx.workprec(bits):
+            at, speed = (evaluate(tree, {}, flow.balls) for tree in (tau, v))
+            hit = flow.first_hit(at, speed, flow.number(Fraction(limit)), order + 2)
+            if hit is None or hit.time is None:
+                return None
+        numbers = hit.time, hit.velocity
+        if all(part.rel_accuracy_bits() > digits * BITS_A_DIGIT + 4 for part in numbers):
+            with mpmath.workprec(bits):
+                time, velocity = (mpmath.ldexp(*map(int, part.mid().man_exp())) for part in numbers)
+            return int(Status.hit), (time, velocity, mpmath.nan, mpmath.nan)
+    return None
 
 
 def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome:

@@ -7,7 +7,6 @@ models take the kernel's own Taylor steps in wider numbers, at a tolerance far b
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.univariate import precision_of
 from singimpact.codegen.kernels import FUNCTIONS, plain
-from singimpact.flights.flow.balls import LinearFlow
+from singimpact.flights.flow.balls import linear_flow
 from singimpact.flights.kernel import kernel_of
 from singimpact.flights.launch import States
 from singimpact.flights.limits import LIMITS
@@ -28,7 +27,7 @@ NEAR = 1e-6  # a step of Newton beyond this part of the flight is no polishing: 
 def polished(osc: Oscillator, states: States, index: int, time: float) -> list[float] | None:
     """Flight time and velocity of a hit, correctly rounded up to a unit; None where balls do not confirm it."""
     balls = Balls(LIMITS.polish_bits)
-    flow = _linear(osc)
+    flow = linear_flow(osc, balls.bits)
     with precision_of(balls):
         tau, v = (evaluate(tree, {}, balls) for tree in (states.exact_tau(index), states.exact_v(index)))
         try:
@@ -36,17 +35,6 @@ def polished(osc: Oscillator, states: States, index: int, time: float) -> list[f
         except (ArithmeticError, ValueError, TypeError):  # a ball that left the domain of log or a root
             return None
         return None if found is None else [float(part.mid()) for part in found]
-
-
-@lru_cache(maxsize=64)
-def _linear(osc: Oscillator) -> LinearFlow | None:
-    """The flow of a linear model, whatever its restitution; None without a closed form."""
-    balls = Balls(LIMITS.polish_bits)
-    if kernel_of(osc).form is None:
-        return None
-    plain_rebound = Oscillator(osc.force(), osc.forcing(), osc.clearance, 1, period=osc.period)
-    with precision_of(balls):
-        return LinearFlow(plain_rebound, balls.bits)
 
 
 def _by_steps(osc: Oscillator, balls: Balls, tau: Any, v: Any, near: float) -> tuple[Any, Any] | None:

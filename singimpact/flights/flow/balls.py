@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 from singimpact.algebra.balls import Balls
@@ -191,6 +192,24 @@ class LinearFlow:
         """A size far below that of z on the way."""
         height = abs(v) * reach + abs(self.acceleration(tau)) * reach**2 + reach**4
         return height.abs_upper() * self.number(Fraction(1, 2**self.balls.bits))
+
+
+@lru_cache(maxsize=64)
+def linear_flow(osc: Oscillator, bits: int) -> LinearFlow | None:
+    """The flow of a linear model, whatever its restitution; None without a closed form.
+
+    Examples
+    --------
+    >>> linear_flow(Oscillator("x**3", "cos(t)", 0, "1/2"), 100) is None
+    True
+    """
+    import flint
+
+    if linear_form(osc) is None:
+        return None
+    plain_rebound = Oscillator(osc.force(), osc.forcing(), osc.clearance, 1, period=osc.period)
+    with flint.ctx.workprec(bits):
+        return LinearFlow(plain_rebound, bits)
 
 
 def _pair(angle: Any, cosine: Any, sine: Any) -> tuple[Any, Any]:
