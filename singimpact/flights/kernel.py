@@ -135,6 +135,7 @@ def linear_constants(osc: Oscillator, form: LinearForm) -> tuple[Expression, ...
     return tuple(numbers)
 
 
+@lru_cache(maxsize=256)
 def turn(rate: Expression) -> Expression:
     """The time 2 pi/|rate| of a turn."""
     return multiply(number(2 * sign_of(rate)), Pi(), power(rate, number(-1)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -116,6 +117,7 @@ def horizon_of(osc: Oscillator, horizon: Any) -> float:
     return min(LIMITS.horizon_periods * as_float(osc.period), LIMITS.horizon_radians / fastest_rate(osc))
 
 
+@lru_cache(maxsize=256)
 def fastest_rate(osc: Oscillator) -> float:
     """A rate that flights show: of the waves and of the free motion; without a closed form, of the period.
 
