@@ -6,9 +6,21 @@ import difflib
 from collections.abc import Iterable
 from numbers import Integral
 
+LONGEST = 1500  # characters of a refusal
+
 
 class InputError(ValueError):
-    """The caller's mistake, told in one line."""
+    """The caller's mistake, told in one line, whatever was put into it.
+
+    Examples
+    --------
+    >>> len(str(InputError("1" * 5000 + " is not accepted")))
+    1500
+    """
+
+    def __init__(self, sentence: str) -> None:
+        text = " ".join(sentence.split())
+        super().__init__(text if len(text) <= LONGEST else text[: LONGEST - 3] + "...")
 
 
 class Unfinished(RuntimeError):

@@ -147,7 +147,7 @@ def decimal_text(value: Fraction) -> str:
     ('0.1', '1/3')
     """
     if value.denominator == 1:
-        return str(value.numerator)
+        return _digits(value.numerator)
     rest, twos, fives = value.denominator, 0, 0
     while rest % 2 == 0:
         rest, twos = rest // 2, twos + 1
@@ -155,9 +155,18 @@ def decimal_text(value: Fraction) -> str:
         rest, fives = rest // 5, fives + 1
     places = max(twos, fives)
     if rest != 1 or places > 60:
-        return f"{value.numerator}/{value.denominator}"
-    digits = str(abs(value.numerator) * 10**places // value.denominator).rjust(places + 1, "0")
+        return f"{_digits(value.numerator)}/{_digits(value.denominator)}"
+    digits = _digits(abs(value.numerator) * 10**places // value.denominator).rjust(places + 1, "0")
     return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def _digits(value: int) -> str:
+    try:
+        return str(value)
+    except ValueError:  # Python writes no more than 4300
+        import flint
+
+        return str(flint.fmpz(value))
 
 
 def number(value: int | Fraction) -> Number:

@@ -147,7 +147,8 @@ def sign_of(tree: Expression) -> int:
         ball = _ball(tree, bits)
         if ball > 0 or ball < 0:
             return 1 if ball > 0 else -1
-    raise InputError(f"the sign of {tree} is not decided with 4096 bits: write the number as a rational if it is zero")
+    told = "is not decided with 4096 bits: write the number as a rational if it is zero"
+    raise InputError(f"the sign of {shown(str(tree), 200)} {told}")
 
 
 def compare(left: Expression, right: Expression | int) -> int:

@@ -46,7 +46,7 @@ def first_hit(
     digits : decimal digits; the result then holds mpmath numbers.
     tolerance : relative error allowed in a step of a Taylor flow, and, times ten, of a hit before it is polished.
     horizon : time after which a flight is given up; 1000 periods of g if not given, or 2e5 radians of the fastest
-        motion where those come first.
+        motion where those come first. At most 1e7 radians.
 
     Returns
     -------

@@ -111,6 +111,9 @@ def horizon_of(osc: Oscillator, horizon: Any) -> float:
         tree = constant("horizon", horizon)
         if sign_of(tree) <= 0:
             raise refuse("horizon", horizon, "a positive time")
+        longest = LIMITS.longest_radians / fastest_rate(osc)
+        if as_float(tree) > longest:
+            raise refuse("horizon", horizon, f"at most {longest:.3g}, 1e7 radians of the model's fastest motion")
         return as_float(tree)
     if osc.period is None:
         return LIMITS.horizon_time

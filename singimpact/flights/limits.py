@@ -14,6 +14,8 @@ class Limits:
     horizon_periods, horizon_time : default horizon with and without a period of g.
     horizon_radians : of the fastest motion of the model: no default horizon is later. A flight that long takes 0.2 s;
         where the forcing is a million times slower than the free motion, a thousand periods would take hours.
+    longest_radians : of that motion: a horizon that is asked for beyond it is refused, as a flight that long takes half
+        a minute, in compiled code that hears no interruption.
     safety : rounding allowed for, in units of epsilon times the size of the terms; a Horner sum of 25 terms is
         within 2.5 units in practice, a restart of the closed form within 3, so 8 covers both.
     likely : the same, as it is usually: hits with more than their condition explains are polished in balls (70 us),
@@ -36,6 +38,7 @@ class Limits:
     horizon_periods: float = 1000.0
     horizon_time: float = 1e4
     horizon_radians: float = 2e5
+    longest_radians: float = 1e7
     safety: float = 8.0
     likely: float = 16.0
     rough: tuple[float, float] = (1e-14, 1e-13)

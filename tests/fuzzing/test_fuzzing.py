@@ -113,3 +113,18 @@ def test_a_refused_root_is_shown_short():
 
 def test_a_period_beyond_the_doubles():
     assert linear("1e-300", "0.999999", "1/2").impact_map(1, 0.3).status in range(6)
+
+
+def test_a_horizon_that_would_take_years():
+    with pytest.raises(InputError, match=r"horizon = '20' is not accepted: give at most 0\.001"):
+        linear("1e10", 3, 1).impact_map(0, 1, horizon="20")
+
+
+def test_a_number_of_many_digits_is_written():
+    assert str(parse("/".join(["7"] * 4900))).startswith("1/")
+
+
+def test_a_sign_that_is_not_decided_is_told_short():
+    with pytest.raises(InputError, match="is not decided") as found:
+        ImpactOscillator("x", "cos(sqrt(sin(1e3000))*t)", "1", "1/2")
+    assert len(str(found.value)) < 500
