@@ -55,7 +55,7 @@ def taylor_chain(
     since, lost = 0.0, 0.0
     for i in range(count):
         launch[0] = tau + since
-        coefficients(launch, 0.0, 0.0, 0.0, 0.0, 2, p, X, W)
+        coefficients(launch, 0.0, 0.0, 0.0, 0.0, order - order + 2, p, X, W)
         a = 2 * X[2]
         if slow > 0 and a < 0 and 2 * v < -a * slow:
             return i, 0

@@ -39,8 +39,13 @@ class Ends:
     status: Any
 
 
-def after(osc: Oscillator, tau: Any, v: Any, impacts: int) -> Ends:
+def after(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = EPSILON) -> Ends:
     """G^impacts of states with v > 0; an orbit that meets no further impact stays where it is.
+
+    Parameters
+    ----------
+    osc : the model. tau, v : states that broadcast. impacts : flown.
+    tolerance : relative error of a Taylor step; closed forms and what doubles then leave undecided keep to roundings.
 
     Examples
     --------
@@ -55,7 +60,12 @@ def after(osc: Oscillator, tau: Any, v: Any, impacts: int) -> Ends:
     status = np.where(speeds > 0, np.int8(0), np.int8(Status.sticks))
     shift = np.zeros(times.size) if osc.period is None else times - reduced(times, osc.period)
     if table is None:
-        flown = _chained(osc, [times - shift, speeds, status], impacts)
+        flown = _chained(osc, [times - shift, speeds, status], impacts, tolerance)
+        if tolerance > EPSILON and (near := flown[2] == Status.unresolved).any():
+            flown[2][near] = 0
+            again = _chained(osc, [part[near] for part in flown], 1, EPSILON)
+            for part, better in zip(flown, again, strict=True):
+                part[near] = better
         return Ends(*(part.reshape(states.shape)[()] for part in (flown[0] + shift, *flown[1:])))
     padded = [np.resize(part, -(-times.size // lanes.LANES) * lanes.LANES) for part in (times - shift, speeds, status)]
     padded[2][times.size :] = Status.sticks
@@ -64,16 +74,16 @@ def after(osc: Oscillator, tau: Any, v: Any, impacts: int) -> Ends:
     return Ends(*(part.reshape(states.shape)[()] for part in parts))
 
 
-def _chained(osc: Oscillator, parts: list[Any], impacts: int) -> list[Any]:
+def _chained(osc: Oscillator, parts: list[Any], impacts: int, epsilon: float) -> list[Any]:
     """One state after another in Taylor steps."""
-    kernel, order = kernel_of(osc), degree_for(EPSILON)
+    kernel, order = kernel_of(osc), degree_for(epsilon)
     text, trees = scalar(rho_of(osc.restitution), "v", "rebound")
     loops = (chains.taylor_chain, chains.taylor_ends)
     whole = "\n\n".join([kernel.text, text, *(source(loop) for loop in loops)])
     w = np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
     names = (*kernel.names, "rebound", *(loop.__name__ for loop in loops))
     function(whole, names, "taylor_ends", parts[0].size * impacts * PRICES.taylor)(
-        *parts[:2], impacts, w, np.zeros(1), order, horizon_of(osc, None), LIMITS.safety * EPSILON, doubles(kernel),
+        *parts[:2], impacts, w, np.zeros(1), order, horizon_of(osc, None), LIMITS.safety * epsilon, doubles(kernel),
         np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2), np.empty((impacts, 5)), parts[2],
     )  # fmt: skip
     return parts

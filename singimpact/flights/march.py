@@ -32,7 +32,7 @@ def march(
     zero = 0 * v
     time, z, u, noise, shift = zero, zero, v, zero, zero
     if acceleration == acceleration:
-        coefficients(launch, time, z, zero, zero, 2, p, X, W)
+        coefficients(launch, time, z, zero, zero, order - order + 2, p, X, W)  # a literal 2 is compiled for itself
         shift = acceleration / 2 - X[2]
     longest = p[0] * 0 + 1
     for _ in range(10_000_000):

@@ -33,13 +33,14 @@ def stride(
         if code == 1 and s <= horizon:
             return 0, s, slope * s, 0.0, 0.0
     h2, sixth = step * step / 20.0, step * step * step * step * step * step / 46080.0
-    z, u, e, noise, m = 0.0, v, acceleration - p[1] * v, 0.0, 0
+    # a literal 0 is a type of its own: all that takes m would be compiled twice
+    z, u, e, noise, m = 0.0, v, acceleration - p[1] * v, 0.0, last - last
     while True:
         if m == last:
             # the table ends: its last state is the next start, from the closed form and so without accumulated error
             start += last * step
             z0, u0, base = renewed(launch, v, start, z, u, ulp, p, W)
-            z, u, m = z0, u0, 0
+            z, u, m = z0, u0, last - last
             if not abs(z) < 1e100:
                 return 5, start, u, z, base
         z1 = z0 * table[m + 1, 0] + u0 * table[m + 1, 1] + table[m + 1, 2]
@@ -114,7 +115,7 @@ def launched(
     while n < order and term > 1e-18 * v:
         n += 1
         term *= ratio * bound[6 + n] / bound[5 + n]
-    series(0.0, v, n, p, bound, X, W, 0)
+    series(0.0, v, n, p, bound, X, W, n - n)
     X[2] = (acceleration - p[1] * v) / 2
     X[0] = 0.0
     against, power = 0.0, 1.0
