@@ -30,7 +30,7 @@ def test_points_of_the_universal_model(kappa, part):
 def test_foot_of_the_manifold_through_a(r, reference):
     swan = swan_configuration(si.universal(-1, r))
     assert pytest.approx((3, 64 * float(r)), abs=1e-12) == swan.Q
-    assert abs(swan.X - float(reference[f"negswan.model.X.r={r}"])) < 1e-12 * 8
+    assert abs(swan.X - float(reference[f"negswan.model.X.r={r}"])) < 1e-12
 
 
 def test_negative_swan_of_the_linear_oscillator(reference):
