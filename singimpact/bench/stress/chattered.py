@@ -17,6 +17,7 @@ from singimpact.status import Status
 
 FEW = 5  # each of these truths takes a tenth of a second or more
 START = Launch("linear", tau=0.9, v=0.005)
+GAMMA, END = Launch("linear", tau=0.9, restitution=0.5), 1.5 * np.pi / 2.8
 NEAR: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
         "v -> 0": (14, lambda at, off: replace(at, v=off)),
         "omega -> 1": (12, lambda at, off: replace(at, omega=1 + off, tau=2.5)),
@@ -53,30 +54,43 @@ def _on_gamma(at: Launch, tau: float, _: float) -> float:
     return float(threshold(at.model, tau).v)
 
 
+ALONG_GAMMA: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
+        "omega -> 1": NEAR["omega -> 1"],
+        "r -> 0": (3, lambda at, off: replace(at, restitution=off)),
+        "r -> 1": (1.2, lambda at, off: replace(at, restitution=1 - off, tau=1.6)),
+        "a -> 0": (4, lambda at, off: replace(at, tau=END - off))}  # fmt: skip
+
+
 def _threshold(place: str, points: int) -> Iterator[Trial]:
-    for at in _states(place, min(points, 2)):
-        slow = replace(at, restitution=max(at.restitution, 1e-3) if place == "r -> 0" else 0.5)
+    last, near = ALONG_GAMMA[place]
+    for off in powers(min(points, 3), last):
+        slow = near(GAMMA, off)
         found, true = threshold(slow.model, slow.tau), threshold(slow.model, slow.tau, digits=20)
         status = int(found.status), int(true.status)
         kappa = condition(partial(_on_gamma, slow), slow.tau, 1.0, 1e-7)
         yield Trial(str(slow), [float(found.v)], [true.v], [(kappa - 1) * true.v], status)
 
 
-def _gamma_grown(_: str, points: int) -> Iterator[Trial]:
+RATES = {"r -> 0": 1e-3, "r -> 1": 0.9}  # of curves, which are costly
+
+
+def _gamma_grown(place: str, points: int) -> Iterator[Trial]:
     """Vertices beside the threshold over the same phase."""
-    osc = linear("2.8", 0, "0.5")
+    rate = RATES.get(place, 0.5)
+    osc = linear("2.8", 0, rate)
     points_of = np.vstack([curve.points for curve in grown_gamma(osc, Frame(0.6, 2.0, 1.0))])
-    far = 1.5 * np.pi / 2.8 - points_of[:, 0]
-    for off in powers(min(points, 2), 3, 0.3):
+    far = END - points_of[:, 0]
+    for off in powers(min(points, 2), 3 if place == "a -> 0" else 1, 0.3):
         tau, v = points_of[int(np.argmin(np.abs(far - off) + (far < off / 2)))].tolist()
         true = threshold(osc, tau, digits=20)
         kappa = condition(lambda at, _: float(threshold(osc, at).v), tau, 1.0, 1e-7)
-        yield Trial(f"tau = {tau!r}", [v], [true.v], [(kappa - 1) * true.v])
+        yield Trial(f"r = {rate}, tau = {tau!r}", [v], [true.v], [(kappa - 1) * true.v])
 
 
-def _stable_manifold(_: str, points: int) -> Iterator[Trial]:
+def _stable_manifold(place: str, points: int) -> Iterator[Trial]:
     """Chatter from a vertex ends at the foot, to the condition of its end."""
-    osc, foot = linear("2.8", 0, "0.5"), 1.0
+    rate, foot = RATES.get(place, 0.5), END - 1e-3 if place == "a -> 0" else 1.0
+    osc = linear("2.8", 0, rate)
     vertices = np.vstack([curve.points for curve in stable_manifold(osc, Frame(0.2, 1.5, 1.0), foot)])
     for index in np.linspace(2, len(vertices) - 2, min(points, 6)).astype(int).tolist():
         tau, v = vertices[index].tolist()
@@ -86,7 +100,7 @@ def _stable_manifold(_: str, points: int) -> Iterator[Trial]:
         if end.status != Status.complete:
             continue
         kappa = condition(lambda at, speed: float(osc.chatter_limit(at, speed).tau), tau, v)
-        yield Trial(f"tau = {tau!r}, v = {v!r}", [float(end.tau)], [foot], [kappa - 1])
+        yield Trial(f"r = {rate}, tau = {tau!r}, v = {v!r}", [float(end.tau)], [foot], [kappa - 1])
 
 
 def _function(name: str, judge: Callable[..., Iterator[Trial]], places: tuple[str, ...], left_out: str) -> Function:
@@ -98,9 +112,9 @@ FUNCTIONS = (
     _function(
         "threshold",
         _threshold,
-        ("omega -> 1", "r -> 0"),
-        "v is the answer; gamma ends where a = 0; r -> 1 not judged: its enclosure takes minutes",
+        tuple(ALONG_GAMMA),
+        "v is the answer; r up to 0.94, beyond which its enclosure takes minutes",
     ),
-    _function("gamma grown", _gamma_grown, ("a -> 0",), "a curve of one model that ends where a = 0"),
-    _function("stable manifold", _stable_manifold, ("v -> 0",), "a curve of one model that ends where v = 0"),
+    _function("gamma grown", _gamma_grown, ("a -> 0", *RATES), "v is the answer; the curve has no flights of its own"),
+    _function("stable manifold", _stable_manifold, ("v -> 0", "a -> 0", *RATES), "a curve over one foot"),
 )
