@@ -12,6 +12,7 @@ import sys
 import types
 from functools import lru_cache
 from pathlib import Path
+from types import CodeType
 from typing import Any
 
 from singimpact import cache
@@ -93,5 +94,10 @@ def was_compiled(text: str, name: str) -> bool:
 def plain(text: str, functions: dict[str, Any]) -> dict[str, Any]:
     """The namespace of the same text over another arithmetic, which gives `functions` (sin, exp, ...)."""
     space: dict[str, Any] = dict(functions)
-    exec(compile(text, "<kernel>", "exec"), space)
+    exec(_parsed(text), space)
     return space
+
+
+@lru_cache(maxsize=64)
+def _parsed(text: str) -> CodeType:
+    return compile(text, "<kernel>", "exec")
