@@ -8,15 +8,16 @@ from time import process_time
 import click
 
 from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import save
+from singimpact.cli.pictures import PICTURES, save
 from singimpact.inputs import refuse
 from singimpact.progress import ProgressLine
-from singimpact.store import folder, write_text
+from singimpact.store import folder, require_writable, write_text
 
 
 @click.command(short_help="the paper's figures, from computed data")
 @click.argument("which", metavar="N|all")
-@click.option("-o", "--output", metavar="DIR", default=".", show_default=True, help="A folder for the pictures.")
+@click.option("-o", "--output", metavar="DIR", default=".", show_default=True,
+              help="A folder for the pictures, or for one figure a file ending in .png, .pdf or .svg.")  # fmt: skip
 @click.option("--format", "kind", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
 @click.option("--data", is_flag=True, help="Write the curves as JSON beside each picture.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was written, with seconds of CPU, as JSON.")
@@ -30,12 +31,11 @@ def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> No
     from singimpact.scenes.figures.rendering import drawn
 
     numbers = _numbers(which, list(FIGURES))
-    place, written = folder(output), []
+    targets, written = _targets(output, numbers, kind), []
     with ProgressLine() as line:
         for done, number in enumerate(numbers):
             line.show(done, len(numbers), f"figure {number}")
-            start, made = process_time(), kept_picture(number)
-            target = Path(place) / f"figure{number:02d}.{kind}"
+            start, made, target = process_time(), kept_picture(number), targets[done]
             save(drawn(made), target)
             if data:
                 write_text(target.with_suffix(".json"), as_json_text(made.to_dict()) + "\n")
@@ -46,6 +46,16 @@ def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> No
     else:
         for _, title, claims, file, _ in written:
             click.echo(f"{file}  {title} ({', '.join(claims)})")
+
+
+def _targets(output: str, numbers: list[int], kind: str) -> list[Path]:
+    """Where each figure goes; the folder is there."""
+    if Path(output).suffix.lower() not in PICTURES:
+        return [folder(output) / f"figure{number:02d}.{kind}" for number in numbers]
+    if len(numbers) > 1:
+        raise refuse("output", output, "a folder: these are several figures")
+    require_writable(output)
+    return [Path(output)]
 
 
 def _numbers(which: str, known: list[int]) -> list[int]:

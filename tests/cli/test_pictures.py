@@ -79,3 +79,14 @@ def test_basins_and_bifurcation(capsys, tmp_path):
                      "-o", tmp_path / "c.png")  # fmt: skip
     assert code == 0
     assert (tmp_path / "c.png").exists()
+
+
+def test_one_figure_as_a_file_of_its_own(capsys, tmp_path):
+    code, told, _ = run(capsys, "figure", "4", "-o", tmp_path / "cusp.svg")
+    assert code == 0
+    assert "cusp.svg" in told
+    assert (tmp_path / "cusp.svg").read_text().startswith("<?xml")
+    code, _, error = run(capsys, "figure", "all", "-o", tmp_path / "all.svg")
+    assert code == 2
+    assert "several figures" in error
+    assert not (tmp_path / "all.svg").exists()
