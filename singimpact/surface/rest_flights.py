@@ -65,10 +65,6 @@ class RestFlights:
         both = np.array([path[0] for path in paths]).reshape(len(tau), 2)
         return both[:, 0], both[:, 1]
 
-    def slopes(self, tau: Array, t: Array, velocity: Array) -> Array:
-        """dF/dtau: the launch moved at rest is a launch with -a, so it is x' - a dx/dv."""
-        return np.asarray(velocity - self.acceleration(tau) * self.by_speed(tau, t)[:, 0])
-
     def by_speed(self, tau: Array, t: Array) -> Array:
         """Derivatives of x and x' at time t by the launch velocity, shape (n, 2)."""
         found = np.empty((len(tau), 2))
@@ -86,16 +82,26 @@ class RestFlights:
         there = float(evaluate(self.model.forcing(), {"t": tau[0] + t[0]}, DOUBLES) - pull)
         return np.array([[velocity[0] - push * by_speed[0], velocity[0]], [there - push * by_speed[1], there]])
 
-    def y_and_gradient(self, points: Array) -> tuple[Array, Array, Array]:
-        """y, (dy/dtau, dy/dt) and x' at points (tau, t); at t = 0 by their limits, where a_c = 0."""
+    def y_and_gradient(self, points: Array) -> tuple[Array, Array, Array, Array]:
+        """y, its gradient by (tau, t), x' and its gradient at points; at t = 0 by their limits, where a_c = 0."""
         tau, t = points.T
         there = t != 0
         y, gradient, velocity = self.acceleration(tau) / 2, np.empty((len(t), 2)), np.zeros(len(t))
+        bend = np.zeros((len(t), 2))
         slope = np.asarray(evaluate(self._slope, {"t": tau}, DOUBLES) + 0.0 * tau)
         gradient[:, 0], gradient[:, 1] = slope / 2, slope / 6
         tau, t = tau[there], t[there]
         height, velocity[there] = self.ends(tau, t)
-        by_tau = self.slopes(tau, t, velocity[there])
+        push, by_speed = self.acceleration(tau), self.by_speed(tau, t)
+        # the launch moved at rest is a launch with -a
+        by_tau, late = velocity[there] - push * by_speed[:, 0], self._late(tau + t, height, velocity[there])
+        bend[there] = np.stack([late - push * by_speed[:, 1], late], axis=1)
         y[there] = height / t**2
         gradient[there] = np.stack([by_tau / t**2, velocity[there] / t**2 - 2 * y[there] / t], axis=1)
-        return y, gradient, velocity
+        return y, gradient, velocity, bend
+
+    def _late(self, when: Array, height: Array, velocity: Array) -> Array:
+        """x'' at the end of a flight."""
+        place = {"x": as_float(self.model.clearance) + height, "xdot": velocity}
+        pull = evaluate(self.model.force(), place, DOUBLES)
+        return np.asarray(evaluate(self.model.forcing(), {"t": when}, DOUBLES) - pull + 0.0 * when)

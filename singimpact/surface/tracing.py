@@ -17,7 +17,8 @@ from singimpact.inputs import InputError
 from singimpact.surface.curve import Window
 
 Array = np.ndarray[Any, Any]
-Gradient = Callable[[Array], tuple[Array, Array, Array]]  # points -> y, gradient, further column
+Gradient = Callable[[Array], tuple[Array, Array, Array, Array]]
+"""Points -> y, its gradient, a further column, and the gradient of that."""
 Grid = Callable[[Array, Array], Array]
 
 
@@ -62,7 +63,7 @@ def traced(grid: Grid, gradient: Gradient, window: Window, cell: float, scale: f
 
     Parameters
     ----------
-    grid, gradient : y on a grid, and y, its gradient and a further column at points.
+    grid, gradient : y on a grid; y, its gradient, a further column and the gradient of that at points.
     cell : the largest cell that resolves y. scale : of the column, beside the size of the window, for the spacing.
     """
     axes = _axes(window, cell)
@@ -227,13 +228,14 @@ def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array, Arra
     column = np.full(len(points), np.nan)
     moving = np.arange(len(points))
     for _ in range(SETTINGS.rounds):
-        y, slope, column[moving] = gradient(points[moving])
+        y, slope, column[moving], bend = gradient(points[moving])
         slopes[moving] = slope
         with np.errstate(all="ignore"):
             move = -(y / (slope**2).sum(axis=1))[:, None] * slope
         size = np.hypot(*move.T) / (1 + np.abs(points[moving]).max(axis=1))
         sound = np.isfinite(size)
         points[moving[sound]] += move[sound]
+        column[moving[sound]] += (bend[sound] * move[sound]).sum(axis=1)
         step[moving] = np.where(sound, size, np.inf)
         moving = moving[sound & (size > SETTINGS.close / 8)]
         if not moving.size:

@@ -56,6 +56,12 @@ def test_wrong_status_fails_and_no_trial_too():
     assert worst("f", "v -> 0", lambda _: iter([]), 1).failed
 
 
+def test_vertices_keep_their_digits():
+    cells = stressed(chosen(["zero_set", "outline"], "t -> 0"), QUICK)
+    assert [cell.failed for cell in cells] == [False, False]
+    assert all(cell.trials > QUICK for cell in cells)
+
+
 @pytest.mark.parametrize("place", PLACES)
 def test_impact_map_and_its_derivative_keep_their_digits(place):
     cells = [cell for name in ("impact_map", "derivative") for cell in stressed(chosen([name], place), QUICK)]
