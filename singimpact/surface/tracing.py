@@ -28,6 +28,8 @@ class TraceSettings:
     rounds : of Newton, and of halving. deviation : of a chord from the curve, in points of the picture.
     longest : chord, in points of the picture: where a curve goes out of sight is known to one chord.
     finest : times a grid is made finer around an extremum of y. least_cells, most_cells : of the sketch, a side.
+    finer_tau, finer_t : parts of a cell in the sketch. A thin piece that is cut there is walked along, which costs far
+        more flights than a second column; and one flight gives all of a column.
     most_steps : along a small piece. turn : the least cosine of the turn in one step.
     across : the largest sine of a chord of the sketch with the curve at its ends.
     """
@@ -41,6 +43,8 @@ class TraceSettings:
     most_steps: int = 2000
     turn: float = 0.9
     across: float = 0.8
+    finer_tau: int = 2
+    finer_t: int = 4
     least_cells: int = 40
     most_cells: int = 600
 
@@ -87,11 +91,11 @@ def _repeats(new: Polyline, old: Polyline) -> bool:
 
 
 def _axes(window: Window, cell: float) -> tuple[Array, Array]:
-    def axis(low: float, high: float) -> Array:
-        cells = int(np.clip(np.ceil((high - low) / cell), SETTINGS.least_cells, SETTINGS.most_cells))
-        return np.linspace(low, high, cells + 1)
+    def axis(ends: tuple[float, float], finer: int) -> Array:
+        cells = max(int(np.ceil((ends[1] - ends[0]) / cell)), SETTINGS.least_cells)
+        return np.linspace(*ends, min(finer * cells, SETTINGS.most_cells) + 1)
 
-    return axis(*window.tau), axis(*window.t)
+    return axis(window.tau, SETTINGS.finer_tau), axis(window.t, SETTINGS.finer_t)
 
 
 def _sketched(axes: tuple[Array, Array], values: Array) -> list[Array]:
