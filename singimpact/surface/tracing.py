@@ -95,7 +95,9 @@ def _axes(window: Window, cell: float) -> tuple[Array, Array]:
         cells = max(int(np.ceil((ends[1] - ends[0]) / cell)), SETTINGS.least_cells)
         return np.linspace(*ends, min(finer * cells, SETTINGS.most_cells) + 1)
 
-    return axis(window.tau, SETTINGS.finer_tau), axis(window.t, SETTINGS.finer_t)
+    columns = axis(window.tau, 1)
+    fine = columns[1] - columns[0] > SETTINGS.longest * window.pixel  # than the chords that are drawn
+    return axis(window.tau, SETTINGS.finer_tau) if fine else columns, axis(window.t, SETTINGS.finer_t)
 
 
 def _sketched(axes: tuple[Array, Array], values: Array) -> list[Array]:
@@ -220,7 +222,7 @@ def _in_order(points: Array, step: Array, slope: Array) -> bool:
     length = np.hypot(*chord.T)
     with np.errstate(all="ignore"):
         along = [np.abs((chord * side).sum(axis=1)) / (length * np.hypot(*side.T)) for side in (slope[:-1], slope[1:])]
-    return bool(np.all((np.maximum(*along) < SETTINGS.across) | (length < 1e-9)))
+    return bool(np.all((np.minimum(*along) < SETTINGS.across) | (length < 1e-9)))
 
 
 def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array, Array]:
@@ -232,19 +234,25 @@ def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array, Arra
     column = np.full(len(points), np.nan)
     moving = np.arange(len(points))
     for _ in range(SETTINGS.rounds):
-        y, slope, column[moving], bend = gradient(points[moving])
-        slopes[moving] = slope
-        with np.errstate(all="ignore"):
-            move = -(y / (slope**2).sum(axis=1))[:, None] * slope
+        y, slope, value, bend = gradient(points[moving])
+        slopes[moving], column[moving] = slope, value
+        move, value = _step(y, slope, value, bend)
         size = np.hypot(*move.T) / (1 + np.abs(points[moving]).max(axis=1))
         sound = np.isfinite(size)
         points[moving[sound]] += move[sound]
-        column[moving[sound]] += (bend[sound] * move[sound]).sum(axis=1)
+        column[moving[sound]] = value[sound]
         step[moving] = np.where(sound, size, np.inf)
         moving = moving[sound & (size > SETTINGS.close / 8)]
         if not moving.size:
             break
     return points, column, step, slopes
+
+
+def _step(y: Array, slope: Array, column: Array, bend: Array) -> tuple[Array, Array]:
+    """The step to the curve, to first order, and the column there."""
+    with np.errstate(all="ignore"):
+        move = -(y / (slope**2).sum(axis=1))[:, None] * slope
+        return move, column + (bend * move).sum(axis=1)
 
 
 def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, scale: float) -> tuple[Array, Array]:
@@ -256,15 +264,24 @@ def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, sc
         if not open_.size:
             return points, column
         middle = (points[open_] + points[open_ + 1]) / 2
-        place, value, step, _ = newton(middle, gradient)
         half = (column[open_] + column[open_ + 1]) / 2
-        far = np.hypot(np.hypot(*(place - middle).T), (value - half) / scale * window.pixel * window.pixels)
         chord = np.hypot(*(points[open_ + 1] - points[open_]).T)
-        sound = (step < SETTINGS.close) & (np.hypot(*(place - middle).T) < chord)
-        added = sound & ((far > limit) | (chord > SETTINGS.longest * window.pixel))
+        long = chord > SETTINGS.longest * window.pixel
+
+        def shows(away: Array, apart: Array) -> Array:
+            """Whether the curve leaves a chord by more than the picture hides."""
+            return np.hypot(away, apart / scale * window.pixel * window.pixels) > limit
+
+        # one step towards the curve tells how far it is: most chords are good, and cost no more than that
+        move, value = _step(*gradient(middle))
+        added = (np.hypot(*move.T) < chord) & (shows(np.hypot(*move.T), value - half) | long)
+        place, value, step, _ = newton((middle + move)[added], gradient)
+        away = np.hypot(*(place - middle[added]).T)
+        sound = (step < SETTINGS.close) & (away < chord[added]) & (shows(away, value - half[added]) | long[added])
+        added[added] = sound
         checked[open_[~added]] = True
         at = open_[added] + 1
-        points, column = np.insert(points, at, place[added], axis=0), np.insert(column, at, value[added])
+        points, column = np.insert(points, at, place[sound], axis=0), np.insert(column, at, value[sound])
         split = np.insert(checked, at, False)
         split[at + np.arange(at.size) - 1] = False
         checked = split
