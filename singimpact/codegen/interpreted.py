@@ -74,6 +74,11 @@ def function(text: str, names: tuple[str, ...], name: str, cost: float) -> Calla
     return run
 
 
+def forget() -> None:
+    """Count what was interpreted from the start again, as a new process does."""
+    _SPENT.clear()
+
+
 def _patient(text: str, name: str, cost: float) -> bool:
     spent = _SPENT.get(text, 0.0) + cost
     if spent > PATIENCE.fresh or (spent > PATIENCE.kept and was_compiled(text, name)):

@@ -19,7 +19,7 @@ class Limits:
     safety : rounding allowed for, in units of epsilon times the size of the terms; a Horner sum of 25 terms is
         within 2.5 units in practice, a restart of the closed form within 3, so 8 covers both.
     likely : the same, as it is usually: hits with more than their condition explains are polished in balls (70 us),
-        one of 15 random states, and of those near a graze four of 10; without a closed form in Taylor steps (8 ms).
+        one of 15 random states, and of those near a graze four of 10; without a closed form in Taylor steps (11 ms).
     rough : a rounding of the flight time and of x' below this, relative, is never polished.
     likely_steps : the share of it that a Taylor flow has, relative to the size of its velocities.
     likely_phase : the share of it that the phases of a closed form lose in a radian of time.
@@ -44,8 +44,8 @@ class Limits:
     rough: tuple[float, float] = (1e-14, 1e-13)
     likely_steps: float = 1.0
     likely_phase: float = 1 / 64
-    polish_bits: int = 160
-    polish_order: int = 30
+    polish_bits: int = 192
+    polish_order: int = 40
     derivatives_at_rest: int = 12
     settled: int = 200
     settling_digits: tuple[int, int] = (50, 120)

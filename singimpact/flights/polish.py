@@ -64,10 +64,10 @@ def _by_steps(osc: Oscillator, balls: Balls, tau: Any, v: Any, near: float) -> t
 
 
 def _step(X: Any, order: int) -> float:
-    """The step whose last two terms are below 2^-90 of the size of the flight."""
+    """The step whose last two terms are below 2^-110 of the size of the flight."""
     size = max(abs(float(X[n].mid())) for n in range(4)) or 1.0
     last = (max(abs(float(X[n].mid())) / size, 1e-300) ** (1 / n) for n in (order - 1, order))
-    return float(2.0 ** (-90 / order) / max(last))
+    return float(2.0 ** (-110 / order) / max(last))
 
 
 def _moved(X: Any, order: int, h: Any) -> tuple[Any, Any]:

@@ -1,6 +1,6 @@
 """`bench figures`: what each of the paper's figures costs, computed and drawn; and a zero set beside a grid's contour.
 
-The first time includes the curves, and kernels that were not compiled yet; then the numbers come from the cache.
+The first time computes the curves, by kernels as a new process has them; then the numbers come from the cache.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy as np
 
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import contours
+from singimpact.codegen.interpreted import forget
 from singimpact.impact_oscillator import linear
 from singimpact.scenes.figures import FIGURES, figure
 from singimpact.scenes.figures.kept import kept_picture
@@ -38,6 +39,7 @@ def cases(effort: Effort) -> Iterator[Case]:
 
 
 def _whole(number: int) -> list[None]:
+    forget()
     figure(number)
     return [None]
 
