@@ -28,8 +28,8 @@ class TraceSettings:
     rounds : of Newton, and of halving. deviation : of a chord from the curve, in points of the picture.
     longest : chord, in points of the picture: where a curve goes out of sight is known to one chord.
     finest : times a grid is made finer around an extremum of y. least_cells, most_cells : of the sketch, a side.
-    finer_tau, finer_t : parts of a cell in the sketch. A thin piece that is cut there is walked along, which costs far
-        more flights than a second column; and one flight gives all of a column.
+    finer_tau, finer_t : parts of a cell in the sketch, along tau at most. A thin piece that is cut there is walked
+        along, which costs far more flights than further columns; and one flight gives all of a column.
     most_steps : along a small piece. turn : the least cosine of the turn in one step.
     across : the largest sine of a chord of the sketch with the curve at its ends.
     """
@@ -43,7 +43,7 @@ class TraceSettings:
     most_steps: int = 2000
     turn: float = 0.9
     across: float = 0.8
-    finer_tau: int = 2
+    finer_tau: int = 8
     finer_t: int = 4
     least_cells: int = 40
     most_cells: int = 600
@@ -91,13 +91,16 @@ def _repeats(new: Polyline, old: Polyline) -> bool:
 
 
 def _axes(window: Window, cell: float) -> tuple[Array, Array]:
-    def axis(ends: tuple[float, float], finer: int) -> Array:
-        cells = max(int(np.ceil((ends[1] - ends[0]) / cell)), SETTINGS.least_cells)
-        return np.linspace(*ends, min(finer * cells, SETTINGS.most_cells) + 1)
+    def axis(ends: tuple[float, float], finer: float) -> Array:
+        return np.linspace(*ends, min(int(np.ceil(finer * cells(ends))), SETTINGS.most_cells) + 1)
 
-    columns = axis(window.tau, 1)
-    fine = columns[1] - columns[0] > SETTINGS.longest * window.pixel  # than the chords that are drawn
-    return axis(window.tau, SETTINGS.finer_tau) if fine else columns, axis(window.t, SETTINGS.finer_t)
+    def cells(ends: tuple[float, float]) -> int:
+        return max(int(np.ceil((ends[1] - ends[0]) / cell)), SETTINGS.least_cells)
+
+    # no wider than the chords that are drawn: a picture that shows smaller pieces looks for smaller ones
+    chords = (window.tau[1] - window.tau[0]) / (SETTINGS.longest * window.pixel)
+    finer = float(np.clip(chords / cells(window.tau), 1, SETTINGS.finer_tau))
+    return axis(window.tau, finer), axis(window.t, SETTINGS.finer_t)
 
 
 def _sketched(axes: tuple[Array, Array], values: Array) -> list[Array]:

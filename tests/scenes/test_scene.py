@@ -84,6 +84,8 @@ NEAR_SWAN = {"tau": (-1.2, 1), "t": (-2, 2), "v": (0, 0.3)}
         (("gamma",), "0.3", WIDE),
         (("stable-manifolds",), "0.3", {"tau": (0, 2.5), "v": (0, 0.5), "feet": ("1.5", "1.8")}),
         *((layers, "0.7", NEAR_SWAN) for layers in (("gamma",), ("foliation",), ("discontinuities",))),
+        *((("outline",), clearance, NEAR_SWAN) for clearance in ("0.97", "0.99")),
+        (("zero-set",), "0.95", {"tau": (-1, 5), "t": (-3, 3)}),
         (("discontinuities", "gamma", "foliation"), "0.7", NEAR_SWAN),
     ],
 )
