@@ -67,6 +67,24 @@ def recall(place: Path) -> bytes | None:
     return content
 
 
+@lru_cache(maxsize=8)
+def source_digest(folder: Path, without: tuple[str, ...] = ()) -> str:
+    """The digest of the Python files of a folder, those whose path begins with one of `without` left out.
+
+    Examples
+    --------
+    >>> here = Path(__file__).parent
+    >>> source_digest(here, ("cli/",)) == source_digest(here)
+    False
+    """
+    digest = hashlib.sha256()
+    for path in sorted(folder.rglob("*.py")):
+        part = path.relative_to(folder).as_posix()
+        if not part.startswith(without):
+            digest.update(part.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
 def damaged(place: Path, reason: str) -> None:
     """Name an entry that cannot be used."""
     tell(f"cache entry {shown(str(place), 300)} is damaged ({reason}): it is made again")

@@ -9,6 +9,8 @@ from typing import Any
 
 from singimpact.algebra.expressions import Expression, Root, evaluate
 
+BITS_A_DIGIT = 3.3219281  # log2 10, rounded up
+
 
 @dataclass(frozen=True)
 class Balls:

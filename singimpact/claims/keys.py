@@ -17,22 +17,20 @@ from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
+from singimpact.cache import source_digest
 from singimpact.claims.claim import Claim
 
 LIBRARIES = ("sympy", "numpy", "scipy", "python-flint", "mpmath", "numba")
 SECTIONS = "singimpact.claims.sections"
+ABOVE = ("claims/sections/", "cli/", "documents/", "scenes/", "bench/", "generated/")  # what no verdict depends on
 
 
 @lru_cache(maxsize=1)
 def ground() -> str:
     """The digest of everything below the sections: the package's source, Python and the libraries."""
-    root = Path(__file__).parents[1]
-    digest = hashlib.sha256(repr((sys.version_info[:2], [version(name) for name in LIBRARIES])).encode())
-    for path in sorted(root.rglob("*.py")):
-        part = path.relative_to(root).as_posix()
-        if not part.startswith(("claims/sections/", "cli/", "documents/", "scenes/", "bench/", "generated/")):
-            digest.update(part.encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()
+    source = source_digest(Path(__file__).parents[1], ABOVE)
+    libraries = repr((sys.version_info[:2], [version(name) for name in LIBRARIES]))
+    return hashlib.sha256((libraries + source).encode()).hexdigest()
 
 
 def key_of(claim: Claim, below: Mapping[str, str]) -> str:

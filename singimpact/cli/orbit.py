@@ -10,9 +10,8 @@ import click
 from singimpact.cli.columns import columns
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.pictures import PICTURES
 from singimpact.store import written
-
-PICTURES = (".png", ".pdf", ".svg")
 
 
 @click.command(short_help="fly many impacts; -o draws x(t)")

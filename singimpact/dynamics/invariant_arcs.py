@@ -22,7 +22,7 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-from singimpact.surface.curve import Curve, Mark, distances
+from singimpact.surface.curve import STATES, Curve, Mark, distances
 from singimpact.theory.formulas import arc_in_numbers
 from singimpact.theory.places import points_of
 from singimpact.theory.power_series import PowerSeries
@@ -309,6 +309,6 @@ def _joined(pieces: list[Piece], frame: Frame) -> list[Curve]:
     for n, chain in enumerate(chains):
         points = np.vstack([chain[0].points, *(piece.points[1:] for piece in chain[1:])])
         marks = (Mark(0, "foot"),) if n == 0 else ()
-        whole = Curve(f"history {chain[0].generation}", points, ("tau", "v"), marks, first_hits=frame.holds(points))
+        whole = Curve(f"history {chain[0].generation}", points, STATES, marks, first_hits=frame.holds(points))
         curves += [replace(part, first_hits=np.ones(len(part), dtype=bool)) for part in whole.parts(whole.visible)]
     return [curve for curve in curves if len(curve) > 1]

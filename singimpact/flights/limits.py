@@ -12,7 +12,7 @@ class Limits:
     Parameters
     ----------
     horizon_periods, horizon_time : default horizon with and without a period of g.
-    horizon_radians : of the fastest motion of the model: no default horizon is later. A flight that long takes 0.2 s;
+    horizon_radians : of the fastest motion of the model: no default horizon is later. A flight that long takes 0.6 s;
         where the forcing is a million times slower than the free motion, a thousand periods would take hours.
     longest_radians : of that motion: a horizon that is asked for beyond it is refused, as a flight that long takes half
         a minute, in compiled code that hears no interruption.

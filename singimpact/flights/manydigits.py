@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.balls import BITS_A_DIGIT
 from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_mpf
 from singimpact.algebra.rings import Multiprecision
@@ -28,7 +29,6 @@ from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
-BITS_A_DIGIT = 3.3219281
 SPARE_BITS = (64, 320)  # beside the digits asked for: at first, and for a phase or a graze that costs more
 
 Outcome = tuple[int, tuple[Any, Any, Any, Any]]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from fractions import Fraction
 from functools import lru_cache
 from math import factorial
@@ -49,8 +48,10 @@ def acceleration(osc: Oscillator, tau: np.ndarray[Any, Any], order: int = 0) -> 
     # a big tau loses its phase in double arithmetic, and a derivative has no size to compare with
     doubtful = ~(np.abs(values) >= CANCELLATION * size) | (np.abs(tau) > 64) | (order > 0)
     for index in np.flatnonzero(doubtful):
-        with suppress(NotSmooth):  # then inf or nan stays, as of any numpy function
+        try:
             values[index] = float(as_ball(osc, Number(Fraction(float(tau[index]))), order).mid())
+        except NotSmooth:  # a_c itself stays inf or nan, as of any numpy function
+            values[index] = np.nan if order else values[index]
     return values
 
 
@@ -104,7 +105,9 @@ def _ball(osc: Oscillator, tau: Expression, order: int, bits: int) -> Any:
             return balls.evaluate(_forcing_tree(osc)[0], {"t": start}) - force
         space = JetSpace(("s",), order, balls)
         moved = space.constant(start) + space.generators()[0]
-        return space.evaluate(_forcing_tree(osc)[0], {"t": moved}).coefficient((order,)) * factorial(order)
+        jet = space.evaluate(_forcing_tree(osc)[0], {"t": moved})
+        # log has a slope on paper where it is no number: nan goes on to it
+        return jet.coefficient((order,)) * factorial(order) + 0 * jet.coefficient((0,))
 
 
 def _exponent(tau: Expression) -> int:

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from singimpact.scenes.looks import PENS
-from singimpact.surface.curve import Curve
+from singimpact.surface.curve import STATES, SURFACE, Curve
 
-SURFACE, STATES = ("tau", "t"), ("tau", "v")
 Drawer = Callable[[Any, list[Curve], str], None]
 
 

@@ -18,7 +18,7 @@ from singimpact.dynamics.orbit import orbit
 from singimpact.flights.counted import counted
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.scenes.kept import keep, key_of, recall
-from singimpact.surface.curve import Curve
+from singimpact.surface.curve import STATES, SURFACE, Curve
 from singimpact.surface.impact_surface import ImpactSurface
 from singimpact.surface.named_vertices import NamedLine
 
@@ -84,7 +84,7 @@ def _lines(results: Results) -> list[Curve]:
 
 def _stored(line: NamedLine) -> Curve:
     points = np.column_stack([line.points, line.column])
-    return Curve("lines", points, ("tau", "t"), line.marks, line.closed, line.tolerance)
+    return Curve("lines", points, SURFACE, line.marks, line.closed, line.tolerance)
 
 
 def _restored(curve: Curve) -> NamedLine:
@@ -129,7 +129,7 @@ def _leaves(results: Results) -> list[Curve]:
 def _orbits(results: Results) -> list[Curve]:
     flown = [orbit(results.scene.model, tau, v, results.scene.impacts) for tau, v in results.scene.orbits]
     made = [np.stack([np.asarray(each.tau), np.asarray(each.v)], axis=1) for each in flown]
-    return [Curve("orbit", points, ("tau", "v")) for points in made]
+    return [Curve("orbit", points, STATES) for points in made]
 
 
 NEEDS: dict[str, tuple[Callable[[Results], list[Curve]], tuple[str, ...]]] = {

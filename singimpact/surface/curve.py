@@ -13,6 +13,8 @@ from singimpact.algebra.numbers import as_float, constant
 from singimpact.inputs import refuse
 
 Array = np.ndarray[Any, Any]
+SURFACE, STATES = ("tau", "t"), ("tau", "v")
+"""The axes of the two planes: launches with flight times, and launches."""
 
 
 def window_ends(name: str, given: Any) -> tuple[float, float]:

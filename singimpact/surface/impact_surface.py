@@ -21,7 +21,7 @@ from singimpact.flights.launch import fastest_rate
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-from singimpact.surface.curve import Curve, Window
+from singimpact.surface.curve import STATES, SURFACE, Curve, Window
 from singimpact.surface.named_vertices import NamedLine, named
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.tracing import traced
@@ -53,7 +53,6 @@ class Cusp:
         return self.tau + self.t, self.velocity
 
 
-SURFACE = ("tau", "t")
 CELLS_A_RADIAN = 6  # of the sketch, of the fastest rate that the model shows
 SAME = 1e-6  # a vertex is the first hit when that comes at its time: two crossings nearer than this meet on the picture
 
@@ -139,7 +138,7 @@ class ImpactSurface:
     def outline(self) -> list[Curve]:
         """P = p(H) = phi(Z): (tau, v) of the launches that graze."""
         pairs = ((line, partial(getattr, back, "visible")) for line, back in zip(self.lines, self.horizon, strict=True))
-        return [_curve("P", np.stack([line.points.sum(axis=1), line.column], axis=1), ("tau", "v"), line, visible)
+        return [_curve("P", np.stack([line.points.sum(axis=1), line.column], axis=1), STATES, line, visible)
                 for line, visible in pairs]  # fmt: skip
 
     @cached_property

@@ -31,7 +31,7 @@ class TraceSettings:
     finer_tau, finer_t : parts of a cell in the sketch, along tau at most. A thin piece that is cut there is walked
         along, which costs far more flights than further columns; and one flight gives all of a column.
     most_steps : along a small piece. turn : the least cosine of the turn in one step.
-    across : the largest sine of a chord of the sketch with the curve at its ends.
+    across : the largest sine of a chord of the sketch with the curve, at the end where it is smaller.
     """
 
     close: float = 4e-13
@@ -218,7 +218,7 @@ def _on_curve(line: Array, gradient: Gradient, window: Window, scale: float, cel
 
 
 def _in_order(points: Array, step: Array, slope: Array) -> bool:
-    """Whether all vertices have settled, and every chord runs along the curve at both of its ends."""
+    """Whether all vertices have settled, and every chord runs along the curve at an end: at a tip it cannot at both."""
     if step.max() > SETTINGS.close:
         return False
     chord = np.diff(points, axis=0)
@@ -277,8 +277,10 @@ def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, sc
 
         # one step towards the curve tells how far it is: most chords are good, and cost no more than that
         move, value = _step(*gradient(middle))
-        added = (np.hypot(*move.T) < chord) & (shows(np.hypot(*move.T), value - half) | long)
-        place, value, step, _ = newton((middle + move)[added], gradient)
+        near = np.hypot(*move.T) < chord
+        added = ~near | shows(np.hypot(*move.T), value - half) | long
+        start = np.where(near[:, None], middle + move, middle)  # a step beyond the chord tells nothing
+        place, value, step, _ = newton(start[added], gradient)
         away = np.hypot(*(place - middle[added]).T)
         sound = (step < SETTINGS.close) & (away < chord[added]) & (shows(away, value - half[added]) | long[added])
         added[added] = sound

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from singimpact.algebra.balls import Balls
+from singimpact.algebra.balls import BITS_A_DIGIT, Balls
 from singimpact.algebra.certified import Certified as Certified
 from singimpact.algebra.certified import as_certified
 from singimpact.algebra.numbers import as_fraction, constant
@@ -240,7 +240,7 @@ def _certified(enclosures: Any, digits: int) -> dict[str, Certified]:
     """Balls at growing precision until each is narrow enough."""
     import flint
 
-    bits = int(digits * 3.3219281) + GUARD_BITS
+    bits = int(digits * BITS_A_DIGIT) + GUARD_BITS
     while True:
         with flint.ctx.workprec(bits):
             found = enclosures(Balls(bits))

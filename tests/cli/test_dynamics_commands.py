@@ -1,8 +1,14 @@
 """chatter, threshold, sweep: what they print and what they refuse."""
 
+import inspect
 import json
+from importlib import import_module
 
 import pytest
+
+import singimpact as si
+from singimpact.dynamics.chatter import ENDING
+from singimpact.dynamics.threshold import SEARCH
 
 LINEAR = ["--omega", "2.8", "--clearance", "0", "--restitution", "1/2"]
 
@@ -40,3 +46,10 @@ def test_sweep(singimpact, tmp_path):
     assert [case["clearance"] for case in json.loads(first)["cases"]] == [-0.1, 0.0, 0.1]
     refused = singimpact("sweep", *LINEAR, "--over", "mass", "--from", "1", "--to", "2", "--tau", "0", "--v", "1")
     assert refused.exit_code == 2
+
+
+@pytest.mark.parametrize(("name", "setting"), [("chatter", ENDING), ("threshold", SEARCH)])
+def test_the_command_and_the_function_fly_as_many_impacts_as_the_setting_says(name, setting):
+    (option,) = (each for each in import_module(f"singimpact.cli.{name}").command.params if each.name == "impacts")
+    function = si.ImpactOscillator.chatter_limit if name == "chatter" else si.threshold
+    assert option.default == inspect.signature(function).parameters["impacts"].default == setting.impacts

@@ -96,6 +96,8 @@ def test_rest_where_the_forcing_is_no_number():
     with pytest.raises(InputError, match="a_c is no finite number at tau = -1"):
         model.impact_map(-1, 0)
     assert np.isnan(model.acceleration(-1))
+    for g in ("log(t)", "sqrt(t)"):
+        assert np.isnan(ImpactOscillator("x", g, "1", "0.5").acceleration(-1, 1))
     assert model.impact_map(-1, 0.1, horizon=2.0).status == Status.unresolved
 
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from dataclasses import fields, is_dataclass
-from functools import lru_cache
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -23,7 +21,7 @@ KINDS = {kind.__name__: kind for kind in (Picture, Panel, Line, Region, Dot)}
 
 def kept_picture(number: int) -> Picture:
     """The data of a figure as `registry.picture` gives them, from the cache when they were computed before."""
-    place = cache_folder() / "figures" / f"{key_of(number, _drawers())}.figure"
+    place = cache_folder() / "figures" / f"{key_of(number, cache.source_digest(Path(__file__).parent))}.figure"
     content = cache.recall(place)
     if content is not None:
         return unpacked(content)
@@ -80,12 +78,3 @@ def _grown(tree: Any, arrays: Any) -> Any:
         return KINDS[kind](**parts) if kind in KINDS else parts
     parts_in_order = [_grown(each, arrays) for each in inside]
     return tuple(parts_in_order) if kind == "tuple" else parts_in_order
-
-
-@lru_cache(maxsize=1)
-def _drawers() -> str:
-    """The digest of the source that makes the figures."""
-    digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(path.name.encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()
