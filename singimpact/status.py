@@ -47,13 +47,50 @@ _SENTENCES = {
     Status.sticks: "the mass rests on the obstacle and is pressed against it; the flight time and v are 0",
     Status.no_return: "no impact before the horizon; the flight time is inf: give a larger horizon to look further",
     Status.escaped: "the flight is proved never to return; the flight time is inf",
-    Status.unresolved: "a near graze that this precision cannot decide: depth and its bound say how near, ask with "
-    "digits=; or, without them, a flight that left the range of numbers before it returned; or, on chatter, a million "
-    "impacts that neither accumulate nor lift off: fly an orbit to see where they go; values are nan",
+    Status.unresolved: "not decided, and values are nan: `cause` says why, and `sentence` of the result what to type next",
     Status.complete: "infinitely many impacts accumulate; the mass comes to rest at the accumulation time",
     Status.no_rebound: "the obstacle is hit, and rho gives no positive velocity there; v is nan: "
     "give a restitution that is positive at such velocities",
     Status.lifts_off: "contact is lost before the impacts accumulate",
+}
+
+
+class Cause(IntEnum):
+    """Why a result is `unresolved`; 0 beside every other status.
+
+    Examples
+    --------
+    >>> print(Cause.step_budget.sentence)
+    the flight takes more Taylor steps than it was given: type steps= with a larger number, or a shorter horizon=
+    """
+
+    decided = 0
+    near_graze = 1
+    step_budget = 2
+    domain_left = 3
+    kink = 4
+    overflow = 5
+    impacts_exhausted = 6
+
+    @property
+    def sentence(self) -> str:
+        """The cause and what to type next, for a person."""
+        return _CAUSES[self]
+
+
+_CAUSES = {
+    Cause.decided: "the status is no question",
+    Cause.near_graze: "the flight comes so near to the obstacle that rounding decides whether it touches; depth and its "
+    "bound say how near: type digits=30",
+    Cause.step_budget: "the flight takes more Taylor steps than it was given: type steps= with a larger number, or a "
+    "shorter horizon=",
+    Cause.domain_left: "the flight reaches a point where f or g is singular, or grows without a bound: type "
+    "osc.flight(tau, v, t) to see the way there",
+    Cause.kink: "f or g is not smooth where the flight passes, or changes there within less than a rounding of time: "
+    "replace |u| by sqrt(u**2 + 1e-6), or a jump by a steep tanh",
+    Cause.overflow: "x or x' leaves the range of doubles: type digits=20",
+    Cause.impacts_exhausted: "the impacts neither accumulate nor lift off within the number given: type impacts= with a "
+    "larger number, or fly osc.orbit to see where they go",
 }
 
 

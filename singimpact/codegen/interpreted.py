@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.codegen.kernels import FUNCTIONS, compiled, is_compiled, was_compiled
+from singimpact.codegen.kernels import FUNCTIONS, compiled, is_compiled, nested, was_compiled
 
 LEFT_TO_NUMBA = (ZeroDivisionError, OverflowError, ValueError, TypeError)
 """What Python refuses where doubles have an answer: 1/0, exp(1000), log(-1), a comparison of (-1)**0.5."""
@@ -74,6 +74,17 @@ def function(text: str, names: tuple[str, ...], name: str, cost: float) -> Calla
     return run
 
 
+def in_floats(text: str, name: str) -> Callable[..., Any]:
+    """The function `name` of a kernel on Python's floats and lists of lists, never compiled.
+
+    Examples
+    --------
+    >>> in_floats("def first(W):\\n    return W[0, 0]\\n", "first")([[1.5]])
+    1.5
+    """
+    return _space(text)[1][name]  # type: ignore[no-any-return]
+
+
 def forget() -> None:
     """Count what was interpreted from the start again, as a new process does."""
     _SPENT.clear()
@@ -124,18 +135,7 @@ def _bound(node: ast.AST) -> list[tuple[str, str]]:
 
 @lru_cache(maxsize=64)
 def _space(text: str) -> tuple[ast.Module, dict[str, Any]]:
-    tree = ast.fix_missing_locations(_Nested().visit(ast.parse(text)))
+    tree = nested(text)
     space: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
     exec(compile(tree, "<kernel>", "exec"), space)
     return tree, space
-
-
-class _Nested(ast.NodeTransformer):
-    """a[i, j] becomes a[i][j]: number by number, lists of lists are several times faster than arrays."""
-
-    def visit_Subscript(self, node: ast.Subscript) -> ast.Subscript:
-        self.generic_visit(node)
-        if not isinstance(node.slice, ast.Tuple):
-            return node
-        first, last = node.slice.elts
-        return ast.Subscript(ast.Subscript(node.value, first, ast.Load()), last, node.ctx)

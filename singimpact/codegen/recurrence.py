@@ -25,9 +25,18 @@ from singimpact.algebra.expressions import (
     names_in,
     number,
 )
+from singimpact.codegen.disc import (
+    MOVING,
+    DiscWriter,
+    columns_source,
+    disc_source,
+    is_whole,
+    logistic_argument,
+    rounding_source,
+    slope_of_call,
+    softplus_argument,
+)
 from singimpact.inputs import InputError
-
-MOVING = frozenset({"x", "xdot", "t"})
 
 
 @dataclass(frozen=True)
@@ -36,14 +45,19 @@ class Recurrence:
 
     Parameters
     ----------
-    source : text of `coefficients(launch, time, z, u, shift, n, p, X, W)`; `launch[0]` is the time of the launch.
+    source : text of `coefficients(launch, time, z, u, shift, n, p, X, W)`, where `launch[0]` is the time of the launch;
+        after it, `disc(X, W, n, R, p)` bounds on a disc how far x'' is from its value, and `rounding(X, W, unit, p)` how
+        well x'' is known; `variations(launch, time, z, u, n, p, X, W, A, B, Z)` adds three columns of the variational
+        equation, whose entries 0 and 1 are given, and `disc_of_columns(X, W, A, B, Z, n, R, p)` bounds those.
     constants : trees whose values fill p[1], p[2], ...; p[0] is the clearance.
     rows : rows that the work array W needs.
+    suspects : the parts that may be singular; `disc` reports the k-th as k + 1.
     """
 
     source: str
     constants: tuple[Expression, ...]
     rows: int
+    suspects: tuple[Expression, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -85,12 +99,16 @@ class _Writer:
         self.emit(f"{target('k')} = s")
         return target
 
+    def disc(self, refusal: str = "inf, {}", unit: str = "") -> DiscWriter:
+        """Writes radii of the parts whose series have been written."""
+        return DiscWriter(lambda tree: self.known[tree]("0"), self.constant, refusal, unit)
+
     def starts(self, target: _Series, start: str, *otherwise: str) -> None:
         self.emit("if k == 0:", f"    {target('k')} = {start}", "else:", *(f"    {line}" for line in otherwise))
 
 
 def recurrence(force: Expression, forcing: Expression) -> Recurrence:
-    """The recurrence for the Taylor coefficients of a flight.
+    """The recurrence for the Taylor coefficients of a flight and of its variational equation, with their bounds.
 
     Parameters
     ----------
@@ -108,40 +126,33 @@ def recurrence(force: Expression, forcing: Expression) -> Recurrence:
     (['3'], 2)
     """
     writer = _Writer()
-    body = _motion(writer, force, forcing)
-    source = _function("coefficients(launch, time, z, u, shift, n, p, X, W)", body)
-    return Recurrence(source, tuple(writer.constants), max(writer.rows, 1))
+    motion = _motion(writer, force, forcing)
+    parts, steady = [*_parted(forcing)[1], *_parted(force)[1]], [_parted(forcing)[0], _parted(force)[0]]
+    bound = writer.disc()
+    body = [*motion, "if k == 0:", "    X[2] += shift"]
+    source = [_function("coefficients(launch, time, z, u, shift, n, p, X, W)", body), disc_source(bound, parts)]
+    source.append(rounding_source(writer.disc("", "unit"), parts, steady))
+    source += _columns(writer, motion, force, forcing)
+    return Recurrence("\n\n".join(source), tuple(writer.constants), max(writer.rows, 1), tuple(bound.suspects))
 
 
-def variation(force: Expression, forcing: Expression) -> Recurrence:
-    """The recurrence of a flight with its derivatives Y by the launch velocity and Z by the launch time.
-
-    Notes
-    -----
-    Y and Z hold coefficients of Y'' = -f_x Y - f_x' Y' and Z'' = -f_x Z - f_x' Z' + g'; entries 0 and 1 are given.
-
-    Examples
-    --------
-    >>> from singimpact.algebra.parsing import parse
-    >>> variation(parse("x**2", ["x"]), parse("t", ["t"])).source.splitlines()[0]
-    'def variations(launch, time, z, u, shift, n, p, X, W, Y, Z):'
-    """
-    writer = _Writer()
-    body = _motion(writer, force, forcing)
+def _columns(writer: _Writer, motion: list[str], force: Expression, forcing: Expression) -> list[str]:
+    """The source for columns A'' = -f_x A - f_x' A', the same for B, and Z'' = -f_x Z - f_x' Z' + g'."""
     writer.lines.clear()
-    pushes = _terms(writer, derivative(forcing, "t"), "", "by_tau")
-    pulls = _linear_pull(writer, derivative(force, "x"), "{0}[{1}]")
-    pulls += _linear_pull(writer, derivative(force, "xdot"), "({1} + 1) * {0}[{1} + 1]")
-    body += [*writer.lines, "by_v, by_tau = zero, zero", *pushes, *pulls, "part = one / ((k + 1) * (k + 2))",
-             "Y[k + 2], Z[k + 2] = by_v * part, by_tau * part"]  # fmt: skip
-    source = _function("variations(launch, time, z, u, shift, n, p, X, W, Y, Z)", body)
-    return Recurrence(source, tuple(writer.constants), max(writer.rows, 1))
+    push, by_x, by_xdot = derivative(forcing, "t"), derivative(force, "x"), derivative(force, "xdot")
+    pushes = _terms(writer, push, "", "by_tau")
+    pulls = _linear_pull(writer, by_x, "{0}[{1}]")
+    pulls += _linear_pull(writer, by_xdot, "({1} + 1) * {0}[{1} + 1]")
+    body = [*motion, *writer.lines, "by_x, by_v, by_tau = zero, zero, zero", *pushes, *pulls,
+            "part = one / ((k + 1) * (k + 2))",
+            "A[k + 2], B[k + 2], Z[k + 2] = by_x * part, by_v * part, by_tau * part"]  # fmt: skip
+    bound = columns_source(writer.disc("inf, inf, inf"), _parted(push)[1], by_x, by_xdot)
+    return [_function("variations(launch, time, z, u, n, p, X, W, A, B, Z)", body), bound]
 
 
 def _motion(writer: _Writer, force: Expression, forcing: Expression) -> list[str]:
     pulls = _terms(writer, forcing, "") + _terms(writer, force, "-")
-    return [*writer.lines, "total = 0.0", *pulls, "X[k + 2] = total * (one / ((k + 1) * (k + 2)))", "if k == 0:",
-            "    X[2] += shift"]  # fmt: skip
+    return [*writer.lines, "total = 0.0", *pulls, "X[k + 2] = total * (one / ((k + 1) * (k + 2)))"]  # fmt: skip
 
 
 def _function(head: str, body: list[str]) -> str:
@@ -152,10 +163,10 @@ def _function(head: str, body: list[str]) -> str:
 
 
 def _linear_pull(writer: _Writer, slope: Expression, part: str) -> list[str]:
-    """Lines that take slope times Y (Z), or times Y' (Z'), from the sums."""
+    """Lines that take slope times a column, or times its derivative, from the sums."""
     if slope == number(0):
         return []
-    names = (("by_v", "Y"), ("by_tau", "Z"))
+    names = (("by_x", "A"), ("by_v", "B"), ("by_tau", "Z"))
     if not names_in(slope) & MOVING:
         factor = writer.constant(slope)
         return [f"{total} -= {factor} * {part.format(array, 'k')}" for total, array in names]
@@ -235,8 +246,10 @@ def _product(writer: _Writer, factors: Sequence[Expression]) -> _Series:
 
 
 def _power(writer: _Writer, base: Expression, exponent: Expression) -> _Series:
-    if isinstance(exponent, Number) and exponent.value.denominator == 1 and 1 <= exponent.value <= 64:
+    if isinstance(exponent, Number) and is_whole(exponent):
         return _whole_power(writer, _series(writer, base), int(exponent.value))
+    if (argument := logistic_argument(Power(base, exponent))) is not None:
+        return _logistic(writer, argument)
     if not names_in(exponent) & MOVING and names_in(base) & MOVING:
         return _general_power(writer, _series(writer, base), exponent)
     return _exp(writer, multiply(exponent, Call("log", base)))
@@ -289,11 +302,39 @@ def _circular(writer: _Writer, argument: Expression) -> tuple[_Series, _Series]:
 
 
 def _log(writer: _Writer, argument: Expression) -> _Series:
-    inner, target = _series(writer, argument), writer.row()
-    writer.starts(target, f"log({inner('0')})", "s = 0.0", "for i in range(1, k):",
-                  f"    s += i * {target('i')} * {inner('k - i')}",
-                  f"{target('k')} = ({inner('k')} - s / k) / {inner('0')}")  # fmt: skip
+    if (inner := softplus_argument(Call("log", argument))) is not None:
+        return _softplus(writer, inner)
+    base, target = _series(writer, argument), writer.row()
+    writer.starts(target, f"log({base('0')})", "s = 0.0", "for i in range(1, k):",
+                  f"    s += i * {target('i')} * {base('k - i')}",
+                  f"{target('k')} = ({base('k')} - s / k) / {base('0')}")  # fmt: skip
     return target
+
+
+def _logistic(writer: _Writer, argument: Expression) -> _Series:
+    """y = 1/(1 + e^w) from y' = -y (1 - y) w'; neither y nor y (1 - y) starts from a difference or from e^w > 1."""
+    inner = _series(writer, argument)
+    target, slope = writer.row(), writer.row()
+    writer.starts(target, f"(exp(-abs({inner('0')})) if {inner('0')} > 0 else one) / (1 + exp(-abs({inner('0')})))",
+                  *_driven(target, inner, slope, "-"))  # fmt: skip
+    writer.starts(slope, f"exp(-abs({inner('0')})) / ((1 + exp(-abs({inner('0')}))) * (1 + exp(-abs({inner('0')}))))",
+                  f"s = {target('k')}", "for i in range(0, k + 1):", f"    s -= {target('i')} * {target('k - i')}",
+                  f"{slope('k')} = s")  # fmt: skip
+    return target
+
+
+def _softplus(writer: _Writer, argument: Expression) -> _Series:
+    """y = log(1 + e^w) from y' = w'/(1 + e^-w)."""
+    inner, slope = _series(writer, argument), _series(writer, _falling_logistic(argument))
+    target = writer.row()
+    writer.starts(target, f"({inner('0')} if {inner('0')} > 0 else zero) + log1p(exp(-abs({inner('0')})))",
+                  *_driven(target, inner, slope))  # fmt: skip
+    return target
+
+
+def _falling_logistic(argument: Expression) -> Expression:
+    """1/(1 + e^-w)."""
+    return Power(Sum((number(1), Call("exp", multiply(number(-1), argument)))), number(-1))
 
 
 def _atan(writer: _Writer, argument: Expression) -> _Series:
@@ -306,17 +347,20 @@ def _atan(writer: _Writer, argument: Expression) -> _Series:
     return target
 
 
-def _riccati(writer: _Writer, argument: Expression, function: str, sign: str) -> _Series:
-    """y' = (1 + sign y^2) b'."""
+def _riccati(writer: _Writer, argument: Expression, function: str, start: str, sign: str) -> _Series:
+    """y' = (1 + sign y^2) b'; the row of 1 + sign y^2 starts from `start`, where nothing cancels."""
     inner = _series(writer, argument)
-    target, square = writer.row(), writer.row()
-    writer.starts(target, f"{function}({inner('0')})", "s = 0.0", "for i in range(1, k + 1):",
-                  f"    s += i * {inner('i')} * {square('k - i')}",
-                  f"{target('k')} = {inner('k')} {sign} s / k")  # fmt: skip
-    writer.emit("s = 0.0", "for i in range(0, k + 1):", f"    s += {target('i')} * {target('k - i')}")
-    writer.emit(f"{square('k')} = s")
+    target, slope = writer.row(), writer.row()
+    # the derivative of the call, as `algebra.derivatives` writes it, need not be computed from its difference
+    writer.known[slope_of_call(Call(function, argument))] = slope
+    writer.starts(target, f"{function}({inner('0')})", *_driven(target, inner, slope))
+    writer.starts(slope, start.format(w=inner("0"), y=target("0")), "s = 0.0", "for i in range(0, k + 1):",
+                  f"    s += {target('i')} * {target('k - i')}", f"{slope('k')} = {sign}s")  # fmt: skip
     return target
 
+
+# 1/cosh^2 w; its difference 1 - tanh^2 w would lose all digits where tanh saturates
+SECH_SQUARE = "4 * exp(-2 * abs({w})) / ((1 + exp(-2 * abs({w}))) * (1 + exp(-2 * abs({w}))))"
 
 _CALLS: dict[str, Callable[[_Writer, Expression], _Series]] = {
     "exp": _exp,
@@ -324,6 +368,6 @@ _CALLS: dict[str, Callable[[_Writer, Expression], _Series]] = {
     "cos": lambda writer, argument: _circular(writer, argument)[1],
     "log": _log,
     "atan": _atan,
-    "tan": lambda writer, argument: _riccati(writer, argument, "tan", "+"),
-    "tanh": lambda writer, argument: _riccati(writer, argument, "tanh", "-"),
+    "tan": lambda writer, argument: _riccati(writer, argument, "tan", "1 + {y} * {y}", ""),
+    "tanh": lambda writer, argument: _riccati(writer, argument, "tanh", SECH_SQUARE, "-"),
 }

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from singimpact.notebook import table
-from singimpact.status import Status, status_array
+from singimpact.status import Cause, Status, status_array
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,16 @@ class Flight:
     depth : nan, or beside `unresolved` and `graze` the least x - c near the graze.
     bound : rounding bound of `depth`.
     condition : relative condition number kappa of the flight time; nan when there is no hit.
+    velocity_condition : the same of the velocity.
+    time_error, velocity_error : estimates of the relative errors of the flight time and of the velocity; nan when there
+        is no hit.
+    cause : int8, see `singimpact.status.Cause`: why a flight is `unresolved`.
+    notes : for unresolved flights, by their index in the flat arrays: where the flight came to.
+
+    Notes
+    -----
+    The errors are rounding errors and cut-offs of every step, carried to the hit by the variational equation as if they
+    were independent, with a margin: an estimate, no bound.
     """
 
     flight_time: Any
@@ -31,9 +42,26 @@ class Flight:
     depth: Any
     bound: Any
     condition: Any
+    velocity_condition: Any = field(default=np.nan, kw_only=True)
+    time_error: Any = field(default=np.nan, kw_only=True)
+    velocity_error: Any = field(default=np.nan, kw_only=True)
+    cause: Any = field(default=0, kw_only=True)
+    notes: Mapping[int, str] = field(default_factory=dict, kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "status", status_array(self.status))
+
+    @property
+    def error(self) -> Any:
+        """The larger of the two relative errors: nothing in the result is less well known than this."""
+        return np.maximum(self.time_error, self.velocity_error)
+
+    @property
+    def sentence(self) -> Any:
+        """What became of each flight, and what to type next: a text, or an array of texts of the shape of `status`."""
+        flat = zip(np.ravel(self.status).tolist(), np.ravel(self.cause).tolist(), strict=True)
+        texts = np.array([_told(*each, self.notes.get(at)) for at, each in enumerate(flat)] + [None], dtype=object)[:-1]
+        return texts.reshape(np.shape(self.status))[()]
 
     def _repr_html_(self) -> str:
         names = [name for name in ("flight_time", "velocity", "tau", "v") if hasattr(self, name)]
@@ -60,6 +88,12 @@ class Derivative:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "status", status_array(self.status))
+
+
+def _told(status: int, cause: int, note: str | None) -> str:
+    if status != Status.unresolved or not cause:
+        return Status(status).sentence
+    return Cause(cause).sentence if note is None else f"{note}; {Cause(cause).sentence}"
 
 
 def _shown(number: Any) -> str:

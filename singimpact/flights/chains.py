@@ -49,7 +49,7 @@ def late(t: float, since: float, lost: float) -> float:
 
 def taylor_chain(
     tau: float, v: float, count: int, slow: float, w: Any, launch: Any, order: int,
-    horizon: float, ulp: float, p: Any, X: Any, W: Any, q: Any, out: Any,
+    horizon: float, budget: int, ulp: float, p: Any, X: Any, W: Any, q: Any, out: Any,
 ) -> Any:  # fmt: skip
     """`chain` for a Taylor flow."""
     since, lost = 0.0, 0.0
@@ -59,7 +59,7 @@ def taylor_chain(
         a = 2 * X[2]
         if slow > 0 and a < 0 and 2 * v < -a * slow:
             return i, 0
-        code, time, velocity, _depth, _error = march(launch, v, 1, a, order, horizon, ulp, p, X, W, q)
+        code, time, velocity, _depth, _error = march(launch, v, 1, a, order, horizon, budget, ulp, p, X, W, q, W[:0])
         if code != 0:
             return i, code
         part = time - lost
@@ -74,14 +74,14 @@ def taylor_chain(
 
 
 def taylor_ends(
-    tau: Any, v: Any, count: int, w: Any, launch: Any, order: int, horizon: float, ulp: float, p: Any,
+    tau: Any, v: Any, count: int, w: Any, launch: Any, order: int, horizon: float, budget: int, ulp: float, p: Any,
     X: Any, W: Any, q: Any, out: Any, status: Any,
 ) -> None:  # fmt: skip
     """`taylor_chain` for every state: tau, v become the last states, status what ended an orbit before, else 0."""
     for i in range(len(tau)):
         if status[i] != 0:
             continue
-        flown, code = taylor_chain(tau[i], v[i], count, 0.0, w, launch, order, horizon, ulp, p, X, W, q, out)
+        flown, code = taylor_chain(tau[i], v[i], count, 0.0, w, launch, order, horizon, budget, ulp, p, X, W, q, out)
         status[i] = code
         if flown > 0:
             tau[i] += out[flown - 1, 0]

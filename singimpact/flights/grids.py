@@ -83,7 +83,7 @@ def _chained(osc: Oscillator, parts: list[Any], impacts: int, epsilon: float) ->
     w = np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
     names = (*kernel.names, "rebound", *(loop.__name__ for loop in loops))
     function(whole, names, "taylor_ends", parts[0].size * impacts * PRICES.taylor)(
-        *parts[:2], impacts, w, np.zeros(1), order, horizon_of(osc, None), LIMITS.safety * epsilon, doubles(kernel),
+        *parts[:2], impacts, w, np.zeros(1), order, horizon_of(osc, None), LIMITS.steps, LIMITS.safety * epsilon, doubles(kernel),
         np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2), np.empty((impacts, 5)), parts[2],
     )  # fmt: skip
     return parts

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
@@ -11,10 +11,11 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression, evaluate, names_in
-from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.numbers import as_float, constant, sign_of
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights import counted, edges, manydigits
 from singimpact.flights.carriers import Derivative, Flight, Step
+from singimpact.flights.causes import decoded, explained
 from singimpact.flights.escape import never_returns
 from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.kernel import Kernel, kernel_of, ready
@@ -28,15 +29,17 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.linear import LinearForm
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Status
+from singimpact.status import Cause, Status
 
 EPSILON = 2.0**-52
 Array = np.ndarray[Any, Any]
+JUDGED = 9  # columns of what `variation.judge` fills
 
 
 def first_hit(
-    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None
-) -> Flight:
+    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
+    steps: int | None = None,
+) -> Flight:  # fmt: skip
     """The first hit of the obstacle by the flight from (tau, v).
 
     Parameters
@@ -47,6 +50,7 @@ def first_hit(
     tolerance : relative error allowed in a step of a Taylor flow, and, times ten, of a hit before it is polished.
     horizon : time after which a flight is given up; 1000 periods of g if not given, or 2e5 radians of the fastest
         motion where those come first. At most 1e7 radians.
+    steps : Taylor steps after which a flight of a model without a closed form is given up, 10000 if not given.
 
     Returns
     -------
@@ -59,17 +63,16 @@ def first_hit(
     ([0.0, 1.0, 3.0], [0.0, -1.0, -3.0], [2, 0, 0])
     """
     states = States.read(tau, v)
-    limit = horizon_of(osc, horizon)
-    epsilon = _tolerance(tolerance)
+    limits = Allowance(horizon_of(osc, horizon), _tolerance(tolerance), checked_steps(steps))
     if digits is not None:
-        found = manydigits.flights(osc, states, checked_digits(digits), limit)
-        return shaped(_conditioned(osc, states, found, epsilon)[0], states.shape)
-    return shaped(_flights(osc, states, limit, epsilon), states.shape)
+        return shaped(_many_digits(osc, states, checked_digits(digits), limits), states.shape)
+    return shaped(_flights(osc, states, limits), states.shape)
 
 
 def impact_map(
-    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None
-) -> Step:
+    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
+    steps: int | None = None,
+) -> Step:  # fmt: skip
     """The impact map G(tau, v) = (tau + T, -r x'(T)); parameters as in `first_hit`.
 
     Notes
@@ -84,7 +87,7 @@ def impact_map(
     (np.float64(4.0), np.float64(1.5), np.int8(0))
     """
     states = States.read(tau, v)
-    hit = first_hit(osc, tau, v, digits=digits, tolerance=tolerance, horizon=horizon)
+    hit = first_hit(osc, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps)
     if digits is not None:
         return manydigits.step(osc, states, hit, digits)
     landed = states.tau.reshape(states.shape) + hit.flight_time
@@ -147,30 +150,92 @@ def _tolerance(tolerance: Any) -> float:
     return value
 
 
+def checked_steps(steps: Any) -> int:
+    """The steps of a flight, between 1 and ten million."""
+    if steps is None:
+        return LIMITS.steps
+    if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or not 1 <= steps <= 10_000_000:
+        raise refuse("steps", steps, "a whole number from 1 to 10000000")
+    return int(steps)
+
+
 def shaped(flight: Flight, shape: tuple[int, ...]) -> Flight:
     """The flat fields in a shape, or as scalars."""
-    fields = {name: np.asarray(value).reshape(shape)[()] for name, value in vars(flight).items()}
+    fields = {name: value if name == "notes" else np.asarray(value).reshape(shape)[()]
+              for name, value in vars(flight).items()}  # fmt: skip
     return type(flight)(**fields)
 
 
-def _flights(osc: Oscillator, states: States, limit: float, epsilon: float) -> Flight:
+@dataclass(frozen=True)
+class Allowance:
+    """When a flight is given up: time, relative error of a step, number of steps."""
+
+    horizon: float
+    epsilon: float
+    steps: int
+
+
+@dataclass(frozen=True)
+class Raw:
+    """Flights as a kernel leaves them, one row a state.
+
+    Parameters
+    ----------
+    status, cause : int8. numbers : flight time, velocity, depth, bound; of what ends in no hit: time, x', x - c, and its
+        bound or a singular part. judged : what `variation.judge` fills, nan where nothing is judged.
+    """
+
+    status: Array
+    cause: Array
+    numbers: Array
+    judged: Array
+
+    @property
+    def lost(self) -> Array:
+        """Flights that came to no graze but to the end of the range of numbers, of the functions in f and g, or of the
+        steps.
+        """
+        return np.asarray(self.cause > Cause.near_graze)
+
+
+def _flights(osc: Oscillator, states: States, limits: Allowance) -> Flight:
     kernel = kernel_of(osc)
-    status = np.zeros(states.v.size, dtype=np.int8)
-    removed = _removed(osc, states, status)
+    raw = _raw(states.v.size)
+    removed = _removed(osc, states, raw.status)
     pushes = acceleration(osc, states.tau)
-    numbers = _flown(osc, kernel, states, removed, pushes, status, limit, epsilon)
+    _fly(osc, kernel, states, removed, pushes, raw, limits)
     # first: what left the range of doubles would be followed again in many digits
-    _escapes(osc, kernel.form, states, status, numbers)
-    if _settle(osc, states, limit, status, numbers):
-        _escapes(osc, kernel.form, states, status, numbers)
-    flight, rough = _conditioned(osc, states, flight_of(status, numbers), epsilon)
-    return _sharpened(osc, states, flight, rough & (status == Status.hit), pushes, limit)
+    _escapes(osc, kernel.form, states, raw)
+    if _settle(osc, states, raw, limits):
+        _escapes(osc, kernel.form, states, raw)
+    flight, rough = _conditioned(osc, states, flight_of(raw), raw.judged, limits.epsilon)
+    flight = _explained(osc, states, flight, raw)
+    return _sharpened(osc, states, flight, rough & (raw.status == Status.hit), pushes, raw.judged, limits)
+
+
+def _raw(size: int) -> Raw:
+    return Raw(np.zeros(size, np.int8), np.zeros(size, np.int8), np.zeros((size, 4)), np.full((size, JUDGED), np.nan))
+
+
+def _explained(osc: Oscillator, states: States, flight: Flight, raw: Raw) -> Flight:
+    """The flight with its causes told apart and a note for each that is lost."""
+    notes = {}
+    for index in np.flatnonzero(raw.lost).tolist():
+        tau = float(states.tau[index])
+
+        def way(times: Array, at: int = index) -> Any:
+            from singimpact.flights.path import path
+
+            return path(osc, states.tau[at], states.v[at], times)
+
+        raw.cause[index], notes[index] = explained(osc, tau, raw.numbers[index], Cause(int(raw.cause[index])), way)
+    return replace(flight, cause=raw.cause, notes=notes)
 
 
 def _sharpened(
-    osc: Oscillator, states: States, flight: Flight, rough: Array, pushes: Array, limit: float
+    osc: Oscillator, states: States, flight: Flight, rough: Array, pushes: Array, judged: Array, limits: Allowance
 ) -> Flight:  # fmt: skip
-    """Rough hits are polished in balls, and what balls do not confirm is flown in many digits.
+    """Rough hits are refined in balls, and what balls do not confirm is flown in many digits.
 
     At near resonances all flights come back together: the state hardly matters, but the sums still cancel.
     """
@@ -181,37 +246,73 @@ def _sharpened(
     far = (flight.flight_time > (table.step if table else 0)) | (pushes >= 0)
     left = LIMITS.settled
     for index in np.flatnonzero(far & rough).tolist():
-        found = polished(osc, states, index, float(flight.flight_time[index]))
+        found = polished(osc, states, index, float(flight.flight_time[index]), float(judged[index, 8]))
         if found is None and left:
             left -= 1
-            settled = manydigits.settle(osc, states, index, limit)
+            settled = manydigits.settle(osc, states, index, limits.horizon)
             found = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
         if found is not None:
             flight.flight_time[index], flight.velocity[index] = found
+            flight.time_error[index] = flight.velocity_error[index] = EPSILON
     return flight
 
 
-def _conditioned(osc: Oscillator, states: States, flight: Flight, epsilon: float) -> tuple[Flight, Array]:
-    """The flight with its condition; and where its rounding is more than that condition and the tolerance explain."""
+def _conditioned(
+    osc: Oscillator, states: States, flight: Flight, judged: Array, epsilon: float
+) -> tuple[Flight, Array]:
+    """The flight with conditions and errors; and where an error is more than condition and tolerance explain."""
     time, velocity = (np.array(part, dtype=float) for part in (flight.flight_time, flight.velocity))
-    answers = response(osc, states.tau, states.v, time, velocity)
+    answers = response(osc, states.tau, states.v, time, velocity, judged)
     tau = states.tau if osc.period is None else reduced(states.tau, osc.period)
     kappas = answers.conditions(tau, states.v, time, velocity)
     with np.errstate(all="ignore"):
         late, dull = (part > np.maximum(least, 10 * kappa * epsilon)
                       for part, least, kappa in zip(answers.rounding, LIMITS.rough, kappas, strict=True))  # fmt: skip
-    return replace(flight, condition=kappas[0]), late | dull
+        errors = [LIMITS.margin * part + EPSILON for part in answers.rounding]
+    flight = replace(flight, condition=kappas[0], velocity_condition=kappas[1], time_error=errors[0],
+                     velocity_error=errors[1])  # fmt: skip
+    return flight, late | dull
 
 
-def _escapes(osc: Oscillator, form: LinearForm | None, states: States, status: Array, numbers: Array) -> None:
-    """What has not returned is asked whether it ever can."""
-    # a flight that left the range of doubles was followed without impact too
-    gone = np.flatnonzero((status == Status.no_return) | _lost(status, numbers))
+def _many_digits(osc: Oscillator, states: States, digits: int, limits: Allowance) -> Flight:
+    """First hits in many digits, with the conditions that doubles know.
+
+    Flights in Taylor steps are flown in doubles before: what does not come back there does not here, and the number of
+    steps is known.
+    """
+    raw, known = _raw(states.v.size), {}
+    budgets = np.full(states.v.size, limits.steps)
+    if kernel_of(osc).form is None:
+        tiny = np.array([states.v[i] == 0 and sign_of(states.exact_v(i)) > 0 for i in range(states.v.size)], bool)
+        removed = _removed(osc, states, raw.status)
+        raw.status[tiny] = Status.unresolved
+        _fly(osc, kernel_of(osc), states, removed, acceleration(osc, states.tau), raw, limits)
+        _escapes(osc, None, states, raw)
+        over = raw.lost | (raw.status == Status.no_return) | (raw.status == Status.escaped)
+        known = {int(i): int(raw.status[i]) for i in np.flatnonzero(over)}
+        budgets = np.where(np.isnan(raw.judged[:, 8]), limits.steps, 2 * np.nan_to_num(raw.judged[:, 8]) + 100).astype(int)
+    found, codes, rough = manydigits.flights(osc, states, digits, limits.horizon, known, budgets)
+    for index in range(states.v.size):
+        if index not in known:
+            raw.numbers[index] = rough[index]
+    status, cause = decoded(codes)
+    flown = np.array([index not in known for index in range(status.size)], dtype=bool)
+    raw.status[flown], raw.cause[flown] = status[flown], cause[flown]
+    flight = _explained(osc, states, found, raw)
+    flight, _ = _conditioned(osc, states, flight, raw.judged, limits.epsilon)
+    error = np.where(raw.status == Status.hit, 10.0 ** -min(digits, 300), np.nan)
+    return replace(flight, time_error=error, velocity_error=error.copy())
+
+
+def _escapes(osc: Oscillator, form: LinearForm | None, states: States, raw: Raw) -> None:
+    """Flights that have not returned become `escaped` where they are proved never to return."""
+    # a flight that left the range of doubles, or spent its steps, was followed without impact too
+    gone = np.flatnonzero((raw.status == Status.no_return) | (raw.lost & (raw.cause != Cause.domain_left)))
     if gone.size:
-        time, speed, place, _ = numbers[gone].T
+        time, speed, place, _ = raw.numbers[gone].T
         proved = (never_turns(osc, place, speed) if form is None
                   else never_returns(osc, form, states.tau[gone], time, place, speed))  # fmt: skip
-        status[gone[proved]] = Status.escaped
+        raw.status[gone[proved]], raw.cause[gone[proved]] = Status.escaped, Cause.decided
 
 
 def _removed(osc: Oscillator, states: States, status: Array) -> Array:
@@ -224,29 +325,55 @@ def _removed(osc: Oscillator, states: States, status: Array) -> Array:
     return removed
 
 
-def _flown(
-    osc: Oscillator, kernel: Kernel, states: States, removed: Array, pushes: Array, status: Array, limit: float,
-    epsilon: float,
-) -> Array:  # fmt: skip
-    order = degree_for(EPSILON if kernel.form else epsilon) + int(removed.max(initial=1)) - 1
-    numbers = np.zeros((states.v.size, 4))
-    moving = np.flatnonzero(status == Status.hit)
+def _fly(
+    osc: Oscillator, kernel: Kernel, states: States, removed: Array, pushes: Array, raw: Raw, limits: Allowance
+) -> None:  # fmt: skip
+    """Fly the states whose status is `hit` so far, and fill in what becomes of them."""
+    moving = np.flatnonzero(raw.status == Status.hit)
     if not moving.size:
-        return numbers
+        return
     counted.add(moving.size)
-    p, table = doubles(kernel), table_of(kernel, doubles(kernel))
-    part, flown = np.empty(moving.size, dtype=np.int8), np.empty((moving.size, 4))
-    work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
+    codes, flown, judged = (np.empty(moving.size, dtype=np.int8), np.empty((moving.size, 4)),
+                            np.full((moving.size, JUDGED), np.nan))  # fmt: skip
     given = launches(osc, kernel, states.tau)[moving], states.v[moving], removed[moving], pushes[moving]
-    if table is None:
-        ready(kernel, "run", moving.size)(*given, order, limit, LIMITS.safety * epsilon, p, *work, part, flown)
+    p, table = doubles(kernel), table_of(kernel, doubles(kernel))
+    order = degree_for(EPSILON if kernel.form else limits.epsilon) + int(removed.max(initial=1)) - 1
+    work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
+    if kernel.form is None:
+        _fly_taylor(kernel, given, order, limits, (p, *work), (codes, flown, judged))
+    elif table is None:
+        ready(kernel, "run", moving.size)(
+            *given, order, limits.horizon, LIMITS.longest, LIMITS.safety * limits.epsilon, p, *work, codes, flown
+        )
     else:
         ready(kernel, "stride_all", moving.size)(
-            *given, STRIDES.order, degree_for(EPSILON), limit, LIMITS.safety * EPSILON, p, table.step, table.rows,
-            table.bound, *work, part, flown,
+            *given, STRIDES.order, degree_for(EPSILON), limits.horizon, LIMITS.safety * EPSILON, p, table.step,
+            table.rows, table.bound, *work, codes, flown,
         )  # fmt: skip
-    status[moving], numbers[moving] = part, flown
-    return numbers
+    raw.status[moving], raw.cause[moving] = decoded(codes)
+    raw.numbers[moving], raw.judged[moving] = flown, judged
+
+
+def _fly_taylor(kernel: Kernel, given: Any, order: int, limits: Allowance, work: Any, found: Any) -> None:
+    """Flights in Taylor steps, in blocks that hear an interruption; long ones again with room for all their steps."""
+    codes, flown, judged = found
+    columns = np.zeros((3, order + 2))
+
+    def run(chosen: Any, rows: int) -> None:
+        parts = [part[chosen] for part in found]
+        ready(kernel, "run_judged", parts[0].size)(
+            *(part[chosen] for part in given), order, limits.horizon, limits.steps, LIMITS.safety * limits.epsilon,
+            *work, np.zeros((rows, 4)), columns, degree_for(LIMITS.judging), *parts,
+        )  # fmt: skip
+        for part, filled in zip(found, parts, strict=True):
+            part[chosen] = filled
+
+    rows = min(limits.steps + 1, LIMITS.traced)
+    for begin in range(0, codes.size, LIMITS.block):
+        run(np.arange(begin, min(begin + LIMITS.block, codes.size)), rows)
+    long = np.flatnonzero((codes == Status.hit) & np.isnan(judged[:, 0]))
+    for index in long if rows <= limits.steps else ():
+        run(np.array([index]), limits.steps + 1)
 
 
 def doubles(kernel: Kernel) -> Array:
@@ -277,28 +404,25 @@ def _halves(tree: Expression) -> tuple[float, float]:
     return high, float(exact - Fraction(high)) if np.isfinite(high) else 0.0
 
 
-def _lost(status: Array, numbers: Array) -> Array:
-    """Flights that came to no graze but to the end of the range of numbers, or of the functions in f and g."""
-    return np.asarray((status == Status.unresolved) & ~(numbers[:, 2] <= 10 * numbers[:, 3]))
-
-
-def _settle(osc: Oscillator, states: States, limit: float, status: Array, numbers: Array) -> bool:
+def _settle(osc: Oscillator, states: States, raw: Raw, limits: Allowance) -> bool:
     """What doubles leave open is asked again with many digits: the state is exact, so the answer exists."""
-    open_ones = np.flatnonzero((status == Status.unresolved) & ~_lost(status, numbers))[: LIMITS.settled]
+    open_ones = np.flatnonzero(raw.cause == Cause.near_graze)[: LIMITS.settled]
     for index in open_ones:
-        settled = manydigits.settle(osc, states, int(index), limit)
+        settled = manydigits.settle(osc, states, int(index), limits.horizon)
         if settled is not None:
-            status[index], numbers[index] = settled
+            raw.status[index], raw.numbers[index] = settled
+            raw.cause[index], raw.judged[index] = Cause.decided, np.nan
     return bool(open_ones.size)
 
 
-def flight_of(status: Array, numbers: Array) -> Flight:
+def flight_of(raw: Raw) -> Flight:
     """The carrier, with nan and inf where the status says so."""
-    time, velocity, depth, bound = (numbers[:, column].copy() for column in range(4))
+    time, velocity, depth, bound = (raw.numbers[:, column].copy() for column in range(4))
+    status = raw.status
     unknown = status == Status.unresolved
     gone = (status == Status.no_return) | (status == Status.escaped)
     time[gone], velocity[gone | unknown], time[unknown] = np.inf, np.nan, np.nan
     velocity[(status == Status.graze) | (status == Status.sticks)] = 0.0
-    plain = (~unknown & (status != Status.graze)) | _lost(status, numbers)
+    plain = (~unknown & (status != Status.graze)) | raw.lost
     depth[plain], bound[plain] = np.nan, np.nan
-    return Flight(time, velocity, status, depth, bound, np.full(time.shape, np.nan))
+    return Flight(time, velocity, status, depth, bound, np.full(time.shape, np.nan), cause=raw.cause)

@@ -11,14 +11,22 @@ from typing import Any
 
 from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power
 from singimpact.algebra.numbers import as_float, sign_of
+from singimpact.codegen import radii
 from singimpact.codegen.interpreted import function
-from singimpact.flights import first_root, march, pull, strides
+from singimpact.flights import first_root, march, pull, strides, variation
 from singimpact.flights.flow import closed_form, table, taylor
 from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 
 COMMON = (first_root.sums, first_root.safe_step, first_root.polished, first_root.first_root,
-          march.advanced, march.march, march.run, march.follow)  # fmt: skip
+          march.advanced, march.curvature, march.march, march.run, march.follow)  # fmt: skip
+RADII = (radii.whole_power_radius, radii.power_radius, radii.power_of_square_radius, radii.exp_radius, radii.bell_radius,
+         radii.circular_radius, radii.tan_radius, radii.tanh_radius, radii.atan_radius, radii.log_radius,
+         radii.log_of_square_radius, radii.softplus_radius)  # fmt: skip
+STEPS = (taylor.step_terms, taylor.wished_step, taylor.shortened_step, taylor.allowed_step, taylor.searched_step, taylor.proved_step, taylor.singular_part, taylor.step_size,
+         taylor.restart)  # fmt: skip
+EMITTED = ("coefficients", "disc", "rounding", "variations", "disc_of_columns")
+COLUMNS = (variation.judge, variation.column_step, variation.respond, variation.respond_all, march.run_judged)
 STRIDES = (table.tabulate, table.bounds, table.expansions, strides.series, strides.falling, strides.launched,
            strides.turned,
            strides.inner_stride, strides.place, strides.newton, strides.lowest, strides.crossing,
@@ -30,7 +38,7 @@ HEAD = '''"""Written by singimpact from the text of its own functions and from f
 from __future__ import annotations
 
 from cmath import sqrt as complex_sqrt
-from math import nan
+from math import inf, nan
 from typing import Any
 
 from numpy import empty
@@ -82,12 +90,18 @@ def kernel_of(osc: Oscillator, exact_restart: bool = True) -> Kernel:
     """The kernel of a model; with `exact_restart` a linear model restarts from its closed form (doubles only)."""
     form = linear_form(osc)
     if form is None:
-        emitted = taylor.recurrence_of(osc)
-        parts: tuple[Callable[..., Any], ...] = (taylor.step_size, taylor.restart, *COMMON)
-        text = joined(emitted.source, parts)
-        return Kernel(text, ("coefficients", *_names(parts)), emitted.rows, tuple(taylor.constants(osc)), None)
+        return taylor_kernel(osc)
     text, names = _linear_text(exact_restart)
     return Kernel(text, names, max(4 * len(form.harmonics), 1), linear_constants(osc, form), form)
+
+
+@lru_cache(maxsize=256)
+def taylor_kernel(osc: Oscillator) -> Kernel:
+    """The kernel of any model, linear or not, in Taylor steps."""
+    emitted = taylor.recurrence_of(osc)
+    parts = (*RADII, *STEPS, *COMMON, *COLUMNS)
+    names = (*EMITTED, *_names(parts))
+    return Kernel(joined(emitted.source, parts), names, emitted.rows, tuple(taylor.constants(osc)), None)
 
 
 @lru_cache(maxsize=2)
@@ -104,7 +118,9 @@ def _linear_text(exact_restart: bool) -> tuple[str, tuple[str, ...]]:
         if exact_restart
         else (taylor.restart,)
     )
-    parts: tuple[Callable[..., Any], ...] = (closed_form.coefficients, closed_form.step_size, *restart, *COMMON)
+    parts: tuple[Callable[..., Any], ...] = (
+        closed_form.coefficients, closed_form.step_size, closed_form.singular_part, *restart, *COMMON,
+    )  # fmt: skip
     if exact_restart:
         parts += (*STRIDES, closed_form.responses)
     return joined("", parts), _names(parts)

@@ -139,3 +139,9 @@ def fastest_rate(osc: Oscillator) -> float:
 def exact_number(value: float) -> Number:
     """A double as the rational it is."""
     return Number(Fraction(value))
+
+
+def workspace(zero: Any, order: int, rows: int, others: int) -> list[Any]:
+    """Lists of zeros for X, W and others of the shape of X."""
+    return [[zero] * (order + 2), [[zero] * (order + 2) for _ in range(rows)],
+            *([zero] * (order + 2) for _ in range(others))]  # fmt: skip

@@ -7,6 +7,7 @@ precision grows: half of the digits go in a square root at a graze, and no formu
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from math import ceil
 from typing import Any
@@ -19,11 +20,12 @@ from singimpact.algebra.numbers import as_mpf
 from singimpact.algebra.rings import Multiprecision
 from singimpact.codegen.kernels import FUNCTIONS, plain
 from singimpact.flights.carriers import Flight, Step
+from singimpact.flights.causes import decoded
 from singimpact.flights.escape import never_returns
 from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.flow.balls import linear_flow
 from singimpact.flights.kernel import Kernel, kernel_of
-from singimpact.flights.launch import States, at_rest
+from singimpact.flights.launch import States, at_rest, workspace
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
@@ -31,23 +33,38 @@ from singimpact.status import Status
 
 SPARE_BITS = (64, 320)  # beside the digits asked for: at first, and for a phase or a graze that costs more
 
+Array = np.ndarray[Any, Any]
 Outcome = tuple[int, tuple[Any, Any, Any, Any]]
 
 
-def flights(osc: Oscillator, states: States, digits: int, limit: float) -> Flight:
-    """First hits with `digits` digits."""
+def flights(
+    osc: Oscillator, states: States, digits: int, limit: float, known: Mapping[int, int], budgets: Array
+) -> tuple[Flight, Array, Array]:
+    """First hits with `digits` digits; their codes, and their numbers as doubles.
+
+    Parameters
+    ----------
+    known : codes of flights that are not flown here, by index. budgets : Taylor steps for each flight.
+    """
     import mpmath
 
     size = states.v.size
-    status = np.zeros(size, dtype=np.int8)
+    codes, rough = np.zeros(size, dtype=np.int8), np.full((size, 4), np.nan)
     fields = [np.empty(size, dtype=object) for _ in range(5)]
     for index in range(size):
-        status[index], numbers = found(osc, states, index, digits, limit)
+        if index in known:
+            codes[index], numbers = known[index], (mpmath.nan,) * 4
+        else:
+            codes[index], numbers = found(osc, states, index, digits, limit, int(budgets[index]))
+        rough[index] = [float(part) for part in numbers]
+        status = int(codes[index]) if codes[index] < 20 else int(Status.unresolved)
+        numbers = numbers if codes[index] < 20 else (mpmath.nan,) * 4
         with mpmath.workdps(digits):
-            for field, value in zip(fields, (*_shown(status[index], numbers), mpmath.nan), strict=True):
+            for field, value in zip(fields, (*_shown(status, numbers), mpmath.nan), strict=True):
                 field[index] = +mpmath.mpf(value)
+    status, _ = decoded(codes)
     time, velocity, depth, bound, condition = fields
-    return Flight(time, velocity, status, depth, bound, condition)
+    return Flight(time, velocity, status, depth, bound, condition), codes, rough
 
 
 def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, Any, Any]:
@@ -93,9 +110,9 @@ def rebound(osc: Oscillator, velocity: Any) -> Any:
     return mpmath.re(evaluate(osc.rho(), {"v": velocity}, Multiprecision(mpmath.mp)))
 
 
-def found(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome:
+def found(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
     """One flight to `digits` digits: in balls where they prove the hit, else by two precisions that agree."""
-    return _proved(osc, states, index, digits, limit) or agreed(osc, states, index, digits, limit)
+    return _proved(osc, states, index, digits, limit) or agreed(osc, states, index, digits, limit, budget)
 
 
 def _proved(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome | None:
@@ -125,13 +142,16 @@ def _proved(osc: Oscillator, states: States, index: int, digits: int, limit: flo
     return None
 
 
-def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome:
-    """One flight whose time and velocity two precisions agree on to `digits` digits."""
+def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
+    """One flight whose time and velocity two precisions agree on to `digits` digits.
+
+    The cut-off of every step is bounded in both runs, so they differ by their rounding alone.
+    """
     precision = digits + LIMITS.guard
-    outcome = flown(osc, states, index, precision, limit)
-    while precision < 4 * digits + 500:
+    outcome = flown(osc, states, index, precision, limit, budget)
+    while precision < 4 * digits + 500 and outcome[0] < 20:
         precision = precision + max(LIMITS.guard, precision // 4)
-        again = flown(osc, states, index, precision, limit)
+        again = flown(osc, states, index, precision, limit, budget)
         if _over(outcome) and _over(again):
             return _escaping(osc, states, index, again)
         if outcome[0] == again[0] != Status.unresolved and _close(outcome[1], again[1], digits):
@@ -145,7 +165,7 @@ def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: floa
 def _over(outcome: Outcome) -> bool:
     """Whether a flight came to the horizon, or left the range of numbers, and to no graze."""
     code, (_, _, depth, bound) = outcome
-    return code == Status.no_return or (code == Status.unresolved and not depth <= 10 * bound)
+    return code == Status.no_return or code > 20 or (code == Status.unresolved and not depth <= 10 * bound)
 
 
 def _escaping(osc: Oscillator, states: States, index: int, outcome: Outcome) -> Outcome:
@@ -173,7 +193,9 @@ def _touches(numbers: tuple[Any, Any, Any, Any]) -> bool:
 def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[int, list[float]] | None:
     """One flight that doubles left open, as doubles; None when many digits do not settle it either."""
     for digits in LIMITS.settling_digits:
-        code, numbers = flown(osc, states, index, digits, limit)
+        code, numbers = flown(osc, states, index, digits, limit, LIMITS.settling_steps)
+        if code > 20:
+            return None
         if code != Status.unresolved:
             return code, [float(value) for value in numbers]
     if _touches(numbers):
@@ -181,7 +203,7 @@ def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[i
     return None
 
 
-def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome:
+def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
     """One flight in `digits` digits, rounding errors included in what is undecided."""
     import mpmath
 
@@ -194,24 +216,26 @@ def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float
                 return int(Status.sticks), (v, v, v, v)
             removed = order + 2
         try:
-            return _march(osc, states, index, v, removed, limit)
+            return _march(osc, states, index, v, removed, (limit, budget))
         except (ArithmeticError, ValueError, TypeError):  # log or a root left its domain on the way
             return int(Status.unresolved), (mpmath.nan,) * 4
 
 
-def _march(osc: Oscillator, states: States, index: int, v: Any, removed: int, limit: float) -> Outcome:
+def _march(
+    osc: Oscillator, states: States, index: int, v: Any, removed: int, limits: tuple[float, int]
+) -> Outcome:  # fmt: skip
     import mpmath
 
     kernel = kernel_of(osc, exact_restart=False)
     space = plain(kernel.text, {name: getattr(mpmath.mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
     order = degree_for(float(mpmath.eps)) if mpmath.mp.prec < 1000 else int(mpmath.mp.prec / 2.15)
     order += removed - 1
-    p = np.array([as_mpf(tree, mpmath.mp) for tree in kernel.constants], dtype=object)
-    shapes = (order + 2,), (kernel.rows, order + 2), (order + 2,)
-    work = [np.full(shape, mpmath.mpf(0), dtype=object) for shape in shapes]
+    p = [as_mpf(tree, mpmath.mp) for tree in kernel.constants]
+    work = workspace(mpmath.mpf(0), order, kernel.rows, 1)
     code, *numbers = space["march"](
-        launch(osc, kernel, states, index), v, removed, mpmath.nan, order, mpmath.mpf(limit), 8 * mpmath.eps, p, *work
-    )
+        launch(osc, kernel, states, index), v, removed, mpmath.nan, order, mpmath.mpf(limits[0]), limits[1],
+        8 * mpmath.eps, p, *work, [],
+    )  # fmt: skip
     return int(code), (numbers[0], numbers[1], numbers[2], numbers[3])
 
 

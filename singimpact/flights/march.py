@@ -1,19 +1,20 @@
 """One flight as a chain of Taylor steps, as kernel text: plain arithmetic for doubles and mpf alike.
 
 The first step works on (x - c)/t^removed, where the trivial root t = 0 is gone: full relative accuracy at v = 1e-300.
-The functions `coefficients`, `step_size` and `restart` belong to the flow that the text is joined to.
+The functions `coefficients`, `step_size`, `singular_part` and `restart` belong to the flow that the text is joined to.
 """
 # mypy: disable-error-code="name-defined"
 # ruff: noqa: F821
 
 from __future__ import annotations
 
+from math import nan
 from typing import Any
 
 
 def march(
-    launch: Any, v: Any, removed: int, acceleration: Any, order: int, horizon: Any, ulp: Any, p: Any,
-    X: Any, W: Any, q: Any,
+    launch: Any, v: Any, removed: int, acceleration: Any, order: int, horizon: Any, budget: int, ulp: Any, p: Any,
+    X: Any, W: Any, q: Any, trace: Any,
 ) -> Any:  # fmt: skip
     """(status, flight time, velocity, depth, bound) of the flight from x = c with velocity v.
 
@@ -23,24 +24,33 @@ def march(
     removed : how often t = 0 is a root of x - c: 1 for v > 0, more for a mass that lifts off at rest.
     acceleration : a_c at the launch when it is known better than the flow computes it, else nan.
     order, ulp : degree of a step; relative rounding error allowed for.
+    budget : steps after which the flight is given up.
     p : numbers of the model. X, W, q : work arrays.
+    trace : where its rows suffice, row i becomes time, x - c, x' at the start of step i and x'' there by the polynomial
+        of the step before; the row of the hit ends it, and entry [0, 3] counts the steps.
 
     Notes
     -----
-    Without a hit the state some time before the horizon is given, for `flights.escape`: time, x', x - c, its bound.
+    Without a hit the state some time before the horizon is given, for `flights.escape`: time, x', x - c, its bound; and
+    with status 22 (no step next to a singularity) which part of f and g is singular, in place of the bound.  21 : the
+    budget is spent; 23 : out of the range of numbers.
     """
     zero = 0 * v
     time, z, u, noise, shift = zero, zero, v, zero, zero
     if acceleration == acceleration:
         coefficients(launch, time, z, zero, zero, order - order + 2, p, X, W)  # a literal 2 is compiled for itself
         shift = acceleration / 2 - X[2]
-    longest = p[0] * 0 + 1
-    for _ in range(10_000_000):
+    longest, pace = p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0)
+    for count in range(budget):
         coefficients(launch, time, z, u, shift, order, p, X, W)
-        h = step_size(X, z, order, longest, ulp, p)
-        # a step that time cannot tell from none: the flight leaves every range there
-        if not h > ulp * time or not abs(u) < 1e150 or not abs(z) < 1e150:
-            return 5, time, u, z, noise
+        if count < len(trace):
+            trace[count, 0], trace[count, 1], trace[count, 2] = time, z, u
+        h, overlap, pace = step_size(X, W, z, order, longest, ulp, p, pace)
+        if not abs(u) < 1e150 or not abs(z) < 1e150:
+            return 23, time, u, z, noise
+        # a step that time cannot tell from none
+        if not h > ulp * time:
+            return 22, time, u, z, zero + singular_part(X, W, order, max(h, ulp * (time + ulp)), p)
         if h > 2 * (horizon - time):
             h = 2 * (horizon - time)
         q[0] = z
@@ -48,7 +58,7 @@ def march(
             if k + removed > 0:
                 q[k] = X[k + removed]
         # a little past the step, so that a root on its end is not lost between two steps
-        code, s, slope, depth, bound = first_root(q, order - removed, h * 17 / 16, noise, ulp)
+        code, s, slope, depth, bound = first_root(q, order - removed, h * overlap, noise, ulp)
         if code > 0:
             raised = 1 + zero
             for _k in range(removed):
@@ -57,14 +67,19 @@ def march(
                 return 5, time + s, slope * raised, depth * raised, bound * raised
             if time + s > horizon:
                 return 3, time, u, z, noise
+            if count + 1 < len(trace):
+                trace[count + 1, 0], trace[count + 1, 1], trace[count + 1, 2] = time + s, zero, slope * raised
+                trace[count + 1, 3], trace[0, 3] = curvature(X, order, s), zero + count + 1
             return 0, time + s, slope * raised, zero, zero
         if time + h >= horizon:
             return 3, time, u, z, noise
+        if count + 1 < len(trace):
+            trace[count + 1, 3] = curvature(X, order, h)
         z, u, size = advanced(X, z, order, h)
         time += h
         z, u, noise = restart(launch, v, time, z, u, noise + ulp * size, ulp, p)
         longest, shift, removed = 2 * h, zero, 0
-    return 5, time, u, z, noise
+    return 21, time, u, z, noise
 
 
 def advanced(X: Any, z: Any, order: int, h: Any) -> Any:
@@ -78,28 +93,58 @@ def advanced(X: Any, z: Any, order: int, h: Any) -> Any:
     return value, slope, size
 
 
+def curvature(X: Any, n: int, s: Any) -> Any:
+    """x'' of the polynomial."""
+    value = 0 * s
+    for k in range(n, 1, -1):
+        value = value * s + k * (k - 1) * X[k]
+    return value
+
+
 def run(
-    launch: Any, v: Any, removed: Any, acceleration: Any, order: int, horizon: Any, ulp: Any, p: Any,
+    launch: Any, v: Any, removed: Any, acceleration: Any, order: int, horizon: Any, budget: int, ulp: Any, p: Any,
     X: Any, W: Any, q: Any, status: Any, numbers: Any,
 ) -> None:  # fmt: skip
     """`march` for every launch; numbers[i] = flight time, velocity, depth, bound."""
     for i in range(len(v)):
         code, time, velocity, depth, bound = march(
-            launch[i], v[i], removed[i], acceleration[i], order, horizon, ulp, p, X, W, q
+            launch[i], v[i], removed[i], acceleration[i], order, horizon, budget, ulp, p, X, W, q, W[:0]
         )
         status[i] = code
         numbers[i, 0], numbers[i, 1], numbers[i, 2], numbers[i, 3] = time, velocity, depth, bound
+
+
+def run_judged(
+    launch: Any, v: Any, removed: Any, acceleration: Any, order: int, horizon: Any, budget: int, ulp: Any, p: Any,
+    X: Any, W: Any, q: Any, trace: Any, columns: Any, terms: int, status: Any, numbers: Any, judged: Any,
+) -> None:  # fmt: skip
+    """`run`, and `judge` for every hit.
+
+    Parameters
+    ----------
+    columns : three work arrays. terms : degree of their steps.
+    numbers : numbers[i] = flight time, velocity, depth, bound. judged : judged[i] as `judge` fills it.
+    """
+    for i in range(len(v)):
+        trace[0, 3], judged[i, 0] = 0.0, nan
+        code, time, velocity, depth, bound = march(
+            launch[i], v[i], removed[i], acceleration[i], order, horizon, budget, ulp, p, X, W, q, trace
+        )
+        status[i] = code
+        numbers[i, 0], numbers[i, 1], numbers[i, 2], numbers[i, 3] = time, velocity, depth, bound
+        if code == 0 and trace[0, 3] > 0:
+            judge(launch[i], trace, order, terms, p, X, W, columns[0], columns[1], columns[2], judged[i])
 
 
 def follow(launch: Any, v: Any, times: Any, order: int, ulp: Any, p: Any, X: Any, W: Any, out: Any) -> None:
     """x - c and x' at `times`, which run away from 0 in one direction; the obstacle is not felt."""
     zero = 0 * v
     time, z, u = zero, zero, v
-    longest = p[0] * 0 + 1
+    longest, pace = p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0)
     i = 0
     while i < len(times):
         coefficients(launch, time, z, u, zero, order, p, X, W)
-        h = step_size(X, z, order, longest, ulp, p)
+        h, _overlap, pace = step_size(X, W, z, order, longest, ulp, p, pace)
         if not h > 0 or not abs(u) < 1e150 or not abs(z) < 1e150:
             break
         forward = times[len(times) - 1] >= 0

@@ -81,7 +81,7 @@ def sequence(osc: Oscillator, tau: float, v: float, count: int, slow: float = 0.
             ulp, p, table.step, table.rows, table.bound, *work, out,
         )  # fmt: skip
     else:
-        flown, status = fly(start, v, count, slow, w, np.zeros(1), order, limit, ulp, p, *work, out)
+        flown, status = fly(start, v, count, slow, w, np.zeros(1), order, limit, LIMITS.steps, ulp, p, *work, out)
     counted.add(int(flown))
     since, speed, time, velocity, acceleration = out[:flown].T
     return Sequence(tau + since, speed, time, velocity, acceleration, int(status))

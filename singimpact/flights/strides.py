@@ -42,7 +42,7 @@ def stride(
             z0, u0, base = renewed(launch, v, start, z, u, ulp, p, W)
             z, u, m = z0, u0, last - last
             if not abs(z) < 1e100:
-                return 5, start, u, z, base
+                return 23, start, u, z, base
         z1 = z0 * table[m + 1, 0] + u0 * table[m + 1, 1] + table[m + 1, 2]
         u1 = z0 * table[m + 1, 3] + u0 * table[m + 1, 4] + table[m + 1, 5]
         e1 = p[3]
@@ -62,7 +62,7 @@ def stride(
             code, s, slope = asked(v, acceleration, time, room, error, noise, z, u, e, z1, u1, e1, m,
                                    order, ulp, p, step, table, bound, X, W, q)  # fmt: skip
             if code == 2:
-                return march(launch, v, 1, acceleration, terms, horizon, ulp, p, X, W, q)
+                return march(launch, v, 1, acceleration, terms, horizon, 10_000_000, ulp, p, X, W, q, W[:0])
             if code == 1:
                 if time + s > horizon:
                     return 3, time, u, z, noise
@@ -297,7 +297,8 @@ def stride_all(
     for i in range(len(v)):
         if removed[i] > 1:
             code, time, velocity, depth, error = march(
-                launch[i], v[i], removed[i], acceleration[i], terms - 1 + removed[i], horizon, ulp, p, X, W, q
+                launch[i], v[i], removed[i], acceleration[i], terms - 1 + removed[i], horizon, 10_000_000, ulp, p,
+                X, W, q, W[:0]
             )
         else:
             code, time, velocity, depth, error = stride(

@@ -20,13 +20,9 @@ from singimpact.algebra.derivatives import derivative as differentiated
 from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.rings import DOUBLES, Multiprecision
-from singimpact.codegen.interpreted import function
 from singimpact.codegen.kernels import FUNCTIONS, plain
-from singimpact.flights import kernel as kernels
-from singimpact.flights import march, variation
-from singimpact.flights.flow import taylor
-from singimpact.flights.kernel import kernel_of, ready
-from singimpact.flights.launch import launches
+from singimpact.flights.kernel import kernel_of, ready, taylor_kernel
+from singimpact.flights.launch import launches, workspace
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.phase import reduced
 from singimpact.oscillator.model import Oscillator
@@ -55,21 +51,44 @@ class Response:
         return np.where(np.isfinite(late), late, np.nan), moved
 
 
-def response(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array) -> Response:
-    """The response of flights in doubles; entries that are no hits, velocity < 0, give nan."""
+def response(
+    osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array, judged: Array | None = None
+) -> Response:
+    """The response of flights in doubles; entries that are no hits, velocity < 0, give nan.
+
+    Parameters
+    ----------
+    judged : what `variation.judge` has filled for flights in Taylor steps, nan where it has not.
+    """
     flat = np.full((v.size, 6), np.nan)
     with np.errstate(all="ignore"):
-        hit = np.flatnonzero((velocity < 0) & np.isfinite(time))
-    if hit.size:
-        flat[hit] = variations(osc, tau[hit], v[hit], time[hit])
+        hit = (velocity < 0) & np.isfinite(time)
+    known = np.zeros(v.size, dtype=bool) if judged is None else ~np.isnan(judged[:, 0])
+    rest = np.flatnonzero(hit & ~known)
+    if rest.size:
+        flat[rest] = variations(osc, tau[rest], v[rest], time[rest])
+    if judged is not None:
+        flat[known, :4] = judged[known, :4]
     acceleration = _acceleration(osc, tau, time, velocity)
     found = _response(flat.T[:4], velocity, acceleration)
     _sized(osc, flat, v, time, velocity, acceleration)
     with np.errstate(all="ignore"):
         late = LIMITS.likely * EPSILON * flat[:, 4] / np.abs(velocity)
         dull = LIMITS.likely * EPSILON * flat[:, 5] + np.abs(acceleration) * late
-        rounding = late / time, dull / np.abs(velocity)
-    return replace(found, rounding=rounding)
+        rounding = [late / time, dull / np.abs(velocity)]
+        if judged is not None and known.any():
+            for part, better in zip(rounding, _carried(judged[known], time[known], velocity[known]), strict=True):
+                part[known] = better
+    return replace(found, rounding=tuple(rounding))
+
+
+def _carried(judged: Array, time: Array, velocity: Array) -> tuple[Array, Array]:
+    """Relative errors of flight time and velocity from the variances of x and x' at the hit, and of the sum of steps."""
+    zz, zu, uu, acceleration, steps = judged[:, 4:9].T
+    turn = acceleration / velocity
+    late = np.sqrt(zz / velocity**2 + steps * (time * EPSILON / 2) ** 2)
+    dull = np.sqrt(np.maximum(uu - 2 * turn * zu + turn**2 * zz, 0.0))
+    return late / time, dull / np.abs(velocity)
 
 
 def _sized(osc: Oscillator, flat: Array, v: Array, time: Array, velocity: Array, acceleration: Array) -> None:
@@ -105,20 +124,13 @@ def variations(osc: Oscillator, tau: Array, v: Array, time: Array) -> Array:
         p = np.array([as_float(tree) for tree in kernel.constants])
         ready(kernel, "responses", v.size)(launches(osc, kernel, tau), v, time, p, out)
         return out
-    text, names = _text(osc)
-    emitted, order = taylor.variation_of(osc), degree_for(EPSILON)
-    p = np.array([as_float(tree) for tree in taylor.values(osc, emitted)])
-    rows = [np.zeros(order + 2) for _ in range(3)]
-    function(text, names, "respond_all", v.size * kernels.PRICES.taylor)(
-        launches(osc, kernel, tau), v, time, order, LIMITS.safety * EPSILON, p, rows[0],
-        np.zeros((emitted.rows, order + 2)), rows[1], rows[2], out,
+    p, order = np.array([as_float(tree) for tree in kernel.constants]), degree_for(EPSILON)
+    rows = [np.zeros(order + 2) for _ in range(4)]
+    ready(kernel, "respond_all", v.size)(
+        launches(osc, kernel, tau), v, time, order, LIMITS.steps, LIMITS.safety * EPSILON, p, rows[0],
+        np.zeros((kernel.rows, order + 2)), *rows[1:], out,
     )  # fmt: skip
     return out
-
-
-def _text(osc: Oscillator) -> tuple[str, tuple[str, ...]]:
-    parts = (taylor.step_size, march.advanced, variation.respond, variation.respond_all)
-    return kernels.joined(taylor.variation_of(osc).source, parts), ("variations", *(part.__name__ for part in parts))
 
 
 @lru_cache(maxsize=256)
@@ -157,13 +169,12 @@ def precise(osc: Oscillator, tau: Any, v: Any, time: Any, velocity: Any) -> Resp
     """The response of one flight at the working precision of mpmath."""
     import mpmath
 
-    emitted = taylor.variation_of(osc)
-    space = plain(_text(osc)[0], {name: getattr(mpmath.mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
+    kernel = taylor_kernel(osc)
+    space = plain(kernel.text, {name: getattr(mpmath.mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
     order = degree_for(float(mpmath.eps)) if mpmath.mp.prec < 1000 else int(mpmath.mp.prec / 2.15)
-    p = np.array([as_mpf(tree, mpmath.mp) for tree in taylor.values(osc, emitted)], dtype=object)
-    work = [np.full(shape, mpmath.mpf(0), dtype=object)
-            for shape in ((order + 2,), (emitted.rows, order + 2), (order + 2,), (order + 2,))]  # fmt: skip
-    *variations, _ = space["respond"]([tau], v, time, order, 8 * mpmath.eps, p, *work)
+    p = [as_mpf(tree, mpmath.mp) for tree in kernel.constants]
+    work = workspace(mpmath.mpf(0), order, kernel.rows, 3)
+    *variations, _ = space["respond"]([tau], v, time, order, LIMITS.steps, 8 * mpmath.eps, p, *work)
     ring = Multiprecision(mpmath.mp)
     values = {"x": as_mpf(osc.clearance, mpmath.mp), "xdot": velocity}
     pull = evaluate(osc.force(), values, ring)

@@ -1,0 +1,102 @@
+"""Why a flight is not decided: the codes of the kernels as causes, and where the flight came to, in words."""
+
+from __future__ import annotations
+
+from math import log2
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import Call, Expression, Number, Power, evaluate, substitute
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import DOUBLES
+from singimpact.flights.flow.taylor import recurrence_of
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Cause, Status
+
+Array = np.ndarray[Any, Any]
+ENDED = {5: Cause.near_graze, 21: Cause.step_budget, 22: Cause.domain_left, 23: Cause.overflow}
+"""The codes of `march` that are no statuses."""
+
+
+def decoded(codes: Array) -> tuple[Array, Array]:
+    """Statuses and causes of the codes that a kernel returns.
+
+    Examples
+    --------
+    >>> [part.tolist() for part in decoded(np.array([0, 3, 5, 22]))]
+    [[0, 3, 5, 5], [0, 0, 1, 3]]
+    """
+    status, cause = codes.astype(np.int8), np.zeros(codes.shape, dtype=np.int8)
+    for code, name in ENDED.items():
+        cause[codes == code] = name
+    status[codes > 20] = Status.unresolved
+    return status, cause
+
+
+def where(osc: Oscillator, tau: float, numbers: Array) -> str:
+    """Where a flight came to: time since the launch, phase, x and x'.
+
+    Parameters
+    ----------
+    numbers : time, x', x - c at the end of the flight, as `march` returns them.
+    """
+    time, speed, height = (float(value) for value in numbers[:3])
+    at = tau + time
+    phase = "" if osc.period is None else f", phase {at % as_float(osc.period):.12g} of {as_float(osc.period):.6g}"
+    return f"t = {at:.12g} ({time:.6g} after the launch{phase}), x = {as_float(osc.clearance) + height:.6g}, x' = {speed:.6g}"
+
+
+def explained(osc: Oscillator, tau: float, numbers: Array, cause: Cause, path: Any) -> tuple[Cause, str]:
+    """The cause of an undecided flight, told apart further, and a clause about where it came to.
+
+    Parameters
+    ----------
+    tau : of the launch. numbers : time, x', x - c, and which part of f or g is singular next to that, as `march` numbers
+        them. path : gives (x, x') at an array of times since the launch.
+    """
+    place = where(osc, tau, numbers)
+    if cause != Cause.domain_left:
+        return cause, f"the flight came to {place}"
+    suspects = recurrence_of(osc).suspects
+    index = int(numbers[3])
+    if not 1 <= index <= len(suspects):
+        return cause, f"x' grows beyond every bound near {place}"
+    part = suspects[index - 1]
+    crossed = _crossed(osc, part, tau, float(numbers[0]), path)
+    if crossed == "touches":
+        return Cause.kink, f"{part} has a kink at {place}"
+    if crossed == "steep":
+        return Cause.kink, f"{part} changes within less than a rounding of time at {place}"
+    return cause, f"{part} is singular at {place}"
+
+
+def _crossed(osc: Oscillator, part: Expression, tau: float, time: float, path: Any) -> str:
+    """How the argument of a root, power or logarithm meets 0: "touches" it, or "crosses"; "steep" for entire functions."""
+    match part:
+        case Power(base, _):
+            argument: Expression = base
+        case Call(name, inner) if name in ("sqrt", "log"):
+            argument = inner
+        case Call("tan", _):
+            return "crosses"
+        case _:
+            return "steep"
+    if not _is_root(part) or time == 0:
+        return "crosses"
+    before = 1e-5 * min(time, 1.0) * np.array([1.0, 2.0])
+    x, xdot = path(time - before)
+    tree = substitute(argument, osc.parameters)
+    with np.errstate(all="ignore"):
+        sizes = np.abs(evaluate(tree, {"x": x, "xdot": xdot, "t": tau + time - before}, DOUBLES) + 0 * x)
+    # a simple zero falls by half where the distance does, a double one by three quarters
+    return "touches" if bool(sizes[0] > 0) and log2(sizes[1] / sizes[0]) > 1.5 else "crosses"
+
+
+def _is_root(part: Expression) -> bool:
+    match part:
+        case Power(_, Number(exponent)):
+            return exponent > 0
+        case Call("sqrt", _):
+            return True
+    return False
