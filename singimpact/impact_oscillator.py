@@ -41,8 +41,9 @@ class ImpactOscillator(Oscillator):
     __slots__ = ()
 
     def first_hit(
-        self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None
-    ) -> Flight:
+        self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
+        steps: int | None = None,
+    ) -> Flight:  # fmt: skip
         """The first hit F of flights from (tau, v): see `singimpact.flights.hits.first_hit`.
 
         Examples
@@ -54,11 +55,12 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.hits import first_hit
 
-        return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon)
+        return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps)
 
     def impact_map(
-        self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None
-    ) -> Step:
+        self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
+        steps: int | None = None,
+    ) -> Step:  # fmt: skip
         """The impact map G(tau, v): see `singimpact.flights.hits.impact_map`.
 
         Examples
@@ -69,7 +71,7 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.hits import impact_map
 
-        return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon)
+        return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps)
 
     def flight(self, tau: Any, v: Any, t: Any) -> Path:
         """x and x' at times t along one flight: see `singimpact.flights.path.path`."""

@@ -176,7 +176,7 @@ def square_in(tree: Expression) -> Square | None:
     >>> from singimpact.algebra.parsing import parse
     >>> square = square_in(parse("2 + 3*(x - 1)**2", ["x"]))
     >>> print(square.root, square.factor, square.shift)
-    -1 + x 3 2
+    x - 1 3 2
     """
     parts = tree.terms if isinstance(tree, Sum) else (tree,)
     moving = [part for part in parts if moves(part)]

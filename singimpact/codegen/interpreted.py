@@ -74,15 +74,15 @@ def function(text: str, names: tuple[str, ...], name: str, cost: float) -> Calla
     return run
 
 
-def in_floats(text: str, name: str) -> Callable[..., Any]:
-    """The function `name` of a kernel on Python's floats and lists of lists, never compiled.
+def in_floats(text: str) -> dict[str, Any]:
+    """The functions of a kernel on Python's floats and lists of lists, never compiled.
 
     Examples
     --------
-    >>> in_floats("def first(W):\\n    return W[0, 0]\\n", "first")([[1.5]])
+    >>> in_floats("def first(W):\\n    return W[0, 0]\\n")["first"]([[1.5]])
     1.5
     """
-    return _space(text)[1][name]  # type: ignore[no-any-return]
+    return _space(text)[1]
 
 
 def forget() -> None:

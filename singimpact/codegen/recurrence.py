@@ -123,7 +123,7 @@ def recurrence(force: Expression, forcing: Expression) -> Recurrence:
     >>> from singimpact.algebra.parsing import parse
     >>> made = recurrence(parse("3*x", ["x"]), parse("t", ["t"]))
     >>> [str(tree) for tree in made.constants], made.rows
-    (['3'], 2)
+    (['3', '1'], 2)
     """
     writer = _Writer()
     motion = _motion(writer, force, forcing)

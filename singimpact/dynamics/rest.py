@@ -9,10 +9,11 @@ import numpy as np
 
 from singimpact.algebra.expressions import number, subtract
 from singimpact.algebra.numbers import as_float
-from singimpact.codegen.kernels import FUNCTIONS, plain
+from singimpact.codegen.interpreted import in_floats
 from singimpact.flights.first_root import first_root
-from singimpact.flights.flow.taylor import constants, recurrence_of
-from singimpact.flights.launch import at_rest, exact_number
+from singimpact.flights.flow.taylor import constants
+from singimpact.flights.kernel import taylor_kernel
+from singimpact.flights.launch import at_rest, exact_number, workspace
 from singimpact.flights.limits import LIMITS
 from singimpact.oscillator.acceleration import resting_force
 from singimpact.oscillator.model import Oscillator
@@ -44,9 +45,10 @@ def release(osc: Oscillator, tau: float, horizon: float | None = None) -> float:
     start = tau
     longest = 1.0
     while start - tau < horizon:
-        series = _pressure(osc, start)
-        width = _width(series, longest)
-        code, s, _slope, _depth, _bound = first_root(series, ORDER, width * 17 / 16, 0.0, LIMITS.safety * EPSILON)
+        series, width = _pressure(osc, start, longest)
+        if not start + width > start:  # g is singular there
+            return float("nan")
+        code, s, _slope, _depth, _bound = first_root(series, ORDER, width, 0.0, LIMITS.safety * EPSILON)
         if code == 2:
             return float("nan")
         if code == 1:
@@ -68,25 +70,32 @@ def _lifted(osc: Oscillator, tau: float) -> float:
 
 
 @lru_cache(maxsize=64)
-def _resting_model(osc: Oscillator) -> tuple[Any, list[float], int]:
+def _resting_model(osc: Oscillator) -> tuple[dict[str, Any], list[float], int]:
     """x'' = -a_c(t) as a recurrence; its coefficients give those of -a_c."""
     model = Oscillator(number(0), subtract(resting_force(osc), osc.forcing()), 0, 1)
-    emitted = recurrence_of(model)
-    import math
-
-    space = plain(emitted.source, {name: getattr(math, name) for name in FUNCTIONS})
-    return space["coefficients"], [as_float(tree) for tree in constants(model)], emitted.rows
+    kernel = taylor_kernel(model)
+    return in_floats(kernel.text), [as_float(tree) for tree in constants(model)], kernel.rows
 
 
-def _pressure(osc: Oscillator, tau: float) -> Any:
-    """Taylor coefficients of -a_c at tau."""
-    coefficients, p, rows = _resting_model(osc)
-    series = np.zeros(ORDER + 4)
-    coefficients([tau], 0.0, 0.0, 0.0, 0.0, ORDER + 2, p, series, np.zeros((rows, ORDER + 4)))
-    return [float(series[k + 2]) * (k + 1) * (k + 2) for k in range(ORDER + 1)]
+def _pressure(osc: Oscillator, tau: float, longest: float) -> tuple[list[float], float]:
+    """Taylor coefficients of -a_c at tau, and a step on which what they leave out is proved to be below rounding."""
+    space, p, rows = _resting_model(osc)
+    X, W = workspace(0.0, ORDER + 2, rows, 0)
+    space["coefficients"]([tau], 0.0, 0.0, 0.0, 0.0, ORDER + 2, p, X, W)
+    series = [X[k + 2] * (k + 1) * (k + 2) for k in range(ORDER + 1)]
+    width = R = _width(series, longest)
+    R *= 4
+    while width > EPSILON * abs(tau):
+        bound, _suspect = space["disc"](X, W, ORDER + 2, R, p)
+        q = width / R
+        # Cauchy's bound of the coefficients beyond ORDER, summed
+        if q < 0.9 and bound * q ** (ORDER + 1) / (1 - q) < 8 * EPSILON * max(map(abs, series[:4])):
+            break
+        width, R = 0.8 * width, 0.87 * R
+    return series, width
 
 
-def _width(series: Any, longest: float) -> float:
+def _width(series: list[float], longest: float) -> float:
     """A step on which the last terms are below rounding."""
     width = longest
     size = 0.0

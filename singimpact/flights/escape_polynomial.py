@@ -49,9 +49,10 @@ def never_turns(osc: Oscillator, z: Array, u: Array) -> Array:
     >>> never_turns(osc, np.array([5.0, 0.1]), np.array([30.0, 30.0])).tolist()
     [True, False]
     """
-    degree, least = degree_of(osc.force()), _least_force(osc)
-    if degree is None or least is None:
+    degree, extremes = degree_of(osc.force()), extremes_of_forcing(osc)
+    if degree is None or extremes is None:
         return np.zeros(z.shape, dtype=bool)
+    least = extremes[0]
     return np.array([a > 0 and b > 0 and _rises(osc, degree, least, float(a), float(b))
                      for a, b in zip(z, u, strict=True)], dtype=bool)  # fmt: skip
 
@@ -95,15 +96,17 @@ def _rises(osc: Oscillator, degree: int, least: Any, z: float, u: float) -> bool
 
 
 @lru_cache(maxsize=64)
-def _least_force(osc: Oscillator) -> Any:
-    """A number below g at all times, from its enclosures over a period; None where there is none."""
+def extremes_of_forcing(osc: Oscillator) -> tuple[Any, Any] | None:
+    """Numbers below and above g at all times, from its enclosures over a period; None where there are none."""
     balls, forcing = Balls(PROOF.bits), osc.forcing()
     if "t" not in names_in(forcing):
-        return balls.evaluate(forcing, {}).lower()
-    if osc.period is None:
+        found = [balls.evaluate(forcing, {})]
+    elif osc.period is None:
         return None
-    period, lows = balls.evaluate(osc.period, {}), []
-    for piece in range(PROOF.pieces):
-        ends = [period * piece / PROOF.pieces, period * (piece + 1) / PROOF.pieces]
-        lows.append(balls.evaluate(forcing, {"t": ends[0].union(ends[1])}).lower())
-    return min(lows) if all(low.is_finite() for low in lows) else None
+    else:
+        period = balls.evaluate(osc.period, {})
+        ends = [period * piece / PROOF.pieces for piece in range(PROOF.pieces + 1)]
+        found = [balls.evaluate(forcing, {"t": low.union(high)}) for low, high in zip(ends, ends[1:], strict=False)]
+    if not all(value.is_finite() for value in found):
+        return None
+    return min(value.lower() for value in found), max(value.upper() for value in found)

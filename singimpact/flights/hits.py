@@ -17,6 +17,8 @@ from singimpact.flights import counted, edges, manydigits
 from singimpact.flights.carriers import Derivative, Flight, Step
 from singimpact.flights.causes import decoded, explained
 from singimpact.flights.escape import never_returns
+from singimpact.flights.escape_averaged import stays_up
+from singimpact.flights.escape_barrier import kept_up
 from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.kernel import Kernel, kernel_of, ready
 from singimpact.flights.launch import States, at_rest, horizon_of, launches
@@ -307,7 +309,8 @@ def _many_digits(osc: Oscillator, states: States, digits: int, limits: Allowance
 def _escapes(osc: Oscillator, form: LinearForm | None, states: States, raw: Raw) -> None:
     """Flights that have not returned become `escaped` where they are proved never to return."""
     # a flight that left the range of doubles, or spent its steps, was followed without impact too
-    gone = np.flatnonzero((raw.status == Status.no_return) | (raw.lost & (raw.cause != Cause.domain_left)))
+    singular = (raw.cause == Cause.domain_left) & (raw.numbers[:, 3] > 0)
+    gone = np.flatnonzero(((raw.status == Status.no_return) | (raw.lost & ~singular)) & (raw.numbers[:, 0] > 0))
     if gone.size:
         time, speed, place, _ = raw.numbers[gone].T
         proved = (never_turns(osc, place, speed) if form is None
@@ -329,6 +332,8 @@ def _fly(
     osc: Oscillator, kernel: Kernel, states: States, removed: Array, pushes: Array, raw: Raw, limits: Allowance
 ) -> None:  # fmt: skip
     """Fly the states whose status is `hit` so far, and fill in what becomes of them."""
+    if kernel.form is None:
+        _decided_at_launch(osc, states, raw, limits)
     moving = np.flatnonzero(raw.status == Status.hit)
     if not moving.size:
         return
@@ -338,7 +343,8 @@ def _fly(
     given = launches(osc, kernel, states.tau)[moving], states.v[moving], removed[moving], pushes[moving]
     p, table = doubles(kernel), table_of(kernel, doubles(kernel))
     order = degree_for(EPSILON if kernel.form else limits.epsilon) + int(removed.max(initial=1)) - 1
-    work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
+    room = max(order, degree_for(LIMITS.judging)) + 2
+    work = np.zeros(room), np.zeros((kernel.rows, room)), np.zeros(room)
     if kernel.form is None:
         _fly_taylor(kernel, given, order, limits, (p, *work), (codes, flown, judged))
     elif table is None:
@@ -354,10 +360,17 @@ def _fly(
     raw.numbers[moving], raw.judged[moving] = flown, judged
 
 
+def _decided_at_launch(osc: Oscillator, states: States, raw: Raw, limits: Allowance) -> None:
+    """Flights that are proved not to return before they are flown."""
+    moving = raw.status == Status.hit
+    raw.status[moving & kept_up(osc, states.v)] = Status.escaped
+    raw.status[moving & stays_up(osc, states.v, limits.horizon)] = Status.no_return
+
+
 def _fly_taylor(kernel: Kernel, given: Any, order: int, limits: Allowance, work: Any, found: Any) -> None:
     """Flights in Taylor steps, in blocks that hear an interruption; long ones again with room for all their steps."""
     codes, flown, judged = found
-    columns = np.zeros((3, order + 2))
+    columns = np.zeros((3, work[1].size))
 
     def run(chosen: Any, rows: int) -> None:
         parts = [part[chosen] for part in found]

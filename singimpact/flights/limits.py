@@ -50,12 +50,12 @@ class Limits:
     settled: int = 200
     settling_digits: tuple[int, int] = (50, 120)
     cancelled: float = 2.0**-10
-    steps: int = 10_000
+    steps: int = 16_000
     longest: int = 10_000_000
     settling_steps: int = 400
     block: int = 64
     traced: int = 400
-    judging: float = 1e-8
+    judging: float = 1e-12
     margin: float = 4.0
     guard: int = 15
 

@@ -8,13 +8,15 @@ precision grows: half of the digits go in a square root at a graze, and no formu
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from math import ceil
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.balls import BITS_A_DIGIT
+from singimpact.algebra.balls import BITS_A_DIGIT, Balls
 from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_mpf
 from singimpact.algebra.rings import Multiprecision
@@ -159,7 +161,7 @@ def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: floa
         outcome = again
     if outcome[0] == Status.unresolved and _touches(outcome[1]):
         return int(Status.graze), outcome[1]
-    return outcome
+    return _escaping(osc, states, index, outcome) if outcome[0] > 20 else outcome
 
 
 def _over(outcome: Outcome) -> bool:
@@ -228,6 +230,8 @@ def _march(
 
     kernel = kernel_of(osc, exact_restart=False)
     space = plain(kernel.text, {name: getattr(mpmath.mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
+    if kernel.form is None:
+        space["coefficients"] = partial(_coefficients, _in_balls(osc, mpmath.mp.prec + 32))
     order = degree_for(float(mpmath.eps)) if mpmath.mp.prec < 1000 else int(mpmath.mp.prec / 2.15)
     order += removed - 1
     p = [as_mpf(tree, mpmath.mp) for tree in kernel.constants]
@@ -237,6 +241,48 @@ def _march(
         8 * mpmath.eps, p, *work, [],
     )  # fmt: skip
     return int(code), (numbers[0], numbers[1], numbers[2], numbers[3])
+
+
+@dataclass(frozen=True)
+class _Numbers:
+    """A kernel's function `coefficients` on balls, its numbers as balls, and how many rows it fills."""
+
+    call: Any
+    p: list[Any]
+    rows: int
+    balls: Balls
+
+
+def _in_balls(osc: Oscillator, bits: int) -> _Numbers:
+    kernel, balls = kernel_of(osc), Balls(bits)
+    space = plain(kernel.text, {name: lambda x, name=name: getattr(x, name)() for name in FUNCTIONS})
+    return _Numbers(space["coefficients"], [balls.evaluate(tree, {}) for tree in kernel.constants], kernel.rows, balls)
+
+
+def _coefficients(
+    numbers: _Numbers, start: Any, time: Any, z: Any, u: Any, shift: Any, n: int, p: Any, X: Any, W: Any
+) -> None:  # fmt: skip
+    """`coefficients` of numbers of mpmath, computed in balls of 32 bits more, which takes a quarter of the time."""
+    import flint
+
+    with flint.ctx.workprec(numbers.balls.bits):
+        exact = [flint.arb(value) for value in (start[0], time, z, u, shift)]
+        x, w = workspace(flint.arb(0), n, numbers.rows, 0)
+        numbers.call([exact[0]], *exact[1:], n, numbers.p, x, w)
+    X[: n + 1] = [_centre(value) for value in x[: n + 1]]
+    for row, filled in zip(W, w, strict=True):
+        row[0] = _centre(filled[0])
+
+
+def _centre(ball: Any) -> Any:
+    """The centre of a ball as a number of mpmath, exactly."""
+    import mpmath
+
+    if isinstance(ball, float | int):  # the time has series of plain numbers
+        return mpmath.mpf(ball)
+    if not ball.is_finite():
+        return mpmath.nan
+    return mpmath.mp.make_mpf(mpmath.libmp.from_man_exp(*map(int, ball.mid().man_exp())))
 
 
 def launch(osc: Oscillator, kernel: Kernel, states: States, index: int) -> list[Any]:

@@ -50,7 +50,7 @@ def _by_steps(osc: Oscillator, balls: Balls, tau: Any, v: Any, near: float, budg
     """
     kernel = kernel_of(osc)
     space = plain(kernel.text, {name: lambda x, name=name: getattr(x, name)() for name in FUNCTIONS})
-    step_size = in_floats(kernel.text, "step_size")
+    step_size = in_floats(kernel.text)["step_size"]
     p = [evaluate(tree, {}, balls) for tree in kernel.constants]
     numbers = [float(part.mid()) for part in p]
     zero, order = balls.rational(Fraction(0)), LIMITS.polish_order

@@ -67,28 +67,40 @@ def judge(
     unit = 2.0**-53
     by_v, by_v_dot, by_tau, by_tau_dot = 0.0, 1.0, 0.0, 0.0
     zz, zu, uu, h, before = 0.0, 0.0, 0.0, 0.0, 0.0
-    steps = int(trace[0, 3])
-    for i in range(steps + 1):
-        time, z, u = trace[i, 0], trace[i, 1], trace[i, 2]
+    steps, i, fresh = int(trace[0, 3]), 0, True
+    time, z, u = 0.0, trace[0, 1], trace[0, 2]
+    while True:
         A[0], A[1], B[0], B[1], Z[0], Z[1] = 1.0, 0.0, 0.0, 1.0, 0.0, 0.0
         variations(launch, time, z, u, terms, p, X, W, A, B, Z)
-        known = rounding(X, W, unit, p)
-        if i > 0:
+        known = rounding(X, W, unit, p) if fresh else before
+        if fresh and i > 0:
             cut = abs(2 * X[2] - trace[i, 3]) / order
             off_u = h * (cut + max(known, before)) + unit * abs(u)
             off_z = unit * (abs(z) + h * (abs(u) + h * abs(X[2]))) + h * off_u / 2
             zz, uu = zz + off_z * off_z, uu + off_u * off_u
         if i == steps:
             break
-        before, h = known, trace[i + 1, 0] - time
-        a, a_dot, _size = advanced(A, A[0], terms, h)
-        b, b_dot, _size = advanced(B, B[0], terms, h)
-        d, d_dot, _size = advanced(Z, Z[0], terms, h)
+        if fresh:
+            before, h = known, trace[i + 1, 0] - time
+        # columns of a stiff model decay faster than the flight moves: their steps are shorter
+        stiff = max(2 * abs(B[2]), (2 * abs(A[2])) ** 0.5)
+        left = trace[i + 1, 0] - time
+        fresh = not stiff * left > 3
+        part = left if fresh else 3 / stiff
+        a, a_dot, _size = advanced(A, A[0], terms, part)
+        b, b_dot, _size = advanced(B, B[0], terms, part)
+        d, d_dot, _size = advanced(Z, Z[0], terms, part)
         by_v, by_v_dot = a * by_v + b * by_v_dot, a_dot * by_v + b_dot * by_v_dot
         by_tau, by_tau_dot = a * by_tau + b * by_tau_dot + d, a_dot * by_tau + b_dot * by_tau_dot + d_dot
         zz, zu, uu = (a * a * zz + 2 * a * b * zu + b * b * uu,
                       a * a_dot * zz + (a * b_dot + a_dot * b) * zu + b * b_dot * uu,
                       a_dot * a_dot * zz + 2 * a_dot * b_dot * zu + b_dot * b_dot * uu)  # fmt: skip
+        if fresh:
+            i += 1
+            time, z, u = trace[i, 0], trace[i, 1], trace[i, 2]
+        else:
+            z, u, _size = advanced(X, z, terms, part)
+            time += part
     out[0], out[1], out[2], out[3] = by_v, by_v_dot, by_tau, by_tau_dot
     out[4], out[5], out[6], out[7], out[8] = zz, zu, uu, 2 * X[2], steps
 

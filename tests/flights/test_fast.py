@@ -67,8 +67,11 @@ def test_the_source_runs_without_the_compiler(clone) -> None:
         regime, status, time, v = line.split()
         found = impact_map(problem.model(), problem.tau, problem.v)
         assert (regime, int(status)) == (problem.regime, found.status)
-        assert abs(found.flight_time - float.fromhex(time)) <= 4 * np.spacing(found.flight_time), problem
-        assert abs(found.v - float.fromhex(v)) <= 4 * np.spacing(found.v), problem
+        # a compiler has its own exp and log, which choose the steps of a flight without a closed form
+        late, dull = (0, 0) if problem.family == "linear" else (
+            found.time_error * found.flight_time, found.velocity_error * found.v)  # fmt: skip
+        assert abs(found.flight_time - float.fromhex(time)) <= max(4 * np.spacing(found.flight_time), late), problem
+        assert abs(found.v - float.fromhex(v)) <= max(4 * np.spacing(found.v), dull), problem
 
 
 def test_a_sweep_compiles_once() -> None:

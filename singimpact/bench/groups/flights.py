@@ -92,10 +92,10 @@ def _loop(problem: Problem, copies: int, tolerance: float) -> Callable[[], float
     work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
     status, numbers = np.empty(copies, dtype=np.int8), np.empty((copies, 4))
     space, table = compiled(kernel.text, kernel.names), table_of(kernel, p)
-    tail: tuple[Any, ...] = (order, 1000.0, LIMITS.safety * tolerance, p)
+    tail: tuple[Any, ...] = (order, 1000.0, LIMITS.longest, LIMITS.safety * tolerance, p)
     loop = space["run"]
     if table is not None:
-        loop, tail = space["stride_all"], (STRIDES.order, *tail, table.step, table.rows, table.bound)
+        loop, tail = space["stride_all"], (STRIDES.order, *tail[:2], *tail[3:], table.step, table.rows, table.bound)
 
     def run() -> float:
         loop(*start, *tail, *work, status, numbers)

@@ -1,0 +1,131 @@
+"""Flights that strong damping keeps above the obstacle for ever: two straight barriers in the plane of z = x - c and x'.
+
+On x' = -lambda z the motion points upwards, and on x' = kappa (Z - z) downwards, if for all z in [0, Z] and all times
+
+    g - f(c + z, -lambda z) - lambda^2 z > 0,        g - f(c + z, kappa (Z - z)) + kappa^2 (Z - z) < 0 .
+
+A launch with 0 < v <= kappa Z begins between them and stays there, so z >= z_0 e^(-lambda t) > 0: it never returns.  The
+slopes are looked for in doubles on a grid; the inequalities are then proved in balls on pieces of [0, Z].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import Name, add, evaluate, multiply, number, substitute
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import DOUBLES
+from singimpact.flights.escape_polynomial import extremes_of_forcing
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Search:
+    """Where barriers are looked for.
+
+    Attributes
+    ----------
+    slopes, heights : powers of two tried for lambda and kappa, and for Z.
+    grid : points of [0, Z] in doubles, denser towards 0. pieces : of [0, Z] at most, in balls.
+    """
+
+    slopes: range = range(-6, 15)
+    heights: range = range(-4, 12)
+    grid: int = 200
+    pieces: int = 2000
+    bits: int = 96
+
+
+SEARCH = Search()
+
+
+def kept_up(osc: Oscillator, v: Array) -> Array:
+    """Whether flights launched with velocities v > 0 are proved never to return.
+
+    Examples
+    --------
+    >>> kept_up(Oscillator("x + x**3/10 + 1000*xdot", "cos(t)", -1, 1), np.array([0.0, 1.0])).tolist()
+    [False, True]
+    """
+    fastest = _fastest_kept(osc)
+    return np.asarray((v > 0) & (v <= fastest))
+
+
+@lru_cache(maxsize=256)
+def _fastest_kept(osc: Oscillator) -> float:
+    """The largest launch velocity between proved barriers; 0 without any."""
+    extremes = extremes_of_forcing(osc)
+    if extremes is None:
+        return 0.0
+    low, high = (float(part.mid()) for part in extremes)
+    clearance = as_float(osc.clearance)
+
+    def force(z: Array, speed: Array) -> Array:
+        with np.errstate(all="ignore"):
+            return np.asarray(evaluate(osc.force(), {"x": clearance + z, "xdot": speed}, DOUBLES)) + 0 * z
+
+    nothing = np.zeros(1)
+    if not low - force(nothing, nothing)[0] > 0:  # the obstacle must push the mass off at all times
+        return 0.0
+    part = np.linspace(0, 1, SEARCH.grid) ** 2
+    for height in (2.0**k for k in SEARCH.heights):
+        z = height * part
+        if not high - force(z[-1:], nothing)[0] < 0:
+            continue
+        below = [s for s in _slopes() if np.all(low - force(z, -s * z) - s * s * z > 0)]
+        rest = height - z
+        above = [s for s in _slopes() if np.all(high - force(z, s * rest) + s * s * rest < 0)]
+        for steep in reversed(above):
+            for flat in below:
+                if _proved(osc, extremes, height, flat, steep):
+                    return steep * height
+    return 0.0
+
+
+def _slopes() -> list[float]:
+    return [2.0**k for k in SEARCH.slopes]
+
+
+def _proved(osc: Oscillator, extremes: tuple[Any, Any], height: float, flat: float, steep: float) -> bool:
+    """Both inequalities on [0, height], in balls."""
+    balls = Balls(SEARCH.bits)
+    z = Name("z")
+    top, slope, bar = (number(Fraction(value)) for value in (height, flat, steep))
+    rest = add(top, multiply(number(-1), z))
+    place = add(osc.clearance, z)
+    lower = add(
+        multiply(number(-1), substitute(osc.force(), {"x": place, "xdot": multiply(number(-1), slope, z)})),
+        multiply(number(-1), slope, slope, z),
+    )
+    upper = add(
+        multiply(number(-1), substitute(osc.force(), {"x": place, "xdot": multiply(bar, rest)})),
+        multiply(bar, bar, rest),
+    )
+
+    def holds(piece: Any) -> bool:
+        first, second = (balls.evaluate(tree, {"z": piece}) for tree in (lower, upper))
+        return bool(extremes[0] + first > 0) and bool(extremes[1] + second < 0)
+
+    return _on_pieces(holds, balls, height)
+
+
+def _on_pieces(holds: Callable[[Any], bool], balls: Balls, height: float) -> bool:
+    """Whether something holds on pieces that cover [0, height]."""
+    stack = [(Fraction(0), Fraction(height))]
+    for _ in range(SEARCH.pieces):
+        if not stack:
+            return True
+        low, high = stack.pop()
+        if not holds(balls.rational(low).union(balls.rational(high))):
+            middle = (low + high) / 2
+            stack += [(middle, high), (low, middle)]
+    return False
