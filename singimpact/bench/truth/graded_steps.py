@@ -9,7 +9,7 @@ on the way. The fineness is halved until two flights agree.
 from __future__ import annotations
 
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import floor, inf, isfinite, sqrt
@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 Array = np.ndarray[Any, Any]
-Acceleration = Callable[[float, float, float, Array], float]
+Acceleration = Callable[[float, float, float, Sequence[float]], float]
 POSITION, VELOCITY, PHASE, BEYOND = range(4)
 MISS, HIT, UNDECIDED = range(3)
 MOST_STEPS = 2_000_000
@@ -132,7 +132,19 @@ def compiled(acceleration: Acceleration) -> Any:
     import numba
 
     number = numba.float64
-    return numba.njit(number(number, number, number, number[::1]), error_model="numpy")(acceleration)
+    signature = number(number, number, number, number[::1])
+    return numba.njit(signature, error_model="numpy")(_with_compiled_callees(acceleration))
+
+
+def _with_compiled_callees(function: Any) -> Any:
+    """A function whose plain callees in its module are compiled."""
+    import numba
+
+    space = dict(function.__globals__)
+    for name in function.__code__.co_names:
+        if isinstance(space.get(name), types.FunctionType):
+            space[name] = numba.njit(_with_compiled_callees(space[name]), error_model="numpy")
+    return types.FunctionType(function.__code__, space, function.__name__)
 
 
 # what follows is compiled by `compiled_kernel`
@@ -147,12 +159,13 @@ def added(total: float, lost: float, term: float) -> tuple[float, float]:
 
 def rate(layers: Array, t: float, x: float, u: float, e: float) -> float:
     """How fast the motion changes: 2 for a smooth one, and the speed towards each layer over the distance to it."""
-    total = 2 + abs(e) / (1 + abs(u))
+    total: float = 2 + abs(e) / (1 + abs(u))
     for row in range(len(layers)):
         kind, centre, width, stiffness, spacing = layers[row]
         if kind == VELOCITY:
             distance = max(width, abs(u - centre))
-            total += abs(e) / distance + stiffness * (width / distance) ** 2
+            # a tenth: the method is stable up to h stiffness = 6, and friction that holds the mass changes slowly
+            total += abs(e) / distance + 0.1 * abs(stiffness) * (width / distance) ** 2
         elif kind == PHASE:
             turn = t - centre
             total += 1 / max(width, abs(turn - spacing * floor(turn / spacing + 0.5)))
@@ -166,7 +179,7 @@ def side(layer: Array, t: float, x: float, u: float) -> float:
     """A number that changes when the state crosses the centre of a layer."""
     kind, centre, spacing = layer[0], layer[1], layer[4]
     if kind == PHASE:
-        return floor((t - centre) / spacing)
+        return float(floor((t - centre) / spacing))
     return 1.0 if (u if kind == VELOCITY else x) > centre else 0.0
 
 
