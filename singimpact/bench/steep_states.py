@@ -49,8 +49,9 @@ class DrawSettings:
 
 DRAW = DrawSettings()
 COLUMNS = (
-    "family", "steepness", "status", "flight_time", "velocity", "condition", "error", "velocity_error",
-    "true_status", "true_time", "true_velocity", "crossed", "tau", "v", "case", "index", "seconds", "true_seconds",
+    "family", "steepness", "status", "flight_time", "velocity", "condition", "velocity_condition", "error",
+    "velocity_error", "true_status", "true_time", "true_velocity", "crossed", "tau", "v", "case", "launch", "seconds",
+    "true_seconds",
 )  # fmt: skip
 
 
@@ -135,13 +136,13 @@ def flown(seed: int, number: int) -> Array:
     spent = (process_time() - begin) / len(case.v)
     table = np.full((len(case.v), len(COLUMNS)), np.nan)
     put = {name: table[:, index] for index, name in enumerate(COLUMNS)}
-    for name in ("status", "flight_time", "velocity", "condition", "error", "velocity_error"):
+    for name in ("status", "flight_time", "velocity", "condition", "velocity_condition", "error", "velocity_error"):
         given = getattr(hit, name, None)
         if given is not None:
             put[name][:] = given
     put["family"][:], put["steepness"][:] = FAMILIES.index(case.family), case.numbers["K"]
     put["tau"][:], put["v"][:], put["seconds"][:] = case.tau, case.v, spent
-    put["case"][:], put["index"][:] = number, np.arange(len(case.v))
+    put["case"][:], put["launch"][:] = number, np.arange(len(case.v))
     for index, (tau, v) in enumerate(zip(case.tau.tolist(), case.v.tolist(), strict=True)):
         begin = process_time()
         true = graded_steps.first_hit(motion, tau, v, DRAW.horizon)

@@ -121,8 +121,8 @@ def _signature() -> Any:
     """The type of `flown`."""
     import numba
 
-    number, result = numba.float64, numba.types.Tuple
-    returned = result((numba.int64, number, number, numba.boolean, numba.int64, number))
+    number: Any = numba.float64
+    returned: Any = numba.types.Tuple((numba.int64, number, number, numba.boolean, numba.int64, number))
     called = numba.types.FunctionType(number(number, number, number, number[::1]))
     return returned(called, number[::1], number[:, ::1], *[number] * 5)
 
