@@ -57,14 +57,14 @@ def check(
     """
     total = len(found["status"])
     picked = np.random.default_rng([seed, total]).permutation(total)[: sizes[0]]
-    names = ("case", "launch", "flight_time", "velocity", "true_time", "true_velocity")
-    columns = [found[name][picked].tolist() for name in names]
+    part = {name: column[picked].tolist() for name, column in found.items()}
     states = [
-        Flown(int(case), int(launch), *numbers, place < sizes[1])
-        for place, (case, launch, *numbers) in enumerate(zip(*columns, strict=True))
-    ]
+        Flown(int(part["case"][place]), int(part["launch"][place]), part["flight_time"][place], part["velocity"][place],
+              part["true_time"][place], part["true_velocity"][place], place < sizes[1])
+        for place in range(len(picked))
+    ]  # fmt: skip
     table = sweep(partial(enclosed, seed), states, executor, output).reshape(-1, len(COLUMNS))
-    return summary({name: part[picked] for name, part in found.items()}, dict(zip(COLUMNS, table.T, strict=True)))
+    return summary({name: column[picked] for name, column in found.items()}, dict(zip(COLUMNS, table.T, strict=True)))
 
 
 def enclosed(seed: int, state: Flown) -> Array:
@@ -125,7 +125,8 @@ class Enclosures:
     Parameters
     ----------
     states, refused : flights that were tried in balls, and that balls did not decide.
-    agree, worst_step : flights of the fixed steps that end alike, and their largest relative error.
+    agree, disagree, worst_step : flights of the fixed steps that end as the balls do, or otherwise, where both decide,
+        and the largest relative error of a flight time of the fixed steps.
     worst, worst_velocity : largest error of the package's right hits in units of 10 kappa epsilon; the velocity's is
         nan while flights have no `velocity_condition`.
     time, velocity : the package's `error` and `velocity_error` against the true ones; None while flights have none.
@@ -135,6 +136,7 @@ class Enclosures:
     states: int
     refused: int
     agree: int
+    disagree: int
     worst_step: float
     worst: float
     worst_velocity: float
@@ -162,7 +164,8 @@ def summary(found: dict[str, Array], balls: dict[str, Array]) -> Enclosures:
         states=len(alike),
         refused=int((balls["true_status"] == UNDECIDED).sum()),
         agree=int(alike.sum()),
-        worst_step=_most(balls["step_time_error"][alike]),
+        disagree=int((decided & ~alike).sum()),
+        worst_step=_most(balls["step_time_error"]),
         worst=_most((balls["time_error"] / (10 * found["condition"] * EPSILON))[right]),
         worst_velocity=_most((balls["velocity_error"] / (10 * found["velocity_condition"] * EPSILON))[right]),
         time=estimate(found["error"], balls["time_error"], found["status"] == Status.hit),

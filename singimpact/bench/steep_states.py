@@ -64,6 +64,12 @@ class Case(NamedTuple):
     tau: Array
     v: Array
 
+    def text(self, launch: int) -> str:
+        """A launch as it is typed."""
+        given = {name: self.numbers[name] for name in self.family.parameters}
+        model = f'ImpactOscillator("{self.family.force}", "{self.family.forcing}", {self.clearance!r}, "1/2", {given})'
+        return f"{model}.first_hit({float(self.tau[launch])!r}, {float(self.v[launch])!r}, horizon={DRAW.horizon:g})"
+
     def oscillator(self) -> ImpactOscillator:
         """The model as a user writes it; its floats are the numbers of the truth, bit by bit."""
         given = {name: self.numbers[name] for name in self.family.parameters}

@@ -1,0 +1,59 @@
+"""CPU time of `first_hit` on arrays of states, a figure a family."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from time import process_time
+
+import numpy as np
+
+from singimpact.bench.steep_families import FAMILIES, Family
+from singimpact.bench.steep_states import DRAW, drawn_of
+
+Rule = Callable[[], AbstractContextManager[None]]
+
+
+@dataclass(frozen=True)
+class CostSettings:
+    """How much is flown for a figure.
+
+    Parameters
+    ----------
+    models, each : of a family, and states of each.
+    rounds : of which the fastest counts.
+    seconds : of CPU time of a family after which no further model or round begins.
+    """
+
+    models: int = 4
+    each: int = 100
+    rounds: int = 3
+    seconds: float = 3.0
+
+
+COST = CostSettings()
+
+
+def cost(family: Family, rule: Rule | None = None) -> float:
+    """CPU microseconds a state of `first_hit`, the median over models of the fastest round.
+
+    Parameters
+    ----------
+    rule : gives a context in which flights take another step rule; None for the rule of the package.
+    """
+    spent, figures = 0.0, []
+    with nullcontext() if rule is None else rule():
+        for number in range(COST.models):
+            case = drawn_of(family, np.random.default_rng([number, FAMILIES.index(family)]), COST.each)
+            osc, rounds = case.oscillator(), list[float]()
+            osc.first_hit(case.tau[:2], case.v[:2], horizon=DRAW.horizon)  # compiled, or read from the cache
+            while len(rounds) < COST.rounds and (spent < COST.seconds or not rounds):
+                begin = process_time()
+                osc.first_hit(case.tau, case.v, horizon=DRAW.horizon)
+                rounds.append(process_time() - begin)
+                spent += rounds[-1]
+            figures.append(1e6 * min(rounds) / COST.each)
+            if spent > COST.seconds:
+                break
+    return float(np.median(figures))
