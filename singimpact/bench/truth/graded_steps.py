@@ -76,7 +76,7 @@ def first_hit(motion: Motion, tau: float, v: float, horizon: float) -> Hit:
     --------
     >>> import numpy as np
     >>> falling = compiled(lambda t, x, u, p: -p[0])
-    >>> first_hit(Motion(falling, np.array([2.0]), np.zeros((0, 5)), 0.0), 0.0, 3.0, 30.0).flight_time
+    >>> round(first_hit(Motion(falling, np.array([2.0]), np.zeros((0, 5)), 0.0), 0.0, 3.0, 30.0).flight_time, 13)
     3.0
     """
     run = compiled_kernel()["flown"]
