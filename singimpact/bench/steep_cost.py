@@ -44,7 +44,7 @@ def cost(family: Family, rule: Rule | None = None) -> float:
     ----------
     rule : gives a context in which flights take another step rule; None for the rule of the package.
     """
-    spent, figures = 0.0, []
+    spent, figures = 0.0, list[float]()
     with nullcontext() if rule is None else rule():
         for number in range(COST.models):
             if figures and spent > COST.seconds:
