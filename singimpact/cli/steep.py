@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from singimpact.bench.steep_balls import Enclosures, Estimate
     from singimpact.bench.steep_states import Row
 
-LISTED = 5  # states of each kind that are written out
+LISTED = 5  # states of each kind that are written out, each of another family
 TIMES = ("seconds", "true_seconds")
 
 
@@ -130,7 +130,9 @@ def _cost(timed: dict[str, float]) -> str:
 
 
 def _listed(found: dict[str, np.ndarray[Any, Any]], seed: int) -> dict[str, dict[str, Any]]:
-    """Some states of each kind that needs a look: how many there are, and calls that repeat them."""
+    """States of each kind that needs a look: how many, and calls that repeat some of them, or all the undecided."""
+    import numpy as np
+
     from singimpact.bench.steep_states import drawn, wrong
     from singimpact.bench.truth.graded_steps import UNDECIDED
     from singimpact.status import Status
@@ -143,7 +145,10 @@ def _listed(found: dict[str, np.ndarray[Any, Any]], seed: int) -> dict[str, dict
     listed: dict[str, dict[str, Any]] = {}
     for name, chosen in kinds.items():
         states = []
-        for at in chosen.nonzero()[0][:LISTED].tolist():
+        places = chosen.nonzero()[0]
+        if name != "truth undecided":
+            places = places[np.unique(found["family"][places], return_index=True)[1]][:LISTED]
+        for at in places.tolist():
             case = drawn(seed, int(found["case"][at]))
             states.append(
                 {"call": case.text(int(found["launch"][at])), "flight_time": float(found["flight_time"][at]),
@@ -159,4 +164,4 @@ def _lines(name: str, part: dict[str, Any]) -> str:
     lines = [
         f"  {state['call']}: {state['flight_time']:.10g}, truth {state['true_time']:.10g}" for state in part["first"]
     ]
-    return "\n".join([f"{name}: {part['states']}, the first {len(lines)}:", *lines])
+    return "\n".join([f"{name}: {part['states']}, of which {len(lines)}:", *lines])
