@@ -11,6 +11,7 @@ import click
 from singimpact.cli.columns import columns, markdown
 from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.cli.pictures import save
+from singimpact.cli.steep import steep_states
 from singimpact.inputs import unknown
 from singimpact.progress import ProgressLine
 from singimpact.store import folder
@@ -29,16 +30,23 @@ if TYPE_CHECKING:
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Which states.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
 @click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
+@click.option("--family", type=click.Choice(["reference", "steep"]), default="reference", show_default=True,
+              help="Of random states: linear and cubic, or steep layers.")  # fmt: skip
+@click.option("--balls", type=click.IntRange(0), default=1000, show_default=True, help="Steep states flown in balls.")
+@click.option("--digits-checks", type=click.IntRange(0), default=100, show_default=True,
+              help="States in balls that are also flown with digits=20.")  # fmt: skip
 @output_options
 def command(
     groups: tuple[str, ...], quick: bool, plots: str | None, picture: str, form: str, states: int, seed: int,
-    workers: int | None, keep: str | None, as_json: bool, output: str | None,
+    workers: int | None, keep: str | None, family: str, balls: int, digits_checks: int, as_json: bool,
+    output: str | None,
 ) -> None:  # fmt: skip
     """Measure in one run, in CPU time, beside other tools: map, chatter, threshold, series, fixed-points, emitted,
     figures, growth, grid, start; all of them without a GROUP (with --quick all but the last two).
 
     The group `states` flies random states and the same ones by a slow solver of 60 digits; --states, --seed, --workers
-    and --keep are its own. Exit code 1 when one of its impacts is wrong.
+    and --keep are its own. With `--family steep` it flies 20 families with steep layers beside a solver of small fixed
+    steps, and --balls of the states in balls; --quick leaves out the run times. Exit code 1 when an impact is wrong.
     """
     from singimpact.bench.groups import GROUPS, usual
     from singimpact.bench.measuring import FULL, QUICK
@@ -52,13 +60,19 @@ def command(
     found = _measured([group for group in chosen if group != "states"], effort)
     told = {"quick": quick, **_joined(found)}
     texts = [_text(each, form) for each in found]
-    if "states" in chosen:
+    wrong = False
+    if "states" in chosen and family == "steep":
+        steep = steep_states(states, seed, workers, keep, (balls, digits_checks), not quick)
+        told["states"], wrong = steep.data, steep.wrong
+        texts.append(steep.text)
+    elif "states" in chosen:
         told["states"], text = _states(states, seed, workers, keep)
+        wrong = any(row["wrong"] for row in told["states"])
         texts.append(text)
     if place is not None:
         _draw(found, place, picture)
     emit(as_json_text(told) if as_json else "\n\n".join(texts), output)
-    if any(row["wrong"] for row in told.get("states", [])):
+    if wrong:
         sys.exit(1)
 
 

@@ -1,5 +1,6 @@
-"""A slow impact map in balls of 60 digits that shares no code with `flights`: what the fast one is checked against.
+"""Slow first hits that share no code with `flights`: what the fast ones are checked against.
 
-Not here: what is checked and how it is told (`bench.states`), tools that a user would pick instead (`bench.peers`).
-Files: `motions` (x - c, x', x'' at a time), `first_hit` (the first root).
+Not here: what is checked and how it is told (`bench.states`, `bench.steep_states`), other tools (`bench.peers`).
+Files: `motions` (x - c, x', x'' at a time, 60 digits), `first_hit` (the first root); `graded_steps` (any acceleration,
+fixed steps of order 8 in doubles); `enclosed_flight` (any analytic f and g in balls) with `programs` and `sign_pieces`.
 """

@@ -1,0 +1,300 @@
+"""First hits of x'' + f(x, x') = g(t) enclosed in balls, for any analytic f and g of the package's grammar.
+
+A step starts from one exact point; how far the true state lies from it is carried as two bounds p >= |x - P|,
+q >= |x' - P'|. With M >= |f(P, P') - g + P''| on |s| <= R, A >= |df/dx| and b <= df/dx' near the step,
+
+    p' = q,        q' = A p - b q + M (s/R)^(n-1),
+
+bounds both (the right side grows with the other unknown), and friction makes q shrink.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from singimpact.algebra.derivatives import derivative
+from singimpact.bench.truth.programs import Program
+from singimpact.bench.truth.sign_pieces import Refused, first_root
+from singimpact.oscillator.model import Oscillator
+
+
+@dataclass(frozen=True)
+class EnclosureSettings:
+    """How flights are enclosed.
+
+    Parameters
+    ----------
+    accuracy : relative radius of the flight time and of the velocity that is reached.
+    bits, most_bits : to begin with, and where a flight is refused.
+    guard : bits of the working precision beyond those of a step.
+    degree : of the Taylor polynomials, a bit; 0.55 was the fastest of 0.33 to 0.7.
+    most_steps : of a flight.
+    """
+
+    accuracy: float = 1e-25
+    bits: int = 112
+    most_bits: int = 700
+    guard: int = 40
+    degree: float = 0.55
+    most_steps: int = 4000
+
+
+ENCLOSURE = EnclosureSettings()
+
+
+class Enclosed(NamedTuple):
+    """Balls that hold the time and the velocity of the first hit; None for both when there is none."""
+
+    flight_time: Any
+    velocity: Any
+    steps: int
+    bits: int
+
+
+class Step(NamedTuple):
+    """Taylor coefficients of x, its length, and bounds of |x - P| and |x' - P'| on all of it and at its end."""
+
+    coefficients: list[Any]
+    length: Any
+    along: tuple[Any, Any]
+    at_end: tuple[Any, Any]
+
+
+class Equation(NamedTuple):
+    """Programs of (f, df/dx, df/dx') and of g, and the clearance."""
+
+    force: Program
+    forcing: Program
+    clearance: Any
+
+
+def first_hit(osc: Oscillator, tau: float, v: float, horizon: float) -> Enclosed:
+    """The first hit of the flight from (tau, v), v > 0, to a relative radius of `ENCLOSURE.accuracy`.
+
+    Raises
+    ------
+    Refused : `most_bits` do not tell a graze from a miss, or a step would meet a point where f or g is not analytic.
+
+    Examples
+    --------
+    >>> hit = first_hit(Oscillator("x + tanh(50*xdot)/10", "cos(t)", 0, "1/2"), 0.25, 1.0, 30.0)
+    >>> hit.flight_time.str(20, radius=False)
+    '2.9615580194225837697'
+    """
+    bits = ENCLOSURE.bits
+    while True:
+        try:
+            with _precision(bits + ENCLOSURE.guard):
+                hit = _flown(_equation(osc), tau, v, horizon, bits)
+                if hit.flight_time is None:
+                    return hit
+                worst = max(part.rad() / abs(part.mid()) for part in hit[:2])
+                if worst < ENCLOSURE.accuracy:
+                    return hit
+                why, more = f"relative radius {float(worst):.1e}", 12 + _bits_over(worst)
+        except Refused as reason:
+            why, more = str(reason), bits // 2
+        if bits + more > ENCLOSURE.most_bits:
+            raise Refused(f"{why} at {bits} bits")
+        bits += more
+
+
+@contextmanager
+def _precision(bits: int) -> Iterator[None]:
+    """flint at `bits`, with series of any length: by itself it cuts each after ten terms without a word."""
+    import flint
+
+    length, flint.ctx.cap = flint.ctx.cap, 10**6
+    try:
+        with flint.ctx.workprec(bits):
+            yield
+    finally:
+        flint.ctx.cap = length
+
+
+def _bits_over(worst: Any) -> int:
+    from math import log2
+
+    return int(log2(min(max(float(worst) / ENCLOSURE.accuracy, 1.0), 1e300)))
+
+
+def _equation(osc: Oscillator) -> Equation:
+    f = osc.force()
+    force = Program.of([f, derivative(f, "x"), derivative(f, "xdot")])
+    (clearance,) = Program.of([osc.clearance]).run({})
+    return Equation(force, Program.of([osc.forcing()]), clearance)
+
+
+def _flown(equation: Equation, tau: float, v: float, horizon: float, bits: int) -> Enclosed:
+    """One flight at a precision."""
+    from flint import arb, arb_poly
+
+    launch, clearance = arb(tau), equation.clearance
+    x, p = _centre(clearance, arb(0))
+    u, q, s, radius = arb(v), arb(0), arb(0), arb(8)
+    for count in range(1, ENCLOSURE.most_steps + 1):
+        coefficients = taylor(equation, launch + s, x, u, int(ENCLOSURE.degree * bits))
+        bound, radius = _widest_disc(equation, launch + s, coefficients, radius, bits, v)
+        length = bound[1]
+        above = arb_poly([coefficients[0] - clearance, *coefficients[1:]])
+        while True:
+            step = _bounded(equation, coefficients, (p, q), bound[0], radius, length, bits)
+            if count == 1:
+                # (x - c)/s has no root on the step; s <= length times the bound of x' bounds x
+                over = arb_poly(coefficients[1:])(arb(0).union(step.length)) + arb(0, step.along[1])
+                if over > 0:
+                    break
+                length = _plain(step.length / 2)
+                continue
+            root = first_root(above, step.along, step.length, bits)
+            if root is None:
+                break
+            if root != "end":
+                slope = above.derivative()(root) + arb(0, step.along[1])
+                time = s + root
+                return Enclosed(time, slope, count, bits) if not time > horizon else Enclosed(None, None, count, bits)
+            length = _plain(step.length * 0.93)
+        s = s + step.length
+        if s > horizon:
+            return Enclosed(None, None, count, bits)
+        x, p = _centre(arb_poly(coefficients)(step.length), step.at_end[0])
+        u, q = _centre(arb_poly(coefficients).derivative()(step.length), step.at_end[1])
+        if not x - p > clearance:
+            raise Refused("x - c is not shown positive at the end of a step")
+        radius = radius * 2
+    raise Refused(f"{ENCLOSURE.most_steps} steps")
+
+
+def _centre(ball: Any, bound: Any) -> tuple[Any, Any]:
+    """The midpoint of a ball, and the bound with the ball's radius."""
+    from flint import arb
+
+    return arb(ball.mid()), _upper(bound + ball.rad())
+
+
+def _upper(ball: Any) -> Any:
+    """An exact upper bound of |ball|."""
+    from flint import arb
+
+    return arb(abs(ball).upper())
+
+
+def _plain(ball: Any) -> Any:
+    from flint import arb
+
+    return arb(float(ball.mid()))
+
+
+def taylor(equation: Equation, t: Any, x: Any, u: Any, degree: int) -> list[Any]:
+    """Taylor coefficients 0..degree of the solution from (t, x, u), by Newton's method: m terms give 2 m + 1.
+
+    The residual of the polynomial is known from one evaluation over series; the linear equation of the correction,
+    e'' + (df/dx') e' + (df/dx) e = residual, is solved for the new terms one by one.
+    """
+    from flint import arb, arb_series
+
+    (driven,) = equation.forcing.run({"t": arb_series([t, 1], prec=degree)})
+    g, X = _listed(driven, degree), [x, u]
+    while len(X) <= degree:
+        m, count = len(X) - 1, min(2 * len(X) - 2, degree - 1)  # X_0..X_m are known; count: residuals that are right
+        slopes = [(k + 1) * X[k + 1] for k in range(m)]
+        values = {"x": arb_series(X, prec=count), "xdot": arb_series(slopes, prec=count)}
+        f, by_x, by_u = (_listed(part, count) for part in equation.force.run(values))
+        damped = not all(part.is_zero() for part in by_u[1:])  # a ball round 0 is not 0
+        for k in range(m - 1, count):
+            rest = g[k] - f[k] - sum(map(arb.__mul__, by_x, X[k:m:-1]), arb(0))
+            if damped:
+                rest -= sum(map(arb.__mul__, by_u, slopes[k : m - 1 : -1] if m else slopes[k::-1]), arb(0))
+            elif k >= m:
+                rest -= by_u[0] * slopes[k]
+            X.append(rest / ((k + 1) * (k + 2)))
+            slopes.append((k + 2) * X[-1])
+    return X
+
+
+def _listed(series: Any, count: int) -> list[Any]:
+    """The first coefficients of a series, or of a constant."""
+    from flint import arb, arb_series
+
+    if not isinstance(series, arb_series):
+        return [arb(series)] + [arb(0)] * (count - 1)
+    found = series.coeffs()[:count]
+    return [*found, *[arb(0)] * (count - len(found))]
+
+
+def _widest_disc(
+    equation: Equation, t: Any, X: list[Any], radius: Any, bits: int, size: float
+) -> tuple[tuple[Any, Any], Any]:
+    """(M, step length) on the disc that allows the longest step, and its radius."""
+    from flint import arb, ctx
+
+    degree, best, R = len(X) - 1, None, float(radius.mid())
+    target = 2.0**-bits * min(size, 1.0) * degree
+    with ctx.workprec(64):
+        sums = _sums(X)
+        for _ in range(120):
+            M = _defect(equation, t, X, sums, arb(R))
+            if M is not None:
+                ratio = (arb(target) / (M * R + arb(2) ** -900)) ** (arb(1) / degree)
+                length = R * min(float(ratio.mid()), 0.9)
+                if best is not None and length < best[0] * 1.01:
+                    break
+                best = (length, M, R)
+            R *= 0.85 if best is not None else 0.7
+    if best is None:
+        raise Refused("f or g is not analytic on any disc that was tried")
+    return (best[1], arb(best[0])), arb(best[2])
+
+
+def _sums(X: list[Any]) -> tuple[Any, Any, Any]:
+    """Polynomials that bound |P - P(0)|, |P' - P'(0)| and |P''| on a disc, by its radius."""
+    from flint import arb_poly
+
+    first = arb_poly([0, *[_upper(part) for part in X[1:]]])
+    second = first.derivative()
+    return first, second - arb_poly([second[0]]), second.derivative()
+
+
+def _defect(equation: Equation, t: Any, X: list[Any], sums: tuple[Any, Any, Any], R: Any) -> Any:
+    """A bound of |P'' + f(P, P') - g| on the disc, or None where f or g is not shown analytic there."""
+    from flint import acb, arb
+
+    def box(centre: Any, width: Any) -> Any:
+        return acb(centre + arb(0, _upper(width)), arb(0, _upper(width)))
+
+    f = equation.force.run({"x": box(X[0], sums[0](R)), "xdot": box(X[1], sums[1](R))})[0]
+    g = equation.forcing.run({"t": box(t, R)})[0]
+    inside = f - g
+    return _upper(sums[2](R)) + _upper(inside) if inside.is_finite() else None
+
+
+def _bounded(equation: Equation, X: list[Any], start: tuple[Any, Any], M: Any, R: Any, length: Any, bits: int) -> Step:
+    """The step of at most a length on which the bounds p and q are shown to hold."""
+    from flint import arb, arb_mat, ctx
+
+    slack, degree = arb(2) ** (-bits // 2), len(X) - 1
+    with ctx.workprec(64):
+        sums = _sums(X)
+        for _ in range(60):
+            values = {
+                name: centre + arb(0, _upper(part(length) + slack))
+                for name, centre, part in zip(("x", "xdot"), X, sums, strict=False)
+            }
+            _, by_x, by_u = equation.force.run(values)
+            if by_x.is_finite() and by_u.is_finite():
+                matrix = arb_mat([[0, 1], [_upper(by_x), -arb(arb(by_u).lower())]])
+                grown = (matrix * length).exp()
+                cut = M * R * (length / R) ** degree / degree
+                most = arb(1).max(grown[1, 1])
+                p = _upper(grown[0, 0] * start[0] + grown[0, 1] * (start[1] + cut))
+                q = _upper(grown[1, 0] * start[0] + grown[1, 1] * start[1] + most * cut)
+                along = _upper(grown[1, 0] * start[0] + most * (start[1] + cut))
+                if p < slack and along < slack:
+                    return Step(X, length, (p, along), (p, q))
+                if start[0] + start[1] > slack / 4:
+                    raise Refused("the bounds grew beyond half of the digits")
+            length = _plain(length / 2)
+    raise Refused("no step on which the bounds hold")

@@ -1,0 +1,167 @@
+"""The tables of `singimpact bench states --family steep`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from singimpact.cli.columns import columns
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from singimpact.bench.steep_balls import Enclosures, Estimate
+    from singimpact.bench.steep_states import Row
+
+LISTED = 5  # states of each kind that are written out, each of another family
+TIMES = ("seconds", "true_seconds")
+
+
+@dataclass(frozen=True)
+class SteepStates:
+    """What is printed, as data and as text, and whether anything is wrong."""
+
+    data: dict[str, Any]
+    text: str
+    wrong: bool
+
+
+def steep_states(
+    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int], costs: bool
+) -> SteepStates:
+    """Fly random steep states and some of them in balls; time each family.
+
+    Parameters
+    ----------
+    balls : states in balls, and how many of these with `digits=20`.
+    costs : whether families are timed.
+    """
+    from singimpact.bench import steep_balls, steep_states
+    from singimpact.bench.steep_cost import cost
+    from singimpact.bench.steep_families import FAMILIES
+    from singimpact.cases import WorkerPool
+
+    beside = None if keep is None else Path(keep).with_name(f"{Path(keep).stem}-balls.npz")
+    with WorkerPool(workers) as pool:
+        found = steep_states.check(states, seed, pool, keep)
+        enclosures = steep_balls.check(found, balls, seed, pool, beside)
+    rows = steep_states.rows(found)
+    timed = {family.name: cost(family) for family in FAMILIES} if costs else {}
+    listed = _listed(found, seed)
+    data = {"families": [asdict(row) for row in rows], "balls": asdict(enclosures), "cost": timed, "listed": listed}
+    parts = [_table(rows), _balls(enclosures), _cost(timed), *(_lines(name, part) for name, part in listed.items())]
+    return SteepStates(data, "\n\n".join(part for part in parts if part), _is_wrong(rows, enclosures))
+
+
+def _is_wrong(rows: Sequence[Row], balls: Enclosures) -> bool:
+    """Whether a flight, an estimate of its error or the truth itself is wrong."""
+    below = any(part is not None and part.below for part in (balls.time, balls.velocity))
+    return any(row.wrong for row in rows) or bool(balls.disagree or balls.digits_wrong) or below
+
+
+def _table(rows: Sequence[Row]) -> str:
+    header = ["family", "states", "crossed", "wrong", "unresolved, K <= 1e3", "above", "truth undecided", "worst error",
+              "us a state", "of the truth"]  # fmt: skip
+    cells = []
+    for kind in (True, False):
+        kin = [row for row in rows if row.steep == kind]
+        cells += [
+            [row.family, str(row.states), f"{row.crossed / row.states:.2f}" if kind else "-", str(row.wrong),
+             str(row.unresolved), str(row.unresolved_steep), str(row.undecided), f"{row.worst_error:.1e}",
+             f"{1e6 * row.seconds:.0f}", f"{1e6 * row.true_seconds:.0f}"] for row in kin
+        ]  # fmt: skip
+        if kin:
+            cells.append(_total("all steep" if kind else "all smooth", kin))
+    note = (
+        "wrong: relative error of a flight time above max(1e-9, 100 kappa epsilon), or another end of the flight.\n"
+        "worst error: largest relative error of a flight time that is not wrong. crossed: part of the flights."
+    )
+    return columns(header, cells) + "\n" + note
+
+
+def _total(name: str, rows: Sequence[Row]) -> list[str]:
+    def total(field: str) -> int:
+        return sum(getattr(row, field) for row in rows)
+
+    fields = ("wrong", "unresolved", "unresolved_steep", "undecided")
+    states, worst = total("states"), max(row.worst_error for row in rows)
+    seconds = [1e6 * sum(getattr(row, part) * row.states for row in rows) / states for part in TIMES]
+    part = f"{total('crossed') / states:.2f}" if rows[0].steep else "-"
+    return [name, str(states), part, *(str(total(field)) for field in fields), f"{worst:.1e}",
+            *(f"{figure:.0f}" for figure in seconds)]  # fmt: skip
+
+
+def _balls(balls: Enclosures) -> str:
+    """The summary of the flights in balls."""
+    if not balls.states:
+        return ""
+    lines = [
+        f"balls: {balls.states} states, {balls.refused} refused, {balls.seconds:.3f} s a state",
+        f"fixed steps against balls: {balls.agree} agree, {balls.disagree} do not; "
+        f"largest relative error of a flight time {balls.worst_step:.1e}",
+        f"largest error of a right hit in units of 10 kappa epsilon: flight time {balls.worst:.3g}, "
+        f"velocity {balls.worst_velocity:.3g}",
+        _estimate("error", balls.time),
+        _estimate("velocity_error", balls.velocity),
+    ]
+    if balls.digits:
+        lines.append(
+            f"digits=20: {balls.digits} states, {balls.digits_wrong} wrong, {balls.digits_unresolved} unresolved, "
+            f"{balls.digits_seconds:.3f} s a state"
+        )
+    return "\n".join(lines)
+
+
+def _estimate(name: str, given: Estimate | None) -> str:
+    if given is None:
+        return f"`{name}`: flights have none"
+    return (
+        f"`{name}`: below the true error in {given.below} of {given.states} states, median of estimate/error "
+        f"{given.median:.3g} (true errors below 2^-54 count as 2^-54)"
+    )
+
+
+def _cost(timed: dict[str, float]) -> str:
+    """CPU time a family; a column for another step rule has its place beside the first."""
+    cells = [[name, f"{figure:.1f}"] for name, figure in timed.items()]
+    return columns(["family", "first_hit, us a state"], cells) if cells else ""
+
+
+def _listed(found: dict[str, np.ndarray[Any, Any]], seed: int) -> dict[str, dict[str, Any]]:
+    """States of each kind that needs a look: how many, and calls that repeat some of them, or all the undecided."""
+    import numpy as np
+
+    from singimpact.bench.steep_states import drawn, wrong
+    from singimpact.bench.truth.graded_steps import UNDECIDED
+    from singimpact.status import Status
+
+    kinds = {
+        "wrong": wrong(found),
+        "unresolved": found["status"] == Status.unresolved,
+        "truth undecided": found["true_status"] == UNDECIDED,
+    }
+    listed: dict[str, dict[str, Any]] = {}
+    for name, chosen in kinds.items():
+        states = []
+        places = chosen.nonzero()[0]
+        if name != "truth undecided":
+            places = places[np.unique(found["family"][places], return_index=True)[1]][:LISTED]
+        for at in places.tolist():
+            case = drawn(seed, int(found["case"][at]))
+            states.append(
+                {"call": case.text(int(found["launch"][at])), "flight_time": float(found["flight_time"][at]),
+                 "true_time": float(found["true_time"][at])}
+            )  # fmt: skip
+        listed[name] = {"states": int(chosen.sum()), "first": states}
+    return listed
+
+
+def _lines(name: str, part: dict[str, Any]) -> str:
+    if not part["states"]:
+        return ""
+    lines = [
+        f"  {state['call']}: {state['flight_time']:.10g}, truth {state['true_time']:.10g}" for state in part["first"]
+    ]
+    return "\n".join([f"{name}: {part['states']}, of which {len(lines)}:", *lines])
