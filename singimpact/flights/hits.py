@@ -241,7 +241,7 @@ def _sharpened(
 
     At near resonances all flights come back together: the state hardly matters, but the sums still cancel.
     """
-    if not rough.any():
+    if kernel_of(osc).form is None or not rough.any():  # a flight in Taylor steps knows its error
         return flight
     table = table_of(kernel_of(osc), doubles(kernel_of(osc)))
     # pressed back at once, a flight is a short series in t that loses nothing
@@ -255,7 +255,8 @@ def _sharpened(
             found = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
         if found is not None:
             flight.flight_time[index], flight.velocity[index] = found
-            flight.time_error[index] = flight.velocity_error[index] = EPSILON
+            for part, least in ((flight.time_error, 4), (flight.velocity_error, 64)):
+                part[index] = np.minimum(part[index], least * EPSILON)
     return flight
 
 
@@ -270,7 +271,10 @@ def _conditioned(
     with np.errstate(all="ignore"):
         late, dull = (part > np.maximum(least, 10 * kappa * epsilon)
                       for part, least, kappa in zip(answers.rounding, LIMITS.rough, kappas, strict=True))  # fmt: skip
-        errors = [LIMITS.margin * part + EPSILON for part in answers.rounding]
+        margin = LIMITS.margin if kernel_of(osc).form is None else 1.0
+        errors = [margin * part + EPSILON for part in answers.rounding]
+        if kernel_of(osc).form is not None:  # what is rougher than its condition explains is refined
+            errors = [np.minimum(part, 10 * kappa * EPSILON) for part, kappa in zip(errors, kappas, strict=True)]
     flight = replace(flight, condition=kappas[0], velocity_condition=kappas[1], time_error=errors[0],
                      velocity_error=errors[1])  # fmt: skip
     return flight, late | dull

@@ -19,7 +19,7 @@ from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 
 COMMON = (first_root.sums, first_root.safe_step, first_root.polished, first_root.first_root,
-          march.advanced, march.curvature, march.march, march.run, march.follow)  # fmt: skip
+          march.advanced, march.moved, march.curvature, march.march, march.run, march.follow)  # fmt: skip
 RADII = (radii.whole_power_radius, radii.power_radius, radii.power_of_square_radius, radii.exp_radius, radii.bell_radius,
          radii.circular_radius, radii.tan_radius, radii.tanh_radius, radii.atan_radius, radii.log_radius,
          radii.log_of_square_radius, radii.softplus_radius)  # fmt: skip

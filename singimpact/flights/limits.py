@@ -56,7 +56,7 @@ class Limits:
     block: int = 64
     traced: int = 400
     judging: float = 1e-12
-    margin: float = 4.0
+    margin: float = 2.5
     guard: int = 15
 
 

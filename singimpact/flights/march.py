@@ -36,7 +36,7 @@ def march(
     budget is spent; 23 : out of the range of numbers.
     """
     zero = 0 * v
-    time, z, u, noise, shift = zero, zero, v, zero, zero
+    time, z, u, noise, shift, z_lost, u_lost = zero, zero, v, zero, zero, zero, zero
     if acceleration == acceleration:
         coefficients(launch, time, z, zero, zero, order - order + 2, p, X, W)  # a literal 2 is compiled for itself
         shift = acceleration / 2 - X[2]
@@ -75,7 +75,7 @@ def march(
             return 3, time, u, z, noise
         if count + 1 < len(trace):
             trace[count + 1, 3] = curvature(X, order, h)
-        z, u, size = advanced(X, z, order, h)
+        z, z_lost, u, u_lost, size = moved(X, z, z_lost, u, u_lost, order, h)
         time += h
         z, u, noise = restart(launch, v, time, z, u, noise + ulp * size, ulp, p)
         longest, shift, removed = 2 * h, zero, 0
@@ -91,6 +91,23 @@ def advanced(X: Any, z: Any, order: int, h: Any) -> Any:
         value = value * h + part
         size = size * h + abs(part)
     return value, slope, size
+
+
+def moved(X: Any, z: Any, z_lost: Any, u: Any, u_lost: Any, n: int, h: Any) -> Any:
+    """x - c and x' at the end of a step, each with what its sum has lost, and the size of the terms summed."""
+    rise, turn, size = X[n], n * X[n], abs(X[n])
+    for k in range(n - 1, 0, -1):
+        rise = rise * h + X[k]
+        size = size * h + abs(X[k])
+        if k > 1:
+            turn = turn * h + k * X[k]
+    part = rise * h - z_lost
+    total = z + part
+    z_lost = (total - z) - part
+    change = turn * h - u_lost
+    speed = u + change
+    u_lost = (speed - u) - change
+    return total, z_lost, speed, u_lost, size * h + abs(z)
 
 
 def curvature(X: Any, n: int, s: Any) -> Any:

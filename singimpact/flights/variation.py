@@ -74,7 +74,7 @@ def judge(
         variations(launch, time, z, u, terms, p, X, W, A, B, Z)
         known = rounding(X, W, unit, p) if fresh else before
         if fresh and i > 0:
-            cut = abs(2 * X[2] - trace[i, 3]) / order
+            cut = 2 * abs(2 * X[2] - trace[i, 3]) / order
             off_u = h * (cut + max(known, before)) + unit * abs(u)
             off_z = unit * (abs(z) + h * (abs(u) + h * abs(X[2]))) + h * off_u / 2
             zz, uu = zz + off_z * off_z, uu + off_u * off_u
