@@ -47,7 +47,7 @@ _SENTENCES = {
     Status.sticks: "the mass rests on the obstacle and is pressed against it; the flight time and v are 0",
     Status.no_return: "no impact before the horizon; the flight time is inf: give a larger horizon to look further",
     Status.escaped: "the flight is proved never to return; the flight time is inf",
-    Status.unresolved: "not decided, and values are nan: `cause` says why, and `sentence` of the result what to type next",
+    Status.unresolved: "not decided, values are nan: `cause` says why, and `sentence` of the result what to type next",
     Status.complete: "infinitely many impacts accumulate; the mass comes to rest at the accumulation time",
     Status.no_rebound: "the obstacle is hit, and rho gives no positive velocity there; v is nan: "
     "give a restitution that is positive at such velocities",
@@ -80,8 +80,8 @@ class Cause(IntEnum):
 
 _CAUSES = {
     Cause.decided: "the status is no question",
-    Cause.near_graze: "the flight comes so near to the obstacle that rounding decides whether it touches; depth and its "
-    "bound say how near: type digits=30",
+    Cause.near_graze: "the flight comes so near to the obstacle that rounding decides whether it touches; depth and "
+    "its bound say how near: type digits=30",
     Cause.step_budget: "the flight takes more Taylor steps than it was given: type steps= with a larger number, or a "
     "shorter horizon=",
     Cause.domain_left: "the flight reaches a point where f or g is singular, or grows without a bound: type "
@@ -89,8 +89,8 @@ _CAUSES = {
     Cause.kink: "f or g is not smooth where the flight passes, or changes there within less than a rounding of time: "
     "replace |u| by sqrt(u**2 + 1e-6), or a jump by a steep tanh",
     Cause.overflow: "x or x' leaves the range of doubles: type digits=20",
-    Cause.impacts_exhausted: "the impacts neither accumulate nor lift off within the number given: type impacts= with a "
-    "larger number, or fly osc.orbit to see where they go",
+    Cause.impacts_exhausted: "the impacts neither accumulate nor lift off within the number given: type impacts= with "
+    "a larger number, or fly osc.orbit to see where they go",
 }
 
 

@@ -1,18 +1,19 @@
-"""CPU time of `first_hit` on arrays of states, a figure a family."""
+"""CPU time of `first_hit` on arrays of states, a figure a family, paired with the usual rule for Taylor steps."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from time import process_time
+from typing import Any
 
 import numpy as np
 
+from singimpact.bench.peers.last_terms import last_terms
 from singimpact.bench.steep_families import FAMILIES, Family
 from singimpact.bench.steep_states import DRAW, drawn_of
+from singimpact.status import Status
 
-Rule = Callable[[], AbstractContextManager[None]]
+Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
@@ -23,45 +24,67 @@ class CostSettings:
     ----------
     models, each : of a family, and states of each.
     compiling : flights that end at once, in one call before; a call of more than 1000 has its kernels compiled.
-    rounds : of which the fastest counts.
-    portion : states in a call; a model that is slow is timed on its first portions alone.
-    seconds : of CPU time of a family after which no further call, model or round begins.
+    rounds : in which both rules fly in turn; the median ratio counts.
+    agree : relative difference of flight times up to which both rules fly the same flight.
     """
 
     models: int = 4
-    each: int = 200
+    each: int = 100
     compiling: int = 1200
-    rounds: int = 3
-    portion: int = 50
-    seconds: float = 3.0
+    rounds: int = 5
+    agree: float = 1e-8
 
 
 COST = CostSettings()
 
 
-def cost(family: Family, rule: Rule | None = None) -> float:
-    """CPU microseconds a state of `first_hit`, the median over models of the fastest round.
+@dataclass(frozen=True)
+class Cost:
+    """CPU time of a family.
 
     Parameters
     ----------
-    rule : gives a context in which flights take another step rule; None for the rule of the package.
+    microseconds : a state, all states, the median over models of the fastest round.
+    ratio : to the same call with steps chosen by their last terms, on the flights on which both agree; nan without any.
+    agree : part of the flights on which both rules agree.
     """
-    spent, figures = 0.0, list[float]()
-    with nullcontext() if rule is None else rule():
-        for number in range(COST.models):
-            if figures and spent > COST.seconds:
-                break
-            case = drawn_of(family, np.random.default_rng([number, FAMILIES.index(family)]), COST.each)
-            osc, rounds = case.oscillator(), list[float]()
-            if not number:
-                osc.first_hit(case.tau[0], np.full(COST.compiling, 1.0), horizon=1e-3)
-            while len(rounds) < COST.rounds and (spent < COST.seconds or not rounds):
-                begin, flown = process_time(), 0
-                while flown < COST.each and (not flown or spent + process_time() - begin < COST.seconds):
-                    part = slice(flown, flown + COST.portion)
-                    osc.first_hit(case.tau[part], case.v[part], horizon=DRAW.horizon)
-                    flown += COST.portion
-                spent += process_time() - begin
-                rounds.append((process_time() - begin) / flown)
-            figures.append(1e6 * min(rounds))
-    return float(np.median(figures))
+
+    microseconds: float
+    ratio: float
+    agree: float
+
+
+def cost(family: Family) -> Cost:
+    """CPU time of `first_hit` for random states of a family, with both step rules in turn."""
+    figures, ratios, agree = list[float](), list[float](), list[float]()
+    for number in range(COST.models):
+        case = drawn_of(family, np.random.default_rng([number, FAMILIES.index(family)]), COST.each)
+        osc = case.oscillator()
+        if not number:
+            for rule in (False, True):
+                _timed(osc, (case.tau[0], np.full(COST.compiling, 1.0)), rule, 1e-3)
+        every = case.tau, case.v
+        ours, theirs = (_timed(osc, every, rule, DRAW.horizon)[1] for rule in (False, True))
+        with np.errstate(all="ignore"):
+            near = np.abs(ours.flight_time / theirs.flight_time - 1) < COST.agree
+        same = (ours.status == theirs.status) & (near | (ours.status != Status.hit))
+        agree.append(float(same.mean()))
+        figures.append(min(_timed(osc, every, False, DRAW.horizon)[0] for _ in range(2)) * 1e6 / COST.each)
+        if same.any():
+            part = case.tau[same], case.v[same]
+            pairs = [[_timed(osc, part, rule, DRAW.horizon)[0] for rule in (False, True)] for _ in range(COST.rounds)]
+            ratios.append(float(np.median([one / other for one, other in pairs])))
+    return Cost(float(np.median(figures)), float(np.median(ratios)) if ratios else np.nan, float(np.mean(agree)))
+
+
+def _timed(osc: Any, states: tuple[Array, Array], last: bool, horizon: float) -> tuple[float, Any]:
+    """CPU seconds of a call, and what it returns."""
+    if not last:
+        begin = process_time()
+        hit = osc.first_hit(*states, horizon=horizon)
+        return process_time() - begin, hit
+    with last_terms():
+        osc.first_hit(states[0][:1] if np.ndim(states[0]) else states[0], states[1][:1], horizon=1e-6)
+        begin = process_time()
+        hit = osc.first_hit(*states, horizon=horizon)
+        return process_time() - begin, hit

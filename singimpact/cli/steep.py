@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from singimpact.bench.steep_balls import Enclosures, Estimate
+    from singimpact.bench.steep_cost import Cost
     from singimpact.bench.steep_states import Row
 
 LISTED = 5  # states of each kind that are written out, each of another family
@@ -50,7 +51,8 @@ def steep_states(
     rows = steep_states.rows(found)
     timed = {family.name: cost(family) for family in FAMILIES} if costs else {}
     listed = _listed(found, seed)
-    data = {"families": [asdict(row) for row in rows], "balls": asdict(enclosures), "cost": timed, "listed": listed}
+    data = {"families": [asdict(row) for row in rows], "balls": asdict(enclosures),
+            "cost": {name: asdict(figure) for name, figure in timed.items()}, "listed": listed}  # fmt: skip
     parts = [_table(rows), _balls(enclosures), _cost(timed), *(_lines(name, part) for name, part in listed.items())]
     return SteepStates(data, "\n\n".join(part for part in parts if part), _is_wrong(rows, enclosures))
 
@@ -123,10 +125,12 @@ def _estimate(name: str, given: Estimate | None) -> str:
     )
 
 
-def _cost(timed: dict[str, float]) -> str:
-    """CPU time a family; a column for another step rule has its place beside the first."""
-    cells = [[name, f"{figure:.1f}"] for name, figure in timed.items()]
-    return columns(["family", "first_hit, us a state"], cells) if cells else ""
+def _cost(timed: dict[str, Cost]) -> str:
+    """CPU time a family, and its ratio to steps chosen by their last terms."""
+    cells = [[name, f"{figure.microseconds:.1f}", f"{figure.ratio:.2f}", f"{figure.agree:.2f}"]
+             for name, figure in timed.items()]  # fmt: skip
+    note = "ratio: to steps chosen by their last two terms, in the same run, on the flights where both agree."
+    return columns(["family", "first_hit, us a state", "ratio", "agree"], cells) + "\n" + note if cells else ""
 
 
 def _listed(found: dict[str, np.ndarray[Any, Any]], seed: int) -> dict[str, dict[str, Any]]:

@@ -1,9 +1,10 @@
 """The source of a bound: how far F = g - f along a Taylor polynomial can be from its value at the start, on a disc.
 
-The recurrence gives a polynomial P of degree n with P'' = F up to s^(n-2).  If F is analytic on |s| <= R and |F(s) - F(0)|
-<= M there, Cauchy's estimate bounds the coefficients that P leaves out by M/R^k.  M comes from the expression tree in
-disc arithmetic: every part has a centre, which the recurrence has computed, and a radius.  A part that may be singular
-on the disc has the radius inf, so no pole, branch point or kink is missed, whatever the function is called.
+The recurrence gives a polynomial P of degree n with P'' = F up to s^(n-2).  If F is analytic on |s| <= R and
+|F(s) - F(0)| <= M there, Cauchy's estimate bounds the coefficients that P leaves out by M/R^k.  M comes from the
+expression tree in disc arithmetic: every part has a centre, which the recurrence has computed, and a radius.  A part
+that may be singular on the disc has the radius inf, so no pole, branch point or kink is missed, whatever the function
+is called.
 """
 
 from __future__ import annotations

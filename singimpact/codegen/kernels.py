@@ -94,7 +94,7 @@ def was_compiled(text: str, name: str) -> bool:
 
 
 def plain(text: str, functions: dict[str, Any]) -> dict[str, Any]:
-    """The namespace of the same text over another arithmetic, which gives `functions` (sin, exp, ...); tables are lists."""
+    """The namespace of the same text over another arithmetic with its `functions` (sin, exp, ...); tables are lists."""
     space: dict[str, Any] = dict(functions)
     exec(_parsed(text), space)
     return space
@@ -107,7 +107,8 @@ def _parsed(text: str) -> CodeType:
 
 def nested(text: str) -> ast.Module:
     """The text with a[i][j] for a[i, j]: number by number, lists of lists are several times faster than arrays."""
-    return ast.fix_missing_locations(_Nested().visit(ast.parse(text)))
+    tree: ast.Module = _Nested().visit(ast.parse(text))
+    return ast.fix_missing_locations(tree)
 
 
 class _Nested(ast.NodeTransformer):

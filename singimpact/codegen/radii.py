@@ -1,8 +1,8 @@
 """How far a function can move on a disc, as kernel text: plain arithmetic for doubles and mpf alike.
 
-Each function bounds |phi(w') - phi(w)| over all complex w' with |w' - w| <= r, for a real centre w.  It returns inf where
-the disc may meet a singularity: a pole, a branch point, a kink.  Nothing here raises or overflows: exponents beyond 700
-count as infinite.  `codegen.disc` writes the calls; the suite compares each bound with samples of its circle.
+Each function bounds |phi(w') - phi(w)| over all complex w' with |w' - w| <= r, for a real centre w.  It returns inf
+where the disc may meet a singularity: a pole, a branch point, a kink.  Nothing here raises or overflows: exponents
+beyond 700 count as infinite.  `codegen.disc` writes the calls; the suite compares each bound with its circle.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ def power_radius(y: Any, w: Any, r: Any, q: Any) -> Any:
 def power_of_square_radius(y: Any, w: Any, r: Any, q: Any, shift: Any, factor: Any) -> Any:
     """For y = (shift + factor w^2)^q with zeros at +-i sqrt(kappa), kappa = shift/factor > 0.
 
-    With d the distance of w from both zeros, |kappa + w'^2| >= (d - r) max(d - r, 2 sqrt(kappa) - d + r): the distances of
-    w' from the zeros add up to 2 sqrt(kappa) at least.
+    With d the distance of w from both zeros, |kappa + w'^2| >= (d - r) max(d - r, 2 sqrt(kappa) - d + r): the distances
+    of w' from the zeros add up to 2 sqrt(kappa) at least.
     """
     if not shift * factor > 0:
         return inf
@@ -59,7 +59,7 @@ def exp_radius(y: Any, w: Any, r: Any) -> Any:
 
 
 def bell_radius(y: Any, w: Any, r: Any, c: Any) -> Any:
-    """For y = e^(-c w^2), c > 0: the real part of w'^2 is at least (|w| - r)^2, or w^2/2 - r^2 where the disc is wide."""
+    """For y = e^(-c w^2), c > 0: Re w'^2 is at least (|w| - r)^2, or w^2/2 - r^2 where the disc is wide."""
     if not c > 0:
         return inf
     least = (abs(w) - r) * (abs(w) - r) if 2 * r < abs(w) else w * w / 2 - r * r

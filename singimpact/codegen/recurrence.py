@@ -45,10 +45,10 @@ class Recurrence:
 
     Parameters
     ----------
-    source : text of `coefficients(launch, time, z, u, shift, n, p, X, W)`, where `launch[0]` is the time of the launch;
-        after it, `disc(X, W, n, R, p)` bounds on a disc how far x'' is from its value, and `rounding(X, W, unit, p)` how
-        well x'' is known; `variations(launch, time, z, u, n, p, X, W, A, B, Z)` adds three columns of the variational
-        equation, whose entries 0 and 1 are given, and `disc_of_columns(X, W, A, B, Z, n, R, p)` bounds those.
+    source : text of `coefficients(launch, time, z, u, shift, n, p, X, W)`; `launch[0]` is the time of the launch.
+        After it, `disc(X, W, n, R, p)` bounds on a disc how far x'' is from its value, and `rounding(X, W, unit, p)`
+        how well x'' is known; `variations(launch, time, z, u, n, p, X, W, A, B, Z)` adds three columns of the
+        variational equation, whose entries 0 and 1 are given; `disc_of_columns(X, W, A, B, Z, n, R, p)` bounds them.
     constants : trees whose values fill p[1], p[2], ...; p[0] is the clearance.
     rows : rows that the work array W needs.
     suspects : the parts that may be singular; `disc` reports the k-th as k + 1.

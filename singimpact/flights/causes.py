@@ -43,8 +43,10 @@ def where(osc: Oscillator, tau: float, numbers: Array) -> str:
     """
     time, speed, height = (float(value) for value in numbers[:3])
     at = tau + time
-    phase = "" if osc.period is None else f", phase {at % as_float(osc.period):.12g} of {as_float(osc.period):.6g}"
-    return f"t = {at:.12g} ({time:.6g} after the launch{phase}), x = {as_float(osc.clearance) + height:.6g}, x' = {speed:.6g}"
+    phase, x = "", as_float(osc.clearance) + height
+    if osc.period is not None:
+        phase = f", phase {at % as_float(osc.period):.12g} of {as_float(osc.period):.6g}"
+    return f"t = {at:.12g} ({time:.6g} after the launch{phase}), x = {x:.6g}, x' = {speed:.6g}"
 
 
 def explained(osc: Oscillator, tau: float, numbers: Array, cause: Cause, path: Any) -> tuple[Cause, str]:
@@ -52,8 +54,8 @@ def explained(osc: Oscillator, tau: float, numbers: Array, cause: Cause, path: A
 
     Parameters
     ----------
-    tau : of the launch. numbers : time, x', x - c, and which part of f or g is singular next to that, as `march` numbers
-        them. path : gives (x, x') at an array of times since the launch.
+    tau : of the launch. numbers : time, x', x - c, and which part of f or g is singular next to that, as `march`
+        returns them. path : gives (x, x') at an array of times since the launch.
     """
     place = where(osc, tau, numbers)
     if cause != Cause.domain_left:
@@ -72,7 +74,7 @@ def explained(osc: Oscillator, tau: float, numbers: Array, cause: Cause, path: A
 
 
 def _crossed(osc: Oscillator, part: Expression, tau: float, time: float, path: Any) -> str:
-    """How the argument of a root, power or logarithm meets 0: "touches" it, or "crosses"; "steep" for entire functions."""
+    """How the argument of a root, power or logarithm meets 0: "touches" or "crosses"; "steep" for other functions."""
     match part:
         case Power(base, _):
             argument: Expression = base

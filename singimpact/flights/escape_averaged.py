@@ -1,6 +1,6 @@
 """Flights that are too fast for a bounded, oscillating force to turn them back before the horizon: rotating pendulums.
 
-Let f(x) = V'(x) with |V| bounded and g(t) = m + G'(t) with |G| bounded and m >= 0 (constant parts of f counted in m).  Then
+Let f(x) = V'(x) with |V| bounded and g(t) = m + G'(t) with |G| bounded and m >= 0 (constant parts of f in m).  Then
 y = x' - G(t) + V(x)/x' has y' = m - V x''/x'^2, so with |x''| <= B and the launch velocity u, as long as x' >= u/2,
 
     x' >= u - 2 sup|G| - 4 sup|V|/u - 4 t sup|V| B/u^2 .
@@ -63,7 +63,8 @@ def _bounds(osc: Oscillator) -> Bounds | None:
 
 def _waves(tree: Expression, variable: str) -> tuple[Expression, list[tuple[Expression, Expression]]] | None:
     """A tree as a constant and waves (amplitude, rate), sin or cos of linear arguments; None for any other."""
-    constant, waves = number(0), []
+    constant: Expression = number(0)
+    waves = []
     for term in tree.terms if isinstance(tree, Sum) else (tree,):
         if not names_in(term):
             constant = add(constant, term)

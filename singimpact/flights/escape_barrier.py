@@ -1,11 +1,11 @@
-"""Flights that strong damping keeps above the obstacle for ever: two straight barriers in the plane of z = x - c and x'.
+"""Flights that strong damping keeps above the obstacle: two straight barriers in the plane of z = x - c and x'.
 
 On x' = -lambda z the motion points upwards, and on x' = kappa (Z - z) downwards, if for all z in [0, Z] and all times
 
     g - f(c + z, -lambda z) - lambda^2 z > 0,        g - f(c + z, kappa (Z - z)) + kappa^2 (Z - z) < 0 .
 
-A launch with 0 < v <= kappa Z begins between them and stays there, so z >= z_0 e^(-lambda t) > 0: it never returns.  The
-slopes are looked for in doubles on a grid; the inequalities are then proved in balls on pieces of [0, Z].
+A launch with 0 < v <= kappa Z begins between them and stays there, so z >= z_0 e^(-lambda t) > 0: it never returns.
+The slopes are looked for in doubles on a grid; the inequalities are then proved in balls on pieces of [0, Z].
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def _fastest_kept(osc: Oscillator) -> float:
 
     def force(z: Array, speed: Array) -> Array:
         with np.errstate(all="ignore"):
-            return np.asarray(evaluate(osc.force(), {"x": clearance + z, "xdot": speed}, DOUBLES)) + 0 * z
+            return np.asarray(evaluate(osc.force(), {"x": clearance + z, "xdot": speed}, DOUBLES) + 0 * z)
 
     nothing = np.zeros(1)
     if not low - force(nothing, nothing)[0] > 0:  # the obstacle must push the mass off at all times

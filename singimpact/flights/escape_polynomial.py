@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -106,7 +107,7 @@ def extremes_of_forcing(osc: Oscillator) -> tuple[Any, Any] | None:
     else:
         period = balls.evaluate(osc.period, {})
         ends = [period * piece / PROOF.pieces for piece in range(PROOF.pieces + 1)]
-        found = [balls.evaluate(forcing, {"t": low.union(high)}) for low, high in zip(ends, ends[1:], strict=False)]
+        found = [balls.evaluate(forcing, {"t": low.union(high)}) for low, high in pairwise(ends)]
     if not all(value.is_finite() for value in found):
         return None
     return min(value.lower() for value in found), max(value.upper() for value in found)

@@ -16,7 +16,8 @@ from singimpact.codegen.interpreted import function
 from singimpact.codegen.kernels import compiled
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import chains, lane_roots, lane_walk, lanes
-from singimpact.flights.hits import EPSILON, doubles, remainders
+from singimpact.flights.causes import decoded
+from singimpact.flights.in_doubles import EPSILON, doubles, remainders
 from singimpact.flights.kernel import PRICES, kernel_of, source
 from singimpact.flights.launch import States, horizon_of
 from singimpact.flights.limits import LIMITS, degree_for
@@ -66,7 +67,8 @@ def after(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = EP
             again = _chained(osc, [part[near] for part in flown], 1, EPSILON)
             for part, better in zip(flown, again, strict=True):
                 part[near] = better
-        return Ends(*(part.reshape(states.shape)[()] for part in (flown[0] + shift, *flown[1:])))
+        flown[0], flown[2] = flown[0] + shift, decoded(flown[2])[0]
+        return Ends(*(part.reshape(states.shape)[()] for part in flown))
     padded = [np.resize(part, -(-times.size // lanes.LANES) * lanes.LANES) for part in (times - shift, speeds, status)]
     padded[2][times.size :] = Status.sticks
     _fly(osc, table, padded, impacts)
@@ -83,8 +85,9 @@ def _chained(osc: Oscillator, parts: list[Any], impacts: int, epsilon: float) ->
     w = np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
     names = (*kernel.names, "rebound", *(loop.__name__ for loop in loops))
     function(whole, names, "taylor_ends", parts[0].size * impacts * PRICES.taylor)(
-        *parts[:2], impacts, w, np.zeros(1), order, horizon_of(osc, None), LIMITS.steps, LIMITS.safety * epsilon, doubles(kernel),
-        np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2), np.empty((impacts, 5)), parts[2],
+        *parts[:2], impacts, w, np.zeros(1), order, horizon_of(osc, None), LIMITS.steps, LIMITS.safety * epsilon,
+        doubles(kernel), np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2),
+        np.empty((impacts, 5)), parts[2],
     )  # fmt: skip
     return parts
 

@@ -16,6 +16,8 @@ from singimpact.flights.tangent import rebound_slope
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
+KEPT = ("flight_time", "depth", "bound", "condition", "velocity_condition", "time_error", "velocity_error", "cause")
+
 
 @lru_cache(maxsize=64)
 def backwards(osc: Oscillator) -> Oscillator:
@@ -104,10 +106,10 @@ def _step(states: States, hit: Any, speeds: Any, dead: Any, digits: int | None) 
             start = np.array([as_mpf(states.exact_tau(i), mpmath.mp) for i in range(speeds.size)] + [None])[:-1]
             before = np.array([-_number(s) for s in speeds] + [None])[:-1]
     fields = {"tau": start - np.ravel(hit.flight_time), "v": -np.ravel(hit.velocity) + 0, "velocity": before}
-    fields |= {name: getattr(hit, name) for name in ("flight_time", "depth", "bound", "condition")}
+    fields |= {name: getattr(hit, name) for name in KEPT}
     fields["v"] = np.where(dead, np.nan, fields["v"])
     shaped = {name: np.reshape(value, shape)[()] for name, value in fields.items()}
-    return Step(**shaped, status=status.reshape(shape)[()])
+    return Step(**shaped, status=status.reshape(shape)[()], notes=hit.notes)
 
 
 def _number(value: Any) -> Any:

@@ -64,9 +64,8 @@ def flights(
         with mpmath.workdps(digits):
             for field, value in zip(fields, (*_shown(status, numbers), mpmath.nan), strict=True):
                 field[index] = +mpmath.mpf(value)
-    status, _ = decoded(codes)
     time, velocity, depth, bound, condition = fields
-    return Flight(time, velocity, status, depth, bound, condition), codes, rough
+    return Flight(time, velocity, decoded(codes)[0], depth, bound, condition), codes, rough
 
 
 def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, Any, Any]:
@@ -260,7 +259,7 @@ def _in_balls(osc: Oscillator, bits: int) -> _Numbers:
 
 
 def _coefficients(
-    numbers: _Numbers, start: Any, time: Any, z: Any, u: Any, shift: Any, n: int, p: Any, X: Any, W: Any
+    numbers: _Numbers, start: Any, time: Any, z: Any, u: Any, shift: Any, n: int, _p: Any, X: Any, W: Any
 ) -> None:  # fmt: skip
     """`coefficients` of numbers of mpmath, computed in balls of 32 bits more, which takes a quarter of the time."""
     import flint

@@ -2,6 +2,10 @@
 
 The first step works on (x - c)/t^removed, where the trivial root t = 0 is gone: full relative accuracy at v = 1e-300.
 The functions `coefficients`, `step_size`, `singular_part` and `restart` belong to the flow that the text is joined to.
+
+Statuses of `march` are those of `status.Status`, and without a hit it gives the state some time before the horizon, for
+`flights.escape`: time, x', x - c, its bound.  21 : the steps are spent; 22 : no step next to a singularity, with the part
+of f and g that is singular in place of the bound; 23 : out of the range of numbers.
 """
 # mypy: disable-error-code="name-defined"
 # ruff: noqa: F821
@@ -28,23 +32,16 @@ def march(
     p : numbers of the model. X, W, q : work arrays.
     trace : where its rows suffice, row i becomes time, x - c, x' at the start of step i and x'' there by the polynomial
         of the step before; the row of the hit ends it, and entry [0, 3] counts the steps.
-
-    Notes
-    -----
-    Without a hit the state some time before the horizon is given, for `flights.escape`: time, x', x - c, its bound; and
-    with status 22 (no step next to a singularity) which part of f and g is singular, in place of the bound.  21 : the
-    budget is spent; 23 : out of the range of numbers.
     """
     zero = 0 * v
     time, z, u, noise, shift, z_lost, u_lost = zero, zero, v, zero, zero, zero, zero
     if acceleration == acceleration:
         coefficients(launch, time, z, zero, zero, order - order + 2, p, X, W)  # a literal 2 is compiled for itself
         shift = acceleration / 2 - X[2]
-    longest, pace = p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0)
+    longest, pace, bend = p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0), zero
     for count in range(budget):
         coefficients(launch, time, z, u, shift, order, p, X, W)
-        if count < len(trace):
-            trace[count, 0], trace[count, 1], trace[count, 2] = time, z, u
+        note(trace, count, time, z, u, bend)
         h, overlap, pace = step_size(X, W, z, order, longest, ulp, p, pace)
         if not abs(u) < 1e150 or not abs(z) < 1e150:
             return 23, time, u, z, noise
@@ -54,9 +51,8 @@ def march(
         if h > 2 * (horizon - time):
             h = 2 * (horizon - time)
         q[0] = z
-        for k in range(order + 1 - removed):
-            if k + removed > 0:
-                q[k] = X[k + removed]
+        for k in range(0 if removed else 1, order + 1 - removed):
+            q[k] = X[k + removed]
         # a little past the step, so that a root on its end is not lost between two steps
         code, s, slope, depth, bound = first_root(q, order - removed, h * overlap, noise, ulp)
         if code > 0:
@@ -68,18 +64,23 @@ def march(
             if time + s > horizon:
                 return 3, time, u, z, noise
             if count + 1 < len(trace):
-                trace[count + 1, 0], trace[count + 1, 1], trace[count + 1, 2] = time + s, zero, slope * raised
-                trace[count + 1, 3], trace[0, 3] = curvature(X, order, s), zero + count + 1
+                note(trace, count + 1, time + s, zero, slope * raised, curvature(X, order, s))
+                trace[0, 3] = zero + count + 1
             return 0, time + s, slope * raised, zero, zero
         if time + h >= horizon:
             return 3, time, u, z, noise
-        if count + 1 < len(trace):
-            trace[count + 1, 3] = curvature(X, order, h)
+        bend = curvature(X, order, h) if count + 1 < len(trace) else zero
         z, z_lost, u, u_lost, size = moved(X, z, z_lost, u, u_lost, order, h)
         time += h
         z, u, noise = restart(launch, v, time, z, u, noise + ulp * size, ulp, p)
         longest, shift, removed = 2 * h, zero, 0
     return 21, time, u, z, noise
+
+
+def note(trace: Any, row: int, time: Any, z: Any, u: Any, bend: Any) -> None:
+    """A row of the trace, if it has that many."""
+    if row < len(trace):
+        trace[row, 0], trace[row, 1], trace[row, 2], trace[row, 3] = time, z, u, bend
 
 
 def advanced(X: Any, z: Any, order: int, h: Any) -> Any:

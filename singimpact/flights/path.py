@@ -10,7 +10,7 @@ import numpy as np
 from singimpact.algebra.numbers import as_float, float_array
 from singimpact.flights import counted
 from singimpact.flights.flow.closed_arrays import places
-from singimpact.flights.hits import EPSILON, doubles
+from singimpact.flights.in_doubles import EPSILON, doubles
 from singimpact.flights.kernel import kernel_of, ready
 from singimpact.flights.launch import States, launches
 from singimpact.flights.limits import LIMITS, degree_for

@@ -13,7 +13,8 @@ from singimpact.algebra.numbers import as_float
 from singimpact.codegen.interpreted import function
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import chains, counted
-from singimpact.flights.hits import EPSILON, doubles, remainders
+from singimpact.flights.causes import decoded
+from singimpact.flights.in_doubles import EPSILON, doubles, remainders
 from singimpact.flights.kernel import PRICES, kernel_of, source
 from singimpact.flights.launch import horizon_of
 from singimpact.flights.limits import LIMITS, degree_for
@@ -84,4 +85,4 @@ def sequence(osc: Oscillator, tau: float, v: float, count: int, slow: float = 0.
         flown, status = fly(start, v, count, slow, w, np.zeros(1), order, limit, LIMITS.steps, ulp, p, *work, out)
     counted.add(int(flown))
     since, speed, time, velocity, acceleration = out[:flown].T
-    return Sequence(tau + since, speed, time, velocity, acceleration, int(status))
+    return Sequence(tau + since, speed, time, velocity, acceleration, int(decoded(np.array([status]))[0][0]))

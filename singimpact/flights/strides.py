@@ -297,8 +297,19 @@ def stride_all(
     for i in range(len(v)):
         if removed[i] > 1:
             code, time, velocity, depth, error = march(
-                launch[i], v[i], removed[i], acceleration[i], terms - 1 + removed[i], horizon, 10_000_000, ulp, p,
-                X, W, q, W[:0]
+                launch[i],
+                v[i],
+                removed[i],
+                acceleration[i],
+                terms - 1 + removed[i],
+                horizon,
+                10_000_000,
+                ulp,
+                p,
+                X,
+                W,
+                q,
+                W[:0],
             )
         else:
             code, time, velocity, depth, error = stride(

@@ -83,7 +83,7 @@ def response(
 
 
 def _carried(judged: Array, time: Array, velocity: Array) -> tuple[Array, Array]:
-    """Relative errors of flight time and velocity from the variances of x and x' at the hit, and of the sum of steps."""
+    """Relative errors of flight time and velocity from the variances of x and x' at the hit."""
     zz, zu, uu, acceleration, steps = judged[:, 4:9].T
     turn = acceleration / velocity
     late = np.sqrt(zz / velocity**2 + steps * (time * EPSILON / 2) ** 2)

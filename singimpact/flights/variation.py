@@ -1,8 +1,8 @@
 """A flight with its derivatives, as kernel text: plain arithmetic for doubles and mpf alike.
 
-Columns A and B solve the homogeneous variational equation from (1, 0) and (0, 1) at the start of every step; Z is driven
-by g' from (0, 0).  So the derivatives by the launch velocity and the launch time, and errors made on the way, are carried
-from step to step by one matrix.
+Columns A and B solve the homogeneous variational equation from (1, 0) and (0, 1) at the start of every step; Z is
+driven by g' from (0, 0).  So the derivatives by the launch velocity and the launch time, and errors made on the way,
+are carried from step to step by one matrix.
 """
 # mypy: disable-error-code="name-defined"
 # ruff: noqa: F821
@@ -61,8 +61,9 @@ def judge(
 
     Notes
     -----
-    A step errs by the rounding of its sums, by the rounding of f and g, and by its cut-off: the difference of x'' at its
-    end, by its polynomial and by the model, is that of the whole tail.  Errors of steps are taken as independent.
+    A step errs by the rounding of its sums, by the rounding of f and g, and by its cut-off: the difference of x'' at
+    its end, by its polynomial and by the model, is that of the whole tail; it counts twice, as it keeps its sign over
+    neighbouring steps.  Errors of steps are taken as independent.
     """
     unit = 2.0**-53
     by_v, by_v_dot, by_tau, by_tau_dot = 0.0, 1.0, 0.0, 0.0
@@ -105,9 +106,7 @@ def judge(
     out[4], out[5], out[6], out[7], out[8] = zz, zu, uu, 2 * X[2], steps
 
 
-def column_step(
-    X: Any, W: Any, A: Any, B: Any, Z: Any, n: int, h: Any, R: Any, ulp: Any, p: Any
-) -> Any:
+def column_step(X: Any, W: Any, A: Any, B: Any, Z: Any, n: int, h: Any, R: Any, ulp: Any, p: Any) -> Any:
     """The step h, made shorter until the cut-off of every column is below rounding; 0 where no disc is found."""
     for _ in range(100):
         if not h > 0:

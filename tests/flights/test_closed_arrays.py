@@ -7,7 +7,7 @@ import pytest
 
 from singimpact.codegen.kernels import plain
 from singimpact.flights.flow.closed_arrays import places
-from singimpact.flights.hits import doubles
+from singimpact.flights.in_doubles import doubles
 from singimpact.flights.kernel import kernel_of
 from singimpact.flights.launch import launches
 from singimpact.flights.path import path

@@ -12,7 +12,7 @@ from singimpact.bench.measuring import EPSILON, Case, Effort, Method, with_peers
 from singimpact.bench.peers import many_digits, runge_kutta, taylor_events
 from singimpact.bench.problems import FAMILIES, REGIMES, Problem, states
 from singimpact.codegen.kernels import compiled
-from singimpact.flights.hits import doubles
+from singimpact.flights.in_doubles import doubles
 from singimpact.flights.kernel import kernel_of
 from singimpact.flights.launch import States, launches
 from singimpact.flights.limits import LIMITS, degree_for

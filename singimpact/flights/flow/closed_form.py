@@ -46,7 +46,7 @@ def step_size(X: Any, W: Any, z: Any, n: int, longest: Any, ulp: Any, p: Any, pa
     return 3 / (2 * p[4]) if p[4] > 0 else longest * 1e6, 17 / 16, pace
 
 
-def singular_part(X: Any, W: Any, n: int, h: Any, p: Any) -> int:  # noqa: ARG001
+def singular_part(X: Any, W: Any, n: int, h: Any, p: Any) -> Any:  # noqa: ARG001
     """The forces of a linear model are entire."""
     return 0
 

@@ -75,7 +75,7 @@ def searched_step(X: Any, W: Any, n: int, wish: Any, enough: Any, ulp: Any, p: A
         return 0 * ulp, pace
     # after a layer the wish is far too long, so the disc grows gradually
     R, free = ratio * wish, True
-    if not R < 2 * last:
+    if not 2 * last > R:
         R, free = 2 * last, False
     best, best_R, upwards = 0 * wish, R, False
     for attempt in range(100):
@@ -99,7 +99,7 @@ def searched_step(X: Any, W: Any, n: int, wish: Any, enough: Any, ulp: Any, p: A
 def allowed_step(bound: Any, R: Any, X: Any, n: int, wish: Any, ulp: Any) -> Any:
     """The longest step h <= wish whose error of x', times h, is below 25 ulp of the terms in h; 0 without a bound.
 
-    The defect of the polynomial is at most bound q^(n - 1)/(1 - q), q = s/R; integrated once, s bound q^(n - 1)/(n (1 - q)).
+    The defect of the polynomial is at most D = bound q^(n-1)/(1 - q), q = s/R; integrated once, at most s D/n.
     """
     if not bound < 1e280:
         return 0 * wish
@@ -126,7 +126,7 @@ def shortened_step(bound: Any, R: Any, X: Any, n: int, h: Any, ulp: Any) -> Any:
     return 0 * h
 
 
-def singular_part(X: Any, W: Any, n: int, h: Any, p: Any) -> int:
+def singular_part(X: Any, W: Any, n: int, h: Any, p: Any) -> Any:
     """Which part of f or g is singular next to a step of length h, as `disc` numbers them; 0: none is found."""
     R = h
     for _ in range(12):
