@@ -4,8 +4,8 @@ The first step works on (x - c)/t^removed, where the trivial root t = 0 is gone:
 The functions `coefficients`, `step_size`, `singular_part` and `restart` belong to the flow that the text is joined to.
 
 Statuses of `march` are those of `status.Status`, and without a hit it gives the state some time before the horizon, for
-`flights.escape`: time, x', x - c, its bound.  21 : the steps are spent; 22 : no step next to a singularity, with the part
-of f and g that is singular in place of the bound; 23 : out of the range of numbers.
+`flights.escape`: time, x', x - c, its bound.  21 : the steps are spent; 22 : no step next to a singularity, with the
+part of f and g that is singular in place of the bound; 23 : out of the range of numbers.
 """
 # mypy: disable-error-code="name-defined"
 # ruff: noqa: F821
