@@ -289,14 +289,14 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
         return _with_letters("sigma", order, shown, lettered)
     _checked("order", order, least, LIMITS.curve_numbers)
     where = place(model, j, tau)
-    rough = getattr(_curve(where, top + TRUST.further, DOUBLES), part)
+    rough = getattr(curve_at(where, top + TRUST.further, DOUBLES), part)
     further = {n: abs(float(value)) for n, value in rough.items() if n > order}
 
     def numbers() -> Any:
-        return with_digits(lambda ring: getattr(_curve(where, top, ring), part), digits, all_digits)
+        return with_digits(lambda ring: getattr(curve_at(where, top, ring), part), digits, all_digits)
 
     def enclosures(wanted: int) -> Any:
-        return with_digits(lambda ring: getattr(_curve(where, top, ring), part), wanted, all_certified)
+        return with_digits(lambda ring: getattr(curve_at(where, top, ring), part), wanted, all_certified)
 
     exact = _exact_curve(where, top, part)
     if exact is not None:
@@ -320,7 +320,7 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
     """
     _checked("order", order, j + 1, LIMITS.curve_numbers)
     where = place(model, j, tau)
-    rough = _curve(where, order + j + TRUST.further, DOUBLES)
+    rough = curve_at(where, order + j + TRUST.further, DOUBLES)
 
     def doubles(found: InvariantCurve, _: int) -> list[PowerSeries]:
         made = []
@@ -331,7 +331,7 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
         return made
 
     graph, motion = with_digits(
-        lambda ring: _curve(where, order + j, ring),
+        lambda ring: curve_at(where, order + j, ring),
         DOUBLE,
         doubles,
         lambda found: (*found.graph.values(), *found.motion.values()),
@@ -339,8 +339,16 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
     return graph, motion
 
 
-def _curve(where: Place, order: int, ring: Any) -> InvariantCurve:
-    """The curve in balls or doubles."""
+def curve_at(where: Place, order: int, ring: Any) -> InvariantCurve:
+    """The invariant curve to sigma^order at a place of a model, in balls or doubles.
+
+    Examples
+    --------
+    >>> from singimpact.oscillator.model import Oscillator
+    >>> found = curve_at(place(Oscillator("x", "cos(2*t)", "0.3", "1/2"), 1, None), 3, DOUBLES)
+    >>> round(found.graph[3], 15), round(found.lambda_, 15)
+    (-0.067753033879207, 0.660442249723743)
+    """
     bits = ring.bits if isinstance(ring, Balls) else 64
     with precision_of(ring):
         found = multiplier(where.j, where.model.slope_at_rest(), bits)

@@ -13,6 +13,7 @@ from singimpact.algebra.numbers import as_float, as_fraction, compare, constant
 from singimpact.algebra.rings import DOUBLES, EXACT, Doubles
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet
+from singimpact.contact.next_zero import ContactZero
 from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
@@ -34,7 +35,7 @@ class Place:
     model: Oscillator
     j: int
     exact: Expression | None
-    point: TangencyPoint | None
+    point: TangencyPoint | ContactZero | None
 
     @property
     def tau(self) -> float:
