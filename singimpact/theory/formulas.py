@@ -21,7 +21,7 @@ from singimpact.theory.completion import leaves, symbolic_completion
 from singimpact.theory.digits import all_certified, all_digits, as_double, sympy_digits, with_digits
 from singimpact.theory.invariant_curve import InvariantCurve, invariant_curve
 from singimpact.theory.letters import LetteredModel
-from singimpact.theory.places import Place, exact_contact, multiplier, place
+from singimpact.theory.places import Place, ending_gamma, exact_contact, multiplier, place
 from singimpact.theory.power_series import TRUST, PowerSeries
 from singimpact.theory.sheet import generic_sheet, sheet
 from singimpact.theory.symbolic_curve import rho_names, symbolic_curve
@@ -172,6 +172,10 @@ def gamma(
     order : the last power of sigma, above the contact order. at : "tangency", "swan" or a contact order >= 1.
     model, tau, digits, keep : as for `v_c`; with letters, lambda stands for the restitution.
 
+    Raises
+    ------
+    InputError : no gamma ends there: a^(j) < 0 at an odd contact order j (a foliation), a^(j) > 0 at an even one.
+
     Examples
     --------
     >>> gamma(order=2)[2]
@@ -288,7 +292,7 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
         shown = {n: symbolic.to_sympy(value, length) for n, value in known.items()}
         return _with_letters("sigma", order, shown, lettered)
     _checked("order", order, least, LIMITS.curve_numbers)
-    where = place(model, j, tau)
+    where = ending_gamma(place(model, j, tau)) if j else place(model, j, tau)
     rough = getattr(curve_at(where, top + TRUST.further, DOUBLES), part)
     further = {n: abs(float(value)) for n, value in rough.items() if n > order}
 
@@ -319,7 +323,7 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
     (-0.067753033879207, 0.660442249723743)
     """
     _checked("order", order, j + 1, LIMITS.curve_numbers)
-    where = place(model, j, tau)
+    where = ending_gamma(place(model, j, tau)) if j else place(model, j, tau)
     rough = curve_at(where, order + j + TRUST.further, DOUBLES)
 
     def doubles(found: InvariantCurve, _: int) -> list[PowerSeries]:

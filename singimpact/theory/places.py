@@ -98,6 +98,36 @@ def place(model: Any, j: int, tau: Any) -> Place:
     return Place(model, j, None, near[0])
 
 
+def ending_gamma(where: Place) -> Place:
+    """The place, when a gamma ends there: a_c < 0 before it, so a^(j) > 0 at an odd contact order, < 0 at an even one.
+
+    Raises
+    ------
+    InputError : a_c is positive before it, or its j-th derivative is zero to ZERO_BITS.
+
+    Examples
+    --------
+    >>> model = Oscillator("x", "cos(2*t)", "0.3", "1/2")
+    >>> ending_gamma(place(model, 1, None)).j
+    1
+    """
+    j = where.j
+    balls = Balls(ZERO_BITS)
+    with precision_of(balls):
+        lead = acceleration_jet(where.model, where.tau_in(balls), j, balls)[j]
+    wanted = 1 if j % 2 else -1
+    if lead * wanted > 0:
+        return where
+    name = "a" + "'" * j if j < 4 else f"a^({j})"
+    at = str(where.exact) if where.exact is not None else f"{where.tau:.6g}"
+    if lead.contains(0):
+        raise InputError(f"tau = {at}: {name} = 0 too, so that the contact order is above {j}: give a higher at=")
+    kind = {1: "a tangency of the kind foliation", 2: "a positive swan"}.get(j, f"a point of contact order {j}")
+    told = f"{kind} with {name} {'<' if wanted > 0 else '>'} 0, and a_c > 0 on its left"
+    needed = f"{name} {'>' if wanted > 0 else '<'} 0, where a_c < 0 on the left"
+    raise InputError(f"tau = {at} is {told}: no gamma ends there; give a point with {needed}")
+
+
 def points_of(model: Oscillator, tau: Any) -> list[int]:
     """The contact orders 0, 1, 2 to look at: that of tau, or those of the model's points with an invariant curve."""
     if tau is not None:
