@@ -55,3 +55,12 @@ def test_a_folder_is_made(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="output = "):
         folder(tmp_path / "file")
+
+
+def test_output_through_a_link_goes_to_the_file_that_it_names(tmp_path):
+    target, link = tmp_path / "real.txt", tmp_path / "link.txt"
+    target.write_text("old")
+    link.symlink_to(target)
+    write_text(link, "new")
+    assert link.is_symlink()
+    assert target.read_text() == "new"
