@@ -283,6 +283,7 @@ def _with_letters(
 
 def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: int, keep: Sequence[str]) -> PowerSeries:
     least = j + 1 if part == "graph" else 1
+    _checked("order", order, least, LIMITS.curve_numbers)
     top = order if part == "graph" else order + j
     lettered = _lettered(model, tau, keep, j)
     if lettered is not None or model is None:
