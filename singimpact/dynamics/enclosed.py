@@ -200,7 +200,7 @@ class _Gamma:
 def _searched(gamma: _Gamma, tau: Expression, rough: Any, digits: int) -> Fraction | None:
     """A v near gamma, by secants: nothing is proved here.  The more impacts, the less the cut of gamma matters."""
     start, rate = evaluate(tau, {}, gamma.flow.balls), float(gamma.rate.mid())
-    forgotten = rate**2 / multiplier_across(gamma.order, rate)  # by each impact, of the error in the cut of gamma
+    forgotten = max(rate**2 / multiplier_across(gamma.order, rate), 1e-300)  # by each impact, of the error in the cut
     most = ceil((digits + 3) * log(10) / -log(forgotten))
     v, impacts, step = Fraction(float(rough)), ORBITS.stage, Fraction(1, 10**12)
     while True:
@@ -223,7 +223,7 @@ def _secant(
         if value is None or beyond is None or not abs(beyond - value) > 0:
             return None
         change = balls.rational(other - v) * beyond / (beyond - value)
-        if change.rad() > balls.rational(small):
+        if not change.is_finite() or change.rad() > balls.rational(small):
             return None
         closer = as_rational(balls.rational(other) - change)
         v, value, other = other, beyond, closer

@@ -205,6 +205,8 @@ def _refined(osc: Oscillator, place: Any, rough: Threshold, end: ContactZero, di
             miss, slope = goal.miss(tau, v, count)
             last, change = change, abs(miss / slope)
             v -= miss / slope
+            if not 0 < v < mpmath.inf:  # the slope of `miss` is below the range of doubles
+                return _without(Status.unresolved)
             if max(change, last * change / v) < small * v and last < mpmath.mpf(10) ** (-digits // 2) * v:
                 break
     with mpmath.workdps(digits):

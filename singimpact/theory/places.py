@@ -19,6 +19,7 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 
 NEAR = 1e-7  # a tau given as a double names the tangency point this close to it, in units of 1 + |tau|
+LEAST = Fraction(1, 2**4096)  # halving for a multiplier ends here
 ZERO_BITS = 512  # a value whose ball of so many bits holds 0 is taken as the zero that the contact order asks for
 KINDS = {1: ("gamma", "a' > 0"), 2: ("degenerate", "a'' < 0")}
 
@@ -234,10 +235,12 @@ def _multiplier_ball(j: int, r: Any, bits: int) -> Any:
     poly = above - below * r
     slope = poly.derivative()
     low, high = Fraction(0), Fraction(1)
-    for _ in range(64):
+    ball = Balls(bits).interval(low, high)
+    # r = 1e-300 has its root at 1e-150: until the slope keeps its sign there, Newton's step would divide by 0
+    while high - low > Fraction(1, 2**64) or (not slope(ball) > 0 and high > LEAST):
         middle = (low + high) / 2
         low, high = (low, middle) if poly(Balls(bits).rational(middle)) > 0 else (middle, high)
-    ball = Balls(bits).interval(low, high)
+        ball = Balls(bits).interval(low, high)
     for _ in range(bits.bit_length() + 4):
         middle = Balls(bits).rational(as_rational(ball))
         ball = (middle - poly(middle) / slope(ball)).intersection(ball)

@@ -131,3 +131,14 @@ def test_the_end_of_gamma_is_that_of_the_series(damping):
     assert float(abs(first - float(series[2]))) < 1e-15
     assert float(abs(second - float(series[3]))) < 1e-15
     assert abs(float(rate.mid()) - float(si.fixed_points.tangency("1/2", digits=20).lambda_.value)) < 1e-15
+
+
+def test_a_restitution_near_zero_has_a_threshold_with_digits():
+    found = si.threshold(si.linear("sqrt(2)", "1e-12", "1e-300"), "pi/2.8", digits=20)
+    assert found.status in (Status.complete, Status.unresolved)
+    rates = {r: end_of_gamma(si.linear(2, "0.3", r), next_zero(si.linear(2, "0.3", r), constant("tau", 1)).zero, 256)[2]
+             for r in ("1e-300", "1e-20", "0.5")}  # fmt: skip
+    for r, rate in rates.items():
+        assert rate.rel_accuracy_bits() > 200
+        known = si.fixed_points.tangency(r, digits=20).lambda_
+        assert abs(float(rate.mid()) / float(known.value) - 1) < 1e-15
