@@ -6,14 +6,14 @@ A cache is a convenience: when it cannot be read or written, one line says so an
 from __future__ import annotations
 
 import hashlib
-import sys
+import os
 import time
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
 from singimpact.inputs import InputError, shown
-from singimpact.store import DRAFT, folder, written
+from singimpact.store import DRAFT, cache_folder, changeable, folder, tell, written
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,11 @@ def keep(place: Path, content: bytes) -> None:
     """Put an entry under a name, whole or not at all; a cache that cannot be written is told once and is no failure."""
     try:
         _swept(folder(place.parent))
+        reason = _changeable(place)
+        if reason is not None:
+            raise InputError(f"{shown(str(place.parent))}: {reason}")
+        if place.is_symlink():
+            place.unlink()  # an entry is a file of its own: what a link names is not written to
         with written(place) as draft:
             draft.write_bytes(_seal(content) + content)
     except (InputError, OSError) as error:
@@ -53,8 +58,13 @@ def recall(place: Path) -> bytes | None:
     >>> recall(place), recall(place.with_name("other"))
     (b'42', None)
     """
+    if _changeable(place) is not None:
+        return None
     try:
-        found = place.read_bytes()
+        with os.fdopen(
+            os.open(place, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)), "rb"
+        ) as f:
+            found = f.read()
     except FileNotFoundError:
         return None
     except OSError as error:
@@ -65,6 +75,23 @@ def recall(place: Path) -> bytes | None:
         damaged(place, "its content is not what was written")
         return None
     return content
+
+
+def _unfollowed(place: str, flags: int) -> int:
+    """An entry is a file: what stands there as a link is not opened."""
+    return os.open(place, flags | getattr(os, "O_NOFOLLOW", 0))
+
+
+def _changeable(place: Path) -> str | None:
+    """Why others could change an entry: from the cache's own folder inwards, up to one that is closed to them."""
+    inner = [each for each in place.parents if each.is_relative_to(cache_folder())] or [place.parent]
+    for each in reversed(inner):
+        reason = changeable(each)
+        if reason is not None:
+            return reason
+        if each.exists() and not each.stat().st_mode & 0o077:
+            return None
+    return None
 
 
 @lru_cache(maxsize=8)
@@ -96,11 +123,6 @@ def not_kept(error: Exception) -> None:
         _SAID.append(str(error))
         reason = str(error).removeprefix("output = ").partition(": give")[0]
         tell(f"cache: {reason}; the work goes on and keeps nothing (SINGIMPACT_CACHE names another folder)")
-
-
-def tell(sentence: str) -> None:
-    """One line on standard error."""
-    print(f"singimpact: {' '.join(sentence.split())}", file=sys.stderr)
 
 
 def _seal(content: bytes) -> bytes:

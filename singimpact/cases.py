@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import zipfile
 from collections import Counter
@@ -15,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.case_keys import key
 from singimpact.inputs import InputError, Unfinished, shown
 from singimpact.progress import ProgressLine
 from singimpact.store import require_writable, written
@@ -54,8 +54,8 @@ def sweep(
     function : of one case; it gives a number or an array of numbers of one shape, and can be pickled for the executor.
     cases : whatever the function takes.
     executor : any `concurrent.futures.Executor`; a process pool when it is not given.
-    output : an .npz file that takes every chunk as it comes. When it holds results of the same cases, only what is
-        missing is computed.
+    output : an .npz file that takes every chunk as it comes. When it holds results of the same cases, of a function
+        with the same code and the same values closed over, by the same version, only what is missing is computed.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def sweep(
     [1.0, 4.0, 9.0]
     """
     items = list(cases)
-    kept = _Kept(output, _key(function, items), len(items))
+    kept = _Kept(output, None if output is None else key(function, items), len(items))
     missing = [index for index in range(len(items)) if index not in kept.results]
     with ProgressLine() as line:
         _run_all(function, items, missing, executor, kept, line)
@@ -213,22 +213,11 @@ def _end_with_parent() -> None:
         threading.Thread(target=lambda: (wait([sentinel]), os._exit(1)), daemon=True).start()
 
 
-def _key(function: Callable[[Any], Any], items: list[Any]) -> str:
-    """What a file of results must agree with: the function's name and the text of the cases."""
-    plain = getattr(function, "func", function)  # a partial is named by its function and its arguments
-    bound = (getattr(function, "args", ()), getattr(function, "keywords", {}))
-    name = f"{getattr(plain, '__module__', '')}.{getattr(plain, '__qualname__', repr(plain))}{bound}"
-    digest = hashlib.sha256(name.encode())
-    for item in items:
-        digest.update(b"\0" + (item.tobytes() if isinstance(item, np.ndarray) else repr(item).encode()))
-    return digest.hexdigest()
-
-
 class _Kept:
     """Results by case, on disk after every chunk when there is a file."""
 
-    def __init__(self, output: str | Path | None, key: str, count: int) -> None:
-        self.path, self.key, self.results = None if output is None else Path(output), key, dict[int, Any]()
+    def __init__(self, output: str | Path | None, digest: str | None, count: int) -> None:
+        self.path, self.key, self.results = None if output is None else Path(output), digest, dict[int, Any]()
         if self.path is not None:
             require_writable(self.path)
             self._read(self.path, count)
@@ -237,18 +226,36 @@ class _Kept:
         if not path.exists():
             return
         try:
-            with path.open("rb") as stream, np.load(stream) as found:
-                same = str(found["key"]) == self.key
-                pairs = list(zip(found["index"].tolist(), found["result"], strict=True))
-        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+            with path.open("rb") as stream:
+                same, pairs = self._pairs(np.load(stream))
+        except (OSError, ValueError, KeyError, EOFError, TypeError, MemoryError, zipfile.BadZipFile) as error:
             raise InputError(f"output = {shown(str(path))} is not a file of results ({error}): name another") from None
         if not same:
-            raise InputError(f"output = {shown(str(path))} holds results of other cases: name another file")
+            other = "other cases, another function or version"
+            raise InputError(f"output = {shown(str(path))} holds results of {other}: name another file")
         self.results.update((index, value) for index, value in pairs if index < count)
+
+    def _pairs(self, found: Any) -> tuple[bool, list[tuple[int, Any]]]:
+        """Whether the key agrees, and (case, result) for what the file holds."""
+        if not hasattr(found, "files"):
+            raise ValueError("an array, no archive")
+        if str(found["key"]) != self.key:
+            return False, []
+        index, result = found["index"], found["result"]
+        if index.ndim != 1 or index.dtype.kind not in "iu" or result.ndim < 1 or len(result) != len(index):
+            raise ValueError(f"an index of shape {index.shape} for results of shape {result.shape}")
+        if result.dtype.kind not in "biufc":
+            raise ValueError(f"results of type {result.dtype}")
+        return True, list(zip(index.tolist(), result, strict=True))
 
     def add(self, part: list[int], values: list[Any]) -> None:
         self.results.update(zip(part, (np.asarray(value) for value in values), strict=True))
         if self.path is not None:
             index = np.array(sorted(self.results))
             with written(self.path) as draft, draft.open("wb") as stream:
-                np.savez(stream, key=self.key, index=index, result=np.stack([self.results[i] for i in index.tolist()]))
+                np.savez(
+                    stream,
+                    key=np.array(self.key),
+                    index=index,
+                    result=np.stack([self.results[i] for i in index.tolist()]),
+                )

@@ -34,6 +34,7 @@ class Status(IntEnum):
     complete = 6
     lifts_off = 7
     no_rebound = 8
+    none = 9
 
     @property
     def sentence(self) -> str:
@@ -52,6 +53,8 @@ _SENTENCES = {
     Status.no_rebound: "the obstacle is hit, and rho gives no positive velocity there; v is nan: "
     "give a restitution that is positive at such velocities",
     Status.lifts_off: "contact is lost before the impacts accumulate",
+    Status.none: "no gamma lies ahead, for a_c stays negative after this phase: the mass is pressed for ever, and no v "
+    "separates complete from incomplete chatter; v is nan: give a clearance for which a_c has a zero",
 }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -59,27 +60,70 @@ def require_writable(path: str | Path) -> None:
 
 
 def folder(path: str | Path) -> Path:
-    """A folder to write into, made when it is not there."""
+    """A folder to write into, made when it is not there; one of the cache is made for its user alone."""
+    place = Path(path)
     try:
-        Path(path).mkdir(parents=True, exist_ok=True)
+        if place.is_relative_to(cache_folder()):
+            for part in (*reversed(place.parents), place):
+                part.mkdir(mode=0o700, exist_ok=True)
+        place.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         raise _unwritable(path, error) from None
-    return Path(path)
+    return place
 
 
 def cache_folder() -> Path:
-    """Where results that do not change are kept: `SINGIMPACT_CACHE`, else the user's cache folder.
+    """Where results that do not change are kept: `SINGIMPACT_CACHE`, else the system's folder for a user's caches.
 
     Notes
     -----
-    `SINGIMPACT_CACHE=off` gives a folder that lasts as long as the process.
+    `SINGIMPACT_CACHE=off` gives a folder that lasts as long as the process; so does a folder that others can change,
+    for what is kept there is run as code: one line says so.
     """
     named = os.environ.get("SINGIMPACT_CACHE", "")
     if named == "off":
         return passing_folder()
-    if named:
-        return Path(named)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "singimpact"
+    place = Path(named).expanduser() if named else _users_folder()
+    reason = changeable(place)
+    if reason is None:
+        return place
+    _tell_once(f"cache {shown(str(place), 300)} is not used: {reason} (SINGIMPACT_CACHE names another folder)")
+    return passing_folder()
+
+
+def _users_folder() -> Path:
+    from platformdirs import user_cache_path
+
+    return user_cache_path("singimpact", appauthor=False)
+
+
+def changeable(place: Path) -> str | None:
+    """Why another user could change what lies in a folder; None for one that is safe, or not there yet.
+
+    Examples
+    --------
+    >>> changeable(Path(tempfile.mkdtemp())) is None
+    True
+    """
+    try:
+        found = os.stat(place)
+    except OSError:
+        return None
+    if not hasattr(os, "getuid"):
+        return None
+    if found.st_uid != os.getuid():
+        return "it belongs to another user"
+    return "others can write it" if found.st_mode & 0o022 else None
+
+
+def tell(sentence: str) -> None:
+    """One line on standard error."""
+    print(f"singimpact: {' '.join(sentence.split())}", file=sys.stderr)
+
+
+@lru_cache(maxsize=64)
+def _tell_once(sentence: str) -> None:
+    tell(sentence)
 
 
 @lru_cache(maxsize=1)

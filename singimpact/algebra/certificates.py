@@ -18,6 +18,7 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.checking import accepts
+from singimpact.algebra.sentences import sentence
 
 Certificate = dict[str, Any]
 Box = Mapping[Any, tuple[Any, Any]]
@@ -52,9 +53,10 @@ def collected() -> Iterator[list[Certificate]]:
 
 
 def established(certificate: Certificate) -> bool:
-    """Whether the checker accepts a certificate; if so it joins the open collection."""
+    """Whether the checker accepts a certificate; if so it joins the open collection, with the sentence of its data."""
     if not accepts(certificate):
         return False
+    certificate = {"kind": certificate["kind"], "says": sentence(certificate), **certificate}
     gathering = _OPEN.get()
     if gathering is not None and certificate not in gathering:
         gathering.append(certificate)
@@ -102,11 +104,9 @@ def positive_in(expression: Any, box: Box) -> bool:
     proof = expansion(poly, list(box.values()))
     if proof is None:
         raise ArithmeticError(f"no certificate was found that {expression} > 0")
-    intervals = ", ".join(f"{low} < {name} < {high}" for name, (low, high) in box.items())
     scale = lcm(*(int(sympy.Poly(part, *box).clear_denoms()[0]) for part in (above, below)))
     data = {
         "kind": "positive",
-        "says": f"({above})/({below}) > 0 for {intervals}" if below != 1 else f"{above} > 0 for {intervals}",
         "variables": [str(name) for name in box],
         "numerator": _data(above * scale, list(box)),
         "denominator": _data(below * scale, list(box)),
@@ -213,7 +213,7 @@ def roots_inside(expression: Any, variable: Any, low: Any, high: Any) -> int:
         chain.append(-rest.primitive()[1])
     data = {
         "kind": "count",
-        "says": f"{poly.as_expr()} has {count} real roots in ({low}, {high})",
+        "variables": [str(variable)],
         "chain": [[str(value) for value in reversed(part.all_coeffs())] for part in chain],
         "first": str(poly.diff().primitive()[0]),
         "steps": steps,
@@ -246,10 +246,8 @@ def sign_chain(expression: Any, variable: Any, signs: Sequence[tuple[Any, int]],
             raise ArithmeticError(f"no certificate was found for the sign of {expression} at {variable} = {at}")
         places.append({"at": str(at), "sign": sign} | {name: proof[name] for name in ("degree", "raised", "expansion")})
     gaps = [[a["at"], b["at"]] for a, b in pairwise(places) if a["sign"] != b["sign"]]
-    ranges = ", ".join(f"{low} < {name} < {high}" for name, (low, high) in box.items())
     data = {
         "kind": "chain",
-        "says": f"{poly.as_expr()} has a root {variable} in each of {gaps} for all {ranges}",
         "variables": [str(variable), *map(str, box)],
         "polynomial": _data(poly.as_expr(), [variable, *box]),
         "box": [[str(low), str(high)] for low, high in box.values()],
@@ -273,16 +271,14 @@ def value_at(expression: Any, variable: Any, point: Any) -> Any:
     Examples
     --------
     >>> x = sympy.Symbol("x")
-    >>> value_at((x**2 - 1) / (x - 1), x, 1), value_at(1 / x, x, 0)
-    (2, zoo)
+    >>> value_at((x**2 - 1) / (x - 1), x, 1), value_at(1 / x, x, 0), value_at(1 / x, x, sympy.oo)
+    (2, zoo, 0)
     """
     above, below = _quotient(expression)
-    under = below.subs(variable, point)
-    found = sympy.zoo if under == 0 else sympy.cancel(above.subs(variable, point) / under)
+    found = _limit(above, below, variable, point)
     variables = sorted(expression.free_symbols | {variable}, key=str)
     data = {
         "kind": "value",
-        "says": f"({above})/({below}) -> {found} as {variable} -> {point}",
         "variables": [str(name) for name in variables],
         "numerator": _data(above, variables),
         "denominator": _data(below, variables),
@@ -293,6 +289,17 @@ def value_at(expression: Any, variable: Any, point: Any) -> Any:
     if not established(data):
         raise ArithmeticError(f"the value of {expression} at {variable} = {point} is not certified")
     return found
+
+
+def _limit(above: Any, below: Any, variable: Any, point: Any) -> Any:
+    """The limit of a quotient without common factors; at infinity by degrees."""
+    if point not in (sympy.oo, -sympy.oo):
+        under = below.subs(variable, point)
+        return sympy.zoo if under == 0 else sympy.cancel(above.subs(variable, point) / under)
+    more = sympy.degree(above, variable) - sympy.degree(below, variable)
+    if more:
+        return sympy.zoo if more > 0 else sympy.Integer(0)
+    return sympy.cancel(sympy.Poly(above, variable).LC() / sympy.Poly(below, variable).LC())
 
 
 def definite(form: Any, x: Any, y: Any) -> int:
@@ -309,7 +316,7 @@ def definite(form: Any, x: Any, y: Any) -> int:
         return 0
     values = [poly.coeff_monomial(part) for part in (x**2, x * y, y**2)]
     sign = int(sympy.sign(values[0]))
-    data = {"kind": "definite", "says": f"{form} is definite", "form": [str(value) for value in values], "sign": sign}
+    data = {"kind": "definite", "variables": [str(x), str(y)], "form": [str(value) for value in values], "sign": sign}
     return sign if established(data) else 0
 
 
@@ -331,7 +338,6 @@ def identical(left: Any, right: Any) -> bool:
     variables = [*names, w]
     data = {
         "kind": "identity",
-        "says": f"{left} = {right}" + (f" where {relation} = 0" if root else ""),
         "variables": [str(name) for name in variables],
         "left": [_data(part, variables) for part in sides[0]],
         "right": [_data(part, variables) for part in sides[1]],

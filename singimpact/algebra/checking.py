@@ -1,7 +1,7 @@
 """Certificates checked from their data alone: whole numbers and fractions, no algebra system.
 
-A polynomial is a list of [exponents, coefficient].  What a certificate says is in `certificates`, which makes them and
-shares nothing with this file but the layout of the data.
+A polynomial is a list of [exponents, coefficient].  `certificates` makes them and shares nothing with this file but the
+layout of the data; the sentence that goes with one is made from the data (`sentences`), and another is refused.
 """
 
 from __future__ import annotations
@@ -11,9 +11,11 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from singimpact.algebra.plain import Terms, line, plus, raised, terms, times
+from singimpact.algebra.plain import Terms, line, plus, raised, rational, row, terms, times
+from singimpact.algebra.sentences import sentence
 
 INFINITE = ("-oo", "oo")
+ONE = Fraction(1)
 
 
 def accepts(certificate: Mapping[str, Any]) -> bool:
@@ -21,14 +23,15 @@ def accepts(certificate: Mapping[str, Any]) -> bool:
 
     Examples
     --------
-    >>> accepts({"kind": "definite", "form": ["6", "4", "1"], "sign": 1})
+    >>> accepts({"kind": "definite", "variables": ["x", "y"], "form": ["6", "4", "1"], "sign": 1})
     True
-    >>> accepts({"kind": "definite", "form": ["6", "5", "1"], "sign": 1})
+    >>> accepts({"kind": "definite", "variables": ["x", "y"], "form": ["6", "5", "1"], "sign": 1})
     False
     """
     try:
-        return bool(_CHECKS[certificate["kind"]](certificate))
-    except (KeyError, TypeError, ValueError, ZeroDivisionError, IndexError):
+        said = sentence(certificate)
+        return certificate.get("says", said) == said and bool(_CHECKS[certificate["kind"]](certificate))
+    except (KeyError, TypeError, ValueError, ZeroDivisionError, IndexError, AttributeError):
         return False
 
 
@@ -40,7 +43,7 @@ def _at(poly: Terms, index: int, place: str) -> Terms:
         return {_without(key, index): value * sign for key, value in poly.items() if key[index] == top}
     total: Terms = {}
     for key, value in poly.items():
-        total = plus(total, {_without(key, index): value * Fraction(place) ** key[index]})
+        total = plus(total, {_without(key, index): value * rational(place) ** key[index]})
     return total
 
 
@@ -57,7 +60,7 @@ def _expands(poly: Terms, proof: Mapping[str, Any]) -> bool:
         if more if low not in INFINITE and high not in INFINITE else proof["degree"][index]:
             return False  # a finite interval has a degree and needs no factor, a half-line the other way round
         one = _distance(low, 1, index, size) if high == "oo" else _distance(high, -1, index, size)
-        left = times(left, raised(plus(one, line(Fraction(1), 0, index, size)), more, size))
+        left = times(left, raised(plus(one, line(ONE, 0, index, size)), more, size))
     for key, value in expansion.items():
         part = {(0,) * size: value}
         for index, (low, high) in enumerate(proof["box"]):
@@ -67,7 +70,7 @@ def _expands(poly: Terms, proof: Mapping[str, Any]) -> bool:
 
 
 def _distance(end: str, sign: int, index: int, size: int) -> Terms:
-    return line(-sign * Fraction(end), sign, index, size)
+    return line(-sign * rational(end), sign, index, size)
 
 
 def _basis(low: str, high: str, power: int, degree: int, index: int, size: int) -> Terms:
@@ -76,8 +79,8 @@ def _basis(low: str, high: str, power: int, degree: int, index: int, size: int) 
         return raised(_distance(low, 1, index, size), power, size)
     if low == "-oo":
         return raised(_distance(high, -1, index, size), power, size)
-    if not Fraction(low) < Fraction(high) or not 0 <= power <= degree:
-        raise ValueError("no such interval or power")
+    if not rational(low) < rational(high):
+        raise ValueError("no such interval")
     above = raised(_distance(high, -1, index, size), degree - power, size)
     return times(raised(_distance(low, 1, index, size), power, size), above)
 
@@ -88,11 +91,15 @@ def _positive(data: Mapping[str, Any]) -> bool:
     return data["sign"] in (-1, 1) and _expands({key: value * data["sign"] for key, value in poly.items()}, data)
 
 
+def _order(place: str) -> tuple[int, Fraction]:
+    """Places on the line in order, the infinite ones too."""
+    return (INFINITE.index(place) * 2 - 1, Fraction(0)) if place in INFINITE else (0, rational(place))
+
+
 def _chain(data: Mapping[str, Any]) -> bool:
     """At each place one sign for all parameters in the box; so a root in every gap where it changes, and no others."""
     poly, places = terms(data["polynomial"]), data["places"]
-    order = [(-1, Fraction(0)) if p["at"] == "-oo" else (1, Fraction(0)) if p["at"] == "oo" else (0, Fraction(p["at"]))
-             for p in places]  # fmt: skip
+    order = [_order(place["at"]) for place in places]
     for place in places:
         value = _at(poly, 0, place["at"])
         signed = {key[1:]: number * place["sign"] for key, number in value.items()}
@@ -100,24 +107,25 @@ def _chain(data: Mapping[str, Any]) -> bool:
             return False
     gaps = [[a["at"], b["at"]] for a, b in pairwise(places) if a["sign"] != b["sign"]]
     degree = max(key[0] for key in poly)
-    return order == sorted(set(order)) and gaps == data["roots"] and data["all"] == (len(gaps) == degree)
+    return order == sorted(order) and gaps == data["roots"] and data["all"] == (len(gaps) == degree)
 
 
 def _count(data: Mapping[str, Any]) -> bool:
     """Sturm: the polynomial without multiple roots has so many roots in the open interval."""
-    chain = [terms([[[n], value] for n, value in enumerate(part)]) for part in data["chain"]]
+    chain = [row(part) for part in data["chain"]]
+    ends = [_order(data["low"]), _order(data["high"])]
     slope = {(key[0] - 1,): value * key[0] for key, value in chain[0].items() if key[0]}
-    if Fraction(data["first"]) <= 0 or slope != times(chain[1], {(0,): Fraction(data["first"])}):
+    if rational(data["first"]) <= 0 or slope != times(chain[1], {(0,): rational(data["first"])}):
         return False
     for n, (quotient, scale) in enumerate(data["steps"]):
         last = chain[n + 2] if n + 2 < len(chain) else {}
-        right = plus(times(terms([[[k], v] for k, v in enumerate(quotient)]), chain[n + 1]), last, -Fraction(scale))
-        if Fraction(scale) <= 0 or chain[n] != right or (not last and Fraction(scale) != 1):
+        right = plus(times(row(quotient), chain[n + 1]), last, -rational(scale))
+        if rational(scale) <= 0 or chain[n] != right or (not last and rational(scale) != 1):
             return False
     changes = [_changes(chain, end) for end in (data["low"], data["high"])]
     at_end = data["high"] not in INFINITE and not _at(chain[0], 0, data["high"])
     whole = len(data["steps"]) == len(chain) - 1 and set(chain[-1]) == {(0,)}
-    return whole and changes[0] - changes[1] - at_end == data["roots"]
+    return whole and ends[0] < ends[1] and changes[0] - changes[1] - at_end == data["roots"]
 
 
 def _changes(chain: list[Terms], place: str) -> int:
@@ -127,17 +135,24 @@ def _changes(chain: list[Terms], place: str) -> int:
 
 
 def _value(data: Mapping[str, Any]) -> bool:
-    """A quotient at a place, after common factors are gone."""
-    above, below = (_at(terms(data[name]), data["index"], data["at"]) for name in ("numerator", "denominator"))
+    """A quotient at a place, after common factors are gone; at infinity the degrees decide before the coefficients."""
+    polys, index, at = [terms(data[name]) for name in ("numerator", "denominator")], data["index"], data["at"]
+    above, below = (_at(poly, index, at) if poly else {} for poly in polys)
+    if not polys[1]:
+        return False
+    more = max((key[index] for key in polys[0]), default=-1) - max(key[index] for key in polys[1])
+    if at in INFINITE and more < 0:
+        above = {}
     if data["value"] == "infinite":
-        return not below and bool(above)
+        return bool(above) and (more > 0 if at in INFINITE else not below)
     stated = [terms(part) for part in data["value"]]
-    return bool(below and stated[1]) and times(above, stated[1]) == times(below, stated[0])
+    free = not any(key[index] for part in stated for key in part) and not (at in INFINITE and more > 0)
+    return free and bool(below and stated[1]) and times(above, stated[1]) == times(below, stated[0])
 
 
 def _definite(data: Mapping[str, Any]) -> bool:
     """a x^2 + b x y + c y^2 has one sign off the origin."""
-    a, b, c = (data["sign"] * Fraction(value) for value in data["form"])
+    a, b, c = (data["sign"] * rational(value) for value in data["form"])
     return data["sign"] in (-1, 1) and a > 0 and 4 * a * c > b * b
 
 
@@ -149,8 +164,24 @@ def _identity(data: Mapping[str, Any]) -> bool:
         return bool(below and under) and not difference
     multiplier, cofactor, relation = (terms(part) for part in data["relation"])
     of_a_root = max(key[-1] for key in relation) == 2 and not any(key[-1] for key in multiplier)
-    sound = bool(below and under and multiplier) and of_a_root
+    sound = bool(multiplier) and of_a_root and bool(_norm(below, relation) and _norm(under, relation))
     return sound and times(multiplier, difference) == times(cofactor, relation)
+
+
+def _norm(poly: Terms, relation: Terms) -> Terms:
+    """A multiple of the product of the values at both roots of a quadratic in the last variable; {} when one is 0."""
+    c0, c1, c2 = (_coefficient(relation, n) for n in range(3))
+    parts = [_coefficient(poly, n) for n in range(max([key[-1] for key in poly] + [1]) + 1)]
+    while len(parts) > 2:  # c2 poly = (c2 w^2 + c1 w + c0)(top w^n) + a poly of a lower degree
+        top = parts.pop()
+        parts = [times(c2, part) for part in parts]
+        parts[-1], parts[-2] = plus(parts[-1], times(top, c1), -ONE), plus(parts[-2], times(top, c0), -ONE)
+    b0, b1 = parts
+    return plus(plus(times(c2, times(b0, b0)), times(c1, times(b0, b1)), -ONE), times(c0, times(b1, b1)))
+
+
+def _coefficient(poly: Terms, power: int) -> Terms:
+    return {(*key[:-1], 0): value for key, value in poly.items() if key[-1] == power}
 
 
 _CHECKS = {

@@ -57,7 +57,7 @@ def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> 
         return parse(value, names, what)
     if isinstance(value, Expression):
         return value
-    if type(value).__module__.partition(".")[0] == "sympy" and hasattr(value, "args"):
+    if str(type(value).__module__).partition(".")[0] == "sympy" and hasattr(value, "args"):
         return from_sympy(value, names, what)
     return Number(exact(what, value))
 

@@ -116,10 +116,11 @@ def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int =
     """A ball of about this many bits around the simple zero in a piece, by interval Newton steps."""
     import flint
 
-    low, high = _monotone(tree, variable, zero, order)
-    work = 64
+    low, high, work = _monotone(tree, variable, zero, order)
+    most = max(bits + 64, work)
+    work //= 2
     while True:
-        work = min(2 * work, bits + 64)
+        work = min(2 * work, most)
         balls = Balls(work)
         with flint.ctx.workprec(work):
             enclosure = balls.interval(low, high)
@@ -131,7 +132,7 @@ def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int =
                 if smaller.rad() >= enclosure.rad() * flint.arb(0.9):
                     break
                 enclosure = smaller
-        if work == bits + 64:
+        if work == most:
             return enclosure
         low, high = _ends(enclosure)
 
@@ -157,14 +158,21 @@ def is_one_root(tree: Root, pieces: int | None = None) -> bool:
     return ends[0] * ends[1] < 0 and len(found) == 1 and found[0].slope != 0
 
 
-def _monotone(tree: Expression, variable: str, zero: Zero, order: int) -> tuple[Fraction, Fraction]:
-    """The piece halved by signs until the derivative keeps one sign on it."""
-    low, high, balls = zero.low, zero.high, Balls(BITS)
+def _monotone(tree: Expression, variable: str, zero: Zero, order: int) -> tuple[Fraction, Fraction, int]:
+    """The piece halved by signs until the derivative keeps one sign on it, and the bits that show it.
+
+    Next to a second zero the derivative is as small as the piece, so that every halving asks for bits of its own.
+    """
+    import flint
+
+    low, high, bits = zero.low, zero.high, BITS
     while True:
-        window = balls.interval(low, high)
-        slope = derivatives(tree, variable, window, order + 1, balls)[order + 1]
+        balls = Balls(bits)
+        with flint.ctx.workprec(bits):
+            slope = derivatives(tree, variable, balls.interval(low, high), order + 1, balls)[order + 1]
         if slope > 0 or slope < 0:
-            return low, high
+            return low, high, bits
+        bits += 2
         middle = (low + high) / 2
         beyond = sign_at(tree, variable, middle, order) * zero.slope > 0
         low, high = (low, middle) if beyond else (middle, high)

@@ -19,26 +19,37 @@ from singimpact.store import require_writable
 @click.option("--v", nargs=2, metavar="LOW HIGH", default=("0", "2"), show_default=True, help="Window of velocities.")
 @click.option("--size", type=click.IntRange(2, 10_000), default=600, show_default=True, help="States a side.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
+@click.option(
+    "--layer",
+    type=click.Choice(["for-ever", "first-chatter"]),
+    default="for-ever",
+    show_default=True,
+    help="What is drawn: what orbits do for ever, or where the first chatter completes.",
+)
 @click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
 def command(
-    tau: tuple[str, str] | None, v: tuple[str, str], size: int, workers: int | None, keep: str | None, output: str,
+    tau: tuple[str, str] | None, v: tuple[str, str], size: int, workers: int | None, layer: str, output: str,
     as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Basins: complete chatter, orbits of n impacts in k periods, anything else, for a grid of launches."""
+    """Basins: orbits of n impacts in k periods, chatter again and again, rest, chaos, for a grid of launches."""
     suffix_of(output)
     require_writable(output)
+    keep = options.pop("keep")
     model = take_model(options)
     from singimpact.cases import WorkerPool
     from singimpact.dynamics.basins import basins
-    from singimpact.scenes.basins import draw_basins
+    from singimpact.scenes.basins import draw_basins, draw_first_chatter
 
     with WorkerPool(workers) as pool:
         found = basins(model, tau, v, size, pool, keep)
-    save(draw_basins(found).figure, output)
+    draw = draw_basins if layer == "for-ever" else draw_first_chatter
+    save(draw(found).figure, output)
     told = [{"class": name, "share": share} for _, name, share in found.classes]
     if as_json:
-        click.echo(as_json_text({"model": model.to_dict(), "output": output, "classes": told}))
+        click.echo(as_json_text({"model": model.to_dict(), "output": output, "classes": told} | {
+            "first_chatter_completes": float(found.first_chatter_completes.mean())}))  # fmt: skip
     else:
         click.echo(columns(["class", "share"], [[str(each["class"]), f"{each['share']:.4f}"] for each in told]))
+        click.echo(f"first chatter completes  {found.first_chatter_completes.mean():.4f}")

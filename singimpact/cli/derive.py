@@ -48,6 +48,10 @@ def command(
     form = "json" if as_json else form
     if form == "pdf" and output is None:
         raise InputError("--format pdf goes to files only: give a folder with -o")
+    if form == "pdf":
+        from singimpact.documents.compiling import require_latex
+
+        require_latex()
     if output is not None:
         folder(output)  # a place that cannot be written is refused before anything is computed
     if form in ("sympy", "numpy") or order is not None or model is not None:

@@ -11,6 +11,7 @@ from singimpact.cli.columns import columns
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.cli.pictures import PICTURES
+from singimpact.inputs import refuse
 from singimpact.store import written
 
 
@@ -28,6 +29,7 @@ def command(
 
     With -o FILE.png (or .pdf, .svg) the orbit is drawn. Numbers may be expressions such as pi/2.8.
     """
+    _check_ending(output, as_json)
     oscillator = take_model(options)
     orbit = oscillator.orbit(tau, v, impacts=impacts, horizon=horizon)
     if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
@@ -36,6 +38,14 @@ def command(
         emit(as_json_text({"model": oscillator.to_dict(), **_told(orbit)}), output)
     else:
         emit(_table(orbit), output)
+
+
+def _check_ending(output: str | None, as_json: bool) -> None:
+    """A file's ending says what is in it: a table is not put under the name of a picture of another format."""
+    known = (".json", "") if as_json else (*PICTURES, ".txt", "")
+    if output is not None and Path(output).suffix.lower() not in known:
+        what = ".json" if as_json else ".png, .pdf or .svg for a picture, or in .txt for a table"
+        raise refuse("output", output, f"a file name ending in {what}")
 
 
 def draw(orbit: Any, output: str) -> None:

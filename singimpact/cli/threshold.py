@@ -32,4 +32,5 @@ def command(tau: str, digits: int | None, impacts: int, as_json: bool, output: s
     else:
         lines = [f"v       {number(found.v, digits)}", f"error   {float(found.error):.1e}"]
         lines += [f"{name:7} {text}" for name, text in enclosure(found.certified).items()]
-        emit("\n".join([*lines, f"status  {status.name}"]), output)
+        word = status.name if status == Status.complete else f"{status.name}: {status.sentence}"
+        emit("\n".join([*lines, f"status  {word}"]), output)

@@ -38,6 +38,17 @@ class Compiled:
         return [float(points) for points in re.findall(r"Overfull \\hbox \(([\d.]+)pt too wide\)", self.log)]
 
 
+def require_latex() -> None:
+    """Refuse PDF where there is no LaTeX, before anything is derived for it.
+
+    Raises
+    ------
+    InputError : latexmk is not installed.
+    """
+    if shutil.which("latexmk") is None:
+        raise InputError("format = 'pdf' needs the program latexmk, which is not found: give latex, or install it")
+
+
 def compiled(source: str, beside: Mapping[str, str] | None = None) -> Compiled:
     """The PDF of a LaTeX document.
 
@@ -50,8 +61,7 @@ def compiled(source: str, beside: Mapping[str, str] | None = None) -> Compiled:
     InputError : latexmk is not installed.
     CompileError : LaTeX stopped.
     """
-    if shutil.which("latexmk") is None:
-        raise InputError("format = 'pdf' needs the program latexmk, which is not found: give latex, or install it")
+    require_latex()
     with tempfile.TemporaryDirectory() as folder:
         for name, text in {**(beside or {}), "document.tex": source}.items():
             (Path(folder) / name).write_text(text, encoding="utf-8")
@@ -61,7 +71,16 @@ def compiled(source: str, beside: Mapping[str, str] | None = None) -> Compiled:
 
 
 def _run(folder: str) -> None:
-    command = ["latexmk", "-pdf", "-interaction=nonstopmode", "-halt-on-error", "-file-line-error", "document.tex"]
+    # -no-shell-escape: whatever stands in a document, and in a site's configuration, LaTeX runs no other program
+    command = [
+        "latexmk",
+        "-pdf",
+        "-latexoption=-no-shell-escape",
+        "-interaction=nonstopmode",
+        "-halt-on-error",
+        "-file-line-error",
+        "document.tex",
+    ]
     # a fixed date makes the same source give the same PDF
     environment = os.environ | {"SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1", "max_print_line": "1000"}
     try:

@@ -12,7 +12,7 @@ from singimpact.flights.grids import after
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
-OTHER, CHATTER = 0, 1
+OTHER, CHATTER, CHAOS, GONE = 0, 1, 2, 3
 PLACES = 1000  # a class (n, k) is coded n * PLACES + k
 
 
@@ -67,14 +67,15 @@ def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float) -> Arra
 
 
 def caught(known: list[Attractor], model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """The class of the attractor that holds a state in the neighbourhood seen to come in, else OTHER."""
-    codes = np.full(tau.size, OTHER, dtype=np.int32)
-    for attractor in known:
-        codes[_within(attractor, model, tau, v, fast, attractor.catch)] = attractor.code
-    return codes
+    """The place in `known` of the attractor that holds a state in the neighbourhood seen to come in, else -1."""
+    places = np.full(tau.size, -1, dtype=np.int32)
+    for place, attractor in enumerate(known):
+        places[within(attractor, model, tau, v, fast, attractor.catch)] = place
+    return places
 
 
-def _within(attractor: Attractor, model: Oscillator, tau: Array, v: Array, fast: float, size: float) -> Array:
+def within(attractor: Attractor, model: Oscillator, tau: Array, v: Array, fast: float, size: float) -> Array:
+    """Whether states lie nearer than `size`, relative, to a state of the attractor."""
     assert model.period is not None
     period, near = as_float(model.period), np.zeros(tau.size, dtype=bool)
     for place, speed in zip(attractor.tau.tolist(), attractor.v.tolist(), strict=True):
@@ -88,20 +89,26 @@ def new_attractors(model: Oscillator, tau: Array, v: Array, fast: float) -> list
     found: list[Attractor] = []
     codes = periodic_codes(model, tau, v, fast)
     for index in np.flatnonzero(codes != OTHER).tolist():
-        if caught(found, model, tau[index : index + 1], v[index : index + 1], fast)[0] == OTHER:
+        if caught(found, model, tau[index : index + 1], v[index : index + 1], fast)[0] < 0:
             found.append(_surrounded(model, int(codes[index]), tau[index], v[index], fast))
     return found
+
+
+def states_of(model: Oscillator, code: int, tau: float, v: float) -> tuple[Array, Array]:
+    """tau and v of all impacts of a periodic orbit, from one of them on."""
+    states = [(tau, v)]
+    for _ in range(code // PLACES - 1):
+        ends = after(model, *states[-1], 1)
+        states.append((float(ends.tau), float(ends.v)))
+    times, speeds = np.array(states).T
+    return times, speeds
 
 
 def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float) -> Attractor:
     """An attractor with the largest neighbourhood whose border is seen to come in."""
     assert model.period is not None
     period, count = as_float(model.period), code // PLACES
-    states = [(tau, v)]
-    for _ in range(count - 1):
-        ends = after(model, *states[-1], 1)
-        states.append((float(ends.tau), float(ends.v)))
-    times, speeds = np.array(states).T
+    times, speeds = states_of(model, code, tau, v)
     size = SETTINGS.catch
     while size > SETTINGS.close:
         made = Attractor(code, times, speeds, size)
@@ -111,7 +118,7 @@ def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float)
             np.maximum(speeds[:, None] + fast * edge[:, 1], 1e-3 * speeds[:, None]),
         )
         ends = after(model, start[0].ravel(), start[1].ravel(), SETTINGS.turns * count)
-        if (ends.status == 0).all() and _within(made, model, ends.tau, ends.v, fast, size / 2).all():
+        if (ends.status == 0).all() and within(made, model, ends.tau, ends.v, fast, size / 2).all():
             return made
         size /= 10
     return Attractor(code, times, speeds, SETTINGS.close)

@@ -1,4 +1,4 @@
-"""Where orbits from a grid of states end: in complete chatter, on an orbit of n impacts in k periods, elsewhere."""
+"""What the orbits of a grid of states do for ever: n impacts in k periods, chatter again and again, rest, chaos."""
 
 from __future__ import annotations
 
@@ -13,11 +13,25 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float
 from singimpact.cases import sweep
-from singimpact.dynamics.attractors import CHATTER, OTHER, PLACES, Attractor, caught, new_attractors, periodic_codes
+from singimpact.dynamics.attractors import (
+    CHAOS,
+    CHATTER,
+    GONE,
+    OTHER,
+    PLACES,
+    Attractor,
+    caught,
+    new_attractors,
+    periodic_codes,
+    states_of,
+    within,
+)
+from singimpact.dynamics.long_run import chaotic, futures, lift_offs, next_lift_off, settled
 from singimpact.flights.grids import after
 from singimpact.inputs import refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
 from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
@@ -39,6 +53,7 @@ class BasinSettings:
         rounding.
     rows : of states a case; a call costs 3 ms before it flies.
     limit : of impacts flown; r = 0.99 wants 2000.
+    same : two periodic orbits nearer than this, relative, are one.
     """
 
     rest: float = 1e-7
@@ -50,45 +65,65 @@ class BasinSettings:
     tolerance: float = 1e-10
     rows: int = 10
     limit: int = 3000
+    same: float = 1e-3
 
 
 SETTINGS = BasinSettings()
 
 
 @dataclass(frozen=True)
-class Basins:
-    """Classes of a grid of states.
+class LongRun:
+    """What orbits do for ever.
 
     Attributes
     ----------
-    tau, v : the axes. codes : shape (len(v), len(tau)): 0 other, 1 complete chatter, 1000 n + k for n impacts
-        in k periods.
+    kind : "orbit", "chatter" (it completes again and again), "rest", "chaotic", "not decided", "never returns".
+    n, k : impacts (inf for chatter) in k periods, of an orbit or of chatter; 0 otherwise.
+    tau, v : the states of an orbit; of chatter the phase at which the mass lifts off, and 0.
+    """
+
+    kind: str
+    n: float
+    k: int
+    tau: Array
+    v: Array
+
+    @property
+    def name(self) -> str:
+        """As in the picture's key."""
+        if self.kind == "orbit":
+            return f"({self.n:.0f}, {self.k}) orbit"
+        return {"chatter": f"(inf, {self.k}) chatter for ever", "rest": "rest for ever"}.get(self.kind, self.kind)
+
+
+@dataclass(frozen=True)
+class Basins:
+    """Classes of a grid of states: what their orbits do for ever.
+
+    Attributes
+    ----------
+    tau, v : the axes. attractors : the classes that occur. codes : shape (len(v), len(tau)), places in `attractors`.
+    first_chatter_completes : of the same shape: the first chatter of the orbit completes, whatever follows.
     """
 
     model: Oscillator
     tau: Array
     v: Array
+    attractors: tuple[LongRun, ...]
     codes: Array
+    first_chatter_completes: Array
 
     @property
     def classes(self) -> list[tuple[int, str, float]]:
-        """Code, name and share of the classes that occur, the largest first."""
-        found, counts = np.unique(self.codes, return_counts=True)
+        """Code, name and share of the classes, the largest first; orbits of equal (n, k) are told apart by their v."""
+        counts = np.bincount(self.codes.ravel(), minlength=len(self.attractors))
         order = np.argsort(-counts, kind="stable")
-        return [(int(found[i]), name_of(int(found[i])), float(counts[i]) / self.codes.size) for i in order]
-
-
-def name_of(code: int) -> str:
-    """What a code means.
-
-    Examples
-    --------
-    >>> name_of(1), name_of(2001)
-    ('complete chatter', '(2, 1) orbit')
-    """
-    if code >= PLACES:
-        return f"({code // PLACES}, {code % PLACES}) orbit"
-    return "complete chatter" if code == CHATTER else "other"
+        names = [each.name for each in self.attractors]
+        told = [
+            f"{name}, v to {each.v.max():.4g}" if names.count(name) > 1 and each.kind == "orbit" else name
+            for name, each in zip(names, self.attractors, strict=True)
+        ]
+        return [(int(i), told[i], float(counts[i]) / self.codes.size) for i in order]
 
 
 def basins(
@@ -112,7 +147,7 @@ def basins(
     >>> with ThreadPoolExecutor(1) as pool:
     ...     found = basins(Oscillator("x", "cos(2*t)", "0.7", "1/2"), v=(0, 1), size=16, executor=pool)
     >>> found.codes.shape, found.classes[0][1]
-    ((16, 16), 'complete chatter')
+    ((16, 16), '(inf, 1) chatter for ever')
     """
     if not isinstance(model, Oscillator):
         raise refuse("model", model, "an ImpactOscillator")
@@ -129,17 +164,58 @@ def basins(
     rows = SETTINGS.rows if size % SETTINGS.rows == 0 else 1
     blocks = [tuple(speeds[i : i + rows].tolist()) for i in range(0, size, rows)]
     after(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
-    codes = sweep(partial(classified, dict(model.to_dict()), tuple(times.tolist()), fast), blocks, executor, output)
-    return Basins(model, times, speeds, codes.reshape(size, size))
+    phases = lift_offs(model)
+    work = partial(classified, dict(model.to_dict()), phases, tuple(times.tolist()), fast)
+    table = sweep(work, blocks, executor, output).reshape(-1, 3)
+    first = table[:, 0] == CHATTER
+    follows = futures(model, phases, partial(classify, model, phases, fast))
+    for place in range(len(phases)):
+        table[first & (table[:, 1] == place)] = settled(follows, place, as_float(model.period))
+    attractors, codes = _named(model, table, phases, fast)
+    return Basins(model, times, speeds, attractors, codes.reshape(size, size), first.reshape(size, size))
 
 
-def classified(fields: Mapping[str, Any], times: tuple[float, ...], fast: float, speeds: tuple[float, ...]) -> Array:
-    """The codes of some rows of states; a function of this module, so that another process can be sent it."""
-    model = Oscillator(**fields)
+def _named(model: Oscillator, rows: Array, phases: tuple[float, ...], fast: float) -> tuple[tuple[LongRun, ...], Array]:
+    """The classes that occur, and the place of each row among them; rows near one orbit are one class."""
+    found, codes, left = list[LongRun](), np.full(len(rows), -1), np.ones(len(rows), dtype=bool)
+    none = np.zeros(0)
+    while left.any():
+        code, tau, v = rows[np.flatnonzero(left)[0]].tolist()
+        same = left & (rows[:, 0] == code)
+        if code >= PLACES:
+            orbit = Attractor(int(code), *states_of(model, int(code), tau, v), SETTINGS.same)
+            same &= within(orbit, model, rows[:, 1], rows[:, 2], fast, SETTINGS.same)
+            same[np.flatnonzero(left)[0]] = True
+            found.append(LongRun("orbit", int(code) // PLACES, int(code) % PLACES, orbit.tau, orbit.v))
+        elif code == CHATTER:
+            same &= rows[:, 1] == tau
+            at = np.array([phases[int(tau)]]) if tau >= 0 else none
+            found.append(LongRun("chatter" if tau >= 0 else "rest", np.inf, int(v), at, 0 * at))
+        else:
+            found.append(
+                LongRun({CHAOS: "chaotic", GONE: "never returns"}.get(int(code), "not decided"), 0, 0, none, none)
+            )
+        codes[same], left = len(found) - 1, left & ~same
+    return tuple(found), codes
+
+
+def classified(
+    fields: Mapping[str, Any], phases: tuple[float, ...], times: tuple[float, ...], fast: float,
+    speeds: tuple[float, ...],
+) -> Array:  # fmt: skip
+    """The classes of some rows of states; a function of this module, so that another process can be sent it."""
+    tau, v = np.tile(times, len(speeds)), np.repeat(speeds, len(times))
+    return classify(Oscillator(**fields), phases, fast, tau, v)
+
+
+def classify(model: Oscillator, phases: tuple[float, ...], fast: float, tau: Array, v: Array) -> Array:
+    """Rows (code, tau, v), shape (n, 3): of a periodic orbit n * PLACES + k and one of its states; CHATTER and the
+    place of the lift-off that follows; CHAOS, GONE or OTHER.
+    """
     assert model.period is not None
     period = as_float(model.period)
-    tau, v = np.tile(times, len(speeds)), np.repeat(speeds, len(times))
-    codes, open_ = np.full(tau.size, OTHER, dtype=np.int32), np.arange(tau.size)
+    tau, v = np.array(tau, dtype=float), np.array(v, dtype=float)
+    rows, open_ = np.zeros((tau.size, 3)), np.arange(tau.size)
     r = as_float(model.slope_at_rest())
     most = min(SETTINGS.transient + (ceil(log(SETTINGS.rest) / log(r)) if r < 1 else 0), SETTINGS.limit)
     known: list[Attractor] = []
@@ -150,25 +226,44 @@ def classified(fields: Mapping[str, Any], times: tuple[float, ...], fast: float,
         flown += block
         # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
         tau[open_], v[open_] = ends.tau - period * np.floor(ends.tau / period), ends.v
-        codes[open_] = _chattering(model, tau[open_], ends.v, fast)
-        open_ = open_[(codes[open_] == OTHER) & (ends.status == 0) & np.isfinite(ends.tau) & (ends.v > 0)]
+        rests = _chattering(model, tau[open_], ends.v, fast) == CHATTER
+        gone = np.isin(ends.status, (Status.no_return, Status.escaped)) & ~rests
+        rows[open_[rests], 0], rows[open_[gone], 0] = CHATTER, GONE
+        rows[open_[rests], 1] = next_lift_off(phases, _at_rest(model, tau[open_[rests]], v[open_[rests]]))
+        open_ = open_[~rests & (ends.status == 0) & np.isfinite(ends.tau) & (ends.v > 0)]
         if open_.size and flown < most:
-            codes[open_] = _caught(known, model, tau[open_], v[open_], fast)
-            block *= 1 if (codes[open_] != OTHER).any() else 2  # a search in vain is dear, and the next one more so
-            open_ = open_[codes[open_] == OTHER]
+            places = _caught(known, model, tau[open_], v[open_], fast)
+            for place in np.unique(places[places >= 0]).tolist():
+                orbit = known[place]
+                rows[open_[places == place]] = orbit.code, orbit.tau[0], orbit.v[0]
+            block *= 1 if (places >= 0).any() else 2  # a search in vain is dear, and the next one more so
+            open_ = open_[places < 0]
     if open_.size:
-        codes[open_] = periodic_codes(model, tau[open_], v[open_], fast)
-    return codes
+        rows[open_] = np.stack([periodic_codes(model, tau[open_], v[open_], fast), tau[open_], v[open_]], axis=1)
+        open_ = open_[rows[open_, 0] == OTHER]
+        rows[open_] = 0.0
+        rows[open_[chaotic(model, tau[open_], v[open_], fast)], 0] = CHAOS
+    return rows
+
+
+def _at_rest(model: Oscillator, tau: Array, v: Array) -> Array:
+    """Within a period, where what is left of chatter ends, to first order."""
+    assert model.period is not None
+    left = -2 * v / (acceleration(model, tau) * (1 - as_float(model.slope_at_rest())))
+    period = as_float(model.period)
+    return np.asarray((tau + left) - period * np.floor((tau + left) / period))
 
 
 def _caught(known: list[Attractor], model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """Codes of states near an attractor; those that a sample of the others has reached are added to the known ones."""
-    codes = caught(known, model, tau, v, fast)
-    left = np.flatnonzero(codes == OTHER)
+    """Places of attractors near states, else -1; those that a sample of the others has reached are added to `known`."""
+    places = caught(known, model, tau, v, fast)
+    left = np.flatnonzero(places < 0)
     sample = left[:: max(left.size // SETTINGS.sample, 1)]
+    before = len(known)
     known += new_attractors(model, tau[sample], v[sample], fast)
-    codes[left] = caught(known, model, tau[left], v[left], fast)
-    return codes
+    again = caught(known[before:], model, tau[left], v[left], fast)
+    places[left] = np.where(again < 0, -1, again + before)
+    return places
 
 
 def _chattering(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:

@@ -65,7 +65,7 @@ def bifurcation(
     for name, value, least in (("points", points, 2), ("impacts", impacts, 1), ("kept", kept, 1)):
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise refuse(name, value, f"a whole number from {least}")
-    low, high = window_ends("tau", between)
+    low, high = window_ends(over, between)
     values = np.linspace(low, high, points)
     ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), impacts, kept)
     return Bifurcation(over, values, sweep(ask, values.tolist(), executor, output))

@@ -190,8 +190,12 @@ class _Flown:
                 wanted = self._more(error, tau), 0.0
             else:
                 wanted = 256, min(_slow(self.osc, tau) * lost, 1e300) if a < 0 else 0.0
-            status = self._fly(*wanted) if len(self.times) <= self.most else Status.unresolved
+            status = self._fly(*wanted) if self._left() > 0 else Status.unresolved
         return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status))
+
+    def _left(self) -> int:
+        """Impacts that may still be flown."""
+        return self.most - (len(self.times) - 1)
 
     def _more(self, error: float, tau: float) -> int:
         """Impacts after which the last term is below rounding."""
@@ -211,7 +215,7 @@ class _Flown:
 
     def _fly(self, count: int, slow: float) -> Status:
         """Fly on; where the acceleration changes sign the sequence is cut just after the first impact there."""
-        found = sequence(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self.most), slow)
+        found = sequence(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), slow)
         kept = self._kept(found)
         self.times += found.tau[:kept].tolist()
         self.speeds += found.v[:kept].tolist()

@@ -44,7 +44,9 @@ def _rebound(osc: Oscillator, space: JetSpace, velocity: Jet) -> Jet:
     if not names_in(osc.restitution):
         return velocity.scaled(-evaluate(osc.restitution, {}, space.ring))
     line = JetSpace(("v",), space.order, space.ring)
-    return line.evaluate(osc.rho(), {"v": line.generators()[0]}).compose([velocity])
+    found = line.evaluate(osc.rho(), {"v": line.generators()[0]})
+    # rho(0) = 0 exactly; tanh and sin leave a zero as a constant term, with which no jet is composed
+    return line.jet({key: value for key, value in found.terms.items() if any(key)}).compose([velocity])
 
 
 def _next_time(space: JetSpace, V: Jet, velocity: Jet) -> Jet:

@@ -18,13 +18,14 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.certified import Certified, as_certified, from_ends
 from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, sign_of
-from singimpact.contact.points import TangencyPoint, tangency_points
+from singimpact.contact.next_zero import ContactZero
 from singimpact.flights.flow.balls import LinearFlow
 from singimpact.flights.launch import at_rest
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.theory.formulas import curve_at
 from singimpact.theory.invariant_curve import multiplier_across
-from singimpact.theory.places import multiplier
+from singimpact.theory.places import Place
 
 Found = TypeVar("Found")
 
@@ -141,61 +142,48 @@ def remaining(flow: LinearFlow, tau: Any, v: Any) -> Any | None:
     return least.union(most) if most < window else None
 
 
-def threshold(osc: Oscillator, tau: Expression, rough: Any, end: float, digits: int) -> Certified | None:
+def threshold(osc: Oscillator, tau: Expression, rough: Any, end: ContactZero, digits: int) -> Certified | None:
     """The v over tau in radius of which lie one from which chatter completes before `end` and one that flies
     past it: both proved.
 
     Parameters
     ----------
-    rough : the v found in doubles. end : the zero of a_c with a_c' > 0 into which gamma runs, as a double.
+    rough : the v found in doubles. end : the zero of a_c into which gamma runs.
     """
-    goal = _tangency(osc, end)
-    if goal is None:
-        return None
-    near = _with_more_bits(lambda flow: _searched(_Gamma(flow, goal), tau, rough, digits), osc, digits)
+    near = _with_more_bits(lambda flow: _searched(_Gamma(osc, flow, end), tau, rough, digits), osc, digits)
     if near is None:
         return None
     margin = abs(near) / (4 * 10**digits)
     low, high = near - margin, near + margin
 
     def side(v: Fraction) -> int | None:
-        return _with_more_bits(lambda flow: _side(_Gamma(flow, goal), tau, v), osc, digits)
+        return _with_more_bits(lambda flow: _side(flow, end.moved(flow.balls.bits), tau, v), osc, digits)
 
     return from_ends(low, high, digits) if side(low) == -1 and side(high) == 1 else None
 
 
-@dataclass(frozen=True)
-class _Goal:
-    """A tangency point moved by whole periods."""
+def end_of_gamma(osc: Oscillator, end: ContactZero, bits: int) -> tuple[Any, Any, Any]:
+    """The first two coefficients of gamma at the zero of a_c where it ends, and lambda, in balls of `theory.gamma`.
 
-    osc: Oscillator
-    point: TangencyPoint
-    periods: int
-
-    def ball(self, bits: int) -> Any:
-        if self.osc.period is None:
-            return self.point.ball(bits)
-        return self.point.ball(bits) + self.periods * evaluate(self.osc.period, {}, Balls(bits))
-
-
-def _tangency(osc: Oscillator, end: float) -> _Goal | None:
-    period = as_float(osc.period) if osc.period is not None else 1.0
-    for point in tangency_points(osc):
-        turns = round((end - point.tau) / period) if osc.period is not None else 0
-        if point.kind == "gamma" and abs(point.tau + turns * period - end) < 1e-6 * (1 + abs(end)):
-            return _Goal(osc, point, turns)
-    return None
+    Examples
+    --------
+    >>> from singimpact.algebra.numbers import constant
+    >>> from singimpact.contact.next_zero import next_zero
+    >>> osc = Oscillator("x + 0.1*xdot", "cos(2*t)", "0.3", "1/2")
+    >>> [round(float(part.mid()), 12) for part in end_of_gamma(osc, next_zero(osc, constant("tau", 1)).zero, 128)]
+    [0.287254555699, -0.071343715825, 0.660442249724]
+    """
+    j, balls = end.order, Balls(bits)
+    curve = curve_at(Place(osc, j, None, end), j + 2, balls)
+    return curve.graph[j + 1], curve.graph[j + 2], curve.lambda_
 
 
 class _Gamma:
-    """gamma near its end, v = sigma^2 (g2 + g3 sigma) + ..., and the flights that follow it, in balls."""
+    """gamma near its end, v = sigma^(j+1) (first + second sigma) + ..., and the flights that follow it, in balls."""
 
-    def __init__(self, flow: LinearFlow, goal: _Goal) -> None:
-        self.flow, self.end = flow, goal.ball(flow.balls.bits)
-        self.rate = multiplier(1, goal.osc.restitution, flow.balls.bits)
-        slope, bend = flow.acceleration(self.end, 1), flow.acceleration(self.end, 2)
-        self.g2 = slope * (1 - self.rate) * (2 + self.rate) / 6
-        self.g3 = self.g2 * (3 * bend - slope * flow.d) / (8 * slope)
+    def __init__(self, osc: Oscillator, flow: LinearFlow, end: ContactZero) -> None:
+        self.flow, self.order, self.end = flow, end.order, end.moved(flow.balls.bits)
+        self.first, self.second, self.rate = end_of_gamma(osc, end, flow.balls.bits)
 
     def missed(self, tau: Any, impacts: int, start: Fraction) -> Any | None:
         """v - gamma after some impacts; None when a flight was not decided or passes the end."""
@@ -206,13 +194,13 @@ class _Gamma:
                 return None
             tau, v = tau + hit.time, -self.flow.r * hit.velocity
         sigma = tau - self.end
-        return v - sigma**2 * (self.g2 + self.g3 * sigma)
+        return v - sigma ** (self.order + 1) * (self.first + self.second * sigma)
 
 
 def _searched(gamma: _Gamma, tau: Expression, rough: Any, digits: int) -> Fraction | None:
     """A v near gamma, by secants: nothing is proved here.  The more impacts, the less the cut of gamma matters."""
     start, rate = evaluate(tau, {}, gamma.flow.balls), float(gamma.rate.mid())
-    forgotten = rate**2 / multiplier_across(1, rate)  # by each impact, of the error in the cut of gamma
+    forgotten = max(rate**2 / multiplier_across(gamma.order, rate), 1e-300)  # by each impact, of the error in the cut
     most = ceil((digits + 3) * log(10) / -log(forgotten))
     v, impacts, step = Fraction(float(rough)), ORBITS.stage, Fraction(1, 10**12)
     while True:
@@ -235,7 +223,7 @@ def _secant(
         if value is None or beyond is None or not abs(beyond - value) > 0:
             return None
         change = balls.rational(other - v) * beyond / (beyond - value)
-        if change.rad() > balls.rational(small):
+        if not change.is_finite() or change.rad() > balls.rational(small):
             return None
         closer = as_rational(balls.rational(other) - change)
         v, value, other = other, beyond, closer
@@ -244,20 +232,19 @@ def _secant(
     return other
 
 
-def _side(gamma: _Gamma, tau: Expression, v: Fraction) -> int | None:
+def _side(flow: LinearFlow, end: Any, tau: Expression, v: Fraction) -> int | None:
     """-1 when chatter from (tau, v) completes before the end of gamma, 1 when a flight passes it, None undecided."""
-    flow = gamma.flow
     time, speed = evaluate(tau, {}, flow.balls), flow.number(v)
     for _ in range(ORBITS.impacts):
-        if not time < gamma.end or not speed > 4 * speed.rad():
+        if not time < end or not speed > 4 * speed.rad():
             return None
         left = remaining(flow, time, speed) if flow.acceleration(time) < 0 else None
-        if left is not None and time + left < gamma.end:
+        if left is not None and time + left < end:
             return -1
-        hit = flow.first_hit(time, speed, gamma.end - time)
+        hit = flow.first_hit(time, speed, end - time)
         if hit is None:
             return None
-        if hit.time is None or time + hit.time > gamma.end:
+        if hit.time is None or time + hit.time > end:
             return 1
         time, speed = time + hit.time, -flow.r * hit.velocity
     return None

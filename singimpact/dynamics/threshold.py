@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum, auto
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.balls import as_rational
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
-from singimpact.algebra.rings import Multiprecision
-from singimpact.contact.contact import acceleration_jet, force_jet
+from singimpact.contact.next_zero import ContactZero, next_zero
 from singimpact.dynamics import enclosed
-from singimpact.dynamics.rest import release
 from singimpact.flights.hits import checked_digits, derivative, impact_map
 from singimpact.flights.sequences import sequence
 from singimpact.inputs import InputError, whole
@@ -34,7 +34,9 @@ class Search:
     block, longest : impacts flown at a time, twice as many each time up to the longest; blocks of 64 spent three
         quarters of the time between the blocks.
     impacts : flown at most from one velocity, unless told otherwise; r = 0.9999 takes 400 000.
-    short : chatter that would end in this part of the time to the end of gamma does; on gamma the part is above 1/2.
+    short : chatter that would end in this part of the time to the end of gamma does; on gamma the part is above
+        2/(j + 2) at contact order j.
+    edges : halvings towards velocities whose side doubles do not decide. widest : the relative error of a v, at most.
     first, more, rounds : impacts of the first refinement, more each time, at most.
     """
 
@@ -43,6 +45,8 @@ class Search:
     longest: int = 4096
     impacts: int = 640_000
     short: float = 1 / 64
+    edges: int = 40
+    widest: float = 1e-3
     first: int = 6
     more: int = 4
     rounds: int = 2000
@@ -53,7 +57,8 @@ SEARCH = Search()
 
 @dataclass(frozen=True)
 class Threshold:
-    """The velocity `v`, an estimate of its `error`, and `complete`, or `unresolved` when no threshold was found.
+    """The velocity `v`, an estimate of its `error`, and a status: `complete`; `none` where no gamma lies ahead;
+    `unresolved` where the next zero of a_c, its contact order or the two sides of gamma are not decided.
 
     `certified` has v with a proved radius, when digits were asked for and the model is linear: within it lie a velocity
     from which chatter completes and one from which contact is lost before.
@@ -66,7 +71,9 @@ class Threshold:
 
 
 def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = SEARCH.impacts) -> Threshold:
-    """The v whose orbit runs along gamma into the next zero of a_c with a_c' > 0.
+    """The v whose orbit runs along gamma into the next zero of a_c.
+
+    Gamma ends where a_c rises through zero (contact order 1, 3, ...) or touches it from below (2, 4, ...: a swan).
 
     Parameters
     ----------
@@ -84,17 +91,22 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
         raise InputError(f"tau = {tau} is not accepted: give a phase at which a_c presses, a_c(tau) < 0")
     if compare(osc.slope_at_rest(), 1) == 0:
         raise InputError(f"restitution = {osc.restitution} is not accepted: chatter completes only for rho'(0) > -1")
-    start = as_float(place)
-    end = release(osc, start)
-    if not np.isfinite(end):
-        return Threshold(np.nan, np.nan, np.int8(Status.unresolved))
-    found = _bisected(osc, start, end, most)
+    ahead = next_zero(osc, place)
+    if ahead.zero is None:
+        return _without(Status.none if ahead.decided else Status.unresolved)
+    found = _bisected(osc, as_float(place), ahead.zero, most)
     if digits is None or found.status != Status.complete:
         return found
-    return _enclosed(osc, place, found, end, checked_digits(digits)) or _refined(osc, place, found, digits)
+    return _enclosed(osc, place, found, ahead.zero, checked_digits(digits)) or _refined(
+        osc, place, found, ahead.zero, digits
+    )
 
 
-def _enclosed(osc: Oscillator, place: Expression, rough: Threshold, end: float, digits: int) -> Threshold | None:
+def _without(status: Status) -> Threshold:
+    return Threshold(np.nan, np.nan, np.int8(status))
+
+
+def _enclosed(osc: Oscillator, place: Expression, rough: Threshold, end: ContactZero, digits: int) -> Threshold | None:
     """The threshold in balls, where the model allows it."""
     import mpmath
 
@@ -106,53 +118,95 @@ def _enclosed(osc: Oscillator, place: Expression, rough: Threshold, end: float, 
         return Threshold(+found.value, error, np.int8(Status.complete), found)
 
 
-def _bisected(osc: Oscillator, tau: float, end: float, impacts: int) -> Threshold:
+class _Side(Enum):
+    """What an orbit does: chatter completes before the end of gamma; it passes the end; doubles do not decide one of
+    its flights; or the impacts flown are too few to tell."""
+
+    below = auto()
+    above = auto()
+    near = auto()
+    exhausted = auto()
+
+
+def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> Threshold:
+    end = zero.tau
     low, high = 0.0, -float(acceleration(osc, np.array([tau]))[0]) * (end - tau) / 4
-    while not (lifted := _lifts(osc, tau, high, end, impacts)):
+    if not 0 < high < np.inf:
+        return _without(Status.unresolved)
+    while (side := _side(osc, tau, high, end, impacts)) != _Side.above:
         low, high = high, 2 * high
-        if lifted is None or high > 1e12:
-            return Threshold(np.nan, np.nan, np.int8(Status.unresolved))
+        if side != _Side.below or high > 1e12:
+            return _without(Status.unresolved)
     while high - low > SEARCH.narrow * high:
         middle = (low + high) / 2
-        lifted = _lifts(osc, tau, middle, end, impacts)
-        if lifted is None:
-            return Threshold(np.nan, np.nan, np.int8(Status.unresolved))
-        low, high = (low, middle) if lifted else (middle, high)
+        side = _side(osc, tau, middle, end, impacts)
+        if side == _Side.exhausted:
+            return _without(Status.unresolved)
+        if side == _Side.near:
+            low, high = (_edge(osc, tau, decided, middle, end, impacts) for decided in (low, high))
+            break
+        low, high = (low, middle) if side == _Side.above else (middle, high)
     v = (low + high) / 2
-    # gamma is at most quadratic in the distance to its end, so a rounding of tau moves v by 2 v/(end - tau) of it
-    error = high - low + EPSILON * (8 * v + 4 * v * abs(tau) / (end - tau))
+    # gamma goes as the power j + 1 of the distance to its end: a rounding of tau moves v by (j + 1) v/(end - tau) of it
+    error = high - low + EPSILON * (8 * v + 2 * (zero.order + 1) * v * abs(tau) / (end - tau))
+    if not error < SEARCH.widest * v:
+        return _without(Status.unresolved)
     return Threshold(np.float64(v), np.float64(error), np.int8(Status.complete))
 
 
-def _lifts(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> bool | None:
-    """Whether contact is lost before chatter from (tau, v) completes; None when the impacts flown do not tell."""
+def _edge(osc: Oscillator, tau: float, decided: float, near: float, end: float, impacts: int) -> float:
+    """A velocity whose side is decided, close to those next to gamma whose side doubles do not decide."""
+    for _ in range(SEARCH.edges):
+        middle = (decided + near) / 2
+        if _side(osc, tau, middle, end, impacts) in (_Side.below, _Side.above):
+            decided = middle
+        else:
+            near = middle
+    return decided
+
+
+def _side(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> _Side:
+    """On which side of gamma (tau, v) lies."""
     lost = 1 - as_float(osc.slope_at_rest())
     block, remaining = SEARCH.block, impacts
     while remaining > 0:
         found = sequence(osc, tau, v, block)
-        if found.status or np.any(found.tau >= end):
-            return True
+        if np.any(found.tau >= end):
+            return _Side.above
         with np.errstate(divide="ignore"):
             left = -2 * found.v[:-1] / (found.acceleration[1:] * lost)
         if np.any(left < SEARCH.short * (end - found.tau[:-1])):
-            return False
-        tau, v = float(found.tau[-1]), float(found.v[-1])
+            return _Side.below
+        if found.tau.size:
+            tau, v = float(found.tau[-1]), float(found.v[-1])
+        if found.status:
+            if found.status != Status.unresolved:
+                return _Side.above
+            # undecided, or out of the range of numbers long after the end: only what it does before the end matters
+            step = impact_map(osc, tau, v, horizon=max(end - tau, EPSILON * abs(end)))
+            if step.status in (Status.no_return, Status.escaped):
+                return _Side.above
+            if step.status != Status.hit:
+                return _Side.near
+            tau, v = float(step.tau), float(step.v)
         block, remaining = min(2 * block, SEARCH.longest), remaining - block
-    return None
+    return _Side.exhausted
 
 
-def _refined(osc: Oscillator, place: Any, rough: Threshold, digits: int) -> Threshold:
+def _refined(osc: Oscillator, place: Any, rough: Threshold, end: ContactZero, digits: int) -> Threshold:
     """Gamma repels: the more impacts are flown, the less it matters how well its end is known."""
     import mpmath
 
     with mpmath.workdps(digits + 20):
         tau, v = as_mpf(place, mpmath.mp), mpmath.mpf(float(rough.v))
-        goal = _Gamma(osc, release(osc, float(tau)))
+        goal = _Gamma(osc, end)
         small, change = mpmath.mpf(10) ** (-digits - 1), mpmath.inf
         for count in range(SEARCH.first, SEARCH.rounds, SEARCH.more):
             miss, slope = goal.miss(tau, v, count)
             last, change = change, abs(miss / slope)
             v -= miss / slope
+            if not 0 < v < mpmath.inf:  # the slope of `miss` is below the range of doubles
+                return _without(Status.unresolved)
             if max(change, last * change / v) < small * v and last < mpmath.mpf(10) ** (-digits // 2) * v:
                 break
     with mpmath.workdps(digits):
@@ -160,22 +214,15 @@ def _refined(osc: Oscillator, place: Any, rough: Threshold, digits: int) -> Thre
 
 
 class _Gamma:
-    """The end of gamma at a tangency, v = g_2 sigma^2 + g_3 sigma^3 + ..., at the working precision."""
+    """The end of gamma, v = sigma^(j+1) (first + second sigma) + ..., at the working precision."""
 
-    def __init__(self, osc: Oscillator, tau: float) -> None:
+    def __init__(self, osc: Oscillator, end: ContactZero) -> None:
         import mpmath
 
-        self.osc, ring = osc, Multiprecision(mpmath.mp)
-        self.tau = mpmath.mpf(tau)
-        for _ in range(4 + mpmath.mp.dps // 15):
-            value, slope = acceleration_jet(osc, self.tau, 1, ring)
-            self.tau -= value / slope
-        _, a1, a2 = acceleration_jet(osc, self.tau, 2, ring)
-        r = as_mpf(osc.slope_at_rest(), mpmath.mp)
-        root = mpmath.findroot(lambda x: x * x * (x + 2) - r * (2 * x + 1), float(np.sqrt(float(r))))
-        damping = force_jet(osc, 0, 2, ring).get((0, 1), mpmath.mpf(0))
-        self.g2 = a1 * (1 - root) * (2 + root) / 6
-        self.g3 = self.g2 * (6 * a2 - a1 * damping) / (8 * a1)
+        self.osc, self.power = osc, end.order + 1
+        bits = mpmath.mp.prec + 32
+        first, second, _ = enclosed.end_of_gamma(osc, end, bits)
+        self.tau, self.first, self.second = (_middle(ball) for ball in (end.moved(bits), first, second))
 
     def miss(self, tau: Any, v: Any, count: int) -> tuple[Any, Any]:
         """v - gamma after `count` impacts, and its derivative by the first v."""
@@ -186,6 +233,13 @@ class _Gamma:
             column = derivative(self.osc, float(tau), float(v)).matrix @ column
             step = impact_map(self.osc, tau, v, digits=mpmath.mp.dps - 5)
             tau, v = step.tau, step.v
-        sigma = tau - self.tau
-        along = 2 * self.g2 * sigma + 3 * self.g3 * sigma**2
-        return v - sigma**2 * (self.g2 + self.g3 * sigma), float(column[1]) - along * float(column[0])
+        sigma, n = tau - self.tau, self.power
+        along = sigma ** (n - 1) * (n * self.first + (n + 1) * self.second * sigma)
+        return v - sigma**n * (self.first + self.second * sigma), float(column[1]) - float(along) * float(column[0])
+
+
+def _middle(ball: Any) -> Any:
+    import mpmath
+
+    value = as_rational(ball)
+    return mpmath.mpf(value.numerator) / value.denominator

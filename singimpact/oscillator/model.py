@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Mapping
+from types import MappingProxyType
 from typing import Any
 
 from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in, substitute, walk
@@ -13,6 +14,7 @@ from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, period_of
 
 STATE = ("x", "xdot")
+FIELDS = ("f", "g", "clearance", "restitution", "parameters", "period")
 RESERVED = {*STATE, "t", "v", "pi", *FUNCTIONS}
 
 
@@ -35,7 +37,8 @@ class Oscillator:
 
     Notes
     -----
-    Two oscillators are equal when their texts are; they hash, pickle and print by that text.
+    Two oscillators are equal when their texts are; they hash, pickle and print by that text. They are not changed:
+    `replace` gives another.
 
     Examples
     --------
@@ -55,7 +58,7 @@ class Oscillator:
         period: Any = None,
     ) -> None:
         values = _parameters(parameters or {})
-        self.parameters: dict[str, Expression] = values
+        self.parameters: Mapping[str, Expression] = MappingProxyType(values)
         self.f = tree_of(f, (*STATE, *values), "f")
         self.g = tree_of(g, ("t", *values), "g")
         self.restitution = rebound.read(restitution, values)
@@ -69,6 +72,15 @@ class Oscillator:
         self._texts = (str(self.f), str(self.g), str(self.clearance), str(self.restitution),
                        tuple((name, str(value)) for name, value in sorted(values.items())),
                        str(self._period) if period is not None else None)  # fmt: skip
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if hasattr(self, "_texts"):  # the last field that is set
+            asked = f"replace({name}={shown(value)})" if name in FIELDS else "replace(...)"
+            raise InputError(f"{name} of a model is not changed: osc.{asked} gives another model")
+        object.__setattr__(self, name, value)
+
+    def __delattr__(self, name: str) -> None:
+        raise InputError(f"{name} of a model is not removed: osc.replace(...) gives another model")
 
     @property
     def period(self) -> Expression | None:

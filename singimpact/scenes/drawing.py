@@ -19,7 +19,8 @@ def plot(thing: Any, axes: Any = None) -> Any:
 
     Parameters
     ----------
-    thing : an orbit, a scene or a curve. axes : where to draw; new ones without a window when it is not given.
+    thing : an orbit, a scene or a curve. axes : where to draw; those of a new figure of pyplot when it is not given, so
+        that a notebook shows it and `matplotlib.pyplot.show()` does.
 
     Examples
     --------
@@ -50,7 +51,6 @@ def _curve(curve: Curve, axes: Any) -> Any:
 
 
 def _new_axes() -> Any:
-    # a Figure of its own needs no window and no backend, and is freed with its axes
-    from matplotlib.figure import Figure
+    import matplotlib.pyplot
 
-    return Figure(figsize=(8.0, 4.0), dpi=150, layout="constrained").add_subplot()
+    return matplotlib.pyplot.figure(figsize=(8.0, 4.0), dpi=150, layout="constrained").add_subplot()

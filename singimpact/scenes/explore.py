@@ -141,6 +141,9 @@ def _traces(frame: ClearanceFrame) -> list[dict[str, Any]]:
 
 
 def _dots(frame: ClearanceFrame) -> dict[str, Any]:
+    # the page keeps showing a trace whose new data are empty: a gap erases it
+    if not len(frame.tangencies):
+        return {"type": "scatter", "x": [None], "y": [None]}
     return {"type": "scatter", "x": _short(np.array(frame.tangencies)), "y": [0.0] * len(frame.tangencies)}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +21,7 @@ from singimpact.scenes.needs import Results
 from singimpact.surface.curve import STATES, SURFACE, window_ends
 
 DPI = 100
+LONGEST_TEXT = 200  # characters of a title or a mark; 200 000 made a picture of 16 MB
 SIZES = (100, 8000)  # of a picture, in points
 LEAVES = 500
 
@@ -61,7 +63,7 @@ class Scene:
     def __post_init__(self) -> None:
         if not isinstance(self.model, Oscillator):
             raise refuse("model", self.model, "an ImpactOscillator")
-        if isinstance(self.layers, str):
+        if isinstance(self.layers, str) or not isinstance(self.layers, Iterable):
             raise refuse("layers", self.layers, "a list of names of layers")
         if isinstance(self.pixels, bool) or not isinstance(self.pixels, int) or not (
             SIZES[0] <= self.pixels <= SIZES[1]
@@ -74,6 +76,7 @@ class Scene:
             if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
                 raise refuse(name, value, f"an integer from 1 to {most}")
         self._set("layers", tuple(self.layers))
+        self._set("title", checked_text("title", self.title))
         self._set("plane", self._plane())
         self._set("tau", window_ends("tau", self.tau))
         self._check_second()
@@ -112,7 +115,10 @@ class Scene:
         for mark in self.marks:
             if not isinstance(mark, tuple | list) or len(mark) != 3:
                 raise refuse("marks", mark, "a letter and two numbers")
-        places = ((str(mark[0]), *(as_float(constant("marks", each)) for each in mark[1:])) for mark in self.marks)
+        places = (
+            (checked_text("marks", mark[0]), *(as_float(constant("marks", each)) for each in mark[1:]))
+            for mark in self.marks
+        )
         self._set("marks", tuple(places))
 
     @classmethod
@@ -228,6 +234,32 @@ class Scene:
             "from_cache": list(self.results.cached),
             "curves": curves,
         }
+
+
+def checked_text(name: str, text: Any) -> str:
+    """A text that a picture can show: of at most LONGEST_TEXT printable characters, its formulas readable.
+
+    Raises
+    ------
+    InputError : it is longer, has control characters, or a formula between dollars that is none.
+
+    Examples
+    --------
+    >>> checked_text("title", "a swan")
+    'a swan'
+    """
+    found = str(text)
+    if len(found) > LONGEST_TEXT or not found.replace("\n", "").isprintable():
+        raise refuse(name, found, f"at most {LONGEST_TEXT} printable characters")
+    if "$" in found:
+        from matplotlib.mathtext import MathTextParser
+
+        try:
+            MathTextParser("path").parse(found)
+        except ValueError as error:
+            reason = str(error).strip().splitlines()[-1]
+            raise refuse(name, found, f"formulas between dollars that can be typeset ({reason})") from None
+    return found
 
 
 FILE_KEYS = ("model", "layers", "tau", "t", "v", "pixels", "title", "feet", "leaves", "orbits", "impacts", "marks")

@@ -17,6 +17,7 @@ import sympy
 from singimpact.algebra.jets import Jet
 from singimpact.contact.contact import Contact
 from singimpact.germs.normal_form import normal_form
+from singimpact.theory.equations import equation
 from singimpact.theory.fold_route import eta, k
 from singimpact.theory.implicit_route import a_symbol, sigma, t
 from singimpact.theory.sheet import Sheet, sheet
@@ -71,6 +72,24 @@ def _in_eta(jet: Jet) -> Jet:
 
 def _shown(jet: Jet, made: Sheet) -> Any:
     return made.to_sympy(jet).xreplace({t: eta})
+
+
+@equation("s4-next-sigma")
+def next_sigma() -> Any:
+    """The next sigma in the coordinates of the fold form without higher terms, to second order, lengths in units of k.
+
+    In (sigma, eta), eta = 3 sigma/2 + t, it is eta - sigma/2 exactly; the source change eta -> T(sigma, eta) of
+    `fold_form` gives it quadratic terms, so that s' = (m - 1/2) s + O(s^2) there.
+
+    Examples
+    --------
+    >>> poly = sympy.Poly(next_sigma(), sigma, eta)
+    >>> poly.coeff_monomial(eta), poly.coeff_monomial(sigma), poly.coeff_monomial(eta**2)
+    (1, -1/2, -a_d2/48 - f_01/8)
+    """
+    source = sympy.Poly(fold_form(3).source, sigma, eta)
+    bent = sum(value * sigma**i * eta**n for (i, n), value in source.terms() if i + n == 2)
+    return sympy.expand(eta - sigma / 2 - bent)
 
 
 def cubic_terms() -> dict[tuple[int, int], Any]:

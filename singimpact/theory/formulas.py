@@ -21,7 +21,7 @@ from singimpact.theory.completion import leaves, symbolic_completion
 from singimpact.theory.digits import all_certified, all_digits, as_double, sympy_digits, with_digits
 from singimpact.theory.invariant_curve import InvariantCurve, invariant_curve
 from singimpact.theory.letters import LetteredModel
-from singimpact.theory.places import Place, exact_contact, multiplier, place
+from singimpact.theory.places import Place, ending_gamma, exact_contact, multiplier, place
 from singimpact.theory.power_series import TRUST, PowerSeries
 from singimpact.theory.sheet import generic_sheet, sheet
 from singimpact.theory.symbolic_curve import rho_names, symbolic_curve
@@ -172,6 +172,10 @@ def gamma(
     order : the last power of sigma, above the contact order. at : "tangency", "swan" or a contact order >= 1.
     model, tau, digits, keep : as for `v_c`; with letters, lambda stands for the restitution.
 
+    Raises
+    ------
+    InputError : no gamma ends there: a^(j) < 0 at an odd contact order j (a foliation), a^(j) > 0 at an even one.
+
     Examples
     --------
     >>> gamma(order=2)[2]
@@ -279,6 +283,7 @@ def _with_letters(
 
 def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: int, keep: Sequence[str]) -> PowerSeries:
     least = j + 1 if part == "graph" else 1
+    _checked("order", order, least, LIMITS.curve_numbers)
     top = order if part == "graph" else order + j
     lettered = _lettered(model, tau, keep, j)
     if lettered is not None or model is None:
@@ -288,15 +293,15 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
         shown = {n: symbolic.to_sympy(value, length) for n, value in known.items()}
         return _with_letters("sigma", order, shown, lettered)
     _checked("order", order, least, LIMITS.curve_numbers)
-    where = place(model, j, tau)
-    rough = getattr(_curve(where, top + TRUST.further, DOUBLES), part)
+    where = ending_gamma(place(model, j, tau)) if j else place(model, j, tau)
+    rough = getattr(curve_at(where, top + TRUST.further, DOUBLES), part)
     further = {n: abs(float(value)) for n, value in rough.items() if n > order}
 
     def numbers() -> Any:
-        return with_digits(lambda ring: getattr(_curve(where, top, ring), part), digits, all_digits)
+        return with_digits(lambda ring: getattr(curve_at(where, top, ring), part), digits, all_digits)
 
     def enclosures(wanted: int) -> Any:
-        return with_digits(lambda ring: getattr(_curve(where, top, ring), part), wanted, all_certified)
+        return with_digits(lambda ring: getattr(curve_at(where, top, ring), part), wanted, all_certified)
 
     exact = _exact_curve(where, top, part)
     if exact is not None:
@@ -319,8 +324,8 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
     (-0.067753033879207, 0.660442249723743)
     """
     _checked("order", order, j + 1, LIMITS.curve_numbers)
-    where = place(model, j, tau)
-    rough = _curve(where, order + j + TRUST.further, DOUBLES)
+    where = ending_gamma(place(model, j, tau)) if j else place(model, j, tau)
+    rough = curve_at(where, order + j + TRUST.further, DOUBLES)
 
     def doubles(found: InvariantCurve, _: int) -> list[PowerSeries]:
         made = []
@@ -331,7 +336,7 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
         return made
 
     graph, motion = with_digits(
-        lambda ring: _curve(where, order + j, ring),
+        lambda ring: curve_at(where, order + j, ring),
         DOUBLE,
         doubles,
         lambda found: (*found.graph.values(), *found.motion.values()),
@@ -339,8 +344,16 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
     return graph, motion
 
 
-def _curve(where: Place, order: int, ring: Any) -> InvariantCurve:
-    """The curve in balls or doubles."""
+def curve_at(where: Place, order: int, ring: Any) -> InvariantCurve:
+    """The invariant curve to sigma^order at a place of a model, in balls or doubles.
+
+    Examples
+    --------
+    >>> from singimpact.oscillator.model import Oscillator
+    >>> found = curve_at(place(Oscillator("x", "cos(2*t)", "0.3", "1/2"), 1, None), 3, DOUBLES)
+    >>> round(found.graph[3], 15), round(found.lambda_, 15)
+    (-0.067753033879207, 0.660442249723743)
+    """
     bits = ring.bits if isinstance(ring, Balls) else 64
     with precision_of(ring):
         found = multiplier(where.j, where.model.slope_at_rest(), bits)

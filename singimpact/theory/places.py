@@ -13,11 +13,13 @@ from singimpact.algebra.numbers import as_float, as_fraction, compare, constant
 from singimpact.algebra.rings import DOUBLES, EXACT, Doubles
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet
+from singimpact.contact.next_zero import ContactZero
 from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 
 NEAR = 1e-7  # a tau given as a double names the tangency point this close to it, in units of 1 + |tau|
+LEAST = Fraction(1, 2**4096)  # halving for a multiplier ends here
 ZERO_BITS = 512  # a value whose ball of so many bits holds 0 is taken as the zero that the contact order asks for
 KINDS = {1: ("gamma", "a' > 0"), 2: ("degenerate", "a'' < 0")}
 
@@ -34,7 +36,7 @@ class Place:
     model: Oscillator
     j: int
     exact: Expression | None
-    point: TangencyPoint | None
+    point: TangencyPoint | ContactZero | None
 
     @property
     def tau(self) -> float:
@@ -95,6 +97,36 @@ def place(model: Any, j: int, tau: Any) -> Place:
         value = acceleration_jet(model, as_float(exact), max(j - 1, 0), DOUBLES)
         raise InputError(f"tau = {exact} is not of contact order {j}: a_c and its derivatives there are {_told(value)}")
     return Place(model, j, None, near[0])
+
+
+def ending_gamma(where: Place) -> Place:
+    """The place, when a gamma ends there: a_c < 0 before it, so a^(j) > 0 at an odd contact order, < 0 at an even one.
+
+    Raises
+    ------
+    InputError : a_c is positive before it, or its j-th derivative is zero to ZERO_BITS.
+
+    Examples
+    --------
+    >>> model = Oscillator("x", "cos(2*t)", "0.3", "1/2")
+    >>> ending_gamma(place(model, 1, None)).j
+    1
+    """
+    j = where.j
+    balls = Balls(ZERO_BITS)
+    with precision_of(balls):
+        lead = acceleration_jet(where.model, where.tau_in(balls), j, balls)[j]
+    wanted = 1 if j % 2 else -1
+    if lead * wanted > 0:
+        return where
+    name = "a" + "'" * j if j < 4 else f"a^({j})"
+    at = str(where.exact) if where.exact is not None else f"{where.tau:.6g}"
+    if lead.contains(0):
+        raise InputError(f"tau = {at}: {name} = 0 too, so that the contact order is above {j}: give a higher at=")
+    kind = {1: "a tangency of the kind foliation", 2: "a positive swan"}.get(j, f"a point of contact order {j}")
+    told = f"{kind} with {name} {'<' if wanted > 0 else '>'} 0, and a_c > 0 on its left"
+    needed = f"{name} {'>' if wanted > 0 else '<'} 0, where a_c < 0 on the left"
+    raise InputError(f"tau = {at} is {told}: no gamma ends there; give a point with {needed}")
 
 
 def points_of(model: Oscillator, tau: Any) -> list[int]:
@@ -203,10 +235,12 @@ def _multiplier_ball(j: int, r: Any, bits: int) -> Any:
     poly = above - below * r
     slope = poly.derivative()
     low, high = Fraction(0), Fraction(1)
-    for _ in range(64):
+    ball = Balls(bits).interval(low, high)
+    # r = 1e-300 has its root at 1e-150: until the slope keeps its sign there, Newton's step would divide by 0
+    while high - low > Fraction(1, 2**64) or (not slope(ball) > 0 and high > LEAST):
         middle = (low + high) / 2
         low, high = (low, middle) if poly(Balls(bits).rational(middle)) > 0 else (middle, high)
-    ball = Balls(bits).interval(low, high)
+        ball = Balls(bits).interval(low, high)
     for _ in range(bits.bit_length() + 4):
         middle = Balls(bits).rational(as_rational(ball))
         ball = (middle - poly(middle) / slope(ball)).intersection(ball)

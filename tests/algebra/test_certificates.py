@@ -2,6 +2,7 @@
 
 import json
 
+import false_certificates as false
 import pytest
 import sympy
 from hypothesis import given, settings
@@ -10,13 +11,17 @@ from tampering import bumped, changed, leaves
 
 from singimpact.algebra import certificates
 from singimpact.algebra.checking import accepts
+from singimpact.algebra.sentences import sentence
 
 x, y, r = sympy.symbols("x y r")
 HALF = sympy.Rational(1, 2)
 
 
 # what a change of these numbers makes is another statement, which happens to be true as well
-STILL_TRUE = {"pole": ("numerator", "denominator"), "definite": ("form",)}
+STILL_TRUE = {
+    "pole": ("numerator", "denominator"), "definite": ("form",), "far": ("numerator", "denominator"),
+    "vanishing": ("numerator", "denominator"),
+}  # fmt: skip
 
 
 def made(call, *arguments):
@@ -34,6 +39,8 @@ SHAPES = {
     "chain": (certificates.sign_chain, x**2 - r, x, ((-sympy.oo, 1), (0, -1), (1, 1)), {r: (0, 1)}),
     "value": (certificates.value_at, (x**2 - y**2) / (x - y), x, 3),
     "pole": (certificates.value_at, y / (x - 1), x, 1),
+    "far": (certificates.value_at, (3 * x**2 - y) / (2 * x**2 + 1), x, sympy.oo),
+    "vanishing": (certificates.value_at, x / (x**2 + y), x, -sympy.oo),
     "definite": (certificates.definite, -(6 * x**2) - 4 * x * y - y**2, x, y),
     "identity": (certificates.identical, (x + y) ** 2, x**2 + 2 * x * y + y**2),
     "root": (certificates.identical, sympy.sqrt(x / (1 + y)) ** 3, x / (1 + y) * sympy.sqrt(x / (1 + y))),
@@ -98,11 +105,11 @@ def test_a_relation_that_is_no_root_is_refused():
 
 
 def test_nothing_is_shared_between_maker_and_checker(clone):
-    for name in ("checking.py", "plain.py"):
+    for name in ("checking.py", "plain.py", "sentences.py"):
         text = (clone / "singimpact" / "algebra" / name).read_text()
         assert "sympy" not in text
         assert "flint" not in text
-        assert text.count("\n") < 170
+        assert text.count("\n") < 200
         assert "import certificates" not in text
 
 
@@ -117,3 +124,48 @@ def test_a_yes_is_right_and_a_no_too(coefficients):
         assert certificates.positive_on(poly.as_expr(), x, 0, 1) == positive
     except ArithmeticError:
         assert positive
+
+
+def test_the_first_three_false_certificates():
+    """1/x -> 1 at infinity; w/(w^2 - 2) = 2w/(w^2 - 2) where w^2 = 2; -2 roots in (2, -2)."""
+    over = [[[2], 1], [[0], -2]]
+    for certificate in (
+        false.value(false.const(1), false.poly(0, 1), "oo", [false.const(1), false.const(1)]),
+        false.value(false.poly(0, 0, 1), false.poly(0, 1), "oo", [false.const(1), false.const(1)]),
+        false.identity([false.poly(0, 1), over], [false.poly(0, 2), over],
+                       [false.const(1), [[[3], -1], [[1], 2]], over]),
+        false.count(false.SQUARE_LESS_ONE, false.STEPS, "2", "-2", -2),
+    ):  # fmt: skip
+        assert not accepts(certificate)
+
+
+@pytest.mark.parametrize("name", false.WEAKENED)
+def test_each_condition_of_the_checker_refuses_something(name):
+    condition, instead, certificate = false.WEAKENED[name]
+    assert not accepts(certificate)
+    assert false.without(condition, instead, "checking")(certificate)
+
+
+@pytest.mark.parametrize("name", false.IN_PLAIN)
+def test_each_condition_on_polynomials_refuses_something(name):
+    condition, instead, certificate = false.IN_PLAIN[name]
+    assert not accepts(certificate)
+    assert false.without(condition, instead, "plain")(certificate)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_the_sentence_is_that_of_the_data(name):
+    call, *arguments = SHAPES[name]
+    (certificate,) = made(call, *arguments)
+    assert certificate["says"] == sentence(certificate)
+    assert not accepts(certificate | {"says": certificate["says"] + " "})
+    assert not accepts(certificate | {"variables": [*certificate["variables"], "z"]})
+
+
+def test_sentences_read_as_they_should():
+    told = {name: made(*SHAPES[name])[0]["says"] for name in SHAPES}
+    assert told["half-line"] == "x**2 - x + 1 > 0 for 0 < x < oo"
+    assert told["chain"].endswith("in each of (-oo, 0), (0, 1) and no other, for all 0 < r < 1")
+    assert told["vanishing"] == "(x)/(x**2 + y) -> 0 as x -> -oo"
+    assert told["pole"] == "(y)/(x - 1) is unbounded as x -> 1"
+    assert told["root"].endswith("(x*w)/(y + 1) where -x + y*w**2 + w**2 = 0")

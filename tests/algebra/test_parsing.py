@@ -159,3 +159,15 @@ def test_a_power_that_a_parameter_makes_huge_is_not_multiplied_out():
     model = ImpactOscillator("x", "sin((1/((a)**17)**1000))", "0", "1", parameters={"a": "1e-300"}, period="1")
     model.forcing()
     assert time.process_time() - start < 1  # 4 s when it was
+
+
+@pytest.mark.parametrize(
+    ("accepted", "refused"),
+    [("(" * 50 + "x" + ")" * 50, "(" * 70 + "x" + ")" * 70),
+     ("+".join(["root(u**2-2,1,2)"] * 20), "+".join(["root(u**2-2,1,2)"] * 21)), ("x + 3**1000", "x + 3**1001"),
+     ("7**900", "(10**4000)**900")],
+)  # fmt: skip
+def test_each_bound_of_the_parser_stands(accepted, refused):
+    parse(accepted, ["x"])
+    with pytest.raises(InputError):
+        parse(refused, ["x"])

@@ -74,7 +74,12 @@ def test_basins_and_bifurcation(capsys, tmp_path):
     model = ["--omega", 2, "--clearance", "0.3", "--restitution", "0.5", "--workers", 1]
     code, out, _ = run(capsys, "basins", *model, "--size", 20, "-o", tmp_path / "b.png", "--json")
     assert code == 0
-    assert {each["class"] for each in json.loads(out)["classes"]} == {"complete chatter", "(1, 1) orbit"}
+    told = json.loads(out)
+    assert {each["class"] for each in told["classes"]} == {"(1, 1) orbit"}
+    assert 0.05 < told["first_chatter_completes"] < 0.2
+    code, out, _ = run(capsys, "basins", *model, "--size", 10, "--layer", "first-chatter", "-o", tmp_path / "f.png")
+    assert code == 0
+    assert "first chatter completes" in out
     code, _, _ = run(capsys, "bifurcation", *model, "--from", "0.9", "--to", "1.1", "--points", 3, "--impacts", 40,
                      "-o", tmp_path / "c.png")  # fmt: skip
     assert code == 0

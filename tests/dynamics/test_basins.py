@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.basins import basins, name_of
+from singimpact.dynamics.attractors import CHATTER, OTHER, SETTINGS, caught, new_attractors, periodic_codes
+from singimpact.dynamics.basins import basins
 from singimpact.dynamics.bifurcation import bifurcation
+from singimpact.dynamics.long_run import Future, chaotic, settled
 from singimpact.inputs import InputError
-from singimpact.scenes.basins import draw_basins, draw_bifurcation
+from singimpact.scenes.basins import draw_basins, draw_bifurcation, draw_first_chatter
 from singimpact.status import Status
 
 MODEL = si.linear(2, "0.3", "0.5")
@@ -24,19 +26,89 @@ def found():
 def test_classes_agree_with_single_orbits(found):
     for i, j in [(0, 3), (0, 15), (10, 5), (19, 19), (4, 10)]:
         tau, v = float(found.tau[j]), float(found.v[i])
-        if name_of(int(found.codes[i, j])) == "complete chatter":
-            assert MODEL.chatter_limit(tau, v).status == Status.complete
-        else:
-            orbit = MODEL.orbit(tau, v, impacts=80)
-            n, k = divmod(int(found.codes[i, j]), 1000)
-            assert abs(orbit.tau[-1] - orbit.tau[-1 - n] - k * np.pi) < 1e-6
+        completes = MODEL.chatter_limit(tau, v, impacts=500).status == Status.complete
+        assert found.first_chatter_completes[i, j] == completes
+        attractor = found.attractors[found.codes[i, j]]
+        orbit = MODEL.orbit(tau, v, impacts=80)
+        assert abs(orbit.tau[-1] - orbit.tau[-1 - attractor.n] - attractor.k * np.pi) < 1e-6
 
 
-def test_shares_and_picture(found):
+def test_a_first_chatter_that_completes_is_no_class():
+    """102 of 3600 states chatter once and settle on the (3, 3) orbit: by their own orbits and by the grid."""
+    model = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+    with ThreadPoolExecutor(1) as pool:
+        found = basins(model, v=(0, 0.8), size=60, executor=pool)
+    assert found.first_chatter_completes.sum() == 102
+    assert {name for _, name, _ in found.classes} == {"(3, 3) orbit", "(1, 1) orbit"}
+    names = [each.name for each in found.attractors]
+    assert {names[code] for code in found.codes[found.first_chatter_completes]} == {"(3, 3) orbit"}
+    i, j = np.argwhere(found.first_chatter_completes)[::25].T
+    for row, column in zip(i, j, strict=True):
+        orbit = model.orbit(float(found.tau[column]), float(found.v[row]), impacts=120)
+        assert "complete" in orbit.kind
+        assert abs(orbit.tau[-1] - orbit.tau[-4] - 3 * 2 * np.pi / 2.8) < 1e-6
+
+
+def test_chatter_for_ever_is_a_class_with_its_periods():
+    model = si.linear(2, "0.7", "0.5")
+    with ThreadPoolExecutor(1) as pool:
+        found = basins(model, v=(0, 1), size=8, executor=pool)
+    (attractor,) = found.attractors
+    assert (attractor.kind, attractor.n, attractor.k) == ("chatter", np.inf, 1)
+    orbit = model.orbit(0.3, 0.4, impacts=400)
+    lifted = orbit.tau[orbit.kind == "release"]
+    assert np.allclose(np.diff(lifted)[2:], np.pi, atol=1e-9)
+    assert abs((lifted[-1] - attractor.tau[0]) / np.pi - round((lifted[-1] - attractor.tau[0]) / np.pi)) < 1e-9
+
+
+def test_where_a_c_never_rises_the_mass_rests_for_ever():
+    with ThreadPoolExecutor(1) as pool:
+        found = basins(si.linear("2.8", "1.2", "0.8"), v=(0, 1), size=6, executor=pool)
+    assert [each.kind for each in found.attractors] == ["rest"]
+
+
+def test_two_orbits_of_equal_n_and_k_are_two_classes():
+    """Counted in double periods, an orbit and its shift by one period are two (1, 1) orbits."""
+    model = si.ImpactOscillator("x", "cos(2.8*t)", "-0.3", "0.95", period="4*pi/2.8")
+    with ThreadPoolExecutor(1) as pool:
+        found = basins(model, v=(0, 2), size=20, executor=pool)
+    kinds = [(each.n, each.k) for each in found.attractors]
+    assert kinds.count((1, 1)) == 2
+    one, other = (each for each in found.attractors if (each.n, each.k) == (1, 1))
+    assert abs(abs(one.tau[0] - other.tau[0]) - 2 * np.pi / 2.8) < 1e-3
+    codes = {code for code, _, _ in found.classes}
+    assert len(codes) == len(found.attractors)
+
+
+def test_chaos_is_told_by_an_exponent_and_the_rest_is_not_decided():
+    model = si.linear("2.8", 0, "0.8")
+    assert chaotic(model, np.array([0.3, 1.0]), np.array([0.7, 0.4]), 2.0).all()
+    with ThreadPoolExecutor(1) as pool:
+        (attractor,) = basins(model, v=(0, 2), size=6, executor=pool).attractors
+    assert attractor.kind == "chaotic"
+    # r = 1 and a weak forcing: curves that close slowly, with no exponent and no orbit that others settle on
+    still = si.ImpactOscillator("x", "0.01*cos(sqrt(2)*t)", 0, 1)
+    with ThreadPoolExecutor(1) as pool:
+        (attractor,) = basins(still, v=(1, 2), size=4, executor=pool).attractors
+    assert attractor.kind == "not decided"
+
+
+def test_cycles_of_lift_offs():
+    chattering = [Future((CHATTER, 1.0, 0.0), 4.0), Future((CHATTER, 2.0, 0.0), 2.0), Future((CHATTER, 1.0, 0.0), 7.0)]
+    assert settled(chattering, 0, 3.0) == (CHATTER, 1, 3)
+    leaves = [Future((CHATTER, 1.0, 0.0), 4.0), Future((2001.0, 0.5, 0.3), np.nan)]
+    assert settled(leaves, 0, 3.0) == (2001.0, 0.5, 0.3)
+    assert settled([Future((CHATTER, 0.0, 0.0), np.nan)], 0, 3.0)[0] == OTHER
+
+
+def test_shares_and_pictures(found):
     assert abs(sum(share for _, _, share in found.classes) - 1) < 1e-12
     axes = draw_basins(found)
-    assert "complete chatter" in " ".join(text.get_text() for text in axes.get_legend().get_texts())
+    assert "(1, 1) orbit" in " ".join(text.get_text() for text in axes.get_legend().get_texts())
     axes.figure.canvas.draw()
+    first = draw_first_chatter(found)
+    assert "first chatter completes" in first.get_legend().get_texts()[0].get_text()
+    first.figure.canvas.draw()
 
 
 def test_across_a_swan():
@@ -70,30 +142,31 @@ def test_refusals(ask, told):
 
 
 def to_the_end(model, size, v):
-    """Codes of a grid by flying every state as long as the slowest chatter takes, without a look in between."""
-    from singimpact.dynamics.attractors import periodic_codes
+    """Classes of a grid by flying every state as long as the slowest chatter takes, without a look in between."""
     from singimpact.flights.grids import after
     from singimpact.oscillator.acceleration import acceleration
 
     found = basins(model, v=(0, v), size=size)
     tau, speed = (part.ravel() for part in np.meshgrid(found.tau, found.v))
     ends = after(model, tau, speed, 90)
+    first = (ends.v < 1e-7 * v) & (acceleration(model, ends.tau) < 0)
     codes = np.zeros(tau.size, dtype=int)
-    codes[(ends.v < 1e-7 * v) & (acceleration(model, ends.tau) < 0)] = 1
-    flying = np.flatnonzero((codes == 0) & (ends.status == 0) & (ends.v > 0))
+    flying = np.flatnonzero(~first & (ends.status == 0) & (ends.v > 0))
     codes[flying] = periodic_codes(model, ends.tau[flying], ends.v[flying], v)
-    return found.codes, codes.reshape(size, size)
+    early = np.array([int(each.n) * 1000 + each.k if each.kind == "orbit" else 0 for each in found.attractors])
+    return found.first_chatter_completes, first.reshape(size, size), np.where(first.reshape(size, size), 0, early[
+        found.codes]), codes.reshape(size, size)  # fmt: skip
 
 
 @pytest.mark.parametrize(("force", "forcing", "r"), [("x", "cos(2*t)", "1/2"), ("x", "cos(14*t/5)", "0.6")])
 def test_orbits_decided_early_are_those_decided_late(force, forcing, r):
-    early, late = to_the_end(si.ImpactOscillator(force, forcing, "0.3", r), 40, 2.0)
-    assert len(np.unique(late)) > 1
-    assert np.mean(early != late) == 0
+    chattered, completed, early, late = to_the_end(si.ImpactOscillator(force, forcing, "0.3", r), 40, 2.0)
+    assert 0 < completed.sum() < completed.size
+    assert (chattered == completed).all()
+    assert (early == late).all()
 
 
 def test_an_attractor_catches_only_what_comes_in():
-    from singimpact.dynamics.attractors import SETTINGS, caught, new_attractors
     from singimpact.flights.grids import after
 
     model = si.ImpactOscillator("x", "cos(2*t)", "0.3", "1/2")
@@ -103,7 +176,7 @@ def test_an_attractor_catches_only_what_comes_in():
     assert SETTINGS.close <= attractor.catch <= SETTINGS.catch
     place = attractor.tau[0] + 0.99 * attractor.catch * np.pi * np.array([1, -1, 0])
     speed = attractor.v[0] + 0.99 * attractor.catch * 2.0 * np.array([1, -1, 0])
-    assert (caught([attractor], model, place, speed, 2.0) == 1001).all()
+    assert (caught([attractor], model, place, speed, 2.0) == 0).all()
     home = after(model, place, speed, 200)
     assert np.abs(home.v - attractor.v[0]).max() < 1e-9
-    assert (caught([attractor], model, place + 0.5, speed, 2.0) == 0).all()
+    assert (caught([attractor], model, place + 0.5, speed, 2.0) == -1).all()

@@ -146,3 +146,33 @@ def test_only_what_may_be_a_first_hit_is_asked_for():
     ahead = sum(int((line.points[:, 1] > 0).sum()) for line in lines)
     assert 0 < count.flights <= ahead < sum(len(line.points) for line in lines)
     assert all((curve.points[curve.visible][:, 1] > 0).all() for curve in curves)
+
+
+def test_vertices_out_of_order_or_not_settled_are_seen():
+    """A circle in order; two vertices exchanged; one that Newton's steps still moved."""
+    from singimpact.surface.tracing import _in_order
+
+    angle = np.linspace(0, 2, 60)
+    points = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    still = np.zeros(60)
+    assert _in_order(points, still, 2 * points)
+    swapped = points.copy()
+    swapped[30] = 0.2 * points[30]
+    assert not _in_order(swapped, still, 2 * points)
+    moved = still.copy()
+    moved[7] = 1e-3
+    assert not _in_order(points, moved, 2 * points)
+
+
+def test_a_part_of_a_closed_curve_is_open():
+    from singimpact.surface.curve import Curve
+
+    angle = np.linspace(0, 2 * np.pi, 41)
+    loop = Curve("loop", np.stack([np.cos(angle), np.sin(angle)], axis=1), ("x", "y"), closed=True,
+                 first_hits=np.ones(41, dtype=bool))  # fmt: skip
+    chosen = np.arange(41) < 20
+    (part,) = loop.parts(chosen)
+    assert not part.closed
+    assert len(part) == 20
+    (whole,) = loop.parts(np.ones(41, dtype=bool))
+    assert whole.closed

@@ -181,3 +181,34 @@ def test_refusals_are_one_line(call, told):
         call()
     assert told in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+NO_GAMMA = {
+    "foliation": (si.linear(2, "0.3", "0.5"), 1, "first", "foliation with a' < 0"),
+    "positive swan": (si.linear(2, -1, "1/2"), "swan", "pi/2", "positive swan with a'' > 0"),
+    "third": (si.ImpactOscillator("0", "-t**3", 0, "0.5"), 3, 0, "contact order 3 with a''' < 0"),
+    "fourth": (si.ImpactOscillator("0", "t**4", 0, "0.5"), 4, 0, "contact order 4 with a^(4) > 0"),
+}
+
+
+@pytest.mark.parametrize("name", NO_GAMMA)
+@pytest.mark.parametrize("ask", [si.theory.gamma, si.theory.dynamics_on_gamma])
+def test_where_no_gamma_is_none_is_given(name, ask):
+    """The formal series exists there; with v < 0, or for orbits that rest, it is no curve of the impact map."""
+    model, at, tau, told = NO_GAMMA[name]
+    tau = si.tangency_points(model)[0].tau if tau == "first" else tau
+    with pytest.raises(InputError) as refused:
+        ask(order=5, at=at, model=model, tau=tau)
+    assert told in str(refused.value)
+    assert "a_c > 0 on its left" in str(refused.value)
+
+
+@pytest.mark.parametrize(("at", "g"), [(1, "t"), (2, "-t**2"), (3, "t**3"), (4, "-t**4")])
+def test_where_gamma_is_it_is_positive(at, g):
+    series = si.theory.gamma(order=at + 1, at=at, model=si.ImpactOscillator("0", g, 0, "0.5"), tau=0)
+    assert series(-1) > 0
+
+
+def test_a_swan_is_no_tangency():
+    with pytest.raises(InputError, match="contact order is above 1"):
+        si.theory.gamma(at="tangency", model=si.linear(2, 1, "0.5"), tau=0)

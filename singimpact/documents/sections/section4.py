@@ -10,6 +10,7 @@ from singimpact.documents.sections.section4_blowup import blow_up, in_lambda
 from singimpact.documents.steps import Section, Step
 from singimpact.theory import fold_route as fold
 from singimpact.theory import implicit_route as route
+from singimpact.theory.fold_form import next_sigma
 from singimpact.theory.implicit_route import r, sigma, t
 from singimpact.theory.notation import latex
 
@@ -108,10 +109,19 @@ def _return() -> tuple[Step, ...]:
     root = fold.h()[1].subs(fold.Q_r(), sympy.Symbol("Qrest"))
     return (
         Step(
-            "The state after the impact is $q = R \\circ \\phi$, in the same coordinates of source and target:",
+            "The state after the impact is $q = R \\circ \\phi$. Here and below $(\\sigma, \\eta)$ are the coordinates "
+            "before those further changes, in which the first component is exact and $\\psi \\circ p$ is known up to "
+            "$O(3)$:",
             rf"\psi \circ q = \bigl({latex(first)},\ {in_powers(second, r)} + O(3)\bigr)",
             "e:defq",
             ("e:defq",),
+        ),
+        Step(
+            "In the coordinates in which $\\psi \\circ p$ is the fold without higher terms the first component has "
+            "quadratic terms (lengths in units of $k$), and is $\\eta - \\frac12 \\sigma + O(2)$ only; $D h'$ on "
+            "$s = 0$ is the same in both.",
+            rf"\bar\sigma = {latex(next_sigma())} + O(3)",
+            "s4-next-sigma",
         ),
         Step(
             "One impact is the map $h = p^{-1} \\circ q$ of the surface into itself: the next flight $(\\bar\\sigma, "

@@ -1,0 +1,106 @@
+"""What a certificate says, as a sentence made from its data alone: what a reader sees is what was checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from singimpact.algebra.plain import rational, row, terms
+
+
+def sentence(certificate: Mapping[str, Any]) -> str:
+    """The statement of a certificate.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError, IndexError : the data are damaged, or the names are not one for each variable.
+
+    Examples
+    --------
+    >>> sentence({"kind": "definite", "variables": ["x", "y"], "form": ["6", "4", "1"], "sign": 1})
+    '6*x**2 + 4*x*y + y**2 > 0 for all (x, y) but (0, 0)'
+    """
+    return _SENTENCES[certificate["kind"]](certificate, _names(certificate["variables"]))
+
+
+def _names(given: Any) -> tuple[str, ...]:
+    names = tuple(given)
+    if not all(isinstance(name, str) and name.isidentifier() for name in names) or len(set(names)) < len(names):
+        raise ValueError("names of variables are different identifiers")
+    return names
+
+
+def polynomial(data: Any, names: Sequence[str]) -> str:
+    """A polynomial as text, highest powers first.
+
+    Examples
+    --------
+    >>> polynomial([[[0, 0], -1], [[2, 1], "1/2"]], ["x", "y"])
+    '1/2*x**2*y - 1'
+    """
+    parts: list[str] = []
+    for key, value in sorted(terms(data).items(), reverse=True):
+        if len(key) != len(names):
+            raise ValueError(f"{len(names)} names for {len(key)} exponents")
+        powers = [name if n == 1 else f"{name}**{n}" for name, n in zip(names, key, strict=True) if n]
+        size = abs(value)
+        text = "*".join(([str(size)] if size != 1 or not powers else []) + powers)
+        parts.append(("- " if value < 0 else "+ ") + text)
+    joined = " ".join(parts) or "0"
+    return joined[2:] if joined.startswith("+ ") else f"-{joined[2:]}" if joined.startswith("- ") else joined
+
+
+def _quotient(pair: Any, names: Sequence[str]) -> str:
+    above, below = pair
+    under = polynomial(below, names)
+    return polynomial(above, names) if under == "1" else f"({polynomial(above, names)})/({under})"
+
+
+def _box(box: Any, names: Sequence[str]) -> str:
+    return ", ".join(f"{low} < {name} < {high}" for name, (low, high) in zip(names, box, strict=True))
+
+
+def _positive(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    side = {1: ">", -1: "<"}[data["sign"]]
+    return f"{_quotient((data['numerator'], data['denominator']), names)} {side} 0 for {_box(data['box'], names)}"
+
+
+def _chain(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    gaps = ", ".join(f"({low}, {high})" for low, high in data["roots"]) or "no gap"
+    rest = f", for all {_box(data['box'], names[1:])}" if data["box"] else ""
+    others = " and no other" if data["all"] else ""
+    return f"{polynomial(data['polynomial'], names)} has a root {names[0]} in each of {gaps}{others}{rest}"
+
+
+def _count(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    poly = polynomial([[list(key), str(value)] for key, value in row(data["chain"][0]).items()], names)
+    return f"{poly} has {data['roots']} real roots in ({data['low']}, {data['high']})"
+
+
+def _value(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    stated = data["value"]
+    told = "is unbounded" if stated == "infinite" else f"-> {_quotient(stated, names)}"
+    place = f"{names[data['index']]} -> {data['at']}"
+    return f"{_quotient((data['numerator'], data['denominator']), names)} {told} as {place}"
+
+
+def _definite(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    x, y = names
+    form = [[[2 - n, n], value] for n, value in enumerate(data["form"]) if rational(value)]
+    return f"{polynomial(form, names)} {({1: '>', -1: '<'})[data['sign']]} 0 for all ({x}, {y}) but (0, 0)"
+
+
+def _identity(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    left, right = (_quotient(data[side], names) for side in ("left", "right"))
+    where = f" where {polynomial(data['relation'][2], names)} = 0" if data["relation"] else ""
+    return f"{left} = {right}{where}"
+
+
+_SENTENCES = {
+    "positive": _positive,
+    "chain": _chain,
+    "count": _count,
+    "value": _value,
+    "definite": _definite,
+    "identity": _identity,
+}

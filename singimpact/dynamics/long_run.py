@@ -1,0 +1,155 @@
+"""What orbits do for ever once a chatter has completed: the map from one lift-off to the next, and Lyapunov exponents.
+
+A mass at rest lifts off where a_c becomes positive: at one of finitely many phases.  So the future of a chatter that
+completes is that of its lift-off, and chatter that comes again and again is a cycle of these phases.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.contact.points import tangency_points
+from singimpact.dynamics.attractors import CHATTER, OTHER
+from singimpact.dynamics.chatter import chatter_limit
+from singimpact.dynamics.orbit import orbit
+from singimpact.dynamics.rest import release
+from singimpact.flights.grids import after
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class LongRunSettings:
+    """apart : of two orbits, relative, whose distance is watched. block, rounds : impacts between two looks, and looks.
+    least : exponent per impact from which on an orbit is called chaotic, if it is three standard errors above 0 too.
+    """
+
+    apart: float = 1e-7
+    block: int = 5
+    rounds: int = 60
+    least: float = 0.01
+
+
+SETTINGS = LongRunSettings()
+
+
+@dataclass(frozen=True)
+class Future:
+    """What follows a lift-off: row, the class of the orbit; time, to the next lift-off when its chatter completes."""
+
+    row: tuple[float, ...]
+    time: float
+
+
+def lift_offs(model: Oscillator) -> tuple[float, ...]:
+    """The phases in one period at which a_c becomes positive.
+
+    Examples
+    --------
+    >>> [round(tau, 6) for tau in lift_offs(Oscillator("x", "cos(2*t)", "0.3", "1/2"))]
+    [2.508541]
+    """
+    return tuple(point.tau for point in tangency_points(model) if point.kind == "gamma")
+
+
+def next_lift_off(phases: tuple[float, ...], tau: Array) -> Array:
+    """The place in `phases` of the first one after times within a period; -1 where there is none at all."""
+    if not phases:
+        return np.full(tau.size, -1)
+    return np.searchsorted(np.array(phases), tau) % len(phases)
+
+
+def futures(model: Oscillator, phases: tuple[float, ...], classify: Callable[[Array, Array], Array]) -> list[Future]:
+    """What follows each lift-off, by the classes that `classify` gives to the state after the first impact."""
+    found = []
+    for phase in phases:
+        lifted = _lifted(model, phase)
+        first = orbit(model, lifted, 0, impacts=1)
+        if first.kind.tolist() != ["start", "impact"]:
+            found.append(Future((OTHER, 0.0, 0.0), np.nan))
+            continue
+        tau, v = float(first.tau[1]), float(first.v[1])
+        row = tuple(classify(np.array([tau]), np.array([v]))[0].tolist())
+        time = np.nan
+        if row[0] == CHATTER and row[1] >= 0:
+            end = chatter_limit(model, tau, v)
+            time = release(model, float(end.tau)) - lifted if end.status == Status.complete else np.nan
+        found.append(Future(row, time))
+    return found
+
+
+def _lifted(model: Oscillator, phase: float) -> float:
+    """A double at which the mass lifts off."""
+    assert model.period is not None
+    back = as_float(model.period) / 64
+    while acceleration(model, np.array([phase - back]))[0] >= 0:
+        back /= 2
+    return release(model, phase - back)
+
+
+def settled(found: list[Future], start: int, period: float) -> tuple[float, ...]:
+    """The class of what follows a lift-off for ever: (CHATTER, least place of the cycle, its periods) for a cycle.
+
+    Examples
+    --------
+    >>> settled([Future((1, 1.0, 0.0), 4.0), Future((1, 1.0, 0.0), 6.0)], 0, 3.0)
+    (1, 1, 2)
+    """
+    path = [start]
+    while True:
+        future = found[path[-1]]
+        if future.row[0] != CHATTER:
+            return future.row
+        if not np.isfinite(future.time):
+            return (OTHER, 0.0, 0.0)
+        following = int(future.row[1])
+        if following in path:
+            cycle = path[path.index(following) :]
+            return (CHATTER, min(cycle), round(sum(found[place].time for place in cycle) / period))
+        path.append(following)
+
+
+def chaotic(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
+    """Whether orbits have a Lyapunov exponent above 0: the mean growth of a small distance, with its standard error.
+
+    Examples
+    --------
+    >>> settled = Oscillator("x", "cos(2*t)", "0.3", "1/2")
+    >>> chaotic(settled, np.array([0.5]), np.array([1.0]), 1.0).tolist()
+    [False]
+    """
+    assert model.period is not None
+    period = as_float(model.period)
+    first, growth = [np.array(tau), np.array(v)], np.full((SETTINGS.rounds, tau.size), np.nan)
+    second = [first[0] + SETTINGS.apart * period, first[1] * (1 + SETTINGS.apart)]
+    alive = np.ones(tau.size, dtype=bool)
+    for row in growth:
+        ends = [after(model, each[0][alive], each[1][alive], SETTINGS.block) for each in (first, second)]
+        away = np.stack([(ends[1].tau - ends[0].tau) / period, (ends[1].v - ends[0].v) / fast])
+        away[0] -= np.rint(away[0])
+        with np.errstate(all="ignore"):
+            size = np.hypot(*away)
+            row[alive] = np.log(np.maximum(size, 1e-16) / SETTINGS.apart)
+            step = away * np.where(size > 1e-16, SETTINGS.apart / size, 1.0)
+        good = (ends[0].status == 0) & (ends[1].status == 0) & np.isfinite(row[alive])
+        first[0][alive] = ends[0].tau - period * np.floor(ends[0].tau / period)
+        first[1][alive] = ends[0].v
+        second[0][alive] = first[0][alive] + step[0] * period
+        second[1][alive] = np.maximum(first[1][alive] + step[1] * fast, 0.5 * first[1][alive])
+        alive[np.flatnonzero(alive)[~good]] = False
+        if not alive.any():
+            break
+    late = growth[SETTINGS.rounds // 4 :, alive] / SETTINGS.block
+    result = np.zeros(tau.size, dtype=bool)
+    if alive.any():
+        error = late.std(axis=0) / np.sqrt(len(late))
+        result[alive] = late.mean(axis=0) > np.maximum(SETTINGS.least, 3 * error)
+    return result

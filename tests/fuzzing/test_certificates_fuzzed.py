@@ -1,0 +1,31 @@
+"""No damaged certificate that is accepted is false; `python tests/fuzzing/certificates.py` is the long run."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import certificates
+import false_certificates as false
+
+
+@pytest.mark.parametrize("count", [4000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_no_false_certificate_is_accepted(count):
+    told, wrong = certificates.fuzzed(count, 20261121)
+    assert wrong == []
+    assert set(told) == set(certificates.KINDS)  # what stays true after the damage is accepted, of every kind
+    assert min(told.values()) > count / 500
+
+
+SEEN = ["a negative part", "another polynomial", "a sign unproved", "ends out of order", "another count",
+        "degrees at infinity, falling", "a pole that is none", "a form of another sign", "a difference",
+        "a multiplier of zero", "a left denominator that the relation makes zero"]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SEEN)
+def test_the_fuzzer_sees_a_weakened_checker(name):
+    condition, instead, _ = false.WEAKENED[name]
+    _, wrong = certificates.fuzzed(4000, 1, false.without(condition, instead, "checking"))
+    assert wrong

@@ -1,0 +1,135 @@
+"""What is held is not changed, and what cannot be used ends in one clear sentence."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import singimpact as si
+from singimpact.dynamics.bifurcation import bifurcation
+from singimpact.inputs import InputError
+from singimpact.status import Status
+
+
+@pytest.mark.parametrize("name", ["clearance", "f", "restitution", "parameters", "period", "anything"])
+def test_a_model_is_not_changed(name):
+    model = si.linear(2, "0.3", "0.5")
+    before = repr(model), hash(model)
+    with pytest.raises(InputError, match=f"{name} of a model is not changed: osc.replace"):
+        setattr(model, name, 0.5)
+    with pytest.raises(InputError, match="not removed"):
+        delattr(model, name)
+    with pytest.raises(TypeError):
+        si.ImpactOscillator("x", "cos(w*t)", 0, 1, {"w": 2}).parameters["w"] = 3
+    assert (repr(model), hash(model)) == before
+    assert pickle.loads(pickle.dumps(model)) == model
+    assert str(model.replace(clearance="0.5").clearance) == "0.5"
+
+
+@pytest.mark.parametrize("rho", ["-tanh(v/2)", "-sin(v/2)", "-atan(v)/2", "-0.5*tan(v)"])
+def test_a_restitution_by_a_function_has_a_chatter_limit_and_orbits(rho):
+    model = si.ImpactOscillator("x", "cos(2*t)", "0.3", rho)
+    found, plain = model.chatter_limit("1.2", "0.01"), si.linear(2, "0.3", "0.5").chatter_limit("1.2", "0.01")
+    assert found.status == Status.complete
+    assert abs(found.tau - plain.tau) < 1e-4  # rho(v) = -v/2 + O(v^3)
+    many = model.chatter_limit("1.2", "0.01", digits=20)
+    assert abs(float(many.tau) - found.tau) <= found.error
+    assert "complete" in model.orbit("1.2", "0.01", 30).kind
+
+
+@pytest.mark.parametrize("impacts", [1, 7, 1000, 5000])
+def test_no_more_impacts_are_flown_than_were_asked_for(impacts):
+    model = si.linear("pi/2.8", "1e5", "0.999999")
+    found = model.chatter_limit("0.3", "0.3", impacts=impacts)
+    assert found.status == Status.unresolved
+    assert found.impacts == impacts
+
+
+def test_a_window_is_named_by_what_moves():
+    with pytest.raises(InputError, match="window of clearance"):
+        bifurcation(si.linear(2, 1, "0.5"), "clearance", ("1.1", "0.6"))
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [({"title": "x" * 201}, "title"), ({"title": "a\0b"}, "printable"), ({"title": "\x1b[1m"}, "printable"),
+     ({"title": r"$\frac{1}$"}, "typeset"), ({"marks": ((r"$\bad$", 0, 0),)}, "typeset"), ({"layers": None}, "layers"),
+     ({"layers": 5}, "layers")],
+)  # fmt: skip
+def test_a_scene_refuses_what_it_cannot_show(more, told):
+    fields = {"model": si.linear(2, "0.3", "0.5"), "layers": ["gamma"], "tau": (0, 3), "v": (0, 1)} | more
+    with pytest.raises(InputError, match=told):
+        si.Scene(**fields)
+
+
+def test_a_scene_takes_titles_with_formulas():
+    scene = si.Scene(si.linear(2, "0.3", "0.5"), ["gamma"], (0, 3), v=(0, 1), title=r"$\gamma$ at $c = 0.3$")
+    assert scene.title == r"$\gamma$ at $c = 0.3$"
+
+
+def test_odd_objects_are_refused():
+    import sympy
+
+    with pytest.raises(InputError):
+        si.linear(2, sympy.Function("q")(1), "0.5")
+    with pytest.raises(InputError, match="order = '3' is not accepted"):
+        si.theory.dynamics_on_gamma("3", model=si.linear(2, "0.3", "0.5"))
+
+
+@pytest.mark.parametrize(("name", "json"), [("orbit.jpg", False), ("orbit.csv", False), ("orbit.png", True)])
+def test_a_table_is_not_put_under_the_name_of_a_picture(tmp_path, name, json):
+    from click.testing import CliRunner
+
+    from singimpact.cli import main
+
+    command = ["orbit", "--omega", "2", "--clearance", "0.3", "--restitution", "0.5", "--tau", "1", "--v", "0.1", "-o",
+               str(tmp_path / name), *(["--json"] if json else [])]  # fmt: skip
+    found = CliRunner().invoke(main, command)
+    assert found.exit_code == 2
+    assert "a file name ending in" in found.output + (found.stderr if found.stderr_bytes else "")
+    assert not (tmp_path / name).exists()
+
+
+def test_pdf_is_refused_before_anything_is_derived(monkeypatch, tmp_path, singimpact):
+    import shutil
+
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+    monkeypatch.setattr("singimpact.documents.derivations.sections", None)
+    found = singimpact("derive", "--format", "pdf", "-o", tmp_path / "pages")
+    assert found.exit_code == 2
+    assert not (tmp_path / "pages").exists()
+
+
+def test_latex_runs_no_other_program(monkeypatch, tmp_path):
+    import subprocess
+
+    from singimpact.documents import compiling
+
+    asked = []
+
+    def run(command, **_):
+        asked.extend(command)
+        return subprocess.CompletedProcess(command, 1, "", "")
+
+    monkeypatch.setattr(subprocess, "run", run)
+    with pytest.raises(compiling.CompileError):
+        compiling._run(str(tmp_path))
+    assert "-latexoption=-no-shell-escape" in asked
+
+
+def test_a_frame_without_tangencies_erases_their_marks():
+    from types import SimpleNamespace
+
+    from singimpact.scenes.explore import _dots
+
+    assert _dots(SimpleNamespace(tangencies=np.zeros(0)))["x"] == [None]
+    assert _dots(SimpleNamespace(tangencies=np.array([0.5])))["x"] == [0.5]
+
+
+def test_a_plot_is_a_figure_that_pyplot_shows():
+    import matplotlib.pyplot as plt
+
+    plt.close("all")
+    axes = si.plot(si.linear("2.8", 0, "0.8").orbit(0.9, 0.3, impacts=5))
+    assert plt.get_fignums() == [axes.figure.number]
+    plt.close("all")
