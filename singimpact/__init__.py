@@ -6,6 +6,7 @@ Everything public is reached from here; a name loads its room when it is first u
 from typing import TYPE_CHECKING, Any
 
 from singimpact.inputs import InputError as InputError
+from singimpact.status import Cause as Cause
 from singimpact.status import Status as Status
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ _HOMES = {
     "verify": "singimpact.documents.verdicts",
     "errata": "singimpact.documents.errata",
 }
-_PUBLIC = sorted(["InputError", "Status", *_ROOMS, *_HOMES])
+_PUBLIC = sorted(["Cause", "InputError", "Status", *_ROOMS, *_HOMES])
 
 
 def __getattr__(name: str) -> Any:

@@ -20,7 +20,7 @@ from singimpact.flights.sequences import Sequence, sequence
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Status
+from singimpact.status import Cause, Status
 
 EPSILON = 2.0**-52
 
@@ -59,6 +59,7 @@ class ChatterLimit:
     error : estimate of the error of tau, rounding of the given state included.
     status : `complete`, `lifts_off`, or the status of a flight that ended the sequence.
     certified : tau with a proved radius, when digits were asked for and the model is linear; else None.
+    cause : int8, see `singimpact.status.Cause`: why the status is `unresolved`.
     """
 
     tau: Any
@@ -66,6 +67,19 @@ class ChatterLimit:
     error: Any
     status: Any
     certified: Certified | None = None
+    cause: Any = 0
+
+    @property
+    def sentence(self) -> str:
+        """What became of the sequence, and what to type next.
+
+        Examples
+        --------
+        >>> end = chatter_limit(Oscillator("x", "cos(2.8*t)", 0, "0.8"), "0.9", "0.005", impacts=3)
+        >>> print(end.sentence.partition(":")[0])
+        the impacts neither accumulate nor lift off within the number given
+        """
+        return (Cause(int(self.cause)) if self.cause else Status(int(self.status))).sentence
 
 
 def chatter_limit(
@@ -170,7 +184,7 @@ class _Flown:
 
     def __init__(self, osc: Oscillator, tau: float, v: float, most: int) -> None:
         self.osc, self.start, self.most = osc, (tau, v), most
-        self.times, self.speeds = [tau], [v]
+        self.times, self.speeds, self.cause = [tau], [v], Cause.decided
 
     def limit(self) -> ChatterLimit:
         lost = 1 - as_float(self.osc.slope_at_rest())
@@ -185,13 +199,16 @@ class _Flown:
                 if error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290:
                     return self._ended(tau + left, error, Status.complete)
                 if not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
-                    status = Status.unresolved
+                    status, self.cause = Status.unresolved, Cause.overflow
                     continue
                 wanted = self._more(error, tau), 0.0
             else:
                 wanted = 256, min(_slow(self.osc, tau) * lost, 1e300) if a < 0 else 0.0
-            status = self._fly(*wanted) if self._left() > 0 else Status.unresolved
-        return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status))
+            if self._left() > 0:
+                status = self._fly(*wanted)
+            else:
+                status, self.cause = Status.unresolved, Cause.impacts_exhausted
+        return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status), cause=np.int8(self.cause))
 
     def _left(self) -> int:
         """Impacts that may still be flown."""
@@ -211,6 +228,7 @@ class _Flown:
         if step.status == Status.hit:
             self.times.append(float(step.tau))
             self.speeds.append(float(step.v))
+        self.cause = Cause(int(step.cause))
         return Status(int(step.status))
 
     def _fly(self, count: int, slow: float) -> Status:
@@ -222,7 +240,10 @@ class _Flown:
         if not kept and found.status == 0:
             # slow enough by the kernel's own acceleration: one more, so that no loop waits for agreement
             return self._fly(1, 0.0)
-        return Status(found.status) if kept == found.tau.size else Status.hit
+        if kept != found.tau.size:
+            return Status.hit
+        self.cause = Cause(found.cause)
+        return Status(found.status)
 
     def _kept(self, found: Sequence) -> int:
         lifted = np.flatnonzero(found.acceleration[1:] >= 0)

@@ -174,7 +174,7 @@ def _flights(osc: Oscillator, states: States, limits: Allowance) -> Flight:
         _escapes(osc, kernel.form, states, raw)
     flight, rough = _conditioned(osc, states, flight_of(raw), raw.judged, limits.epsilon)
     flight = _explained(osc, states, flight, raw)
-    return _sharpened(osc, states, flight, rough & (raw.status == Status.hit), pushes, raw.judged, limits)
+    return _sharpened(osc, states, flight, rough & (raw.status == Status.hit), pushes, limits)
 
 
 def _explained(osc: Oscillator, states: States, flight: Flight, raw: Raw) -> Flight:
@@ -193,9 +193,9 @@ def _explained(osc: Oscillator, states: States, flight: Flight, raw: Raw) -> Fli
 
 
 def _sharpened(
-    osc: Oscillator, states: States, flight: Flight, rough: Array, pushes: Array, judged: Array, limits: Allowance
+    osc: Oscillator, states: States, flight: Flight, rough: Array, pushes: Array, limits: Allowance
 ) -> Flight:  # fmt: skip
-    """Rough hits are refined in balls, and what balls do not confirm is flown in many digits.
+    """Rough hits of linear models are refined in balls, and what balls do not confirm is flown in many digits.
 
     At near resonances all flights come back together: the state hardly matters, but the sums still cancel.
     """
@@ -206,7 +206,7 @@ def _sharpened(
     far = (flight.flight_time > (table.step if table else 0)) | (pushes >= 0)
     left = LIMITS.settled
     for index in np.flatnonzero(far & rough).tolist():
-        found = polished(osc, states, index, float(flight.flight_time[index]), float(judged[index, 8]))
+        found = polished(osc, states, index, float(flight.flight_time[index]))
         if found is None and left:
             left -= 1
             settled = manydigits.settle(osc, states, index, limits.horizon)

@@ -18,12 +18,12 @@ class Limits:
         a minute, in compiled code that hears no interruption.
     safety : rounding allowed for, in units of epsilon times the size of the terms; a Horner sum of 25 terms is
         within 2.5 units in practice, a restart of the closed form within 3, so 8 covers both.
-    likely : the same, as it is usually: hits with more than their condition explains are polished in balls (70 us),
-        one of 15 random states, and of those near a graze four of 10; without a closed form in Taylor steps (11 ms).
-    rough : a rounding of the flight time and of x' below this, relative, is never polished.
-    likely_steps : the share of it that a Taylor flow has, relative to the size of its velocities.
+    likely : the same, as it is usually: hits of linear models with more than their condition explains are refined in
+        balls (70 us), 22 of 100 random states.
+    rough : a rounding of the flight time and of x' below this, relative, is never refined.
+    likely_steps : the share of it that a Taylor flow has whose steps were not traced, relative to its velocities.
     likely_phase : the share of it that the phases of a closed form lose in a radian of time.
-    polish_bits, polish_order : of those balls, and of their Taylor steps.
+    polish_bits : of those balls.
     derivatives_at_rest : how many derivatives of a_c are tried for a mass at rest before it is called at rest for good.
     settled : launches at most that double arithmetic leaves undecided and that are settled in many digits; a settled
         launch costs about 20 ms, so a grid laid along a graze does not hang.
@@ -31,6 +31,14 @@ class Limits:
         called a graze.
     cancelled : where x'' at a hit is below this part of g, it has lost ten bits and is computed in balls (40 us);
         next to a swan, 1e-12 from it, D G was off by 4e6 roundings without it.
+    steps : Taylor steps of a flight at most, where the caller gives no number: about 0.8 s when they are interpreted; a
+        thousand periods of an ordinary model take 10 000.
+    settling_steps : the same in many digits, where a step takes milliseconds.
+    longest : steps at most of a linear model, which its horizon ends before.
+    block : flights between two looks at the keyboard.
+    traced : steps that are kept for the errors of a flight; longer flights, one of 10^4, are flown again with more room.
+    judging : tolerance of the steps that carry errors and conditions along.
+    margin : times the estimate of the error of a Taylor flow: of 720 hits the true error was at most 1.3 times it.
     guard : digits beyond those asked for; half of the digits go in a square root at a graze, so agreement of two
         runs is what is trusted, not this number.
     """
@@ -45,7 +53,6 @@ class Limits:
     likely_steps: float = 1.0
     likely_phase: float = 1 / 64
     polish_bits: int = 192
-    polish_order: int = 40
     derivatives_at_rest: int = 12
     settled: int = 200
     settling_digits: tuple[int, int] = (50, 120)

@@ -35,6 +35,7 @@ class Sequence:
     tau, v : states just after each impact. flight_time, velocity : of the flights that ended there.
     acceleration : a_c at the launch of each flight.
     status : of the flight that was not flown or did not end in an impact; 0 when all were flown or the last was slow.
+    cause : why that flight is unresolved, see `singimpact.status.Cause`.
     """
 
     tau: Array
@@ -43,6 +44,7 @@ class Sequence:
     velocity: Array
     acceleration: Array
     status: int
+    cause: int
 
 
 @lru_cache(maxsize=256)
@@ -85,4 +87,5 @@ def sequence(osc: Oscillator, tau: float, v: float, count: int, slow: float = 0.
         flown, status = fly(start, v, count, slow, w, np.zeros(1), order, limit, LIMITS.steps, ulp, p, *work, out)
     counted.add(int(flown))
     since, speed, time, velocity, acceleration = out[:flown].T
-    return Sequence(tau + since, speed, time, velocity, acceleration, int(decoded(np.array([status]))[0][0]))
+    ended, cause = (int(part[0]) for part in decoded(np.array([status])))
+    return Sequence(tau + since, speed, time, velocity, acceleration, ended, cause)
