@@ -166,7 +166,7 @@ def moves(tree: Expression) -> bool:
 
 def is_whole(exponent: Expression) -> bool:
     """Whether a power is computed by products."""
-    return isinstance(exponent, Number) and exponent.value.denominator == 1 and 1 <= exponent.value <= 64
+    return isinstance(exponent, Number) and exponent.value.denominator == 1 and 1 <= exponent.value <= 1000
 
 
 def square_in(tree: Expression) -> Square | None:

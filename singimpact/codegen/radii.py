@@ -1,14 +1,27 @@
 """How far a function can move on a disc, as kernel text: plain arithmetic for doubles and mpf alike.
 
-Each function bounds |phi(w') - phi(w)| over all complex w' with |w' - w| <= r, for a real centre w.  It returns inf
-where the disc may meet a singularity: a pole, a branch point, a kink.  Nothing here raises or overflows: exponents
-beyond 700 count as infinite.  `codegen.disc` writes the calls; the suite compares each bound with its circle.
+`quotient` and `real_power` are what the recurrence itself divides and raises by.  Each other function bounds
+|phi(w') - phi(w)| over all complex w' with |w' - w| <= r, for a real centre w.  It returns inf where the disc may meet a
+singularity: a pole, a branch point, a kink.  Nothing here raises or overflows: exponents beyond 700 count as infinite.
+`codegen.disc` writes the calls; the suite compares each bound with its circle.
 """
 
 from __future__ import annotations
 
-from math import cos, exp, expm1, inf, log, log1p, sinh, tan
+from math import cos, exp, expm1, inf, log, log1p, nan, sinh, tan
 from typing import Any
+
+
+def quotient(a: Any, b: Any) -> Any:
+    """a/b; nan where b is 0, on every kind of number."""
+    return a / b if b != 0 else nan
+
+
+def real_power(w: Any, q: Any) -> Any:
+    """w^q where it is real; else nan."""
+    if w > 0 or (w == 0 and q > 0) or (w < 0 and q == int(q)):
+        return w**q
+    return nan
 
 
 def whole_power_radius(w: Any, r: Any, n: int) -> Any:

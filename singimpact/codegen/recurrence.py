@@ -271,9 +271,9 @@ def _whole_power(writer: _Writer, base: _Series, exponent: int) -> _Series:
 def _general_power(writer: _Writer, base: _Series, exponent: Expression) -> _Series:
     """w = b^q from b w' = q b' w."""
     target, power = writer.row(), writer.constant(exponent)
-    writer.starts(target, f"{base('0')} ** {power}", "s = 0.0", "for i in range(1, k + 1):",
+    writer.starts(target, f"real_power({base('0')}, {power})", "s = 0.0", "for i in range(1, k + 1):",
                   f"    s += ({power} * i - (k - i)) * {base('i')} * {target('k - i')}",
-                  f"{target('k')} = s / (k * {base('0')})")  # fmt: skip
+                  f"{target('k')} = quotient(s, k * {base('0')})")  # fmt: skip
     return target
 
 
@@ -307,7 +307,7 @@ def _log(writer: _Writer, argument: Expression) -> _Series:
     base, target = _series(writer, argument), writer.row()
     writer.starts(target, f"log({base('0')})", "s = 0.0", "for i in range(1, k):",
                   f"    s += i * {target('i')} * {base('k - i')}",
-                  f"{target('k')} = ({base('k')} - s / k) / {base('0')}")  # fmt: skip
+                  f"{target('k')} = quotient({base('k')} - s / k, {base('0')})")  # fmt: skip
     return target
 
 

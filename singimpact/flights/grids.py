@@ -77,18 +77,19 @@ def after(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = EP
 
 
 def _chained(osc: Oscillator, parts: list[Any], impacts: int, epsilon: float) -> list[Any]:
-    """One state after another in Taylor steps."""
+    """One state after another in Taylor steps, in blocks that hear an interruption."""
     kernel, order = kernel_of(osc), degree_for(epsilon)
     text, trees = scalar(rho_of(osc.restitution), "v", "rebound")
     loops = (chains.taylor_chain, chains.taylor_ends)
     whole = "\n\n".join([kernel.text, text, *(source(loop) for loop in loops)])
     w = np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
     names = (*kernel.names, "rebound", *(loop.__name__ for loop in loops))
-    function(whole, names, "taylor_ends", parts[0].size * impacts * PRICES.taylor)(
-        *parts[:2], impacts, w, np.zeros(1), order, horizon_of(osc, None), LIMITS.steps, LIMITS.safety * epsilon,
-        doubles(kernel), np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2),
-        np.empty((impacts, 5)), parts[2],
-    )  # fmt: skip
+    fly = function(whole, names, "taylor_ends", parts[0].size * impacts * PRICES.taylor)
+    work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2), np.empty((impacts, 5))
+    limits = horizon_of(osc, None), LIMITS.steps, LIMITS.safety * epsilon
+    for begin in range(0, parts[0].size, LIMITS.block):
+        tau, v, status = (part[begin : begin + LIMITS.block] for part in parts)
+        fly(tau, v, impacts, w, np.zeros(1), order, *limits, doubles(kernel), *work, status)
     return parts
 
 

@@ -20,9 +20,9 @@ from singimpact.oscillator.model import Oscillator
 
 COMMON = (first_root.sums, first_root.safe_step, first_root.polished, first_root.first_root, march.advanced,
           march.note, march.moved, march.curvature, march.march, march.run, march.follow)  # fmt: skip
-RADII = (radii.whole_power_radius, radii.power_radius, radii.power_of_square_radius, radii.exp_radius,
-         radii.bell_radius, radii.circular_radius, radii.tan_radius, radii.tanh_radius, radii.atan_radius,
-         radii.log_radius, radii.log_of_square_radius, radii.softplus_radius)  # fmt: skip
+RADII = (radii.quotient, radii.real_power, radii.whole_power_radius, radii.power_radius, radii.power_of_square_radius,
+         radii.exp_radius, radii.bell_radius, radii.circular_radius, radii.tan_radius, radii.tanh_radius,
+         radii.atan_radius, radii.log_radius, radii.log_of_square_radius, radii.softplus_radius)  # fmt: skip
 STEPS = (taylor.step_terms, taylor.wished_step, taylor.shortened_step, taylor.allowed_step, taylor.searched_step,
          taylor.proved_step, taylor.singular_part, taylor.step_size, taylor.restart)  # fmt: skip
 EMITTED = ("coefficients", "disc", "rounding", "variations", "disc_of_columns")

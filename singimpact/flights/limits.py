@@ -36,7 +36,7 @@ class Limits:
     settling_steps : the same in many digits, where a step takes milliseconds.
     longest : steps at most of a linear model, which its horizon ends before.
     block : flights between two looks at the keyboard.
-    traced : steps that are kept for the errors of a flight; longer flights, one of 10^4, are flown again with more room.
+    traced : steps kept for the errors of a flight; longer flights, one of 10^4, are flown again with more room.
     judging : tolerance of the steps that carry errors and conditions along.
     margin : times the estimate of the error of a Taylor flow: of 720 hits the true error was at most 1.3 times it.
     guard : digits beyond those asked for; half of the digits go in a square root at a graze, so agreement of two

@@ -114,9 +114,9 @@ def column_step(X: Any, W: Any, A: Any, B: Any, Z: Any, n: int, h: Any, R: Any, 
         q = h / R
         part = 1.001 * h * h * q ** (n - 1) / (n * (1 - q)) if q < 0.9 else 1e300 + 0 * h
         a, b, d = disc_of_columns(X, W, A, B, Z, n, R, p)
-        # Z starts from nothing: it is compared with what it grows to, or with what a step moves B, if g' hardly pushes
-        size = h * h * (abs(Z[2]) + h * (abs(Z[3]) + h * abs(Z[4])))
-        if a * part <= 25 * ulp and b * part <= 25 * ulp * h and d * part <= 25 * ulp * size + ulp * ulp * h:
+        # Z starts from nothing, and Z - x' solves the homogeneous equation: both sizes count
+        size = abs(X[1]) + h * (abs(X[2]) + h * (abs(Z[2]) + h * (abs(Z[3]) + h * abs(Z[4]))))
+        if a * part <= 25 * ulp and b * part <= 25 * ulp * h and d * part <= 25 * ulp * size:
             return h
         h, R = h * 4 / 5, R * 15 / 16
     return 0 * h

@@ -12,7 +12,7 @@ from singimpact import store
 from singimpact.algebra.parsing import parse
 from singimpact.codegen.kernels import FUNCTIONS, compiled, filed, plain
 from singimpact.codegen.recurrence import recurrence
-from singimpact.flights.kernel import kernel_of
+from singimpact.flights.kernel import RADII, kernel_of, source
 from singimpact.impact_oscillator import ImpactOscillator
 
 
@@ -26,7 +26,8 @@ def test_coefficients_solve_the_equation(force: str) -> None:
     made = recurrence(parse(force, ["x", "xdot"]), parse("sin(2*t) + t**2", ["t"]))
     with mpmath.workdps(60):
         functions = {name: getattr(mpmath, {"log": "ln"}.get(name, name)) for name in FUNCTIONS}
-        space = plain(made.source, functions)
+        text = "\n\n".join(["from math import inf, nan", made.source, *(source(part) for part in RADII)])
+        space = plain(text, functions)
         from singimpact.algebra.numbers import as_mpf
 
         p = [mpmath.mpf("0.7"), *(as_mpf(tree, mpmath.mp) for tree in made.constants)]
