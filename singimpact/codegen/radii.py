@@ -1,7 +1,7 @@
 """How far a function can move on a disc, as kernel text: plain arithmetic for doubles and mpf alike.
 
 `quotient` and `real_power` are what the recurrence itself divides and raises by.  Each other function bounds
-|phi(w') - phi(w)| over all complex w' with |w' - w| <= r, for a real centre w.  It returns inf where the disc may meet a
+|phi(w') - phi(w)| over all complex w' with |w' - w| <= r, for a real centre w.  It is inf where the disc may meet a
 singularity: a pole, a branch point, a kink.  Nothing here raises or overflows: exponents beyond 700 count as infinite.
 `codegen.disc` writes the calls; the suite compares each bound with its circle.
 """
