@@ -116,9 +116,10 @@ def _precision(bits: int) -> Iterator[None]:
 
 
 def _bits_over(worst: Any) -> int:
-    from math import log2
+    from math import isfinite, log2
 
-    return int(log2(min(max(float(worst) / ENCLOSURE.accuracy, 1.0), 1e300)))
+    ratio = float(worst) / ENCLOSURE.accuracy
+    return int(log2(min(max(ratio, 1.0), 1e300))) if isfinite(ratio) else ENCLOSURE.bits
 
 
 def _equation(osc: Oscillator) -> Equation:
