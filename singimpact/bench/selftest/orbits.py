@@ -71,7 +71,7 @@ def _satisfied(flown: Flown, at: int, events: tuple[Array, Array], ends: Array, 
         if step.status[place] == Status.graze:
             late, fast = np.nan_to_num(late) + least * abs(tau[index]), least
         ratios = (abs(step.tau[place] - tau[index]) / late, abs(step.v[place] - v[index]) / (fast or least))
-        told = f"tau {float(tau[index])!r}, v {float(v[index])!r}; the map gives {step.tau[place]!r}, {step.v[place]!r}"
+        told = f"tau {float(tau[index])!r}, v {float(v[index])!r}; the map gives {float(step.tau[place])!r}, {float(step.v[place])!r}"
         tally.judge(float(np.max(ratios)), call + told)
 
 
@@ -97,8 +97,8 @@ def _limit(flown: Flown, at: int, tally: Tally) -> None:
     here = osc.chatter_limit(flown.tau[at], flown.v[at], impacts=ORBITS.most)
     there = osc.chatter_limit(step.tau[at], step.v[at], impacts=ORBITS.most)
     statuses = [Status(int(each.status)) for each in (here, there)]
-    told = f"{flown.call(at, 'chatter_limit').split(', horizon')[0]}): {here.tau!r}, {statuses[0].name}"
-    told += f"; of its image {there.tau!r}, {statuses[1].name}"
+    told = f"{flown.call(at, 'chatter_limit').split(', horizon')[0]}): {float(here.tau)!r}, error {here.error:.2g}, {statuses[0].name}"
+    told += f"; of its image {float(there.tau)!r}, error {there.error:.2g}, {statuses[1].name}"
     if Status.unresolved in statuses:
         tally.leave("impacts do not accumulate within the number flown")
     elif statuses[0] != statuses[1]:

@@ -55,7 +55,9 @@ def _judge(flown: Flown, places: Array, tally: Tally) -> None:
     for at, index in enumerate(places.tolist()):
         tau, v, time = flown.tau[index], flown.v[index], step.flight_time[index]
         status = Status(int(back.status[at]))
-        state = f"{flown.call(index)} and back: tau {back.tau[at]!r}, v {back.v[at]!r}, {status.name}"
+        state = f"{flown.call(index)} and back: tau {float(back.tau[at])!r}, v {float(back.v[at])!r}, {status.name}"
+        if np.isnan(by_tau[at] + by_v[at]):
+            state += "; derivative or an error of the flight is nan, so nothing says how near that must be"
         if status == Status.unresolved:
             tally.leave("unresolved")
         elif by_v[at] > ROUND_TRIP.lost * v or by_tau[at] > ROUND_TRIP.lost * time:
