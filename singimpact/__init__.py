@@ -11,6 +11,7 @@ from singimpact.status import Status as Status
 
 if TYPE_CHECKING:
     from singimpact import theory as theory
+    from singimpact.bench.selftest.run import selftest as selftest
     from singimpact.claims import Claims as _Claims
     from singimpact.documents.errata import errata as errata
     from singimpact.documents.verdicts import verify as verify
@@ -50,6 +51,7 @@ _HOMES = {
     "figure": "singimpact.scenes.figures",
     "verify": "singimpact.documents.verdicts",
     "errata": "singimpact.documents.errata",
+    "selftest": "singimpact.bench.selftest.run",
 }
 _PUBLIC = sorted(["Cause", "InputError", "Status", *_ROOMS, *_HOMES])
 

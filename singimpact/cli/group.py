@@ -30,6 +30,7 @@ COMMANDS = {
     "bifurcation": "where an orbit settles as a number of the model moves",
     "bench": "run time against error, beside other tools",
     "stress": "errors towards the bad places, in units of rounding",
+    "selftest": "random states of your model against independent computations",
     "errata": "what is misprinted, what holds instead, and why",
     "claims": "the claims: list, show, graph, impact",
     "fixed-points": "fixed points and multipliers, certified, to any digits",

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.bench.stress import layered
 from singimpact.bench.stress.judging import STEP, Function, Sweep, Trial
-from singimpact.bench.stress.launches import PLACES, Launch, both
+from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch, both
 from singimpact.bench.truth.first_hit import first_hit
 from singimpact.flights.grids import after
 from singimpact.status import Status
@@ -36,6 +37,9 @@ class Landing:
 
 def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
     """The impact, or the status that is right: sticks, graze or no return.  Call it with the working precision set."""
+    if isinstance(launch, SteepLaunch):
+        there = layered.landed(launch, tau, v, sign)
+        return int(Status.no_return) if there is None else Landing(*there)
     motion = launch.motion(tau, v, sign)
     if v == 0 and not motion.at(0)[2] > 0:
         return int(Status.sticks)
@@ -204,7 +208,12 @@ BALLS = "balls of bench/truth"
 FUNCTIONS = (
     Function("first_hit", _sweeps(_first_hit), BALLS, ""),
     Function("impact_map", _sweeps(_impact_map), BALLS, ""),
-    Function("flight", _sweeps(_flight, ("r -> 0", "r -> 1")), BALLS, "a flight knows no r"),
+    Function(
+        "flight",
+        _sweeps(_flight, ("r -> 0", "r -> 1", "steep layers")),
+        BALLS,
+        "a flight knows no r; balls of steep flights give the hit alone",
+    ),
     Function("derivative", _sweeps(_derivative), BALLS + ", differences", ""),
     Function("inverse_map", _sweeps(_inverse), BALLS + ", backwards", ""),
     Function("orbit", _sweeps(_orbit), BALLS + ", chained", ""),

@@ -1,7 +1,8 @@
-"""Launches that run towards the bad places of a flight, of the linear and of the cubic oscillator.
+"""Launches that run towards the bad places of a flight, of the linear, of the cubic and of steep oscillators.
 
 Places: v -> 0 pressed and free, short flights, near resonance, r -> 0 and 1, next to zeros of a and of a', next to the
-outline P (flights that graze) and to Z (launches that nearly rest), late phases, many periods without impact.
+outline P (flights that graze) and to Z (launches that nearly rest), late phases, many periods without impact, forces
+that vary within 1/K of a state, K towards 1e4.
 """
 
 from __future__ import annotations
@@ -60,6 +61,27 @@ class Launch:
     def __str__(self) -> str:
         names = ("omega", "clearance", "restitution", "tau", "v")
         return f"{self.family}, " + ", ".join(f"{name} = {getattr(self, name)!r}" for name in names)
+
+
+@dataclass(frozen=True)
+class SteepLaunch(Launch):
+    """A state of a model with a steep layer; force and forcing are its texts, of period 2 pi."""
+
+    force: str = "x"
+    forcing: str = "cos(t)"
+
+    @property
+    def model(self) -> ImpactOscillator:
+        """The oscillator."""
+        return ImpactOscillator(self.force, self.forcing, self.clearance, self.restitution)
+
+    @property
+    def horizon(self) -> float:
+        """The time after which a flight is given up."""
+        return HORIZON["cubic"]
+
+    def __str__(self) -> str:
+        return f"f = {self.force}, g = {self.forcing}, tau = {self.tau!r}, v = {self.v!r}"
 
 
 Launches = Callable[[str, int], Iterator[Launch]]
@@ -147,14 +169,30 @@ def _long(family: str, points: int) -> Iterator[Launch]:
         yield Launch(family, 2 - omega, -deep, tau=0.1, v=0.2)
 
 
+def _steep(family: str, points: int) -> Iterator[Launch]:
+    """Friction, a stop, a bump and a pulse that are crossed, of the steepness K.
+
+    The pulse is written without cos(t) - 1, whose rounding alone would move it by K^2 epsilon.
+    """
+    for off in powers(max(points // 3, 2), 4) if family == "linear" else ():
+        K = round(1 / off)
+        for force, forcing, tau in (
+            (f"x + tanh({K}*xdot)/10", "cos(t)", 0.3), (f"x + 5*(1 + tanh({K}*(x - 1/2)))", "cos(t)", 0.3),
+            (f"x + 5*exp(-{K}**2*(x - 1/2)**2)", "cos(t)", 0.3), ("x", f"10*exp(-2*{K}**2*sin(t/2)**2) - 1/5", 4.5),
+        ):  # fmt: skip
+            yield SteepLaunch(force, 1.0, tau=tau, v=2.0, force=force, forcing=forcing)
+
+
 PLACES: dict[str, Launches] = {
     "v -> 0": _small_v, "t -> 0": _short, "omega -> 1": _resonant, "r -> 0": _dead, "r -> 1": _elastic,
     "a -> 0": _tangent, "a' -> 0": _swan, "next to P": _grazing, "next to Z": _resting, "huge tau": _late,
-    "long flights": _long,
+    "long flights": _long, "steep layers": _steep,
 }  # fmt: skip
 
 
 def both(place: str, points: int) -> Iterator[Launch]:
-    """Those of the linear oscillator, then a third as many of the cubic one, whose truth takes fifty times longer."""
+    """Those of the linear or steep oscillators, then a third as many of the cubic one, whose truth takes fifty times
+    longer.
+    """
     yield from PLACES[place]("linear", points)
     yield from PLACES[place]("cubic", max(points // 3, 2))

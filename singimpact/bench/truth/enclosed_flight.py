@@ -71,8 +71,12 @@ class Equation(NamedTuple):
     clearance: Any
 
 
-def first_hit(osc: Oscillator, tau: float, v: float, horizon: float) -> Enclosed:
-    """The first hit of the flight from (tau, v), v > 0, to a relative radius of `ENCLOSURE.accuracy`.
+def first_hit(osc: Oscillator, tau: Any, v: Any, horizon: float, settings: EnclosureSettings = ENCLOSURE) -> Enclosed:
+    """The first hit of the flight from (tau, v), v > 0, to a relative radius of `settings.accuracy`.
+
+    Parameters
+    ----------
+    tau, v : doubles or exact balls.
 
     Raises
     ------
@@ -84,20 +88,20 @@ def first_hit(osc: Oscillator, tau: float, v: float, horizon: float) -> Enclosed
     >>> hit.flight_time.str(20, radius=False)
     '2.9615580194225837697'
     """
-    bits = ENCLOSURE.bits
+    bits = settings.bits
     while True:
         try:
             with _precision(bits + ENCLOSURE.guard):
-                hit = _flown(_equation(osc), tau, v, horizon, bits)
+                hit = _flown(_equation(osc), (tau, v), horizon, bits)
                 if hit.flight_time is None:
                     return hit
                 worst = max(part.rad() / abs(part.mid()) for part in hit[:2])
-                if worst < ENCLOSURE.accuracy:
+                if worst < settings.accuracy:
                     return hit
-                why, more = f"relative radius {float(worst):.1e}", 12 + _bits_over(worst)
+                why, more = f"relative radius {float(worst):.1e}", 12 + _bits_over(worst, settings)
         except Refused as reason:
             why, more = str(reason), bits // 2
-        if bits + more > ENCLOSURE.most_bits:
+        if bits + more > settings.most_bits:
             raise Refused(f"{why} at {bits} bits")
         bits += more
 
@@ -115,10 +119,11 @@ def _precision(bits: int) -> Iterator[None]:
         flint.ctx.cap = length
 
 
-def _bits_over(worst: Any) -> int:
-    from math import log2
+def _bits_over(worst: Any, settings: EnclosureSettings) -> int:
+    from math import isfinite, log2
 
-    return int(log2(min(max(float(worst) / ENCLOSURE.accuracy, 1.0), 1e300)))
+    ratio = float(worst) / settings.accuracy
+    return int(log2(min(max(ratio, 1.0), 1e300))) if isfinite(ratio) else settings.bits
 
 
 def _equation(osc: Oscillator) -> Equation:
@@ -128,16 +133,16 @@ def _equation(osc: Oscillator) -> Equation:
     return Equation(force, Program.of([osc.forcing()]), clearance)
 
 
-def _flown(equation: Equation, tau: float, v: float, horizon: float, bits: int) -> Enclosed:
+def _flown(equation: Equation, state: tuple[Any, Any], horizon: float, bits: int) -> Enclosed:
     """One flight at a precision."""
     from flint import arb, arb_poly
 
-    launch, clearance = arb(tau), equation.clearance
+    launch, speed, clearance = arb(state[0]), arb(state[1]), equation.clearance
     x, p = _centre(clearance, arb(0))
-    u, q, s, radius = arb(v), arb(0), arb(0), arb(8)
+    u, q, s, radius = speed, arb(0), arb(0), arb(8)
     for count in range(1, ENCLOSURE.most_steps + 1):
         coefficients = taylor(equation, launch + s, x, u, int(ENCLOSURE.degree * bits))
-        bound, radius = _widest_disc(equation, launch + s, coefficients, radius, bits, v)
+        bound, radius = _widest_disc(equation, launch + s, coefficients, radius, bits, float(speed.mid()))
         length = bound[1]
         above = arb_poly([coefficients[0] - clearance, *coefficients[1:]])
         while True:

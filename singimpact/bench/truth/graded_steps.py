@@ -19,7 +19,7 @@ import numpy as np
 
 Array = np.ndarray[Any, Any]
 Acceleration = Callable[[float, float, float, Sequence[float]], float]
-POSITION, VELOCITY, PHASE, BEYOND = range(4)
+POSITION, VELOCITY, PHASE, BEYOND, EVERYWHERE = range(5)
 MISS, HIT, UNDECIDED = range(3)
 MOST_STEPS = 2_000_000
 A, B, C = np.zeros((0, 0)), np.zeros(0), np.zeros(0)  # the nodes of the method; `compiled_kernel` puts them in
@@ -51,7 +51,10 @@ FINENESS = FinenessSettings()
 
 
 class Motion(NamedTuple):
-    """A compiled acceleration, its parameters, the layers, rows (kind, centre, width, stiffness, spacing), and c."""
+    """A compiled acceleration, its parameters, the layers, rows (kind, centre, width, stiffness, spacing), and c.
+
+    A layer of kind EVERYWHERE adds 1/width to the rate of the motion in every state.
+    """
 
     acceleration: Any
     parameters: Array
@@ -69,8 +72,12 @@ class Hit(NamedTuple):
     steps: int
 
 
-def first_hit(motion: Motion, tau: float, v: float, horizon: float) -> Hit:
+def first_hit(motion: Motion, tau: float, v: float, horizon: float, first: float = FINENESS.first) -> Hit:
     """The first hit of the flight from (tau, v), v > 0, alike at two finenesses; UNDECIDED where no two agree.
+
+    Parameters
+    ----------
+    first : fineness of the first of the flights.
 
     Examples
     --------
@@ -80,7 +87,7 @@ def first_hit(motion: Motion, tau: float, v: float, horizon: float) -> Hit:
     3.0
     """
     run = compiled_kernel()["flown"]
-    fineness, before, steps = FINENESS.first, None, 0
+    fineness, before, steps = first, None, 0
     for _ in range(FINENESS.halvings + 1):
         status, time, velocity, crossed, count, top = run(*motion, tau, v, horizon, fineness)
         steps += count
@@ -169,6 +176,8 @@ def rate(layers: Array, t: float, x: float, u: float, e: float) -> float:
         elif kind == PHASE:
             turn = t - centre
             total += 1 / max(width, abs(turn - spacing * floor(turn / spacing + 0.5)))
+        elif kind == EVERYWHERE:
+            total += 1 / width
         else:
             distance = width if kind == BEYOND and x > centre else max(width, abs(x - centre))
             total += abs(u) / distance + sqrt(abs(e) / distance) + sqrt(stiffness) * width / distance

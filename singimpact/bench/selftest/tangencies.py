@@ -1,0 +1,90 @@
+"""Tangency points of one model: a_c changes its sign at each as its kind says, and nowhere else on a fine grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.bench.selftest.draws import Flown
+from singimpact.bench.selftest.rows import Row, Tally
+from singimpact.impact_oscillator import tangency_points
+from singimpact.inputs import InputError
+
+NAME = "tangency points"
+SIGNS = {"gamma": (-1, 1), "foliation": (1, -1)}
+EPSILON = 2.0**-52
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class GridSettings:
+    """How finely the phases are looked at.
+
+    Parameters
+    ----------
+    grid : intervals of one period, or between the first and the last point and as far beyond.
+    beside : distance to a point at which a_c is looked at, in units of an interval; a third of the distance to the next
+        point where that is less.
+    rounding : a_c is undecided below so many epsilon of its largest value.
+    """
+
+    grid: int = 20_000
+    beside: float = 0.1
+    rounding: float = 100.0
+
+
+GRID = GridSettings()
+
+
+def row(flown: Flown) -> Row:
+    """The row of the table."""
+    osc, tally = flown.osc, Tally(NAME)
+    try:
+        points = tangency_points(osc)
+    except InputError as reason:
+        return Row(NAME, note=f"does not apply: {reason}")
+    tau, period = np.array([point.tau for point in points]), flown.scales.period
+    low, high = flown.scales.low, flown.scales.high
+    if period is None and tau.size:
+        low, high = min(low, 2 * tau[0] - tau[-1] - 1), max(high, 2 * tau[-1] - tau[0] + 1)
+    # half an interval off the ends, where points of simple models lie
+    grid = np.linspace(low, high, GRID.grid + 1) + (high - low) / GRID.grid * 0.4142
+    a = osc.acceleration(grid)
+    least = GRID.rounding * EPSILON * float(np.max(np.abs(a), initial=0.0))
+    _kinds(flown, tau, [point.kind for point in points], (high - low) / GRID.grid, tally)
+    changed = np.flatnonzero(np.sign(a[:-1]) != np.sign(a[1:]))
+    simple = np.array([point.tau for point in points if point.kind != "degenerate"])
+    if period is not None:
+        simple = np.concatenate([simple, simple + period])
+    for at in changed.tolist():
+        inside = int(np.count_nonzero((simple > grid[at]) & (simple <= grid[at + 1])))
+        if min(abs(a[at]), abs(a[at + 1])) <= least:
+            tally.leave("a_c is a rounding")
+        else:
+            told = f"a_c changes its sign between {grid[at]!r} and {grid[at + 1]!r}, with {inside} tangency points"
+            tally.judge(0.0 if inside % 2 else np.inf, told)
+    if not (changed.size or tau.size):
+        tally.judge(0.0, "")  # no point and no change of sign: one agreement
+    return tally.row()
+
+
+def _kinds(flown: Flown, tau: Array, kinds: list[str], interval: float, tally: Tally) -> None:
+    """Signs of a_c on both sides of each point."""
+    gaps, period = np.abs(tau[:, None] - tau[None, :]), flown.scales.period
+    if period is not None:
+        gaps = np.minimum(gaps, period - gaps)
+    np.fill_diagonal(gaps, np.inf)
+    beside = np.minimum(GRID.beside * interval, np.min(gaps, axis=1, initial=np.inf) / 3)
+    sides = [flown.osc.acceleration(tau + sign * beside) for sign in (-1, 1)]
+    rounding = GRID.rounding * EPSILON * np.maximum(np.abs(tau), 1.0) * np.abs(flown.osc.acceleration(tau, order=1))
+    for at, kind in enumerate(kinds):
+        signs = tuple(int(np.sign(side[at])) for side in sides)
+        if min(abs(side[at]) for side in sides) <= rounding[at]:
+            tally.leave("a_c is a rounding")
+            continue
+        right = signs[0] == signs[1] if kind == "degenerate" else signs == SIGNS[kind]
+        tally.judge(
+            0.0 if right else np.inf, f"tangency point {tau[at]!r}, {kind}: a_c has the signs {signs} beside it"
+        )

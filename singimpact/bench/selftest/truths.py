@@ -1,0 +1,180 @@
+"""Flights of one model against flights that share nothing with them: small fixed steps, balls, more digits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.bench.selftest.draws import Flown
+from singimpact.bench.selftest.rows import Row, Tally
+from singimpact.bench.truth import enclosed_flight, graded_steps, plain_steps
+from singimpact.bench.truth.graded_steps import HIT, MISS
+from singimpact.bench.truth.sign_pieces import Refused
+from singimpact.status import Status
+
+EPSILON = 2.0**-52
+ENDED = (Status.no_return, Status.escaped)
+
+
+@dataclass(frozen=True)
+class TruthSettings:
+    """How many states, and when a flight is wrong.
+
+    Parameters
+    ----------
+    balls, digits : states flown in balls, and with `digits=`.
+    wanted : the digits.
+    wrong : least relative error of a flight time or a velocity that is wrong against the fixed steps, which agree with
+        themselves to 1e-11; 100 kappa epsilon counts where it is larger.
+    finer : of the fixed steps, where balls refuse to decide between them and the package.
+    """
+
+    balls: int = 50
+    digits: int = 20
+    wanted: int = 20
+    wrong: float = 1e-9
+    finer: float = 1 / 16
+
+
+TRUTHS = TruthSettings()
+
+
+def fixed_steps(flown: Flown) -> Row:
+    """Flights against fixed steps; where the two disagree, balls decide."""
+    tally = Tally("against small fixed steps")
+    tally.leave("CPU time of the flights used up", flown.left)
+    try:
+        motion = plain_steps.motion(flown.osc, flown.scales.rate)
+    except TypeError as reason:
+        return Row(tally.compared, note=f"does not apply: {reason}")
+    for at in range(flown.tau.size):
+        if tally.late:
+            tally.leave("CPU time used up", flown.tau.size - at)
+            break
+        _one(flown, at, motion, tally)
+    return tally.row()
+
+
+def _one(flown: Flown, at: int, motion: Any, tally: Tally) -> None:
+    tau, v, horizon = float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon
+    if flown.step.status[at] in (Status.unresolved, Status.graze):
+        tally.leave(Status(int(flown.step.status[at])).name)
+        return
+    true = graded_steps.first_hit(motion, tau, v, horizon)
+    if true.status not in (HIT, MISS):
+        tally.leave("steps do not settle")
+        return
+    ratio = _off(flown, at, *_ending(true))
+    if not ratio <= 1:
+        ratio, decided = _arbitrated(flown, at, motion, ratio)
+        if not decided:
+            tally.leave("steps and balls do not settle")
+            return
+    tally.judge(ratio, _told(flown, at, true.flight_time))
+
+
+def _ending(true: graded_steps.Hit) -> tuple[float | None, float]:
+    return (true.flight_time if true.status == HIT else None), true.velocity
+
+
+def _arbitrated(flown: Flown, at: int, motion: Any, before: float) -> tuple[float, bool]:
+    """The difference from the ball, or from finer steps where there is no ball; and whether one of these decides."""
+    tau, v, horizon = float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon
+    try:
+        ball = enclosed_flight.first_hit(flown.osc, tau, v, horizon)
+    except (Refused, ArithmeticError, TypeError):
+        true = graded_steps.first_hit(motion, tau, v, horizon, graded_steps.FINENESS.first * TRUTHS.finer)
+        settled = true.status in (HIT, MISS) and not _off(flown, at, *_ending(true)) <= 1
+        return before, settled
+    time = None if ball.flight_time is None else float(ball.flight_time)
+    return _off(flown, at, time, float(ball.velocity or 0.0)), True
+
+
+def _off(flown: Flown, at: int, time: float | None, velocity: float) -> float:
+    """Differences of flight time and velocity in units of max(1e-9, 100 kappa epsilon); inf for another end."""
+    step = flown.step
+    if step.status[at] != Status.hit or time is None:
+        return 0.0 if step.status[at] in ENDED and time is None else np.inf
+    found = (
+        (step.flight_time[at], time, step.condition[at]),
+        (step.velocity[at], velocity, step.velocity_condition[at]),
+    )
+    parts = [abs(one / other - 1) / max(TRUTHS.wrong, 100 * kappa * EPSILON) for one, other, kappa in found]
+    return float(np.max(parts))
+
+
+def _told(flown: Flown, at: int, true: Any) -> str:
+    """A state with both flight times."""
+    status = Status(int(flown.step.status[at])).name
+    return f"{flown.call(at)}: {status}, flight time {float(flown.step.flight_time[at])!r}, truth {true}"
+
+
+def _some(flown: Flown, count: int) -> list[int]:
+    """The places of some states, spread over all of them."""
+    spread = np.linspace(0, flown.tau.size - 1, min(count, flown.tau.size))
+    return [int(place) for place in np.unique(spread.astype(int))]
+
+
+def balls(flown: Flown) -> Row:
+    """Flights enclosed in balls: the error is within `time_error` and `velocity_error`."""
+    tally = Tally("within .error of balls")
+    places = _some(flown, TRUTHS.balls)
+    for done, at in enumerate(places):
+        if tally.late:
+            tally.leave("CPU time used up", len(places) - done)
+            break
+        try:
+            ball = enclosed_flight.first_hit(flown.osc, float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon)
+        except (Refused, ArithmeticError, TypeError):
+            tally.leave("balls refuse")
+            continue
+        _compared(flown, at, (ball.flight_time, ball.velocity), tally)
+    return tally.row()
+
+
+def digits(flown: Flown) -> Row:
+    """Flights with `digits=20`: the flights in doubles are within their `time_error` and `velocity_error`."""
+    tally = Tally(f"within .error of digits={TRUTHS.wanted}")
+    places = _some(flown, TRUTHS.digits)
+    for done, at in enumerate(places):
+        if tally.late:
+            tally.leave("CPU time used up", len(places) - done)
+            break
+        hit = flown.osc.first_hit(
+            float(flown.tau[at]), float(flown.v[at]), digits=TRUTHS.wanted, horizon=flown.scales.horizon
+        )
+        if hit.status in (Status.unresolved, Status.graze):
+            tally.leave(Status(int(hit.status)).name)
+        else:
+            there = hit.status == Status.hit
+            _compared(flown, at, (hit.flight_time, hit.velocity) if there else (None, None), tally)
+    return tally.row()
+
+
+def _compared(flown: Flown, at: int, truth: tuple[Any, Any], tally: Tally) -> None:
+    """Judge the errors of flight time and velocity in units of the estimates of the flight."""
+    step = flown.step
+    if step.status[at] in (Status.unresolved, Status.graze):
+        tally.leave(Status(int(step.status[at])).name)
+    elif step.status[at] != Status.hit or truth[0] is None:
+        same = step.status[at] in ENDED and truth[0] is None
+        tally.judge(0.0 if same else np.inf, _told(flown, at, "none" if truth[0] is None else float(truth[0])))
+    else:
+        pairs = ((step.flight_time, truth[0], step.time_error), (step.velocity, truth[1], step.velocity_error))
+        ratio = np.max([_relative(found[at], true) / error[at] for found, true, error in pairs])
+        tally.judge(float(ratio), _told(flown, at, float(truth[0])))
+
+
+def _relative(found: float, true: Any) -> float:
+    """|found/true - 1| for a ball or a number of many digits."""
+    if hasattr(true, "mid"):
+        import flint
+
+        with flint.ctx.workprec(256):
+            return float(abs(flint.arb(float(found)) / true - 1).mid())
+    import mpmath
+
+    with mpmath.workdps(2 * TRUTHS.wanted):
+        return float(abs(mpmath.mpf(float(found)) / true - 1))
