@@ -63,9 +63,8 @@ def row(flown: Flown) -> Row:
     tau, v, codes = tau[places], v[places], found.codes.ravel()[places]
     classes = followed(osc, tau, v, fast, tally)
     for index, (code, seen) in enumerate(zip(codes.tolist(), classes.tolist(), strict=True)):
-        told = (
-            f"basins from tau {tau[index]!r}, v {v[index]!r}: {basins.name_of(code)}, followed {basins.name_of(seen)}"
-        )
+        told = f"basins from tau {float(tau[index])!r}, v {float(v[index])!r}: {basins.name_of(code)}"
+        told += f", followed {basins.name_of(seen)}"
         if code == seen == OTHER:
             tally.leave("settles on no orbit of few impacts")
         elif code == seen:

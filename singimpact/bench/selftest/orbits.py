@@ -71,7 +71,8 @@ def _satisfied(flown: Flown, at: int, events: tuple[Array, Array], ends: Array, 
         if step.status[place] == Status.graze:
             late, fast = np.nan_to_num(late) + least * abs(tau[index]), least
         ratios = (abs(step.tau[place] - tau[index]) / late, abs(step.v[place] - v[index]) / (fast or least))
-        told = f"tau {float(tau[index])!r}, v {float(v[index])!r}; the map gives {float(step.tau[place])!r}, {float(step.v[place])!r}"
+        numbers = [float(part) for part in (tau[index], v[index], step.tau[place], step.v[place])]
+        told = "tau {!r}, v {!r}; the map gives {!r}, {!r}".format(*numbers)
         tally.judge(float(np.max(ratios)), call + told)
 
 
@@ -97,8 +98,14 @@ def _limit(flown: Flown, at: int, tally: Tally) -> None:
     here = osc.chatter_limit(flown.tau[at], flown.v[at], impacts=ORBITS.most)
     there = osc.chatter_limit(step.tau[at], step.v[at], impacts=ORBITS.most)
     statuses = [Status(int(each.status)) for each in (here, there)]
-    told = f"{flown.call(at, 'chatter_limit').split(', horizon')[0]}): {float(here.tau)!r}, error {here.error:.2g}, {statuses[0].name}"
-    told += f"; of its image {float(there.tau)!r}, error {there.error:.2g}, {statuses[1].name}"
+    told = (
+        flown.call(at, "chatter_limit").split(", horizon")[0]
+        + "), then of its image: "
+        + ", ".join(
+            f"{float(each.tau)!r} with error {each.error:.2g}, {status.name}"
+            for each, status in zip((here, there), statuses, strict=True)
+        )
+    )
     if Status.unresolved in statuses:
         tally.leave("impacts do not accumulate within the number flown")
     elif statuses[0] != statuses[1]:

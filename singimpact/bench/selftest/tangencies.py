@@ -63,7 +63,8 @@ def row(flown: Flown) -> Row:
         if min(abs(a[at]), abs(a[at + 1])) <= least:
             tally.leave("a_c is a rounding")
         else:
-            told = f"a_c changes its sign between {grid[at]!r} and {grid[at + 1]!r}, with {inside} tangency points"
+            ends = f"{float(grid[at])!r} and {float(grid[at + 1])!r}"
+            told = f"a_c changes its sign between {ends}, with {inside} tangency points"
             tally.judge(0.0 if inside % 2 else np.inf, told)
     if not (changed.size or tau.size):
         tally.judge(0.0, "")  # no point and no change of sign: one agreement
@@ -86,5 +87,5 @@ def _kinds(flown: Flown, tau: Array, kinds: list[str], interval: float, tally: T
             continue
         right = signs[0] == signs[1] if kind == "degenerate" else signs == SIGNS[kind]
         tally.judge(
-            0.0 if right else np.inf, f"tangency point {tau[at]!r}, {kind}: a_c has the signs {signs} beside it"
+            0.0 if right else np.inf, f"tangency point {float(tau[at])!r}, {kind}: a_c has the signs {signs} beside it"
         )
