@@ -14,6 +14,7 @@ from singimpact.bench.selftest.draws import Flown
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.dynamics import basins
 from singimpact.impact_oscillator import ImpactOscillator
+from singimpact.inputs import InputError
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
@@ -55,16 +56,19 @@ def row(flown: Flown) -> Row:
     if flown.scales.period is None:
         return Row(NAME, note="does not apply: g has no period")
     tally = Tally(NAME)
-    with ThreadPoolExecutor(1) as pool:
-        found = basins.basins(osc, None, (0, fast), PIXELS.size, pool)
+    try:
+        with ThreadPoolExecutor(1) as pool:
+            found = basins.basins(osc, None, (0, fast), PIXELS.size, pool)
+    except InputError as reason:
+        return Row(NAME, note=f"does not apply: {reason}")
     tally.restart()
     tau, v = (part.ravel() for part in np.meshgrid(found.tau, found.v))
     places = np.unique(np.linspace(0, tau.size - 1, PIXELS.followed).astype(int))
-    tau, v, codes = tau[places], v[places], found.codes.ravel()[places]
+    tau, v, codes = tau[places], v[places], _seen_first(found).ravel()[places]
     classes = followed(osc, tau, v, fast, tally)
     for index, (code, seen) in enumerate(zip(codes.tolist(), classes.tolist(), strict=True)):
-        told = f"basins from tau {float(tau[index])!r}, v {float(v[index])!r}: {basins.name_of(code)}"
-        told += f", followed {basins.name_of(seen)}"
+        told = f"basins from tau {float(tau[index])!r}, v {float(v[index])!r}: {_name(code)}"
+        told += f", followed {_name(seen)}"
         if code == seen == OTHER:
             tally.leave("settles on no orbit of few impacts")
         elif code == seen:
@@ -76,6 +80,16 @@ def row(flown: Flown) -> Row:
         else:
             tally.judge(np.inf, told)
     return tally.row()
+
+
+def _seen_first(found: basins.Basins) -> Array:
+    """What an orbit is seen to do first, of every pixel: its first chatter completes, or it settles on an orbit."""
+    orbits = [each.n * PLACES + each.k if each.kind == "orbit" else OTHER for each in found.attractors]
+    return np.where(found.first_chatter_completes, CHATTER, np.array(orbits, dtype=int)[found.codes])
+
+
+def _name(code: int) -> str:
+    return {OTHER: "none", CHATTER: "chatter"}.get(code, f"({code // PLACES}, {code % PLACES}) orbit")
 
 
 def _multiple(code: int, seen: int) -> bool:
@@ -93,7 +107,7 @@ def _moves(osc: ImpactOscillator, state: tuple[float, float], fast: float, code:
 
 
 def followed(osc: ImpactOscillator, tau: Array, v: Array, fast: float, tally: Tally) -> Array:
-    """The classes in which orbits are seen to end, coded as `basins` does; 0 where none is seen."""
+    """What orbits are seen to do first: 1 for a chatter that completes, 1000 n + k for an orbit, 0 for neither."""
     r = as_float(osc.slope_at_rest())
     impacts = min(PIXELS.transient + (ceil(log(PIXELS.rest) / log(r)) if r < 1 else 0), PIXELS.most)
     codes, open_ = np.full(tau.size, OTHER), np.arange(tau.size)

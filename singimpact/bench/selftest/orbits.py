@@ -110,6 +110,8 @@ def _limit(flown: Flown, at: int, tally: Tally) -> None:
         tally.leave("impacts do not accumulate within the number flown")
     elif statuses[0] != statuses[1]:
         tally.judge(np.inf, told)
+    elif statuses[0] == Status.lifts_off and here.impacts <= 1:
+        tally.leave("contact is lost at the first impact")
     elif statuses[0] not in (Status.complete, Status.lifts_off):
         tally.leave(statuses[0].name)
     else:
