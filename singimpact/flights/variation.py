@@ -21,7 +21,7 @@ def respond(
     Each step is as long as the bounds on the disc allow for the flight and for all three columns.
     """
     zero = 0 * v
-    time, z, u, longest, pace = zero, zero, v, p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0)
+    time, flown, z, u, longest, pace = zero, zero, zero, v, p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0)
     by_v, by_v_dot, by_tau, by_tau_dot = zero, zero + 1, zero, zero
     for _ in range(budget):
         A[0], A[1], B[0], B[1], Z[0], Z[1] = zero + 1, zero, zero, zero + 1, zero, zero
@@ -32,9 +32,15 @@ def respond(
         h = column_step(X, W, A, B, Z, order, h, pace[0], ulp, p)
         if not h > ulp * time:
             break
-        last = time + h >= end
+        last = flown + h >= end
         if last:
-            h = end - time
+            h = end - flown
+        # a step between two phases as they are rounded: a pulse feels their difference from the sum of steps
+        rounded = (launch[0] + (time + h)) - (launch[0] + time)
+        if not last and abs(rounded - h) < h / 1000000:
+            time, h = time + h, rounded
+        else:
+            time = time + h
         z, u, _size = advanced(X, z, order, h)
         a, a_dot, _size = advanced(A, A[0], order, h)
         b, b_dot, _size = advanced(B, B[0], order, h)
@@ -43,8 +49,7 @@ def respond(
         by_tau, by_tau_dot = a * by_tau + b * by_tau_dot + d, a_dot * by_tau + b_dot * by_tau_dot + d_dot
         if last:
             return by_v, by_v_dot, by_tau, by_tau_dot, True
-        time += h
-        longest = 2 * h
+        flown, longest = flown + h, 2 * h
     return by_v, by_v_dot, by_tau, by_tau_dot, False
 
 
@@ -114,8 +119,8 @@ def column_step(X: Any, W: Any, A: Any, B: Any, Z: Any, n: int, h: Any, R: Any, 
         q = h / R
         part = 1.001 * h * h * q ** (n - 1) / (n * (1 - q)) if q < 0.9 else 1e300 + 0 * h
         a, b, d = disc_of_columns(X, W, A, B, Z, n, R, p)
-        # Z starts from nothing, and Z - x' solves the homogeneous equation: both sizes count
-        size = abs(X[1]) + h * (abs(X[2]) + h * (abs(Z[2]) + h * (abs(Z[3]) + h * abs(Z[4]))))
+        # Z starts from nothing, and Z - x' solves the homogeneous equation: what a step moves either of them counts
+        size = ulp * abs(X[1]) + h * (abs(X[2]) + h * (abs(X[3]) + abs(Z[2]) + h * (abs(Z[3]) + h * abs(Z[4]))))
         if a * part <= 25 * ulp and b * part <= 25 * ulp * h and d * part <= 25 * ulp * size:
             return h
         h, R = h * 4 / 5, R * 15 / 16

@@ -161,6 +161,9 @@ def _derivative(launch: Launch) -> Trial | None:
         slack = [so_far + abs(new - old) / small for so_far, new, old in zip(slack, moved[0], values, strict=True)]
     beside = [values[at ^ 1] * size[at % 2 ^ 1] / size[at % 2] for at in range(4)]
     slack = [so_far + abs(other) for so_far, other in zip(slack, beside, strict=True)]
+    if isinstance(launch, SteepLaunch):
+        # a rounding of x inside the layer changes f' there by the steepness times as much
+        slack = [so_far + launch.steepness * abs(value) for so_far, value in zip(slack, values, strict=True)]
     return Trial(str(launch), found.matrix.ravel().tolist(), values, slack)
 
 

@@ -65,10 +65,11 @@ class Launch:
 
 @dataclass(frozen=True)
 class SteepLaunch(Launch):
-    """A state of a model with a steep layer; force and forcing are its texts, of period 2 pi."""
+    """A state of a model with a layer of a steepness; force and forcing are its texts, of period 2 pi."""
 
     force: str = "x"
     forcing: str = "cos(t)"
+    steepness: float = 0.0
 
     @property
     def model(self) -> ImpactOscillator:
@@ -180,7 +181,7 @@ def _steep(family: str, points: int) -> Iterator[Launch]:
             (f"x + tanh({K}*xdot)/10", "cos(t)", 0.3), (f"x + 5*(1 + tanh({K}*(x - 1/2)))", "cos(t)", 0.3),
             (f"x + 5*exp(-{K}**2*(x - 1/2)**2)", "cos(t)", 0.3), ("x", f"10*exp(-2*{K}**2*sin(t/2)**2) - 1/5", 4.5),
         ):  # fmt: skip
-            yield SteepLaunch(force, 1.0, tau=tau, v=2.0, force=force, forcing=forcing)
+            yield SteepLaunch(force, 1.0, tau=tau, v=2.0, force=force, forcing=forcing, steepness=float(K))
 
 
 PLACES: dict[str, Launches] = {
