@@ -170,9 +170,13 @@ def _flights(osc: Oscillator, states: States, limits: Allowance) -> Flight:
     fly(osc, kernel, states, removed, pushes, raw, limits)
     # first: what left the range of doubles would be followed again in many digits
     _escapes(osc, kernel.form, states, raw)
-    if _settle(osc, states, raw, limits):
+    settled = _settle(osc, states, raw, limits)
+    if settled.size:
         _escapes(osc, kernel.form, states, raw)
     flight, rough = _conditioned(osc, states, flight_of(raw), raw.judged, limits.epsilon)
+    settled = settled[raw.status[settled] == Status.hit]
+    flight.time_error[settled] = flight.velocity_error[settled] = EPSILON
+    rough[settled] = False
     flight = _explained(osc, states, flight, raw)
     return _sharpened(osc, states, flight, rough & (raw.status == Status.hit), pushes, limits)
 
@@ -231,8 +235,6 @@ def _conditioned(
                       for part, least, kappa in zip(answers.rounding, LIMITS.rough, kappas, strict=True))  # fmt: skip
         margin = LIMITS.margin if kernel_of(osc).form is None else 1.0
         errors = [margin * part + EPSILON for part in answers.rounding]
-        if kernel_of(osc).form is not None:  # what is rougher than its condition explains is refined
-            errors = [np.minimum(part, 10 * kappa * EPSILON) for part, kappa in zip(errors, kappas, strict=True)]
     flight = replace(flight, condition=kappas[0], velocity_condition=kappas[1], time_error=errors[0],
                      velocity_error=errors[1])  # fmt: skip
     return flight, late | dull
@@ -282,15 +284,15 @@ def _escapes(osc: Oscillator, form: LinearForm | None, states: States, raw: Raw)
         raw.status[gone[proved]], raw.cause[gone[proved]] = Status.escaped, Cause.decided
 
 
-def _settle(osc: Oscillator, states: States, raw: Raw, limits: Allowance) -> bool:
-    """What doubles leave open is asked again with many digits: the state is exact, so the answer exists."""
+def _settle(osc: Oscillator, states: States, raw: Raw, limits: Allowance) -> Array:
+    """What doubles leave open is asked again with many digits: the state is exact, so the answer exists.  Which was."""
     open_ones = np.flatnonzero(raw.cause == Cause.near_graze)[: LIMITS.settled]
     for index in open_ones:
         settled = manydigits.settle(osc, states, int(index), limits.horizon)
         if settled is not None:
             raw.status[index], raw.numbers[index] = settled
             raw.cause[index], raw.judged[index] = Cause.decided, np.nan
-    return bool(open_ones.size)
+    return open_ones
 
 
 def flight_of(raw: Raw) -> Flight:

@@ -123,15 +123,21 @@ class LinearFlow:
         The model with its waves is one linear system, so resonance needs no care; None when the step is not small.
         """
         time, pull = self.number(Fraction(near)), self._system()
-        state = (pull * time).exp() * self._start(tau, v)
-        height, speed = state[0, 0], state[1, 0]
-        change = pull * state
-        curve, jerk = change[1, 0], (pull * change)[1, 0]
-        if not abs(height) < abs(speed * time) * NEAR.numerator / NEAR.denominator:
-            return None
-        step = -height / speed
-        step *= 1 - step * curve / (2 * speed)
-        return time + step, speed + step * (curve + step * jerk / 2)
+        for _ in range(6):
+            state = (pull * time).exp() * self._start(tau, v)
+            height, speed = state[0, 0], state[1, 0]
+            change = pull * state
+            curve, jerk = change[1, 0], (pull * change)[1, 0]
+            if not abs(height) < abs(speed * time) * NEAR.numerator / NEAR.denominator:
+                return None
+            step = -height / speed
+            # next to a graze the step is not short beside speed/curve, and what is left is of its third order
+            near_enough = bool(abs(step * curve) < abs(speed) / 10**9)
+            step *= 1 - step * curve / (2 * speed)
+            if near_enough:
+                return time + step, speed + step * (curve + step * jerk / 2)
+            time = (time + step).mid()
+        return None
 
     def _system(self) -> Any:
         """The matrix of (z, z', 1, cosine and sine of each wave)."""
