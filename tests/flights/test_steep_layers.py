@@ -19,7 +19,7 @@ LAYERS = [  # f, g, tau, v, flight time by a Runge-Kutta method with steps of 0.
     ("x+5*exp(-6400*(x-1/2)**2)", "cos(t)", "0.3", 2, 3.000055),
 ]
 KINKS = [
-    ("sqrt(x**2)", "-1/2", -1, 0, 3, 0.358025), ("5*sqrt(x**2)", "-1/2", -1, 0, 3, 0.4),
+    ("sqrt(x**2)", "-1/2", -1, 0, 3, 0.358025), ("5*sqrt(x**2)", "-1/2", -1, 0, 3, None),
     ("x", "(cos(t)**2)**(1/2)-1", "1/5", "0.3", 3, np.pi / 2 - 0.3),
     ("x+sqrt(xdot**2)*xdot/10", "cos(2*t)", "1/5", "1.2", 3, 1.239082),
     ("x", "sqrt(sin(t)**2)-1", "1/5", "0.3", 3, np.pi - 0.3), ("x", "sqrt(1+cos(t))-1", "1/5", "0.3", 3, np.pi - 0.3),
@@ -37,7 +37,7 @@ def test_layers_are_not_jumped_over(f, g, tau, v, time) -> None:
     assert abs(float(exact.velocity) / hit.velocity - 1) <= hit.velocity_error
     # the way there, by an integrator that evaluates f and g alone
     times = np.linspace(0.1, 1, 5) * hit.flight_time
-    x, xdot = integrate(osc, float(si.ImpactOscillator("x", "t", 0, 1).acceleration(float(tau))), float(v), times)
+    x, xdot = integrate(osc, float(tau), float(v), times)
     path = osc.flight(tau, v, times)
     assert path.x == pytest.approx(x, abs=2e-4)
     assert path.xdot == pytest.approx(xdot, abs=2e-2)
@@ -70,7 +70,7 @@ def test_a_kink_is_named_with_its_phase(f, g, c, tau, v, time) -> None:
         hit = osc.first_hit(tau, v, digits=digits)
         assert (int(hit.status), int(hit.cause)) == (Status.unresolved, Cause.kink)
         assert "sqrt" in hit.sentence or "(cos(t)**2)" in hit.sentence
-        if time != 0.4:
+        if time is not None:
             assert f"({time:.6g} after the launch" in hit.sentence
         assert "kink at t = " in hit.sentence
 
