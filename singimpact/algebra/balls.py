@@ -50,7 +50,10 @@ class Balls:
 
     def interval(self, low: Fraction, high: Fraction) -> Any:
         """The smallest ball around [low, high] at this precision."""
-        return self.rational(low).union(self.rational(high))
+        import flint
+
+        with flint.ctx.workprec(self.bits):
+            return self.rational(low).union(self.rational(high))
 
     def pi(self) -> Any:
         import flint

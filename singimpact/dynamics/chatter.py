@@ -103,10 +103,10 @@ def chatter_limit(
     >>> print(f"{end.tau:.14f}", Status(end.status).name, bool(end.error < 1e-13))
     0.95935923442208 complete True
     """
-    states = States.read(tau, v)
+    states = States.of(osc, tau, v, digits if isinstance(digits, int) else 15)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: chatter starts from one state, give two numbers")
-    flown = _Flown(osc, float(states.tau[0]), float(states.v[0]), whole("impacts", impacts, 1, 10**7))
+    flown = _Flown(osc, states, whole("impacts", impacts, 1, 10**7))
     found = flown.limit()
     if digits is None or found.status not in (Status.complete, Status.lifts_off):
         return found
@@ -117,7 +117,7 @@ def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | No
     """The limit in balls, where the model and the state allow it."""
     if not enclosed.enclosable(osc):
         return None
-    found = enclosed.chatter_limit(osc, states.exact_tau(0), states.exact_v(0), digits)
+    found = enclosed.chatter_limit(osc, states, digits)
     if found is None:
         return None
     status = Status.lifts_off if found.lost else Status.complete
@@ -182,9 +182,9 @@ def _last(terms: list[Any]) -> Any:
 class _Flown:
     """A chatter sequence in doubles."""
 
-    def __init__(self, osc: Oscillator, tau: float, v: float, most: int) -> None:
-        self.osc, self.start, self.most = osc, (tau, v), most
-        self.times, self.speeds, self.cause = [tau], [v], Cause.decided
+    def __init__(self, osc: Oscillator, states: States, most: int) -> None:
+        self.osc, self.states, self.most = osc, states, most
+        self.times, self.speeds, self.cause = [float(states.tau[0])], [float(states.v[0])], Cause.decided
 
     def limit(self) -> ChatterLimit:
         lost = 1 - as_float(self.osc.slope_at_rest())
@@ -224,7 +224,7 @@ class _Flown:
         """A start at rest is flown by the map, which knows what follows."""
         if self.speeds[0] > 0:
             return Status.hit
-        step = impact_map(self.osc, *self.start)
+        step = impact_map(self.osc, *self.states.given(0))
         if step.status == Status.hit:
             self.times.append(float(step.tau))
             self.speeds.append(float(step.v))
@@ -279,7 +279,9 @@ def _precise(osc: Oscillator, states: States, found: ChatterLimit, digits: int) 
     precision = digits + 10 + ceil(log(amplified, 10))
     with mpmath.workdps(precision):
         small = mpmath.mpf(10) ** (-digits - 1)
-        tau, v = (as_mpf(tree, mpmath.mp) for tree in (states.exact_tau(0), states.exact_v(0)))
+        tau, v = states.given(0)
+        if not states.rest:
+            tau, v = (as_mpf(tree, mpmath.mp) for tree in (states.exact_tau(0), states.exact_v(0)))
         count, wanted, r = 0, int(found.impacts), as_mpf(osc.slope_at_rest(), mpmath.mp)
         while True:
             while count < wanted:

@@ -20,7 +20,7 @@ from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.contact.next_zero import ContactZero
 from singimpact.flights.flow.balls import LinearFlow
-from singimpact.flights.launch import at_rest
+from singimpact.flights.launch import States
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory.formulas import curve_at
@@ -81,22 +81,24 @@ class EnclosedLimit:
     lost: bool
 
 
-def chatter_limit(osc: Oscillator, tau: Expression, v: Expression, digits: int) -> EnclosedLimit | None:
+def chatter_limit(osc: Oscillator, states: States, digits: int) -> EnclosedLimit | None:
     """The accumulation time of chatter, or the impact at which a_c no longer presses; None when neither was proved.
+
+    Parameters
+    ----------
+    osc : the model. states : one launch, see `States.of`. digits : of the result.
 
     Examples
     --------
-    >>> from singimpact.algebra.numbers import constant
     >>> osc = Oscillator("x", "cos(2.8*t)", 0, "0.8")
-    >>> print(chatter_limit(osc, constant("tau", "0.9"), constant("v", "0.005"), 30).tau)
+    >>> print(chatter_limit(osc, States.of(osc, "0.9", "0.005"), 30).tau)
     0.959359234422082626031840228653
     """
-    removed = 1
+    tau, v, removed = states.exact_tau(0), states.exact_v(0), 1
     if not sign_of(v):
-        sign, order = at_rest(osc, tau)
-        if sign <= 0:
+        if states.rest[0].sign <= 0:
             return None
-        removed = order + 2
+        removed = states.rest[0].order + 2
     return _with_more_bits(lambda flow: _chatter(flow, tau, v, removed, digits), osc, digits)
 
 

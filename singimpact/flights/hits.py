@@ -58,7 +58,7 @@ def first_hit(
     >>> hit.flight_time.tolist(), hit.velocity.tolist(), hit.status.tolist()
     ([0.0, 1.0, 3.0], [0.0, -1.0, -3.0], [2, 0, 0])
     """
-    states = States.read(tau, v)
+    states = States.of(osc, tau, v, digits if isinstance(digits, int) else 15)
     limits = Allowance(horizon_of(osc, horizon), _tolerance(tolerance), checked_steps(steps))
     if digits is not None:
         return shaped(_many_digits(osc, states, checked_digits(digits), limits), states.shape)
@@ -82,7 +82,7 @@ def impact_map(
     >>> step.tau, step.v, step.status
     (np.float64(4.0), np.float64(1.5), np.int8(0))
     """
-    states = States.read(tau, v)
+    states = States.of(osc, tau, v, digits if isinstance(digits, int) else 15)
     hit = first_hit(osc, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps)
     if digits is not None:
         return manydigits.step(osc, states, hit, digits)
@@ -165,7 +165,7 @@ def shaped(flight: Flight, shape: tuple[int, ...]) -> Flight:
 def _flights(osc: Oscillator, states: States, limits: Allowance) -> Flight:
     kernel = kernel_of(osc)
     raw = raw_flights(states.v.size)
-    removed = removed_roots(osc, states, raw.status)
+    removed = removed_roots(states, raw.status)
     pushes = acceleration(osc, states.tau)
     fly(osc, kernel, states, removed, pushes, raw, limits)
     # first: what left the range of doubles would be followed again in many digits
@@ -250,7 +250,7 @@ def _many_digits(osc: Oscillator, states: States, digits: int, limits: Allowance
     budgets = np.full(states.v.size, limits.steps)
     if kernel_of(osc).form is None:
         tiny = np.array([states.v[i] == 0 and sign_of(states.exact_v(i)) > 0 for i in range(states.v.size)], bool)
-        removed = removed_roots(osc, states, raw.status)
+        removed = removed_roots(states, raw.status)
         raw.status[tiny] = Status.unresolved
         fly(osc, kernel_of(osc), states, removed, acceleration(osc, states.tau), raw, limits)
         _escapes(osc, None, states, raw)

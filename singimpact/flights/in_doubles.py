@@ -17,7 +17,7 @@ from singimpact.flights.causes import decoded
 from singimpact.flights.escape_averaged import stays_up
 from singimpact.flights.escape_barrier import kept_up
 from singimpact.flights.kernel import Kernel, ready
-from singimpact.flights.launch import States, at_rest, launches
+from singimpact.flights.launch import States, launches
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.tables import STRIDES, table_of
 from singimpact.inputs import InputError
@@ -65,13 +65,13 @@ def raw_flights(size: int) -> Raw:
     return Raw(np.zeros(size, np.int8), np.zeros(size, np.int8), np.zeros((size, 4)), np.full((size, JUDGED), np.nan))
 
 
-def removed_roots(osc: Oscillator, states: States, status: Array) -> Array:
+def removed_roots(states: States, status: Array) -> Array:
     """How often t = 0 is a root of x - c; a mass at rest that stays is marked."""
     removed = np.ones(states.v.size, dtype=np.int64)
     for index in np.flatnonzero(states.v == 0):
-        sign, order = at_rest(osc, states.exact_tau(int(index)))
-        removed[index] = order + 2
-        status[index] = Status.hit if sign > 0 else Status.sticks
+        rest = states.rest[int(index)]
+        removed[index] = rest.order + 2
+        status[index] = Status.hit if rest.sign > 0 else Status.sticks
     return removed
 
 

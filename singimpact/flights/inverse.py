@@ -10,12 +10,13 @@ import numpy as np
 from singimpact.algebra.expressions import Name, multiply, names_in, number, substitute
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.flights.carriers import Step
-from singimpact.flights.hits import first_hit, rebound
+from singimpact.flights.hits import first_hit
 from singimpact.flights.launch import States
-from singimpact.flights.tangent import rebound_slope
+from singimpact.flights.velocity_before import SPARE, sharpened, speed_before
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
+Array = np.ndarray[Any, Any]
 KEPT = ("flight_time", "depth", "bound", "condition", "velocity_condition", "time_error", "velocity_error", "cause")
 
 
@@ -47,50 +48,40 @@ def inverse_map(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None,
     (np.float64(1.0), np.float64(3.0), np.int8(0))
     """
     states = States.read(tau, v)
-    times, speeds = (np.empty(states.v.size, dtype=object) for _ in range(2))
-    dead = np.zeros(states.v.size, dtype=bool)
+    times, speeds = np.empty(states.v.size, dtype=object), _speeds(osc, states, digits)
+    dead = np.array([speed is None for speed in speeds], dtype=bool)
     for index in range(states.v.size):
-        times[index] = multiply(number(-1), states.exact_tau(index))
-        speeds[index] = _before(osc, states, index, digits)
-        dead[index] = speeds[index] is None
+        time = states.given(index)[0]
+        times[index] = -time if isinstance(time, float) else multiply(number(-1), states.exact_tau(index))
         speeds[index] = 0 if dead[index] else speeds[index]
     hit = first_hit(backwards(osc), times, speeds, digits=digits, horizon=horizon)
     return _step(states, hit, speeds, dead, digits)
 
 
-def _before(osc: Oscillator, states: States, index: int, digits: int | None) -> Any:
-    """-U with rho(U) = v, as an exact number where rho is -r v; None when Newton's method does not find one."""
+def _speeds(osc: Oscillator, states: States, digits: int | None) -> Array:
+    """U with rho(-U) = v, as an exact number where rho is -r v; None where no velocity rebounds to v."""
+    found = np.empty(states.v.size, dtype=object)
     if not names_in(osc.restitution):
-        return multiply(states.exact_v(index), _inverse(osc))
-    v = float(states.v[index])
-    u = -v / as_float(osc.slope_at_rest())
-    for _ in range(60):
-        change = (float(rebound(osc, np.array(u))) - v) / float(rebound_slope(osc, u))
-        u -= change
-        if not u <= 0:
-            return None
-        if abs(change) <= 1e-15 * abs(u):
-            return -u if digits is None else _sharper(osc, states, index, u, digits)
-    return None
+        found[:] = [multiply(states.exact_v(index), _inverse(osc)) for index in range(found.size)]
+        return found
+    doubles = speed_before(osc, states.v)
+    for index in np.flatnonzero(~np.isnan(doubles)).tolist():
+        found[index] = float(doubles[index]) if digits is None else _sharper(osc, states, index, doubles, digits)
+    return found
+
+
+def _sharper(osc: Oscillator, states: States, index: int, doubles: Array, digits: int) -> Any:
+    import mpmath
+
+    with mpmath.workdps(2 * digits + SPARE):
+        v = as_mpf(states.exact_v(index), mpmath.mp)
+    return sharpened(osc, v, float(doubles[index]), digits) if v else mpmath.mpf(0)
 
 
 def _inverse(osc: Oscillator) -> Any:
     from singimpact.algebra.expressions import power
 
     return power(osc.restitution, number(-1))
-
-
-def _sharper(osc: Oscillator, states: States, index: int, u: float, digits: int) -> Any:
-    import mpmath
-
-    from singimpact.flights import manydigits
-
-    with mpmath.workdps(digits + 15):
-        v, place = as_mpf(states.exact_v(index), mpmath.mp), mpmath.mpf(u)
-        slope = float(rebound_slope(osc, u))
-        for _ in range(2 + digits // 8):
-            place -= (manydigits.rebound(osc, place) - v) / slope
-        return -place
 
 
 def _step(states: States, hit: Any, speeds: Any, dead: Any, digits: int | None) -> Step:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
@@ -18,11 +19,15 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import sign_of_acceleration
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.nearest_zero import Zero, zero_beside
 
 
 @dataclass(frozen=True)
 class States:
     """Launch states, flat, with the shape they came in; `exact_tau`, `exact_v` give what was written.
+
+    `rest` gives, for each launch at rest, its exact time with sign and order of the first derivative of a_c that is not
+    zero (sign 0: none was found).
 
     Examples
     --------
@@ -35,6 +40,22 @@ class States:
     v: np.ndarray[Any, Any]
     shape: tuple[int, ...]
     written: tuple[Any, Any]
+    rest: Mapping[int, Zero] = field(default_factory=dict)
+
+    @staticmethod
+    def of(osc: Oscillator, tau: Any, v: Any, digits: int = 15) -> States:
+        """`read`, and what a model does with a mass at rest: next to a zero of a_c, a double is that zero."""
+        states = States.read(tau, v)
+        resting = np.flatnonzero(states.v == 0)
+        if not resting.size:
+            return states
+        rest = {}
+        for index in resting.tolist():
+            moving = sign_of(states.exact_v(index)) > 0  # less than the smallest double
+            zero = None if moving else _zero_beside(osc, states.written[0][index], digits)
+            tau = states.exact_tau(index)
+            rest[index] = zero or Zero(tau, *reversed(at_rest(osc, tau)))
+        return replace(states, rest=rest)
 
     @staticmethod
     def read(tau: Any, v: Any) -> States:
@@ -56,12 +77,24 @@ class States:
         return States(times, speeds, shape, (written[0].ravel(), written[1].ravel()))
 
     def exact_tau(self, index: int) -> Expression:
-        """tau as it was written."""
+        """tau as it was written, or the zero of a_c that it stands for."""
+        if index in self.rest:
+            return self.rest[index].tau
         return constant("tau", self.written[0][index])
+
+    def given(self, index: int) -> tuple[Any, Any]:
+        """tau and v as they came."""
+        return self.written[0][index], self.written[1][index]
 
     def exact_v(self, index: int) -> Expression:
         """v as it was written."""
         return constant("v", self.written[1][index])
+
+
+def _zero_beside(osc: Oscillator, written: Any, digits: int) -> Zero | None:
+    if not isinstance(written, float | np.floating):
+        return None  # what is written exactly is meant exactly
+    return zero_beside(osc, float(written), 256 + 4 * digits)
 
 
 def _raw(name: str, value: Any) -> np.ndarray[Any, Any]:

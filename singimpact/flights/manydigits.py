@@ -23,14 +23,16 @@ from singimpact.algebra.rings import Multiprecision
 from singimpact.codegen.kernels import FUNCTIONS, plain
 from singimpact.flights.carriers import Flight, Step
 from singimpact.flights.causes import decoded
+from singimpact.flights.closing import common_period, touches_again
 from singimpact.flights.escape import never_returns
 from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.flow.balls import linear_flow
 from singimpact.flights.kernel import Kernel, kernel_of
-from singimpact.flights.launch import States, at_rest, workspace
+from singimpact.flights.launch import States, workspace
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.nearest_zero import Zero
 from singimpact.status import Status
 
 SPARE_BITS = (64, 320)  # beside the digits asked for: at first, and for a phase or a graze that costs more
@@ -113,7 +115,30 @@ def rebound(osc: Oscillator, velocity: Any) -> Any:
 
 def found(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
     """One flight to `digits` digits: in balls where they prove the hit, else by two precisions that agree."""
-    return _proved(osc, states, index, digits, limit) or agreed(osc, states, index, digits, limit, budget)
+    proved = _proved(osc, states, index, digits, limit)
+    if proved is None and (touch := _closing(osc, states, index, digits, limit)) is not None:
+        return touch
+    return proved or agreed(osc, states, index, digits, limit, budget)
+
+
+def _closing(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome | None:
+    """The graze of a flight that comes back to its launch at rest after the common period of the model."""
+    if index not in states.rest or common_period(osc) is None:
+        return None
+    code, numbers = flown(osc, states, index, digits + LIMITS.guard, limit, LIMITS.settling_steps)
+    return _touching(osc, states, index, numbers, digits) if code == Status.unresolved else None
+
+
+def _touching(osc: Oscillator, states: States, index: int, numbers: Any, digits: int) -> Outcome | None:
+    """The graze at the common period, where a flight was followed to a place that is not decided."""
+    import mpmath
+
+    rest = states.rest.get(index)
+    period = None if rest is None else touches_again(osc, rest, float(numbers[0]))
+    if period is None:
+        return None
+    with mpmath.workdps(digits + LIMITS.guard):
+        return int(Status.graze), (as_mpf(period, mpmath.mp), mpmath.mpf(0), mpmath.mpf(0), numbers[3])
 
 
 def _proved(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome | None:
@@ -125,14 +150,14 @@ def _proved(osc: Oscillator, states: States, index: int, digits: int, limit: flo
     import mpmath
 
     tau, v = states.exact_tau(index), states.exact_v(index)
-    sign, order = at_rest(osc, tau) if states.v[index] == 0 else (1, -1)
+    rest = states.rest.get(index, Zero(tau, -1, 1))
     for bits in (ceil(digits * BITS_A_DIGIT) + spare for spare in SPARE_BITS):
         flow = linear_flow(osc, bits)
-        if flow is None or sign <= 0:
+        if flow is None or rest.sign <= 0:
             return None
         with flint.ctx.workprec(bits):
             at, speed = (evaluate(tree, {}, flow.balls) for tree in (tau, v))
-            hit = flow.first_hit(at, speed, flow.number(Fraction(limit)), order + 2)
+            hit = flow.first_hit(at, speed, flow.number(Fraction(limit)), rest.order + 2)
             if hit is None or hit.time is None:
                 return None
         numbers = hit.time, hit.velocity
@@ -199,6 +224,8 @@ def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[i
             return None
         if code != Status.unresolved:
             return code, [float(value) for value in numbers]
+        if (touch := _touching(osc, states, index, numbers, digits)) is not None:
+            return touch[0], [float(value) for value in touch[1]]
     if _touches(numbers):
         return int(Status.graze), [float(value) for value in numbers]
     return None
@@ -212,10 +239,10 @@ def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float
         v = as_mpf(states.exact_v(index), mpmath.mp)
         removed = 1
         if v == 0:
-            sign, order = at_rest(osc, states.exact_tau(index))
-            if sign <= 0:
+            rest = states.rest[index]
+            if rest.sign <= 0:
                 return int(Status.sticks), (v, v, v, v)
-            removed = order + 2
+            removed = rest.order + 2
         try:
             return _march(osc, states, index, v, removed, (limit, budget))
         except (ArithmeticError, ValueError, TypeError):  # log or a root left its domain on the way

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number, substitute
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float
@@ -93,12 +94,21 @@ def as_ball(osc: Oscillator, tau: Expression, order: int = 0) -> Any:
 
 
 def _ball(osc: Oscillator, tau: Expression, order: int, bits: int) -> Any:
+    balls = Balls(bits + _exponent(tau))
+    return around(osc, balls.evaluate(tau, {}), order, balls)
+
+
+def around(osc: Oscillator, start: Any, order: int, balls: Balls) -> Any:
+    """The derivative of a_c over a ball of times.
+
+    Examples
+    --------
+    >>> balls = Balls(64)
+    >>> around(Oscillator("x", "sin(t)", 0, 1), balls.interval(Fraction(0), Fraction(1)), 1, balls).contains(1)
+    True
+    """
     import flint
 
-    from singimpact.algebra.balls import Balls
-
-    balls = Balls(bits + _exponent(tau))
-    start = balls.evaluate(tau, {})
     force = balls.evaluate(resting_force(osc), {})
     with flint.ctx.workprec(balls.bits):
         if not order:

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from singimpact.algebra.certified import Certified
-from singimpact.algebra.numbers import constant
 from singimpact.bench.problems import values
 from singimpact.dynamics import chatter, enclosed
 from singimpact.dynamics.threshold import threshold
@@ -30,8 +29,8 @@ STATES = {
 @pytest.mark.parametrize("name", STATES)
 def test_chatter_limit_contains_what_mpmath_and_the_completion_map_give(name):
     osc, tau, v = STATES[name]
-    found = enclosed.chatter_limit(osc, constant("tau", tau), constant("v", v), 15)
-    states = States.read(tau, v)
+    states = States.of(osc, tau, v)
+    found = enclosed.chatter_limit(osc, states, 15)
     rough = chatter.chatter_limit(osc, tau, v)
     assert (rough.status == Status.lifts_off) == found.lost
     other = chatter._precise(osc, states, rough, 22).tau

@@ -7,6 +7,7 @@ import pytest
 import singimpact as si
 from singimpact.dynamics.attractors import CHATTER, OTHER
 from singimpact.dynamics.chatter import ENDING, _Flown
+from singimpact.flights.launch import States
 
 EPSILON = 2.0**-52
 
@@ -47,7 +48,8 @@ def test_slow_states_that_are_not_pressed_do_not_chatter():
 def test_a_chatter_is_summed_up_only_where_the_last_term_is_below_rounding():
     """Starts of all speeds: some have a last term between one rounding and a hundred when they are first looked at."""
     for v in np.geomspace(1e-6, 5e-3, 40):
-        flown = _Flown(si.linear("2.8", 0, "0.8"), 0.9, float(v), 10_000)
+        model = si.linear("2.8", 0, "0.8")
+        flown = _Flown(model, States.of(model, 0.9, float(v)), 10_000)
         found = flown.limit()
         series = found.error - flown.rounding(float(found.tau), found.status)
         assert series <= ENDING.trust * EPSILON * abs(float(found.tau)) / 4 * (1 + 1e-6) + 1e-22

@@ -63,3 +63,65 @@ def test_both_sides_of_a_graze_are_told_apart(model, offset):
 def test_no_bound_is_claimed_at_resonance():
     osc = si.ImpactOscillator("x", "sin(t) + sin(3*t)/2", "-0.7", "0.8")
     assert osc.impact_map(0.3, 0.1, horizon=2.0).status == Status.no_return
+
+
+@pytest.mark.parametrize("clearance", ["0.58", "0.605", "-0.3", "0.9"])
+def test_a_double_next_to_a_zero_of_a_c_is_that_zero(clearance):
+    """At rest a mass leaves from every zero at which a_c rises, whatever the last bit of the double says."""
+    model = si.linear("2.8", clearance, "0.5")
+    points = si.tangency_points(model)
+    for tau, kind in zip(points.tau, points.kind, strict=True):
+        for place in (np.nextafter(tau, -10), tau, np.nextafter(tau, 10)):
+            if abs(mpmath.mpf(place) - exact_zero(clearance, place)) > np.spacing(place):
+                continue
+            hit, precise = model.first_hit(place, 0.0), model.first_hit(float(place), 0, digits=30)
+            assert hit.status == precise.status == (Status.hit if kind == "gamma" else Status.sticks)
+            if kind == "gamma":
+                truth = model.first_hit(mpmath.nstr(exact_zero(clearance, place), 45), "1e-60", digits=20).flight_time
+                assert abs(precise.flight_time / truth - 1) < 1e-18
+                assert abs(hit.flight_time / float(truth) - 1) < 1e-14
+                assert model.chatter_limit(place, 0).impacts > 0
+
+
+def exact_zero(clearance, near):
+    """The zero of cos(2.8 t) - c next to a double, in 50 digits."""
+    with mpmath.workdps(50):
+        return mpmath.findroot(lambda t: mpmath.cos(mpmath.mpf("2.8") * t) - mpmath.mpf(clearance), near, tol=1e-90)
+
+
+def test_what_is_written_exactly_is_meant_exactly():
+    model = si.linear("2.8", "0.58", "0.5")
+    tau = float(si.tangency_points(model).tau[1])
+    zero = exact_zero("0.58", tau)
+    with mpmath.workdps(40):
+        before, after = (mpmath.nstr(zero + side * mpmath.mpf("1e-25"), 40) for side in (-1, 1))
+    assert model.first_hit(before, 0).status == Status.sticks
+    assert model.first_hit(after, 0).status == Status.hit
+
+
+@pytest.mark.parametrize("omega", ["2", "3", "1/3", "0.1", "5"])
+@pytest.mark.parametrize("digits", [None, 25])
+def test_a_flight_that_comes_back_to_rest_grazes_after_the_common_period(omega, digits):
+    """From a positive swan, of fourth order; from a_c > 0, of second: both touch as they left."""
+    model = si.linear(omega, -1, "1/2")
+    turns = {"1/3": 3, "0.1": 10}.get(omega, 1)
+    for tau in (f"pi/({omega})", np.pi / float(ratio(omega))):
+        hit = model.first_hit(tau, 0, digits=digits)
+        assert hit.status == Status.graze
+        assert abs(hit.flight_time - 2 * np.pi * turns) < 1e-14 * turns
+        if digits:
+            with mpmath.workdps(30):
+                assert abs(hit.flight_time - 2 * mpmath.pi * turns) < mpmath.mpf(10) ** -22
+
+
+def ratio(text):
+    top, _, bottom = text.partition("/")
+    return mpmath.mpf(top) / mpmath.mpf(bottom or 1)
+
+
+@pytest.mark.parametrize("change", ["2*xdot/10**12", "x/10**12"])
+def test_without_a_common_period_a_flight_from_a_swan_is_no_graze(change):
+    """A little damping or detuning: the touch of fourth order is missed or becomes a hit."""
+    model = si.ImpactOscillator(f"x + {change}", "cos(2*t)", -1, "1/2")
+    hit = model.first_hit("pi/2", 0, digits=30)
+    assert hit.status != Status.graze or abs(hit.flight_time - 2 * np.pi) > 1e-3

@@ -1,0 +1,119 @@
+"""The velocity before an impact from the one after it: rho inverted on the branch that begins at rest."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import Multiprecision
+from singimpact.flights.tangent import rebound_slope
+from singimpact.oscillator.model import Oscillator
+
+DOUBLINGS = 64
+STEPS = 120
+DIGITS = 20  # of a speed that doubles leave open
+FLAT = 64  # roundings of v that one rounding of the speed may stand for
+SPARE = 40  # digits beside twice those asked for: at a greatest rebound half of the digits are lost
+
+Array = np.ndarray[Any, Any]
+
+
+def speed_before(osc: Oscillator, v: Array) -> Array:
+    """U >= 0 with rho(-U) = v for each v >= 0; nan where no velocity on the branch from rest rebounds to v.
+
+    Parameters
+    ----------
+    osc : a model whose rho is an expression. v : velocities after an impact, any shape.
+
+    Examples
+    --------
+    >>> osc = Oscillator("x", "cos(t)", 0, "-tanh(v/2)")
+    >>> speed_before(osc, np.array([0.5, 1.0])).round(12).tolist()
+    [1.098612288668, nan]
+    """
+    v = np.asarray(v, dtype=float)
+    low, high = np.zeros(v.shape), v / as_float(osc.slope_at_rest())
+    for _ in range(DOUBLINGS):
+        below = _below(osc, high, v)
+        if not below.any():
+            break
+        low, high = np.where(below, high, low), np.where(below, 2 * high, high)
+    guess = high.copy()
+    for _ in range(STEPS):
+        value, slope = _rebound(osc, guess)
+        below = _still_below(value, slope, v)
+        low, high = np.where(below, guess, low), np.where(below, high, guess)
+        with np.errstate(all="ignore"):
+            newton = guess - (value - v) / slope
+        inside = (newton > low) & (newton < high)
+        middle = np.where(low > 0, np.sqrt(low * high), high / 2)
+        moved = np.where(inside, newton, middle)
+        if np.all((moved == guess) | (high - low <= 2 * np.spacing(high))):
+            break
+        guess = moved
+    ends = np.stack([low, guess, high])
+    value, slope = _rebound(osc, ends)
+    with np.errstate(invalid="ignore"):
+        allowed = 4 * (np.spacing(v) + np.nan_to_num(np.abs(slope)) * np.spacing(ends))
+    miss = np.abs(np.where(np.isfinite(value), value - v, np.inf))
+    best = np.argmin(miss, axis=0)[None]
+    close = (np.take_along_axis(miss, best, 0) <= np.take_along_axis(allowed, best, 0))[0]
+    found = np.where(v == 0, 0.0, np.where(close, np.take_along_axis(ends, best, 0)[0], np.nan))
+    return _decided(osc, v, found)
+
+
+def _decided(osc: Oscillator, v: Array, speed: Array) -> Array:
+    """Where rho is nearly flat its rounding decides the speed, or whether there is one: asked with more digits."""
+    import mpmath
+
+    _, slope = _rebound(osc, speed)
+    with np.errstate(all="ignore"):
+        flat = (speed > 0) & ~(np.spacing(v) < FLAT * np.spacing(speed) * slope)
+    for index in np.argwhere(flat).tolist():
+        sharper = sharpened(osc, mpmath.mpf(float(v[tuple(index)])), float(speed[tuple(index)]), DIGITS)
+        speed[tuple(index)] = np.nan if sharper is None else float(sharper)
+    return speed
+
+
+def _rebound(osc: Oscillator, speed: Array) -> tuple[Array, Array]:
+    """rho(-U), and its slope along U."""
+    from singimpact.flights.hits import rebound
+
+    with np.errstate(all="ignore"):
+        return rebound(osc, -speed), -np.asarray(rebound_slope(osc, -speed), dtype=float)
+
+
+def _below(osc: Oscillator, speed: Array, v: Array) -> Array:
+    return _still_below(*_rebound(osc, speed), v)
+
+
+def _still_below(value: Array, slope: Array, v: Array) -> Array:
+    """On the branch from rest, and not yet at v."""
+    return np.asarray((value < v) & (slope > 0) & np.isfinite(slope))
+
+
+def sharpened(osc: Oscillator, v: Any, speed: float, digits: int) -> Any:
+    """U to `digits` digits by Newton's method from a double; None where it does not settle.
+
+    Parameters
+    ----------
+    v : a number of mpmath, to more digits than asked for. speed : U as a double.
+    """
+    import mpmath
+
+    from singimpact.flights import manydigits
+
+    with mpmath.workdps(2 * digits + SPARE):
+        place, ring = mpmath.mpf(-speed), Multiprecision(mpmath.mp)
+        small = mpmath.mpf(10) ** (-digits - 5)
+        for _ in range(4 * digits + STEPS):
+            slope = rebound_slope(osc, place, ring)
+            if not slope < 0:
+                return None
+            change = (manydigits.rebound(osc, place) - v) / slope
+            place -= change
+            if abs(change) <= small * abs(place):
+                return -place
+    return None
