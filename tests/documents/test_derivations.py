@@ -72,6 +72,12 @@ def test_no_claim_ends_in_error(marks):
     assert {mark.verdict for mark in marks.values()} <= {"proved", "certified", "supported", "cited", "corrected"}
 
 
+def test_effective_verdicts_are_shown(told, marks):
+    text = as_latex(told, marks)
+    assert r"\beside{s6p-AB}{corrected, proved in the model}" in text
+    assert marks["s3-slope"].text == "supported"
+
+
 def test_the_two_routes_show_one_theory():
     half = sympy.Rational(1, 2)
     for stated, derived in [
@@ -97,7 +103,7 @@ import json, sys
 from singimpact.documents.derivations import as_text, sections
 from singimpact.documents.steps import Mark, claims_of
 told = sections()
-marks = {claim: Mark("proved") for claim in claims_of(told)}
+marks = {claim: Mark("proved", "proved") for claim in claims_of(told)}
 sys.stdout.write("".join(as_text(told, marks, form) for form in ("latex", "markdown", "json")))
 """
 
@@ -141,7 +147,7 @@ def test_no_word_escapes_its_dollars(told, marks):
 def test_json_has_verdicts_and_what_is_printed(told, marks):
     steps = {step["label"]: step for section in told for step in as_data(section, marks)["steps"]}
     assert steps["e:phinew"]["claims"]["e:phinew"]["verdict"] == "corrected"
-    assert steps["e:phinew"]["claims"]["e:phinew"]["stands"] == "proved"
+    assert steps["e:phinew"]["claims"]["e:phinew"]["effective"] == "proved"
 
 
 @pytest.mark.slow

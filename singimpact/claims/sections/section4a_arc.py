@@ -271,7 +271,7 @@ CLAIMS = (
             "flight",
         ),
         mutants=("penetrates",),
-        rests_on=("e:yeq",),
+        rests_on=("e:yeq", "t:t2-exists"),  # the second half of the corrected statement needs gamma
     ),
     Claim(
         id="t:t2-sides",
