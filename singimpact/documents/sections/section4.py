@@ -125,8 +125,8 @@ def _return() -> tuple[Step, ...]:
             "Of these only the one in $\\sigma\\eta$ depends on how $\\eta$ was chosen. They do not matter on $s = 0$ "
             "after the blow-up below, nor for $D\\bar h$ there. One impact is the map $h = p^{-1} \\circ q$ of the "
             "surface into itself: the next flight $(\\bar\\sigma, \\bar\\eta)$ starts where this one ends, "
-            "$\\psi \\circ p\\, (\\bar\\sigma, \\bar\\eta) = \\psi \\circ q\\, (\\sigma, \\eta)$. The second components "
-            "give $\\bar\\eta^2 = Q_r(\\sigma, \\eta) + O(3)$, with",
+            "$\\psi \\circ p\\, (\\bar\\sigma, \\bar\\eta) = \\psi \\circ q\\, (\\sigma, \\eta)$. The second "
+            "components give $\\bar\\eta^2 = Q_r(\\sigma, \\eta) + O(3)$, with",
             rf"Q_r(\sigma, \eta) = {in_powers(fold.Q_r(), r)}",
             "e:qdef",
             ("e:qdef",),
