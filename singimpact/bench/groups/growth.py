@@ -36,6 +36,7 @@ def cases(effort: Effort) -> Iterator[Case]:
     """A case a kind of size; the smallest sizes are left out where a call still costs more than its work."""
     short = effort.quick
     symbols = (6, 8, 10) if short else (6, 8, 10, 12, 14)
+    theory.v_c(2, at="tangency")  # loads sympy, which `bench start` times
     yield _grown("order of v_c, symbols for the jets", "kernel", symbols, lambda n: sheet(Contact.generic(1, n), n),
                  _first("singimpact", symbols[:4], lambda n: theory.v_c(n, at="tangency")))  # fmt: skip
     numbers = (8, 12, 16) if short else (8, 12, 16, 24, 32)
