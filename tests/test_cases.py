@@ -331,7 +331,7 @@ def test_a_file_is_written_as_often_as_its_results_grow_by_a_quarter(count, tmp_
     assert sum(rows) < 6 * count
 
 
-def test_slow_cases_are_written_as_they_come(tmp_path, monkeypatch):
+def test_slow_cases_are_written_as_they_come(tmp_path):
     import time
 
     output, seen = tmp_path / "kept.npz", []

@@ -47,6 +47,11 @@ def test_golden_equations(told, freeze):
         assert json.loads(path.read_text()) == json.loads(content), REFRESH
 
 
+def test_golden_statements(freeze):
+    ((path, content),) = freeze.statements().items()
+    assert json.loads(path.read_text()) == json.loads(content), REFRESH
+
+
 def test_the_folder_holds_what_is_derived_now(told, marks, freeze):
     files = freeze.derivations(told, marks)
     for path, content in files.items():

@@ -21,7 +21,8 @@ STEP, LIFT = 1e-6, 1e-4  # along sigma to either side of the end of gamma; in v,
 def _birth(stated: int) -> Check:
     """Sign of d (c - c_0) for which a_c has two zeros near a swan: a'' sigma^2/2 + (da/dc)(c - c_0) = 0."""
     second, rate, step = sympy.symbols("a_d2 a_c delta", nonzero=True)
-    square = -2 * rate * step / second
+    near = sympy.Poly(second * sigma**2 / 2 + rate * step, sigma)
+    square = sympy.cancel(-near.nth(0) / near.nth(2))
     product = sympy.cancel(square * second**2 / (second * rate * step))  # sigma^2 in units of d delta / a''^2
     return every(
         [
