@@ -33,6 +33,17 @@ def golden(told: list[Section]) -> dict[Path, bytes]:
     }
 
 
+def statements() -> dict[Path, bytes]:
+    """id -> what is printed and, where another statement holds, that one: what a person reads of each claim."""
+    from singimpact.claims import CLAIMS
+
+    told = {
+        name: {"printed": claim.printed.latex} | ({"corrected": claim.corrected().latex} if claim.corrected else {})
+        for name, claim in CLAIMS.items()
+    }
+    return {GOLDEN / "statements.json": (json.dumps(told, indent=2) + "\n").encode()}
+
+
 def generated() -> dict[Path, bytes]:
     """The source under singimpact/generated: from theory and codegen alone, so it works with that folder emptied."""
     from singimpact.theory.frozen import curve_module, sheet_module
@@ -48,7 +59,7 @@ def main() -> None:
         print(path.relative_to(HERE.parent))
     told = sections()
     folder(GOLDEN)
-    for path, content in {**derivations(told, marks_of(told)), **golden(told)}.items():
+    for path, content in {**derivations(told, marks_of(told)), **golden(told), **statements()}.items():
         with written(path) as draft:
             draft.write_bytes(content)
         print(path.relative_to(HERE.parent))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
@@ -27,7 +28,7 @@ class Portions:
     Parameters
     ----------
     each : chunks a worker gets on the average: more even out unequal cases, fewer send less.
-    most : cases in a chunk; what an interruption can lose is a chunk a worker.
+    most : cases in a chunk; an interruption loses a chunk a worker, a kill what was not written either (`KEEPING`).
     pools : that are tried in full width; when each has lost a worker, the guilty case is looked for in pools of one.
     deaths : of a worker alone with one case; then the case is guilty. A worker killed from outside dies once.
     """
@@ -39,6 +40,23 @@ class Portions:
 
 
 PORTIONS = Portions()
+
+
+@dataclass(frozen=True)
+class KeepingSettings:
+    """When results are written; the file is always written whole, so that writing it after every chunk costs n^2.
+
+    Parameters
+    ----------
+    grown : results over those in the file; all writes together then cost five times the last one.
+    share : of the time since the last write, that the next one may take: slow cases are kept as they come.
+    """
+
+    grown: float = 1.25
+    share: float = 0.05
+
+
+KEEPING = KeepingSettings()
 
 
 def sweep(
@@ -54,8 +72,10 @@ def sweep(
     function : of one case; it gives a number or an array of numbers of one shape, and can be pickled for the executor.
     cases : whatever the function takes.
     executor : any `concurrent.futures.Executor`; a process pool when it is not given.
-    output : an .npz file that takes every chunk as it comes. When it holds results of the same cases, of a function
-        with the same code and the same values closed over, by the same version, only what is missing is computed.
+    output : an .npz file that takes results as they come: when they have grown by a quarter, when writing them takes
+        less than a twentieth of the time since they were written, and at the end, by an error too. When it holds
+        results of the same cases, of a function with the same code and the same values closed over, by the same
+        version, only what is missing is computed.
 
     Returns
     -------
@@ -76,8 +96,11 @@ def sweep(
     items = list(cases)
     kept = _Kept(output, None if output is None else key(function, items), len(items))
     missing = [index for index in range(len(items)) if index not in kept.results]
-    with ProgressLine() as line:
-        _run_all(function, items, missing, executor, kept, line)
+    try:
+        with ProgressLine() as line:
+            _run_all(function, items, missing, executor, kept, line)
+    finally:
+        kept.write()
     return np.stack([kept.results[index] for index in range(len(items))]) if items else np.empty(0)
 
 
@@ -214,10 +237,11 @@ def _end_with_parent() -> None:
 
 
 class _Kept:
-    """Results by case, on disk after every chunk when there is a file."""
+    """Results by case, on disk too when there is a file: now and then (`KEEPING`), and when `write` is called."""
 
     def __init__(self, output: str | Path | None, digest: str | None, count: int) -> None:
         self.path, self.key, self.results = None if output is None else Path(output), digest, dict[int, Any]()
+        self.saved, self.when, self.spent = 0, time.monotonic(), 0.0
         if self.path is not None:
             require_writable(self.path)
             self._read(self.path, count)
@@ -234,6 +258,7 @@ class _Kept:
             other = "other cases, another function or version"
             raise InputError(f"output = {shown(str(path))} holds results of {other}: name another file")
         self.results.update((index, value) for index, value in pairs if index < count)
+        self.saved = len(self.results)
 
     def _pairs(self, found: Any) -> tuple[bool, list[tuple[int, Any]]]:
         """Whether the key agrees, and (case, result) for what the file holds."""
@@ -250,12 +275,17 @@ class _Kept:
 
     def add(self, part: list[int], values: list[Any]) -> None:
         self.results.update(zip(part, (np.asarray(value) for value in values), strict=True))
-        if self.path is not None:
-            index = np.array(sorted(self.results))
-            with written(self.path) as draft, draft.open("wb") as stream:
-                np.savez(
-                    stream,
-                    key=np.array(self.key),
-                    index=index,
-                    result=np.stack([self.results[i] for i in index.tolist()]),
-                )
+        grown = len(self.results) >= KEEPING.grown * self.saved
+        if grown or self.spent <= KEEPING.share * (time.monotonic() - self.when):
+            self.write()
+
+    def write(self) -> None:
+        """Put all results into the file, if there is one and it lacks some."""
+        if self.path is None or len(self.results) == self.saved:
+            return
+        start, index = time.monotonic(), np.array(sorted(self.results))
+        values = np.stack([self.results[i] for i in index.tolist()])
+        with written(self.path) as draft, draft.open("wb") as stream:
+            np.savez(stream, key=np.array(self.key), index=index, result=values)
+        self.saved, self.when = len(self.results), time.monotonic()
+        self.spent = self.when - start

@@ -30,6 +30,10 @@ class FakeVerdict:
     rests_on: tuple = ()
     seconds: float = 0.125
 
+    @property
+    def in_words(self):
+        return self.kind if self.effective == self.kind else f"{self.kind} ({self.effective})"
+
     def as_dict(self):
         data = asdict(self)
         data["verdict"] = data.pop("kind")

@@ -312,3 +312,49 @@ def cases_kept(path):
     from singimpact.cases import _Kept
 
     return _Kept(path, key(abs, [1.0]), 1).results
+
+
+@pytest.mark.parametrize("count", [400, 1600])
+def test_a_file_is_written_as_often_as_its_results_grow_by_a_quarter(count, tmp_path, monkeypatch):
+    """Portions of one case: all writes together put down a few times the results, not half their square."""
+    from singimpact import cases
+
+    rows = []
+    true = np.savez
+    monkeypatch.setattr(cases, "PORTIONS", cases.Portions(each=count))
+    monkeypatch.setattr(cases, "KEEPING", cases.KeepingSettings(share=0.0))
+    monkeypatch.setattr(np, "savez", lambda stream, **parts: (rows.append(len(parts["index"])), true(stream, **parts)))
+    with ThreadPoolExecutor(1) as pool:
+        sweep(abs, range(count), pool, tmp_path / "kept.npz")
+    assert rows[0] == 1
+    assert rows[-1] == count
+    assert sum(rows) < 6 * count
+
+
+def test_slow_cases_are_written_as_they_come(tmp_path):
+    import time
+
+    output, seen = tmp_path / "kept.npz", []
+
+    def slow(case):
+        if output.exists():
+            with np.load(output) as kept:
+                seen.append(len(kept["index"]))
+        time.sleep(0.1)
+        return case
+
+    with ThreadPoolExecutor(1) as pool:
+        sweep(slow, range(12), pool, output)
+    assert max(seen) >= 9
+
+
+def test_an_error_writes_what_there_is(tmp_path, monkeypatch):
+    from singimpact import cases
+
+    monkeypatch.setattr(cases, "KEEPING", cases.KeepingSettings(grown=1e9, share=0.0))
+    CALLS.clear()
+    output = tmp_path / "kept.npz"
+    with pytest.raises(KeyboardInterrupt), ThreadPoolExecutor(1) as pool:
+        sweep(fails_late, range(20), pool, output)
+    with np.load(output) as kept:
+        assert len(kept["index"]) >= 16

@@ -332,7 +332,8 @@ def identical(left: Any, right: Any) -> bool:
         left, right = (part.subs({p: w ** (2 * p.exp) for p in part.atoms(sympy.Pow) if p.base == root[0].base})
                        for part in (left, right))  # fmt: skip
     sides = [_quotient(side) for side in (left, right)]
-    names = sorted({name for side in sides for part in side for name in part.free_symbols} - {w}, key=str)
+    parts = [relation, *(part for side in sides for part in side)]
+    names = sorted({name for part in parts for name in part.free_symbols} - {w}, key=str)
     if not all(part.is_polynomial(*names, w) for side in sides for part in side):
         return False
     variables = [*names, w]

@@ -12,10 +12,13 @@ from typing import Any
 
 AROUND = """
 import json, resource, time
+def spent_so_far():
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + ended.ru_utime + ended.ru_stime
 {before}
-base, start = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_time()
+base, start = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, spent_so_far()
 {timed}
-spent, most = time.process_time() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+spent, most = spent_so_far() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 {after}
 print(json.dumps([spent, (most - base) / 1024, answer]))
 """
@@ -23,7 +26,7 @@ print(json.dumps([spent, (most - base) / 1024, answer]))
 
 @dataclass(frozen=True)
 class Cost:
-    """CPU seconds and megabytes of the statements that were timed, and the `answer` that the process gave."""
+    """CPU seconds (with those of children that have ended) and megabytes of what was timed, and the `answer` given."""
 
     seconds: float
     megabytes: float

@@ -1,11 +1,13 @@
 """A case of a group: its methods timed in turn, again and again, their answers judged against the truth.
 
-CPU time of this process, or of a fresh one where a method brings its own clock; a first round, not counted, compiles.
+CPU time of this process and of its children, or of a fresh one where a method brings its own clock; a first round,
+not counted, compiles.
 Ratios are taken within a round, for the rounds of a busy machine differ more than the methods of one round.
 """
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -15,6 +17,9 @@ from typing import Any
 import numpy as np
 
 from singimpact.inputs import InputError
+
+if sys.platform != "win32":
+    import resource
 
 EPSILON = 2.0**-52
 Run = Callable[[], Any]
@@ -81,7 +86,8 @@ class Method:
 
     Parameters
     ----------
-    name, setting : as the table shows them. run : gives an answer a problem; None or nan where it has none.
+    name, setting : as the table shows them; one that begins with "singimpact" calls public names only, "kernel" is a
+        private function of the package. run : gives an answer a problem; None or nan where it has none.
     size : what the cost grows with. copies : how often a run solves each problem.
     epsilon : of the arithmetic; answers may be off by ten times their condition times this.
     problems : by which the time of a run is divided; without it by its answers.
@@ -201,12 +207,20 @@ def _rounds(method: Method, fresh: bool, effort: Effort) -> int:
     return min(effort.fresh, effort.rounds) if fresh else effort.rounds
 
 
+def cpu_seconds() -> float:
+    """CPU seconds of this process and of its children that have ended, as those of a pool that was shut down."""
+    if sys.platform == "win32":  # which does not count those of children
+        return time.process_time()
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + ended.ru_utime + ended.ru_stime
+
+
 def _timed(run: Run, calls: int = 1) -> tuple[float, Sequence[Any], bool]:
     """CPU seconds of a run, the mean of some calls; its answers; whether it brought its own clock."""
-    start = time.process_time()
+    start = cpu_seconds()
     for _ in range(calls):
         found = run()
-    spent = (time.process_time() - start) / calls
+    spent = (cpu_seconds() - start) / calls
     return (found.seconds, found.answers, True) if isinstance(found, Timed) else (spent, found, False)
 
 

@@ -9,7 +9,8 @@ from typing import Any
 from singimpact.notebook import table
 
 KINDS = ("proved", "certified", "supported", "cited", "corrected", "open", "error")
-STRENGTH = {"proved": 5, "certified": 4, "supported": 3, "cited": 2, "open": 1, "error": 0}
+IN_MODEL = "proved in the model"  # an exact argument about x'' = 12 kappa (s^2 - 1) alone, which oscillators tend to
+STRENGTH = {"proved": 6, "certified": 5, IN_MODEL: 4, "supported": 3, "cited": 2, "open": 1, "error": 0}
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,8 @@ class Verdict:
 
     Attributes
     ----------
-    kind : one of `KINDS`. effective : the weakest kind along what it rests on.
+    kind : one of `KINDS`. effective : the weakest kind along what it rests on, and what documents print.
+    in_model : whether its verifier used the universal model of section 6, so that a proof is one in that model.
     corrected, corrected_kind : the statement that holds instead, in LaTeX, and its own verdict.
     witness : numbers at which the printed statement fails. seconds : of CPU time.
     certificates : plain data on which the verdict rests where it is proved, each accepted by `algebra.checking`.
@@ -161,16 +163,31 @@ class Verdict:
     certificates: tuple[dict[str, Any], ...]
     trials: tuple[Trial, ...]
     seconds: float
+    in_model: bool = False
 
     @property
     def strength(self) -> str:
         """The kind that dependants rest on: of the corrected statement when the printed one fails."""
         return self.corrected_kind if self.kind == "corrected" and self.corrected_kind else self.kind
 
+    @property
+    def in_words(self) -> str:
+        """The kind, with the effective verdict in brackets where that is another word.
+
+        Examples
+        --------
+        >>> from singimpact.claims import run, select
+        >>> [verdict.in_words for verdict in run(select(["s6-a0-typo"]))]
+        ['corrected (proved in the model)']
+        """
+        if self.effective.startswith(self.kind):
+            return self.effective
+        return f"{self.kind} ({self.effective})"
+
     def _repr_html_(self) -> str:
-        rows = [("verdict", self.kind), ("printed", f"${self.printed}$")]
+        rows = [("verdict", self.in_words), ("printed", f"${self.printed}$")]
         if self.corrected is not None:
-            rows.append((f"corrected ({self.corrected_kind})", f"${self.corrected}$"))
+            rows.append((f"corrected ({self.effective})", f"${self.corrected}$"))
         return table([], [*rows, ("evidence", self.evidence)], f"{self.id}, section {self.section}: {self.title}")
 
     def as_dict(self) -> dict[str, Any]:

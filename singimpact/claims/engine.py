@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from singimpact.algebra.certificates import Certificate, collected
-from singimpact.claims.claim import STRENGTH, Check, Claim, Trial, Verdict
+from singimpact.claims.claim import IN_MODEL, STRENGTH, Check, Claim, Trial, Verdict
 from singimpact.claims.keys import key_of
 from singimpact.claims.memory import keep, recall
 from singimpact.claims.sections import CLAIMS
 from singimpact.inputs import unknown
+from singimpact.theory.equations import derived_from, watched
+from singimpact.theory.unfolding import acceleration as model_acceleration
 
 
 def select(ids: Sequence[str] | None = None) -> list[Claim]:
@@ -86,6 +88,7 @@ class _Found:
     corrected_kind: str | None = None
     certificates: tuple[Certificate, ...] = ()
     trials: tuple[Trial, ...] = ()
+    in_model: bool = False
 
 
 def decide(claim: Claim, known: dict[str, Verdict]) -> Verdict:
@@ -95,14 +98,12 @@ def decide(claim: Claim, known: dict[str, Verdict]) -> Verdict:
         found = _found(claim)
     except Exception as error:  # a verifier that raises is a verdict, not a crash of the run
         found = _Found("error", f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")
-    strength = found.corrected_kind or found.kind
     below = [known[name].effective for name in claim.rests_on if name in known]
-    effective = min([strength, *below], key=lambda name: STRENGTH[name])
     return Verdict(
         id=claim.id,
         section=claim.section,
         title=claim.title,
-        effective=effective,
+        effective=effective(found.corrected_kind or found.kind, found.in_model, below),
         printed=claim.printed.latex,
         rests_on=claim.rests_on,
         seconds=time.process_time() - started,
@@ -110,18 +111,44 @@ def decide(claim: Claim, known: dict[str, Verdict]) -> Verdict:
     )
 
 
+def effective(kind: str, in_model: bool, below: Sequence[str]) -> str:
+    """The verdict that a claim is worth: the weakest of its own and of the effective ones that it rests on.
+
+    Parameters
+    ----------
+    kind : what its verifier's argument is worth. in_model : whether that argument is about the universal model.
+    below : effective verdicts of the claims that it rests on.
+
+    Examples
+    --------
+    >>> effective("proved", True, ["proved"]), effective("proved", False, ["supported"])
+    ('proved in the model', 'supported')
+    """
+    own = IN_MODEL if in_model and kind == "proved" else kind
+    return min([own, *below], key=lambda name: STRENGTH[name])
+
+
 def _found(claim: Claim) -> _Found:
-    check, certificates = _verified(claim, claim.printed.value)
+    check, certificates, in_model = _verified(claim, claim.printed.value)
     if check.holds:
-        return _Found(check.kind, check.evidence, certificates=certificates)
+        return _Found(check.kind, check.evidence, certificates=certificates, in_model=in_model)
     return _corrected(claim, check)
 
 
-def _verified(claim: Claim, value: Any) -> tuple[Check, tuple[Certificate, ...]]:
-    """What the verifier says of a statement, and the certificates on which that rests."""
+def _verified(claim: Claim, value: Any) -> tuple[Check, tuple[Certificate, ...], bool]:
+    """What the verifier says of a statement, the certificates on which that rests, and whether it used the model."""
     with collected() as gathered:
-        check = claim.verify(value)
-    return check, tuple(gathered)
+        check, labels = watched(lambda: claim.verify(value))
+    return check, tuple(gathered), _reaches(labels, model_acceleration.label)  # type: ignore[attr-defined]
+
+
+def _reaches(labels: Iterable[str], goal: str) -> bool:
+    """Whether an equation is among some, or among those that they were derived from."""
+    todo, seen = set(labels), set[str]()
+    while todo - seen:
+        seen |= todo
+        todo = {below for label in todo for below in derived_from(label)}
+    return goal in seen
 
 
 def _corrected(claim: Claim, failed: Check) -> _Found:
@@ -129,14 +156,14 @@ def _corrected(claim: Claim, failed: Check) -> _Found:
     if claim.corrected is None:
         raise ArithmeticError(f"the printed statement fails and nothing is known to hold instead: {failed.evidence}")
     statement = claim.corrected()
-    check, certificates = _verified(claim, statement.value)
+    check, certificates, in_model = _verified(claim, statement.value)
     if not check.holds:
         raise ArithmeticError(f"printed and corrected statement both fail: {failed.evidence}; {check.evidence}")
     if not failed.witness:
         raise ArithmeticError("the printed statement fails without a witness")
     evidence = f"printed: {failed.evidence}; corrected: {check.evidence}"
     trials = _tried(claim, statement.value)
-    return _Found("corrected", evidence, failed.witness, statement.latex, check.kind, certificates, trials)
+    return _Found("corrected", evidence, failed.witness, statement.latex, check.kind, certificates, trials, in_model)
 
 
 def _tried(claim: Claim, corrected: Any) -> tuple[Trial, ...]:

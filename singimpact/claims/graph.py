@@ -58,7 +58,14 @@ def as_svg(claims: Mapping[str, Claim], kinds: Mapping[str, str] | None = None) 
     )
 
 
-COLOURS = {"proved": "#d5e8d4", "supported": "#dae8fc", "cited": "#eeeeee", "corrected": "#ffe6cc", "error": "#f8cecc"}
+COLOURS = {
+    "proved": "#d5e8d4",
+    "proved in the model": "#e6f0d0",
+    "supported": "#dae8fc",
+    "cited": "#eeeeee",
+    "corrected": "#ffe6cc",
+    "error": "#f8cecc",
+}
 
 
 def _box(claim: Claim, x: int, y: int, kind: str) -> str:

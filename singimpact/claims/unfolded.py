@@ -96,20 +96,19 @@ def tangency_at_A() -> tuple[float, float]:
     return sides[0], sides[1]
 
 
-@lru_cache(maxsize=4)
-def gamma_end(r: str) -> float:
-    """sigma in (E', A) from which, at rest, the orbit of the positive swan runs along gamma into B: by bisection."""
-    osc = universal(1, r)
+@lru_cache(maxsize=8)
+def gamma_end(r: str, v: float = 0.0, halvings: int = 40) -> float:
+    """sigma in (E', A) from which, at velocity v, the positive swan's orbit runs along gamma into B: by bisection."""
     low, high = -float(np.sqrt(3)) + 1e-9, -1 - 1e-9
-    for _ in range(60):
+    for _ in range(halvings):
         middle = (low + high) / 2
-        low, high = (low, middle) if _completes(osc, middle) else (middle, high)
+        low, high = (low, middle) if completes(r, middle, v) else (middle, high)
     return (low + high) / 2
 
 
-def _completes(osc: ImpactOscillator, sigma: float) -> bool:
-    """Whether chatter from rest at sigma is complete before B."""
-    tau, v = sigma, 0.0
+def completes(r: str, sigma: float, v: float = 0.0) -> bool:
+    """Whether chatter from (sigma, v) in the positive swan is complete before B."""
+    osc, tau = universal(1, r), sigma
     for _ in range(400):
         step = osc.impact_map(tau, v)
         tau, v = float(step.tau), float(step.v)
@@ -154,29 +153,37 @@ class Preimages:
 
     Attributes
     ----------
-    heights : of delta and its inverse images. gamma : that of gamma. factor : the last ratio of distances to gamma.
+    heights : of delta and its inverse images, at h = 0.001. farther : the first two at h = 0.002.
+    gamma : that of gamma. factor : the last ratio of distances to gamma.
     """
 
     heights: tuple[float, ...]
+    farther: tuple[float, ...]
     gamma: float
     factor: float
 
 
 @lru_cache(maxsize=1)
 def preimages() -> Preimages:
-    """Jumps of the number of impacts before the long flight over A, at h = 1e-3."""
-    h, rate = 1e-3, true_orbits.lambda_of(0.5, 1)
+    """Jumps of the number of impacts before the long flight over A."""
+    rate = true_orbits.lambda_of(0.5, 1)
     limit = 24 * (1 - rate) * (2 + rate) / 6
+    heights, farther = _jump_heights(1e-3, limit, 7), _jump_heights(2e-3, limit, 2)
+    factor = (heights[-1] - limit) / (heights[-2] - limit)
+    return Preimages(heights, farther, limit, factor)
+
+
+def _jump_heights(h: float, limit: float, jumps: int) -> tuple[float, ...]:
+    """v/h^2 at the first jumps on the line sigma = -1 - h, from delta downwards to `limit`."""
     heights, high = [], 24 * 0.4
-    for count in range(1, 8):
+    for count in range(1, jumps + 1):
         low, top = limit, high
         for _ in range(48):
             middle = (low + top) / 2
             low, top = (low, middle) if _impacts_before_leaving(-1 - h, middle * h * h) < count else (middle, top)
         heights.append((low + top) / 2)
         high = low
-    factor = (heights[-1] - limit) / (heights[-2] - limit)
-    return Preimages(tuple(heights), limit, factor)
+    return tuple(heights)
 
 
 def _impacts_before_leaving(sigma: float, v: float, most: int = 60) -> int:

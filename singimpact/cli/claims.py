@@ -81,7 +81,7 @@ def graph(svg: bool, as_json: bool, output: str | None) -> None:
 def _kinds() -> dict[str, str]:
     from singimpact.claims import run, select
 
-    return {verdict.id: verdict.kind for verdict in run(select(), kept=True)}
+    return {v.id: v.kind if v.corrected else v.effective for v in run(select(), kept=True)}
 
 
 @command.command()

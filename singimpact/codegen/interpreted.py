@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.codegen.kernels import FUNCTIONS, compiled, is_compiled, nested, was_compiled
+from singimpact.codegen.kernels import FUNCTIONS, WITHOUT_EXCEPTIONS, compiled, is_compiled, nested, was_compiled
 
 LEFT_TO_NUMBA = (ZeroDivisionError, OverflowError, ValueError, TypeError)
 """What Python refuses where doubles have an answer: 1/0, exp(1000), log(-1), a comparison of (-1)**0.5."""
@@ -137,8 +137,6 @@ def _bound(node: ast.AST) -> list[tuple[str, str]]:
 def _space(text: str) -> tuple[ast.Module, dict[str, Any]]:
     tree = nested(text)
     space: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
-    # as compiled code has them: no exception where doubles have an answer
-    space["exp"] = lambda x: math.exp(x) if not x > 709.78 else math.inf
-    space["log"] = lambda x: math.log(x) if x > 0 else math.nan
+    space.update(WITHOUT_EXCEPTIONS)
     exec(compile(tree, "<kernel>", "exec"), space)
     return tree, space

@@ -17,7 +17,7 @@ from types import CodeType
 from typing import Any
 
 from singimpact import cache
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, Unfinished
 from singimpact.store import cache_folder, folder, passing_folder, write_text
 
 _READY: dict[tuple[str, tuple[str, ...]], dict[str, Any]] = {}
@@ -61,7 +61,7 @@ def compiled(text: str, names: tuple[str, ...]) -> dict[str, Any]:
     >>> compiled("def twice(x):\\n    return 2 * x\\n", ("twice",))["twice"](1.5)
     3.0
     """
-    import numba
+    numba = _numba()
 
     from singimpact.codegen.machine_code import keep_machine_code
 
@@ -73,8 +73,10 @@ def compiled(text: str, names: tuple[str, ...]) -> dict[str, Any]:
     sys.modules[module.__name__] = module
     space = vars(module)
     space.update({name: getattr(math, name) for name in FUNCTIONS})
+    if numba.config.DISABLE_JIT:  # the text runs as it stands, on arrays, with the answers that compiled code has
+        space.update(WITHOUT_EXCEPTIONS)
     exec(compile(text, place, "exec"), space)
-    for name in names:
+    for name in names if not numba.config.DISABLE_JIT else ():
         space[name] = numba.njit(error_model="numpy")(space[name])
         if path is not None:
             keep_machine_code(space[name])
@@ -82,9 +84,25 @@ def compiled(text: str, names: tuple[str, ...]) -> dict[str, Any]:
     return space
 
 
+def _numba() -> Any:
+    """The compiler, or one sentence where it cannot be loaded: few flights do without it, many would take for ever."""
+    try:
+        import numba
+    except ImportError as error:
+        told = "install numba, which is among the requirements, or fly fewer states in a call"
+        raise Unfinished(f"so much work needs a compiler, and numba cannot be imported ({error}): {told}") from None
+    return numba
+
+
+WITHOUT_EXCEPTIONS: dict[str, Any] = {
+    "exp": lambda x: math.exp(x) if not x > 709.78 else math.inf,
+    "log": lambda x: math.log(x) if x > 0 else math.nan,
+}
+
+
 def is_compiled(text: str, names: tuple[str, ...], name: str) -> bool:
     """Whether this process has compiled, or read from the cache, a function of a kernel."""
-    return bool((text, names) in _READY and _READY[text, names][name].signatures)
+    return bool((text, names) in _READY and getattr(_READY[text, names][name], "signatures", True))
 
 
 def was_compiled(text: str, name: str) -> bool:

@@ -37,7 +37,7 @@ def marks_of(shown: Iterable[Section], on_start: Callable[..., None] | None = No
     from singimpact.claims import run, select
 
     return {
-        found.id: Mark(found.kind, found.corrected_kind or "", found.printed) if found.corrected else Mark(found.kind)
+        found.id: Mark(found.kind, found.effective, found.printed if found.corrected else "")
         for found in run(select(ids), on_start=on_start)
     }
 

@@ -43,7 +43,7 @@ class Erratum:
     def as_dict(self) -> dict[str, Any]:
         """The erratum as plain data."""
         verdict = self.verdict
-        names = ("id", "section", "title", "printed", "corrected", "corrected_kind", "evidence")
+        names = ("id", "section", "title", "printed", "corrected", "corrected_kind", "effective", "evidence")
         return {name: getattr(verdict, name) for name in names} | {
             "witness": dict(verdict.witness or {}),
             "trials": [asdict(trial) for trial in verdict.trials],
@@ -83,7 +83,7 @@ class Errata(Sequence[Erratum]):
             v = entry.verdict
             parts.append(
                 f"{v.id}  (section {v.section})  {v.title}\n  printed    {v.printed}\n"
-                f"  corrected  {v.corrected}   [{v.corrected_kind}]\n  why        {v.evidence}\n"
+                f"  corrected  {v.corrected}   [{v.effective}]\n  why        {v.evidence}\n"
                 f"  witness    {entry.witness}\n"
                 + "".join(f"  tried      {line}\n" for line in entry.trials)
                 + f"  survives   {entry.survives}"
@@ -97,7 +97,7 @@ class Errata(Sequence[Erratum]):
             v = entry.verdict
             parts.append(
                 f"## `{v.id}` (section {v.section})\n\n{escape.markdown(v.title)}.\n\n"
-                f"- printed: ${v.printed}$\n- corrected ({v.corrected_kind}): ${v.corrected}$\n"
+                f"- printed: ${v.printed}$\n- corrected ({v.effective}): ${v.corrected}$\n"
                 f"- why: {escape.markdown(v.evidence)}\n- witness: {escape.markdown(entry.witness)}\n"
                 + "".join(f"- tried: {escape.markdown(line)}\n" for line in entry.trials)
                 + f"- what rests on it: {escape.markdown(entry.survives)}"
@@ -133,7 +133,7 @@ def _latex_entry(entry: Erratum) -> str:
     v = entry.verdict
     rows = [
         ("printed", f"${v.printed}$"),
-        ("corrected", f"${v.corrected}$ ({v.corrected_kind})"),
+        ("corrected", f"${v.corrected}$ ({v.effective})"),
         ("why", escape.latex(v.evidence)),
         ("witness", escape.latex(entry.witness)),
         *(("tried", escape.latex(line)) for line in entry.trials),

@@ -64,7 +64,7 @@ def display(step: Step, marks: Marks) -> str:
 
     Examples
     --------
-    >>> print(display(Step("", "v = a", "e:demo", ("e:demo",)), {"e:demo": Mark("proved")}))
+    >>> print(display(Step("", "v = a", "e:demo", ("e:demo",)), {"e:demo": Mark("proved", "proved")}))
     \\begin{equation}\\tag*{\\beside{e:demo}{proved}}\\label{e:demo}
     v = a
     \\end{equation}

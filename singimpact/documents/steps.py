@@ -54,18 +54,18 @@ class Mark:
 
     Attributes
     ----------
-    verdict : its kind. stands : the verdict on what holds instead, where it is corrected.
-    printed : the paper's formula in LaTeX, where it is corrected.
+    verdict : its kind. effective : the weakest verdict along all that it rests on; of what holds instead, where it is
+        corrected. printed : the paper's formula in LaTeX, where it is corrected.
     """
 
     verdict: str
-    stands: str = ""
+    effective: str
     printed: str = ""
 
     @property
     def text(self) -> str:
-        """The verdict in words: ``corrected, proved`` where what holds instead is proved."""
-        return f"{self.verdict}, {self.stands}" if self.stands else self.verdict
+        """The effective verdict; ``corrected, proved`` where what holds instead is proved."""
+        return f"{self.verdict}, {self.effective}" if self.printed else self.effective
 
 
 def claims_of(sections: Iterable[Section]) -> tuple[str, ...]:

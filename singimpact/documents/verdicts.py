@@ -103,7 +103,7 @@ class VerdictTable(Sequence["Verdict"]):
     def _rows(self) -> list[Row]:
         titles = {claim.id: claim.title for claim in self.claims}
         return [
-            Row(v.id, titles.get(v.id, ""), v.kind, _full(v), v.evidence, f"{v.seconds:.2f}") for v in self.verdicts
+            Row(v.id, titles.get(v.id, ""), v.kind, v.in_words, v.evidence, f"{v.seconds:.2f}") for v in self.verdicts
         ]
 
     def _summary(self) -> str:
@@ -119,18 +119,11 @@ class VerdictTable(Sequence["Verdict"]):
         return "\n\n".join([f"Misprinted: {len(found)}", *(_misprint(verdict, width) for verdict in found)])
 
 
-def _full(verdict: Verdict) -> str:
-    """The verdict, with what it is worth beside it when that differs."""
-    worth = verdict.corrected_kind if verdict.kind == CORRECTED else verdict.effective
-    return verdict.kind if worth in (None, verdict.kind) else f"{verdict.kind} ({worth})"
-
-
 def _misprint(verdict: Verdict, width: int | None) -> str:
-    worth = f"   [{verdict.corrected_kind}]" if verdict.corrected_kind else ""
     lines = [
         verdict.id,
         *wrapped("  printed    ", verdict.printed, width),
-        *wrapped("  corrected  ", f"{verdict.corrected}{worth}", width),
+        *wrapped("  corrected  ", f"{verdict.corrected}   [{verdict.effective}]", width),
         *wrapped("  witness    ", _witness(verdict.witness), width),
     ]
     return "\n".join(lines)

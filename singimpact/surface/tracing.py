@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.inputs import InputError
+from singimpact.inputs import Unfinished
 from singimpact.surface.curve import Window
 
 Array = np.ndarray[Any, Any]
@@ -50,6 +50,10 @@ class TraceSettings:
 
 
 SETTINGS = TraceSettings()
+
+
+class Untraced(Unfinished):
+    """A curve that was not followed to the accuracy of the picture, in a window that was accepted."""
 
 
 @dataclass(frozen=True)
@@ -291,5 +295,9 @@ def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, sc
         split[at + np.arange(at.size) - 1] = False
         checked = split
     if not checked.all():
-        raise InputError(f"a curve is not drawn to {window.pixels} points by halving its chords: choose fewer")
+        most = 2**SETTINGS.halvings
+        raise Untraced(
+            f"a curve in tau = {window.tau}, t = {window.t} still leaves its chords by more than {SETTINGS.deviation} "
+            f"points, of {window.pixels} in width, with each cut into {most}: choose fewer points or a smaller window"
+        )
     return points, column

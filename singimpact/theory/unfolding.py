@@ -21,6 +21,13 @@ def acceleration() -> Any:
     return 12 * kappa * (sigma**2 - 1)
 
 
+@equation("s6-model-at-c0")
+def acceleration_at_swan() -> Any:
+    """a(sigma) when A and B meet: with their half distance e for unit of length, 12 kappa (sigma^2 - e^2) at e = 0."""
+    e = sympy.Symbol("e")
+    return sympy.expand(e**2 * acceleration().subs(sigma, sigma / e)).subs(e, 0)
+
+
 @equation("s6-launch")
 def launch_velocity() -> Any:
     """v(sigma, t): the velocity with which a flight leaves sigma to be back after t, from x'' = a by two integrations.

@@ -33,7 +33,7 @@ CUT = ("order", "tolerance")  # settings at which an answer is not meant to have
 def test_group_at_its_smallest_size(name):
     pytest.importorskip("heyoka")
     found = measured(name, SMALL)
-    ours = [row for row in found.rows if row.method.startswith("singimpact")]
+    ours = [row for row in found.rows if row.method.startswith(("singimpact", "kernel"))]
     assert {row.method for row in found.rows} - {row.method for row in ours} == PEERS[name]
     assert all(row.microseconds > 0 for row in found.rows)
     judged = [row for row in ours if row.wrong is not None and (name == "emitted" or not row.setting.startswith(CUT))]
@@ -45,7 +45,7 @@ def test_group_at_its_smallest_size(name):
 def test_duffing_too():
     """A quick look leaves this family out; its tolerances trade error for time."""
     rows = measure("map", flights._regime("duffing", "generic", SMALL), SMALL)
-    ours = {row.setting: row for row in rows if row.method == "singimpact"}
+    ours = {row.setting: row for row in rows if row.method == "kernel"}
     assert ours["compiled loop"].wrong == 0
     assert ours["tolerance 1e-06"].error > ours["tolerance 1e-09"].error > ours["compiled loop"].error
     assert ours["tolerance 1e-06"].missed == 0

@@ -10,10 +10,13 @@ from tampering import bumped, changed, leaves
 from singimpact import cache
 from singimpact.algebra import certificates
 from singimpact.algebra.checking import accepts
-from singimpact.claims import CLAIMS, run, select
-from singimpact.claims.claim import Check, Claim, Statement, Trial, compared
+from singimpact.claims import CLAIMS, run, select, unfolded
+from singimpact.claims.claim import IN_MODEL, Check, Claim, Statement, Trial, compared
+from singimpact.claims.engine import effective
 from singimpact.claims.memory import recall
+from singimpact.claims.sections import section6_negative
 from singimpact.inputs import InputError
+from singimpact.theory import unfolding
 from singimpact.theory.equations import derived_from, watched
 
 MISPRINTED = {
@@ -30,7 +33,9 @@ MISPRINTED = {
     "e:vtaylor-st2",
     "e:vtaylor-t3",
     "e:phinew",
+    "e:defq",
     "e:hdef",
+    "s4-blowup",
     "t:t2-unique",
     "t:t2-fixed",
     "t:t2-eigenvalue-limit",
@@ -127,6 +132,44 @@ def test_effective_verdict_is_the_weakest_below(verdicts):
     assert verdicts["s3-slope"].effective == "supported"
 
 
+def test_exact_arguments_about_the_universal_model_are_proved_in_the_model(verdicts):
+    found = {name for name, verdict in verdicts.items() if verdict.effective == IN_MODEL}
+    assert found == {
+        "s6-lips", "s6-a0-typo", "s6p-none", "s6-sections", "s6p-AB", "s6p-BE", "s6p-AE",
+        "s6n-corr", "s6n-maps", "s6n-shadow-neg", "s6n-cusp",
+    }  # fmt: skip
+    assert verdicts["s6-lips"].kind == "proved"
+    assert verdicts["s6p-AB"].in_words == "corrected (proved in the model)"
+    assert not verdicts["s5-phi"].in_model
+    assert effective("supported", True, []) == "supported"
+
+
+def test_what_is_worth_less_than_its_own_argument(verdicts):
+    less = {name for name, verdict in verdicts.items() if verdict.effective == "supported" != verdict.strength}
+    assert less == {
+        "s3-slope", "t:t2-attracting", "t:t2-repelling", "t:t2-fixed", "t:t2-eigenvalue-limit", "t:t3-repelling",
+        "t:t3-eigenvalue-limit",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["s6p-BE", "s6p-AE"])
+def test_the_mirror_image_of_E_is_rejected(name, monkeypatch):
+    monkeypatch.setattr(unfolding, "E", (-unfolding.E[0], -unfolding.E[1]))
+    assert not CLAIMS[name].verify(CLAIMS[name].printed.value).holds
+
+
+def test_an_end_of_gamma_with_one_side_is_rejected(monkeypatch):
+    monkeypatch.setattr(unfolded, "gamma_end", lambda _r, v=0.0, _n=40: -1.3 + v / 8.28)  # no end at any r
+    check = CLAIMS["s6p-gamma"].verify(CLAIMS["s6p-gamma"].printed.value)
+    assert "to the left it is not" in check.evidence
+    assert not check.holds
+
+
+def test_a_map_of_DA_that_turns_is_rejected(monkeypatch):
+    monkeypatch.setattr(section6_negative, "_turning_points", lambda: [unfolding.D])
+    assert not CLAIMS["s6n-maps"].verify(CLAIMS["s6n-maps"].printed.value).holds
+
+
 def test_unknown_id_names_the_nearest():
     with pytest.raises(InputError, match="unknown claim 'e:mex': the nearest known are e:meq"):
         select(["e:mex"])
@@ -184,7 +227,9 @@ def test_correction_is_told_by_two_models(name, verdicts):
     assert all(trial.corrected_holds for trial in trials)
 
 
-@pytest.mark.parametrize("name", ["e:vtaylor-t2", "e:phinew", "s4b-ratio", "s3-dvdt", "s6-c-side", "e:hdef"])
+@pytest.mark.parametrize(
+    "name", ["e:vtaylor-t2", "e:phinew", "s4b-ratio", "s3-dvdt", "s6-c-side", "e:hdef", "e:defq", "s4-blowup"]
+)
 def test_trials_are_decided_by_the_statements(name):
     """With the statements exchanged no model tells for the correction: that the printed one fails is found."""
     claim = CLAIMS[name]

@@ -65,6 +65,14 @@ def test_what_survives_is_told(errata):
     assert "e:defq (proved)" in errata.text()
 
 
+def test_effective_verdicts_are_told(errata):
+    told = {entry.verdict.id: entry.as_dict()["effective"] for entry in errata}
+    assert (told["s6p-AB"], told["t:t2-eigenvalue-limit"]) == ("proved in the model", "supported")
+    for text in (errata.text(), errata.markdown(), errata.latex()):
+        assert text.count("proved in the model") >= 2
+        assert "corrected_kind" not in text
+
+
 def test_markdown_has_all_of_them(errata):
     assert errata.markdown().count("\n## ") == len(errata)
 

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from singimpact import store
@@ -56,3 +57,39 @@ def test_equal_text_is_not_written_again(text, tmp_path, monkeypatch):
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
     stamp = kernels.filed(text).stat().st_mtime_ns
     assert kernels.filed(text).stat().st_mtime_ns == stamp
+
+
+FLY = """
+import numpy as np, singimpact as si
+from singimpact.codegen import interpreted
+interpreted.PATIENCE = interpreted.Patience(fresh=-1.0, kept=-1.0)  # as for work that pays for a compiler
+osc, tau, v = si.linear("2.8", 0, "0.8"), np.linspace(0, 2, 40), np.linspace(0.1, 2, 40)
+soft = si.ImpactOscillator("x + x**3", "cos(1.7*t)", "0.3", "0.6")
+print(repr([osc.impact_map(tau, v).v.tolist(), soft.impact_map(tau, v).v.tolist()]))
+"""
+
+
+def test_without_just_in_time_compiling_kernels_run_as_they_stand(tmp_path):
+    def flown(**around):
+        found = subprocess.run(
+            [sys.executable, "-c", FLY], env=os.environ | around, capture_output=True, text=True, check=False
+        )
+        assert found.returncode == 0, found.stderr
+        return np.array(eval(found.stdout))
+
+    found = flown(NUMBA_DISABLE_JIT="1", SINGIMPACT_CACHE=str(tmp_path))
+    assert np.allclose(found, flown(), rtol=1e-12, equal_nan=True)
+
+
+def test_without_numba_much_work_ends_in_one_sentence(tmp_path):
+    hidden = "import sys; sys.modules['numba'] = None\n"
+    around = os.environ | {"SINGIMPACT_CACHE": str(tmp_path)}
+    found = subprocess.run(
+        [sys.executable, "-c", hidden + FLY], env=around, capture_output=True, text=True, check=False
+    )
+    assert found.stderr.splitlines()[-1].startswith("singimpact.inputs.Unfinished: so much work needs a compiler")
+    few = FLY.replace("fresh=-1.0, kept=-1.0", "")
+    found = subprocess.run(
+        [sys.executable, "-c", hidden + few], env=around, capture_output=True, text=True, check=False
+    )
+    assert found.returncode == 0, found.stderr

@@ -47,6 +47,11 @@ def test_golden_equations(told, freeze):
         assert json.loads(path.read_text()) == json.loads(content), REFRESH
 
 
+def test_golden_statements(freeze):
+    ((path, content),) = freeze.statements().items()
+    assert json.loads(path.read_text()) == json.loads(content), REFRESH
+
+
 def test_the_folder_holds_what_is_derived_now(told, marks, freeze):
     files = freeze.derivations(told, marks)
     for path, content in files.items():
@@ -70,6 +75,12 @@ def test_every_misprint_of_a_labelled_equation_is_quoted(told, marks):
 
 def test_no_claim_ends_in_error(marks):
     assert {mark.verdict for mark in marks.values()} <= {"proved", "certified", "supported", "cited", "corrected"}
+
+
+def test_effective_verdicts_are_shown(told, marks):
+    text = as_latex(told, marks)
+    assert r"\beside{s6p-AB}{corrected, proved in the model}" in text
+    assert marks["s3-slope"].text == "supported"
 
 
 def test_the_two_routes_show_one_theory():
@@ -97,7 +108,7 @@ import json, sys
 from singimpact.documents.derivations import as_text, sections
 from singimpact.documents.steps import Mark, claims_of
 told = sections()
-marks = {claim: Mark("proved") for claim in claims_of(told)}
+marks = {claim: Mark("proved", "proved") for claim in claims_of(told)}
 sys.stdout.write("".join(as_text(told, marks, form) for form in ("latex", "markdown", "json")))
 """
 
@@ -141,7 +152,7 @@ def test_no_word_escapes_its_dollars(told, marks):
 def test_json_has_verdicts_and_what_is_printed(told, marks):
     steps = {step["label"]: step for section in told for step in as_data(section, marks)["steps"]}
     assert steps["e:phinew"]["claims"]["e:phinew"]["verdict"] == "corrected"
-    assert steps["e:phinew"]["claims"]["e:phinew"]["stands"] == "proved"
+    assert steps["e:phinew"]["claims"]["e:phinew"]["effective"] == "proved"
 
 
 @pytest.mark.slow

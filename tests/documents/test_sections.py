@@ -32,7 +32,11 @@ DEMO = Section(
     ),
 )
 PRINTED = r"a = -\frac{b}{2}"
-MARKS = {"e:meq": Mark("proved"), "p:odd": Mark("corrected", "proved", PRINTED), "e:qdef": Mark("proved")}
+MARKS = {
+    "e:meq": Mark("proved", "proved"),
+    "p:odd": Mark("corrected", "proved", PRINTED),
+    "e:qdef": Mark("proved", "supported"),
+}
 
 
 @pytest.fixture
@@ -58,8 +62,8 @@ def test_a_claim_without_a_verdict_is_an_error():
 def test_markdown_and_data():
     assert "$$\n" + LONG + "\n$$" in as_markdown(DEMO, MARKS)
     assert as_data(DEMO, MARKS)["steps"][1]["claims"] == {
-        "e:meq": {"verdict": "proved", "stands": "", "printed": ""},
-        "p:odd": {"verdict": "corrected", "stands": "proved", "printed": PRINTED},
+        "e:meq": {"verdict": "proved", "effective": "proved", "printed": ""},
+        "p:odd": {"verdict": "corrected", "effective": "proved", "printed": PRINTED},
     }
 
 

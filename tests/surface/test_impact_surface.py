@@ -176,3 +176,14 @@ def test_a_part_of_a_closed_curve_is_open():
     assert len(part) == 20
     (whole,) = loop.parts(np.ones(41, dtype=bool))
     assert whole.closed
+
+
+def test_a_curve_that_is_not_followed_is_no_mistake_of_the_caller(monkeypatch):
+    from dataclasses import replace
+
+    from singimpact.surface import tracing
+
+    monkeypatch.setattr(tracing, "SETTINGS", replace(tracing.SETTINGS, halvings=1, deviation=1e-6))
+    with pytest.raises(tracing.Untraced, match="choose fewer points or a smaller window") as found:
+        list(ImpactSurface(si.universal(-1, "1/2"), (-3, 2), (-1, 5), 400).lines)
+    assert not isinstance(found.value, InputError)

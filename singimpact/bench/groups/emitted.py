@@ -37,7 +37,7 @@ def cases(effort: Effort) -> Iterator[Case]:
         exact = [_value(terms, s, u) for s, u in zip(sigma[:JUDGED].tolist(), t[:JUDGED].tolist(), strict=True)]
         setting = f"order {order}"
         own = [
-            Method("singimpact, emitted numpy", setting, _emitted(order, sigma, t), order, problems=POINTS),
+            Method("kernel, emitted numpy", setting, _emitted(order, sigma, t), order, problems=POINTS),
             Method("singimpact, v_c_on_arrays", setting, _horner(order, sigma, t, False), order, problems=POINTS),
             Method("singimpact, compensated", setting, _horner(order, sigma, t, True), order, problems=POINTS),
         ]

@@ -16,8 +16,6 @@ from singimpact.bench.peers import contours
 from singimpact.codegen.interpreted import forget
 from singimpact.impact_oscillator import linear
 from singimpact.scenes.figures import FIGURES, figure
-from singimpact.scenes.figures.kept import kept_picture
-from singimpact.scenes.figures.rendering import drawn
 
 OMEGA, CLEARANCE = 2.0, 0.7
 TAU, T, PIXELS = (-1.2, 1.0), (0.2, 4.0), 800
@@ -28,24 +26,19 @@ QUICK_FIGURES = (4, 6, 9, 12, 16, 17)  # one of each kind
 
 def cases(effort: Effort) -> Iterator[Case]:
     """The zero set Z as a curve; then a case a figure."""
-    methods, skipped = with_peers([_method("singimpact", f"{PIXELS} points wide", _own)], partial(_contours, effort))
+    methods, skipped = with_peers([_method("kernel", f"{PIXELS} points wide", _own)], partial(_contours, effort))
     places = max(len(method.run()) for method in methods)
     yield Case("zero set of x'' + x = cos 2t", methods, [1] * places, (), skipped)
     for number in QUICK_FIGURES if effort.quick else FIGURES:
         made = [Method("singimpact", "first time", partial(_whole, number), first=True)]
         if not effort.quick:
-            made.append(Method("singimpact, again", "numbers kept", partial(_kept, number)))
+            made.append(Method("singimpact, again", "numbers kept", partial(_whole, number)))
+        forget()  # the kernels that this process has compiled
         yield Case(f"figure {number}", made)
 
 
 def _whole(number: int) -> list[None]:
-    forget()
     figure(number)
-    return [None]
-
-
-def _kept(number: int) -> list[None]:
-    drawn(kept_picture(number))
     return [None]
 
 

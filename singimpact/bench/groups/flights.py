@@ -40,13 +40,13 @@ def of_regime(family: str, regime: str, count: int) -> list[Problem]:
 def _regime(family: str, regime: str, effort: Effort) -> Case:
     problems, copies = of_regime(family, regime, effort.states), effort.copies
     own = [
-        Method("singimpact", "compiled loop", _looped(problems, copies, EPSILON), copies=copies),
+        Method("kernel", "compiled loop", _looped(problems, copies, EPSILON), copies=copies),
         Method("singimpact, a call a state", "doubles", partial(_arrays, problems, None)),
     ]
     if not effort.quick:
         own.append(Method("singimpact, an array", f"of {WIDE}", partial(_arrays, problems, WIDE), copies=WIDE))
     if family == "duffing":  # a linear model has a closed form, and no tolerance
-        own += [Method("singimpact", f"tolerance {tolerance:.0e}", _looped(problems, copies, tolerance), copies=copies)
+        own += [Method("kernel", f"tolerance {tolerance:.0e}", _looped(problems, copies, tolerance), copies=copies)
                 for tolerance in TOLERANCES]  # fmt: skip
     methods, skipped = with_peers(
         own,

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact import theory
 from singimpact.algebra.rings import EXACT
 from singimpact.bench.groups.flights import closed
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
@@ -26,7 +27,7 @@ from singimpact.theory.invariant_curve import invariant_curve
 from singimpact.theory.sheet import sheet
 
 DUFFING = ImpactOscillator("x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3", "0.3", "117/275")
-LINEAR = linear(2, "0.3", "0.8")
+LINEAR, PERIOD = linear(2, "0.3", "0.8"), np.pi
 LOST = ("0.01", "0.003", "0.001", "0.0003", "0.0001")
 START = Problem("linear", "generic", 2.0, 0.3, 0.8, 0.0, 1.0, "", "")
 
@@ -35,11 +36,15 @@ def cases(effort: Effort) -> Iterator[Case]:
     """A case a kind of size; the smallest sizes are left out where a call still costs more than its work."""
     short = effort.quick
     symbols = (6, 8, 10) if short else (6, 8, 10, 12, 14)
-    yield _grown("order of v_c, symbols for the jets", "singimpact", symbols, lambda n: sheet(Contact.generic(1, n), n))
+    theory.v_c(2, at="tangency")  # loads sympy, which `bench start` times
+    yield _grown("order of v_c, symbols for the jets", "kernel", symbols, lambda n: sheet(Contact.generic(1, n), n),
+                 _first("singimpact", symbols[:4], lambda n: theory.v_c(n, at="tangency")))  # fmt: skip
     numbers = (8, 12, 16) if short else (8, 12, 16, 24, 32)
-    yield _grown("order of v_c, cubic model", "singimpact", numbers, lambda n: sheet(_contact(n), n))
-    yield _grown("order of gamma, cubic model", "singimpact", numbers,
-                 lambda n: invariant_curve(_contact(n), Fraction(3, 5), n))  # fmt: skip
+    yield _grown("order of v_c, cubic model", "kernel", numbers, lambda n: sheet(_contact(n), n),
+                 _first("singimpact", numbers[:3], lambda n: theory.v_c(n, "tangency", DUFFING, 0)))  # fmt: skip
+    yield _grown("order of gamma, cubic model", "kernel", numbers,
+                 lambda n: invariant_curve(_contact(n), Fraction(3, 5), n),
+                 _first("singimpact", numbers[:3], lambda n: theory.gamma(n, "tangency", DUFFING, 0)))  # fmt: skip
     digits = (100, 300, 1000) if short else (100, 300, 1000, 3000, 10_000)
     yield _grown("digits of fixed points", "singimpact, certified", digits, lambda n: tangency("1/2", n),
                  _line("mpmath findroot", digits[:4], _findroot))  # fmt: skip
@@ -48,7 +53,8 @@ def cases(effort: Effort) -> Iterator[Case]:
                  _line("mpmath findroot", few, partial(_at_digits, closed)),
                  [] if short else _line("mpmath odefun", few[:3], partial(_at_digits, _integrated)))  # fmt: skip
     states = (1000, 3000, 10_000) if short else (1000, 3000, 10_000, 30_000, 100_000)
-    yield _grown("states of an array", "singimpact", states, _flown_array)
+    yield _grown("states of an array", "singimpact", states, _flown_array,
+                 _line("singimpact, in 1000 periods", states, partial(_flown_array, periods=1000)))  # fmt: skip
     yield _impacts(effort)
     yield Case("impacts of a chatter", [_chatter(lost) for lost in (LOST[1:4] if short else LOST)])
 
@@ -60,6 +66,11 @@ def _contact(order: int) -> Contact:
 def _line(name: str, sizes: Sequence[int], run: Callable[[int], Any]) -> list[Method]:
     """A method at each size; the time is that of the whole run."""
     return [Method(name, str(n), partial(_alone, run, n), n) for n in sizes]
+
+
+def _first(name: str, sizes: Sequence[int], run: Callable[[int], Any]) -> list[Method]:
+    """The same, timed once: what a public function has computed it keeps."""
+    return [replace(method, first=True) for method in _line(name, sizes, run)]
 
 
 def _alone(run: Callable[[int], Any], size: int) -> list[None]:
@@ -101,22 +112,25 @@ def _integrated(problem: Problem) -> Any:
     return many_digits.root_of_odefun(problem, "linear")
 
 
-def _flown_array(count: int) -> Any:
+def _flown_array(count: int, periods: float = 3 / PERIOD) -> Any:
     rng = np.random.default_rng(count)
-    return LINEAR.impact_map(rng.uniform(0, 3, count), rng.uniform(0.1, 2, count))
+    return LINEAR.impact_map(rng.uniform(0, periods * PERIOD, count), rng.uniform(0.1, 2, count))
 
 
 def _impacts(effort: Effort) -> Case:
-    """r = 1, so that impacts never end; the peers fly through their first events."""
+    """r = 1, so that impacts never end; the peers fly through their first events.
+
+    `orbit` looks after every impact whether chatter can be summed up; the kernel only flies.
+    """
     sizes = (1000, 3000, 10_000) if effort.quick else (1000, 3000, 10_000, 30_000, 100_000)
     few = tuple(size // 100 for size in sizes)
+    endless = linear(2, "0.3", 1)
     methods, skipped = with_peers(
-        [],
+        _line("singimpact", few[1:4], lambda n: endless.orbit(0.0, 1.0, n)),
         lambda: _line("scipy DOP853, 1e-9", few[:3], partial(_chain, runge_kutta.stepper("linear", 1e-9))),
         lambda: _line("heyoka, 1e-9", sizes[:3], partial(_chain, taylor_events.stepper("linear", 1e-9))),
     )
-    endless = linear(2, "0.3", 1)
-    return _grown("impacts of an orbit", "singimpact", sizes, lambda n: sequence(endless, 0.0, 1.0, n), methods,
+    return _grown("impacts of an orbit", "kernel", sizes, lambda n: sequence(endless, 0.0, 1.0, n), methods,
                   skipped=skipped)  # fmt: skip
 
 

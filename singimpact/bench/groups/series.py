@@ -32,6 +32,12 @@ FORCE, FORCING = "x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3"
 DUFFING = Oscillator(FORCE, FORCING, "0.3", "1/2")
 LETTERED = Oscillator("x + d*xdot + k*x**3", "cos(t)", "0.3", "1/2", {"d": "0.1", "k": "0.3"})
 """
+PUBLIC = """
+import flint, numpy, sympy
+from singimpact import ImpactOscillator, theory
+
+CUBIC = ImpactOscillator("x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3", "0.3", "117/275")
+"""
 SYMPY = """
 import sympy
 from sympy import Rational
@@ -60,6 +66,10 @@ answer = [str(value)]
 """
 OF_JET = "answer = [str(sum(c * SIGMA**i * T**k for (i, k), c in made.terms.items()))]"
 OF_GRAPH = "answer = [str(sum({} * Fraction(-1, 10)**n for n, c in made.graph.items()))]"
+OF_POWERS = (
+    "answer = [str(sum(sympy.Rational(str(c)) * sympy.Rational(-1, 10)**n for n, c in made.coefficients.items()))]"
+)
+OF_SUM = "answer = [str(sympy.Rational(made.subs({sympy.Symbol('sigma'): SIGMA, sympy.Symbol('t'): T})))]"
 OF_EXPRESSION = "answer = [str(sympy.Rational(made.subs({plain.sigma: SIGMA, plain.t: T})))]"
 
 
@@ -98,19 +108,29 @@ TRUTH = {SYMBOLS: ["0.01"], MODEL: ["0.01"], GAMMA: [ON_GAMMA]}
 
 def _symbols(order: int, limit: float | None = None, long: bool = False) -> Task:
     made = f"sheet(Contact.generic(1, {order}), {order})"
-    return Task(SYMBOLS, "singimpact", order, made, OURS, f"made = made.v.to_sympy()\n{JETS}", limit, long)
+    return Task(SYMBOLS, "kernel", order, made, OURS, f"made = made.v.to_sympy()\n{JETS}", limit, long)
 
 
 def _model(order: int, limit: float | None = None, long: bool = False) -> Task:
     made = f"sheet(Contact.of(DUFFING, Fraction(0), 1, {order}, EXACT), {order}).v"
-    return Task(MODEL, "singimpact", order, made, OURS, OF_JET, limit, long)
+    return Task(MODEL, "kernel", order, made, OURS, OF_JET, limit, long)
+
+
+def _public(case: str, order: int, long: bool = False) -> Task:
+    """What a user calls, with the sympy object that it returns."""
+    made, judged = {
+        SYMBOLS: (f"theory.v_c({order}, at='tangency')", JETS),
+        MODEL: (f"theory.v_c({order}, 'tangency', CUBIC, 0)", OF_SUM),
+        GAMMA: (f"theory.gamma({order}, 'tangency', CUBIC, 0)", OF_POWERS),
+    }[case]
+    return Task(case, "singimpact", order, made, PUBLIC, judged, None, long)
 
 
 def _curve(order: int, ring: str, limit: float | None = None, long: bool = False) -> Task:
     name, start, rate, coefficient = {
-        "EXACT": ("singimpact, exact", "Fraction(0)", "Fraction(3, 5)", "c"),
-        "Balls(256)": ("singimpact, 256-bit balls", "Fraction(0)", "Fraction(3, 5)", "as_rational(c)"),
-        "DOUBLES": ("singimpact, doubles", "0.0", "0.6", "Fraction(c)"),
+        "EXACT": ("kernel, exact", "Fraction(0)", "Fraction(3, 5)", "c"),
+        "Balls(256)": ("kernel, 256-bit balls", "Fraction(0)", "Fraction(3, 5)", "as_rational(c)"),
+        "DOUBLES": ("kernel, doubles", "0.0", "0.6", "Fraction(c)"),
     }[ring]
     made = f"invariant_curve(Contact.of(DUFFING, {start}, 1, {order}, {ring}), {rate}, {order})"
     return Task(GAMMA, name, order, made, OURS, OF_GRAPH.format(coefficient), limit, long)
@@ -132,19 +152,21 @@ def _plain(case: str, order: int, long: bool = False) -> Task:
 
 # as the table shows them: by case, then by order, the method that the others are compared with first
 TASKS = (
-    _symbols(2), _plain(SYMBOLS, 2), _implicit(2),
+    _symbols(2), _public(SYMBOLS, 2), _plain(SYMBOLS, 2), _implicit(2),
     _symbols(3, long=True), _plain(SYMBOLS, 3, True), _implicit(3, True),
-    _symbols(4, long=True), _plain(SYMBOLS, 4, True), _implicit(4, True),
+    _symbols(4, long=True), _public(SYMBOLS, 4, True), _plain(SYMBOLS, 4, True), _implicit(4, True),
     _symbols(6, long=True), _implicit(6, True),
-    _symbols(8), _symbols(10, long=True), _symbols(12, long=True), _symbols(14, 1.0, True),
+    _symbols(8), _public(SYMBOLS, 8), _symbols(10, long=True), _symbols(12, long=True), _public(SYMBOLS, 12, True),
+    _symbols(14, 1.0, True),
     _model(2, long=True), _plain(MODEL, 2, True), _model(3, long=True), _plain(MODEL, 3, True),
-    _model(4, long=True), _plain(MODEL, 4, True), _model(5, long=True), _plain(MODEL, 5, True),
-    _model(8, long=True), _model(12, 0.05), _model(16, long=True), _model(20, long=True),
+    _model(4, long=True), _public(MODEL, 4, True), _plain(MODEL, 4, True), _model(5, long=True), _plain(MODEL, 5, True),
+    _model(8, long=True), _model(12, 0.05), _public(MODEL, 12),
+    _model(16, long=True), _model(20, long=True),
     _curve(3, "EXACT"), _curve(3, "DOUBLES", long=True), _plain(GAMMA, 3),
-    _curve(4, "EXACT", long=True), _curve(4, "DOUBLES", long=True), _plain(GAMMA, 4, True),
+    _curve(4, "EXACT", long=True), _curve(4, "DOUBLES", long=True), _public(GAMMA, 4, True), _plain(GAMMA, 4, True),
     _curve(5, "EXACT", long=True), _curve(5, "DOUBLES", long=True), _plain(GAMMA, 5, True),
     _curve(8, "EXACT", long=True), _curve(8, "Balls(256)", long=True), _curve(8, "DOUBLES", long=True),
-    _curve(16, "EXACT"), _curve(16, "Balls(256)", long=True), _curve(16, "DOUBLES"),
+    _curve(16, "EXACT"), _public(GAMMA, 16), _curve(16, "Balls(256)", long=True), _curve(16, "DOUBLES"),
     _curve(32, "EXACT", 1.0, True), _curve(32, "Balls(256)", long=True), _curve(32, "DOUBLES", long=True),
     _curve(64, "Balls(256)", 0.5, True), _curve(20, "DOUBLES", 0.01, True),
 )  # fmt: skip
@@ -152,14 +174,14 @@ TASKS = (
 # what may not grow slower unseen, and has no value at a point to be judged by
 LIMITED = (
     *(task for task in TASKS if task.limit is not None),
-    Task("v_c, generic jets", "singimpact", 8, "sheet(Contact.generic(0, 8), 8).xdot", limit=0.05),
-    Task("v_c, generic jets", "singimpact", 12, "sheet(Contact.generic(0, 12), 12).xdot", limit=0.5),
-    Task("v_c, cubic model, its parameters letters", "singimpact", 12,
+    Task("v_c, generic jets", "kernel", 8, "sheet(Contact.generic(0, 8), 8).xdot", limit=0.05),
+    Task("v_c, generic jets", "kernel", 12, "sheet(Contact.generic(0, 12), 12).xdot", limit=0.5),
+    Task("v_c, cubic model, its parameters letters", "kernel", 12,
          'sheet(LetteredModel(LETTERED, ["d", "k"], 1).contact(12), 12).xdot',
          OURS + "from singimpact.theory.letters import LetteredModel", limit=0.05),
-    Task("gamma, symbols for jets and r", "singimpact", 8, "symbolic_curve(1, 8)",
+    Task("gamma, symbols for jets and r", "kernel", 8, "symbolic_curve(1, 8)",
          OURS + "from singimpact.theory.symbolic_curve import symbolic_curve", limit=3.0),
-    Task("chatter completion, symbols for jets and r", "singimpact", 6, "symbolic_completion(6)",
+    Task("chatter completion, symbols for jets and r", "kernel", 6, "symbolic_completion(6)",
          OURS + "from singimpact.theory.completion import symbolic_completion", limit=0.3),
 )  # fmt: skip
 

@@ -6,7 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 import mpmath
+import numpy as np
 import sympy
+from scipy.optimize import minimize_scalar
 
 from singimpact.claims import arcs, true_orbits
 from singimpact.claims.claim import Trial, Trials, compared
@@ -15,6 +17,8 @@ from singimpact.claims.true_sheet import Place, damped, number, tangencies
 from singimpact.status import Status
 from singimpact.theory import fixed_points
 from singimpact.theory import fold_route as fold
+from singimpact.theory.fold_form import next_sigma
+from singimpact.theory.implicit_route import sigma
 
 RATES = ("1/2", "1/5")
 DIGITS = 40
@@ -71,6 +75,37 @@ def _etas(place: Place, coefficient: float, h: float) -> tuple[float, float]:
     again = place.model.impact_map(float(step.tau), float(step.v))
     sigma = float(step.tau) - place.tau
     return (-1.5 * h + float(step.flight_time)) / h, (1.5 * sigma + float(again.flight_time)) / h
+
+
+RAY = 0.7  # t/h of flights from sigma = -h: before the horizon, which is at 3/2
+
+
+def _bent_sigma(printed: Any, corrected: Any) -> list[Trial]:
+    """(sigma' - (eta - sigma/2))/h^2 on a ray, eta in the fold form: -k eta^2 = v - P(sigma), P the outline.
+
+    A statement is tried by its last part, the degree from which it leaves out terms: 0 is left for more than 2.
+    """
+    found = []
+    for place in tangencies():
+        values = place.jets()
+        truth = place.leading(lambda h, p=place, k=values["k"]: (RAY * h - h - _fold_eta(p, k, h) - h / 2) / h**2)
+        jets = values | {"a_d2": values["a_d2"] / values["k"], "sigma": -1.0, "eta": RAY - 1.5}
+        quadratic = number(next_sigma() - (fold.eta - sigma / 2), jets)
+        says = [0.0 if order > 2 else quadratic for *_, order in (printed, corrected)]
+        found.append(compared(place.name, f"(sigma' - eta + sigma/2)/h^2 at sigma = -h, t = {RAY} h", truth, *says))
+    return found
+
+
+def _fold_eta(place: Place, k: float, h: float) -> float:
+    """eta < 0 with -k eta^2 = v_c(-h, RAY h) - P(-h)."""
+    top = minimize_scalar(
+        lambda t: -place.launch(-h, t), bounds=(1.2 * h, 1.8 * h), method="bounded", options={"xatol": 1e-4 * h}
+    )
+    return -float(np.sqrt((-top.fun - place.launch(-h, RAY * h)) / k))
+
+
+def _next_state(printed: Any, corrected: Any) -> list[Trial]:
+    return [*_next_eta(printed, corrected), *_bent_sigma(printed, corrected)]
 
 
 def _arcs(_printed: Any, _corrected: Any) -> list[Trial]:
@@ -213,7 +248,9 @@ TRIALS: dict[str, Trials] = {
     "e:vtaylor-st2": _coefficient(_mixed),
     "e:vtaylor-t3": _coefficient(lambda place: place.taylor(0.0, 3)),
     "e:phinew": _impact,
-    "e:hdef": _next_eta,
+    "e:defq": _bent_sigma,
+    "e:hdef": _next_state,
+    "s4-blowup": _bent_sigma,
     "t:t2-unique": _arcs,
     "t:t2-fixed": rest_at_tangency,
     "t:t2-eigenvalue-limit": _eigenvalue,

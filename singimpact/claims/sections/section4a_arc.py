@@ -49,6 +49,7 @@ def _exists(stated: tuple[int, int]) -> Check:
     worst = max(case.error for case in cases)
     curved = all(abs(case.found) > 0 for case in cases) and power == 2
     rate = r_of_lambda(1)
+    jump = sympy.cancel(fold.horizon()[1] / (6 * fold.k * route.sigma**2))  # of P_*, beside a' sigma^2 too
     return every(
         [
             (
@@ -56,9 +57,8 @@ def _exists(stated: tuple[int, int]) -> Check:
                 _interval_map(rate) and negative_on(_transverse(), lambda_, 0, 1),
             ),
             (
-                "gamma lies between Pi_0 and P_*: 0 < coefficient < 3/8",
-                positive_on(coefficient, lambda_, 0, 1)
-                and positive_on(sympy.Rational(3, 8) - coefficient, lambda_, 0, 1),
+                f"gamma lies between Pi_0 and P_*: 0 < coefficient < {jump}",
+                positive_on(coefficient, lambda_, 0, 1) and positive_on(jump - coefficient, lambda_, 0, 1),
             ),
             (
                 f"quadratic, from sigma < 0, found on true orbits: {cases[0].line()}; worst relative error {worst:.0e}",
@@ -271,7 +271,7 @@ CLAIMS = (
             "flight",
         ),
         mutants=("penetrates",),
-        rests_on=("e:yeq",),
+        rests_on=("e:yeq", "t:t2-exists"),  # the second half of the corrected statement needs gamma
     ),
     Claim(
         id="t:t2-sides",

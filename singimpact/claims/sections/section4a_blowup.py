@@ -10,13 +10,15 @@ import sympy
 from singimpact.algebra import certificates
 from singimpact.algebra.certificates import negative_on, positive_on
 from singimpact.claims.claim import Check, Statement, in_section
+from singimpact.claims.sections.section4a_fold import bent, first_component
 from singimpact.claims.verifiers import every, identity, is_zero
 from singimpact.theory import fold_route as fold
-from singimpact.theory.fold_route import m
-from singimpact.theory.implicit_route import r
+from singimpact.theory.fold_route import eta, m
+from singimpact.theory.implicit_route import r, sigma
 
 HALF, THREE_HALVES = sympy.Rational(1, 2), sympy.Rational(3, 2)
 QUARTIC = m**2 * (m - HALF) ** 2
+ROOT = sympy.sqrt(r * (2 * m**2 - 3 * m) + sympy.Rational(9, 4) * (m - HALF) ** 2)  # of Q_r(1, m)
 CUBIC = (m - HALF) ** 2 * (m + THREE_HALVES)
 ROOT_SIGNS = ((-sympy.oo, -1), (-THREE_HALVES, 1), (0, 1), (HALF, -1), (sympy.oo, 1))
 
@@ -26,8 +28,16 @@ def sign_chain(expression: Any, signs: tuple[tuple[Any, int], ...]) -> bool:
     return certificates.sign_chain(expression, m, signs, {r: (0, 1)})
 
 
-def _blow_up(stated: tuple[Any, Any]) -> Check:
-    return identity(fold.h_blown_up, "derived from h with s < 0 and the root that lands before the horizon")(stated)
+def _blow_up(stated: tuple[Any, Any, Any]) -> Check:
+    """(s'/s at s = 0, m' at s = 0, power of s in what s' leaves out): with sigma = s, eta = s m degree n becomes s^n."""
+    rate, image, power = stated
+    check = identity(fold.h_blown_up, "derived from h with s < 0 and the root that lands before the horizon")(
+        (rate, image)
+    )
+    return every(
+        [(check.evidence, check.holds), *first_component(eta + (rate - m) * sigma, power)],
+        witness=lambda: dict(check.witness or bent(eta + (rate - m) * sigma)),
+    )
 
 
 def _q_zeros(stated: tuple[Any, Any, Any]) -> Check:
@@ -175,17 +185,22 @@ claim_4a = in_section("4.1(a)")
 CLAIMS = (
     claim_4a(
         "s4-blowup",
-        "the blown-up h' on the visible part, s < 0, m > 1/2",
+        "the blown-up h' on the visible part, s < 0, m > 1/2; in the coordinates of e:pdef s' has a term in s^2",
         Statement(
             r"s'=(m-\tfrac12)s,\quad m'=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)+O(s)}",
-            (m - HALF, sympy.sqrt(r * (2 * m**2 - 3 * m) + sympy.Rational(9, 4) * (m - HALF) ** 2) / (m - HALF)),
+            (m - HALF, ROOT / (m - HALF), sympy.oo),
         ),
         _blow_up,
         (
-            (m - HALF, -sympy.sqrt(r * (2 * m**2 - 3 * m) + sympy.Rational(9, 4) * (m - HALF) ** 2) / (m - HALF)),
-            (m + HALF, sympy.sqrt(r * (2 * m**2 - 3 * m) + sympy.Rational(9, 4) * (m - HALF) ** 2) / (m - HALF)),
+            (m - HALF, -ROOT / (m - HALF), 2),
+            (m + HALF, ROOT / (m - HALF), 1),
+            (m - HALF, ROOT / (m - HALF), 1),
+            (m - HALF, ROOT / (m - HALF), 3),
         ),
         ("e:hdef", "e:qdef"),
+        lambda: Statement(
+            r"s'=(m-\tfrac12)s+O(s^2),\quad m'=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)+O(s)}", (*fold.h_blown_up(), 2)
+        ),
     ),
     claim_4a(
         "s4-Qr-zeros",

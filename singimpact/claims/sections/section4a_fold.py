@@ -7,9 +7,9 @@ from typing import Any
 import sympy
 
 from singimpact.claims.claim import Check, Claim, Statement
-from singimpact.claims.verifiers import every, identity, is_zero
+from singimpact.claims.verifiers import every, identity, is_zero, sample
 from singimpact.theory import fold_route as fold
-from singimpact.theory.fold_form import cubic_terms, fold_form
+from singimpact.theory.fold_form import cubic_terms, fold_form, next_sigma, next_sigma_remainder
 from singimpact.theory.fold_route import eta, k
 from singimpact.theory.implicit_route import r, sigma, t
 from singimpact.theory.notation import latex
@@ -79,9 +79,50 @@ def _fold_form(stated: Any) -> Check:
     )
 
 
-def _h(stated: tuple[Any, Any]) -> Check:
+def first_component(stated: Any, order: Any) -> list[tuple[str, bool]]:
+    """Whether the next sigma is `stated` + O(order) in the coordinates of e:pdef that keep the phase sigma.
+
+    Parameters
+    ----------
+    order : the lowest degree of what is left out, oo for a statement without remainder; it must be the true one.
+    """
+    lowest, terms = next_sigma_remainder(stated)
+    shown = ", ".join(str(sympy.factor(value) * sigma**i * eta**n) for (i, n), value in terms.items())
+    kept = all(terms.get(key, 0) != 0 for key in ((2, 0), (0, 2)))
+    return [
+        (
+            f"in the coordinates of e:pdef, lengths in units of k, the terms of lowest degree beside it have degree {lowest}: {shown or 'none'}",
+            order == lowest,
+        ),
+        ("those in sigma^2 and eta^2 stay for every eta that keeps the phase sigma and the fold form", kept),
+    ]
+
+
+def bent(stated: Any) -> dict[str, str]:
+    """Numbers at which the next sigma in the coordinates of e:pdef, to degree 2, is not what is stated."""
+    return sample(stated, next_sigma()) | {"coordinates": "those of e:pdef, to degree 2, lengths in units of k"}
+
+
+def _psi_q(stated: tuple[Any, Any, Any]) -> Check:
+    """(first component, second component to degree 2, lowest degree of what the first leaves out)."""
+    first, second, order = stated
+    check = identity(fold.psi_q)((first, second))
+    same = "equal to" if check.holds else "not"
+    return every(
+        [
+            (
+                f"in (sigma, 3 sigma/2 + t), where psi o p has cubic terms, it is {same} what is derived from the equation of motion, the first component exactly",
+                check.holds,
+            ),
+            *first_component(first, order),
+        ],
+        witness=lambda: dict(check.witness or bent(first)),
+    )
+
+
+def _h(stated: tuple[Any, Any, Any]) -> Check:
     """h maps the visible part of V' (first hits, sigma < 0) into itself: p(h) = q, and h lands before the horizon."""
-    new_sigma, new_eta = stated
+    new_sigma, new_eta, order = stated
     folded = fold.psi_p()
     target = fold.psi_q()
     closes = [
@@ -98,6 +139,7 @@ def _h(stated: tuple[Any, Any]) -> Check:
                 "from the visible point sigma = -1, eta = -11/10 at r = 1/2 it lands on the visible part eta' < 0, sigma' < 0",
                 launched,
             ),
+            *first_component(new_sigma, order),
         ],
         witness=lambda: (
             {"sigma": "-1", "eta": "-11/10", "r": "1/2"}
@@ -183,31 +225,50 @@ CLAIMS = (
     Claim(
         id="e:defq",
         section="4.1(a)",
-        title="psi o q, q = R o phi, in the fold coordinates",
+        title="psi o q, q = R o phi; in the coordinates of e:pdef its first component has quadratic terms",
         printed=Statement(
             r"\psi\circ q=(\eta-\tfrac12\sigma,\,-rk(2\eta^2-3\sigma\eta)-\tfrac94k(\eta-\tfrac12\sigma)^2+O(3))",
-            (eta - sigma / 2, -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2),
+            (
+                eta - sigma / 2,
+                -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2,
+                sympy.oo,
+            ),
         ),
-        verify=identity(fold.psi_q),
+        verify=_psi_q,
+        corrected=lambda: Statement(
+            r"\psi\circ q=(\eta-\tfrac12\sigma+O(2),\,-rk(2\eta^2-3\sigma\eta)-\tfrac94k(\eta-\tfrac12\sigma)^2+O(3))",
+            (*fold.psi_q(), 2),
+        ),
         mutants=(
-            (eta - sigma / 2, r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2),
-            (eta - sigma / 2, -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta + sigma / 2) ** 2),
+            (eta - sigma / 2, r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2, 2),
+            (eta - sigma / 2, -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta + sigma / 2) ** 2, 2),
+            (eta - sigma / 2, -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2, 3),
+            (eta + sigma / 2, -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2, 1),
         ),
-        rests_on=("e:phinew", "s4-fold-form"),
+        rests_on=("e:phinew", "e:pdef"),
     ),
     Claim(
         id="e:hdef",
         section="4.1(a)",
-        title="h = p^{-1} o q on the visible part; there the root is the negative one",
+        title="h = p^{-1} o q on the visible part in the coordinates of e:pdef: the root is the negative one, + O(2) is missing",
         printed=Statement(
             r"h=\bigl(\eta-\tfrac12\sigma,\sqrt{Q_r(\sigma,\eta)+O(3)}\,\bigr)",
-            (eta - sigma / 2, sympy.sqrt(r * (2 * eta**2 - 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2)),
+            (
+                eta - sigma / 2,
+                sympy.sqrt(r * (2 * eta**2 - 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2),
+                sympy.oo,
+            ),
         ),
         verify=_h,
         corrected=lambda: Statement(
-            r"h=\bigl(\eta-\tfrac12\sigma,-\sqrt{Q_r(\sigma,\eta)+O(3)}\,\bigr),\quad\sigma<0", fold.h()
+            r"h=\bigl(\eta-\tfrac12\sigma+O(2),-\sqrt{Q_r(\sigma,\eta)+O(3)}\,\bigr),\quad\sigma<0", (*fold.h(), 2)
         ),
-        mutants=((eta - sigma / 2, eta), (eta + sigma / 2, -sympy.sqrt(2 * r * eta**2 + QUARTERS * sigma**2))),
+        mutants=(
+            (eta - sigma / 2, eta, 2),
+            (eta + sigma / 2, -sympy.sqrt(2 * r * eta**2 + QUARTERS * sigma**2), 2),
+            (*fold.h(), 3),
+            (*fold.h(), sympy.oo),
+        ),
         rests_on=("e:pdef", "e:defq", "e:qdef"),
     ),
     Claim(

@@ -234,23 +234,30 @@ def _iterates(stated: int) -> Check:
 
 
 def _backwards(stated: str) -> Check:
-    """Stable manifolds followed backwards from (tau_* + sigma, 0) end at tau' < tau_*; as sigma -> 0 tau' -> tau_*."""
+    """Stable manifolds followed backwards from (tau_* + sigma, 0) end at tau' < tau_*; as sigma -> 0 tau' -> tau_*.
+
+    That tau' tends to tau_* is read from sigma'/sigma, which moves by less than 2 % while sigma falls fourfold.
+    """
     found = leaves.ends()
     shown = ", ".join(f"{case.foot:.3g} -> {case.end:.5g}" for case in found[:3])
     proportional = all(case.end < 0 for case in found)
-    shrinking = abs(found[-1].end) < 10 * found[-1].foot
+    ratios = {name: [case.end / case.foot for case in found if case.name == name] for name in (c.name for c in found)}
+    shrinking = all(abs(one / two - 1) < 0.02 for row in ratios.values() for one, two in pairwise(row))
+    told = "; ".join(f"{name}: {', '.join(f'{ratio:.4f}' for ratio in row)}" for name, row in ratios.items())
     return every(
         [
             (f"the leaf of sigma > 0 ends at sigma' < 0 (sigma -> sigma': {shown})", proportional),
             (
-                "sigma' tends to 0 with sigma, so for sigma = 0 there is no sigma' < 0",
+                f"sigma'/sigma of leaves nearer and nearer to tau_* is {told}, so no sigma' < 0 is left for sigma = 0",
                 shrinking and stated == "(0, delta]",
             ),
         ],
         kind="supported",
         witness=lambda: {
             "sigma": "0",
-            "limit of sigma' as sigma -> 0": f"{found[-1].end:.3g} at sigma = {found[-1].foot:.3g}",
+            "sigma'/sigma as sigma -> 0": ", ".join(
+                f"{case.end / case.foot:.4f} at {case.foot:.3g}" for case in found[:3]
+            ),
         },
     )
 

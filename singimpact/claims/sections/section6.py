@@ -15,12 +15,14 @@ from singimpact.theory import unfolding as model
 from singimpact.theory.unfolding import kappa, sigma, t
 
 SQRT3 = sympy.sqrt(3)
+STEP, LIFT = 1e-6, 1e-4  # along sigma to either side of the end of gamma; in v, to measure its slope there
 
 
 def _birth(stated: int) -> Check:
     """Sign of d (c - c_0) for which a_c has two zeros near a swan: a'' sigma^2/2 + (da/dc)(c - c_0) = 0."""
     second, rate, step = sympy.symbols("a_d2 a_c delta", nonzero=True)
-    square = -2 * rate * step / second
+    near = sympy.Poly(second * sigma**2 / 2 + rate * step, sigma)
+    square = sympy.cancel(-near.nth(0) / near.nth(2))
     product = sympy.cancel(square * second**2 / (second * rate * step))  # sigma^2 in units of d delta / a''^2
     return every(
         [
@@ -70,8 +72,7 @@ def _lips(cusps: int) -> Check:
 
 def _second_derivative(order: int) -> Check:
     """The number that tells a positive from a negative swan: a derivative of a_c0 of this order at tau_*."""
-    time = sympy.Symbol("s")
-    values = [sympy.diff(12 * kappa * time**2, time, n).subs(time, 0) for n in range(3)]
+    values = [sympy.diff(model.acceleration_at_swan(), sigma, n).subs(sigma, 0) for n in range(3)]
     return every(
         [(f"at a swan a = {values[0]}, a' = {values[1]}, a'' = {values[2]}: only a'' has a sign", values[order] != 0)],
         witness=lambda: {"a_c0(tau_*)": "0", "a_c0''(tau_*)": "24 kappa"},
@@ -115,13 +116,16 @@ def _slopes_of_outline(stated: tuple[Any, Any]) -> Check:
     found = tuple(
         sympy.expand(rate.subs({sigma: point[0], t: point[1]}, simultaneous=True)) for point in (model.B, model.E)
     )
-    on_both = [
-        sympy.expand(curve.subs({sigma: model.E[0], t: model.E[1]}, simultaneous=True))
-        for curve in (model.horizon(), model.zero_set())
-    ]
+    on_both = (
+        model.E[1] > 0,
+        *[
+            sympy.expand(curve.subs({sigma: model.E[0], t: model.E[1]}, simultaneous=True))
+            for curve in (model.horizon(), model.zero_set())
+        ],
+    )
     return every(
         [
-            ("E = (-sqrt 3, 2 sqrt 3) lies on H and Z", on_both == [0, 0]),
+            (f"E = {model.E} lies on H and Z, and its flight time is positive", on_both == (True, 0, 0)),
             (
                 f"slopes {found[0]} at B and {found[1]} at E'",
                 all(is_zero(x - y) for x, y in zip(found, stated, strict=True)),
@@ -137,6 +141,8 @@ def _slopes_of_reset(stated: tuple[Any, Any, int]) -> Check:
     found = [sympy.expand(rate.subs({sigma: a, t: b}, simultaneous=True)) for a, b in involuted]
     middle = (-sympy.Rational(7, 5), -2 * -sympy.Rational(7, 5) - sympy.sqrt(6 - 2 * sympy.Rational(49, 25)))
     speed = model.reset(middle)[1].subs(kappa, 1)
+    common = _common_points()
+    ends = {model.A, model.E} <= set(common) and model.E[1] > 0
     return every(
         [
             (
@@ -144,12 +150,25 @@ def _slopes_of_reset(stated: tuple[Any, Any, int]) -> Check:
                 all(is_zero(x - y) for x, y in zip(found, stated[:2], strict=True)),
             ),
             (
-                "x-dot keeps its sign on the open arc AE, which meets H at E only, and is negative at sigma = -7/5",
-                int(sympy.sign(speed)) == stated[2]
+                f"Z and H meet at sigma = {', '.join(str(point[0]) for point in common)} only, of which A and E are the ends of the arc, so x-dot keeps its sign on it, which is negative at sigma = -7/5",
+                ends
+                and not any(model.E[0] < point[0] < model.A[0] for point in common)
+                and int(sympy.sign(speed)) == stated[2]
                 and is_zero(sympy.expand(model.zero_set().subs({sigma: middle[0], t: middle[1]}, simultaneous=True))),
             ),
         ]
     )
+
+
+def _common_points() -> list[tuple[Any, Any]]:
+    """The points where Z and H meet, by the factors of their difference, each of which is linear."""
+    found = []
+    for factor, _ in sympy.factor_list(model.horizon() - model.zero_set(), t)[1]:
+        line = sympy.Poly(factor, t)
+        time = -line.nth(0) / line.nth(1)
+        places = sympy.Poly(model.zero_set().subs(t, time), sigma).real_roots()
+        found += [(place, sympy.expand(time.subs(sigma, place))) for place in places]
+    return sorted(found)
 
 
 def _epsilon(count: int) -> Check:
@@ -167,6 +186,9 @@ def _epsilon(count: int) -> Check:
 
 def _gamma(stated: tuple[float, float]) -> Check:
     found = {rate: unfolded.gamma_end(rate) for rate in ("1/10", "1/2", "9/10")}
+    sides = [(unfolded.completes(rate, at - STEP), unfolded.completes(rate, at + STEP)) for rate, at in found.items()]
+    expected = [float(model.acceleration().subs({kappa: 1, sigma: value})) for value in found.values()]
+    slopes = [LIFT / (unfolded.gamma_end(rate, LIFT, 24) - value) for rate, value in found.items()]
     shown = ", ".join(f"{value:.6f} at r = {rate}" for rate, value in found.items())
     return every(
         [
@@ -175,8 +197,12 @@ def _gamma(stated: tuple[float, float]) -> Check:
                 all(stated[0] < value < stated[1] for value in found.values()),
             ),
             (
-                "with slope a(sigma) = 12 (sigma^2 - 1) > 0, and chatter is complete on one side of it only",
-                all(value**2 > 1 for value in found.values()),
+                f"from rest {STEP:g} to the right chatter is complete, to the left it is not",
+                all(side == (False, True) for side in sides),
+            ),
+            (
+                f"the slope of gamma there is {', '.join(f'{slope:.3f}' for slope in slopes)}, that is a(sigma) to 1 %: transverse",
+                all(abs(slope / a - 1) < 0.01 for slope, a in zip(slopes, expected, strict=True)),
             ),
         ],
         kind="supported",

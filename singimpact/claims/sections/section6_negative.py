@@ -49,17 +49,31 @@ def _images(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
     """phi(DA) on Pi_0 between stated[0], and the end stated[1] of phi(DC)."""
     ends = tuple(model.reset(point)[0] for point in (model.A, model.D))
     on_axis = is_zero(sympy.rem(sympy.Poly(model.impact_velocity(), t), sympy.Poly(model.horizon(), t)).as_expr())
+    turns = _turning_points()
+    on_arc = [point for point in turns if 0 <= point[1] <= 4 and 3 * point[0] + 2 * point[1] <= 0]  # of A and D
     end = model.reset(model.C)
     return every(
         [
             ("x-dot vanishes on H", on_axis),
             (f"phi(A), phi(D) are at {ends}", ends == stated[0]),
             (
+                f"sigma + t turns on H at {turns} only, and not on DA, so it runs through the interval once",
+                bool(turns) and not on_arc and all(3 * p[0] + 2 * p[1] <= 0 for p in (model.A, model.D)),
+            ),
+            (
                 f"phi(C) = {end}, with v < 0 for kappa < 0",
                 end == stated[1] and negative_on(end[1], kappa, -sympy.oo, 0),
             ),
         ]
     )
+
+
+def _turning_points() -> list[tuple[Any, Any]]:
+    """The points of H at which sigma + t is stationary along it: v of H's tangent, (H_t, -H_sigma), has sum 0."""
+    conic = model.horizon()
+    turning = sympy.Poly(sympy.diff(conic, t) - sympy.diff(conic, sigma), t)  # a line
+    line = -turning.nth(0) / turning.nth(1)
+    return [(root, line.subs(sigma, root)) for root in sympy.Poly(conic.subs(t, line), sigma).real_roots()]
 
 
 def _shadow_velocity(sign: int) -> Check:
@@ -150,7 +164,7 @@ def _loop(stated: int) -> Check:
     return every(
         [
             (
-                f"crossings (above, just below delta) {found.around}; {found.beyond} to the left of D', where the two branches join",
+                f"W^s(X) crosses the lines sigma = -1.05, -1.8, -2.7 (above, just below delta) {found.around} times, and -4.5, -5 {found.beyond} times: two branches, which join to the left of D'; nearer to A than 0.05 no line was tried",
                 pairs and found.beyond == (stated, 0),
             )
         ],
@@ -162,13 +176,17 @@ def _accumulation(factor: str) -> Check:
     """Heights v/h^2 of G^-n(delta) over sigma = -1 - h against gamma's; distances shrink by 1/mu."""
     found = unfolded.preimages()
     expected = 1 / float(mu_of_lambda(1).subs(lambda_, lambda_of(0.5, 1)))
-    shown = ", ".join(f"{height:.4f}" for height in found.heights[:5])
+    shown, twice = (", ".join(f"{v:.4f}" for v in heights[:5]) for heights in (found.heights, found.farther))
     return every(
         [
             (
-                f"heights {shown}, ... fall to gamma's {found.gamma:.4f}, all of order h^2; last factor {found.factor:.3f}, 1/mu = {expected:.3f}",
+                f"v/h^2 on the line sigma = -1 - h, h = 0.001, is {shown}, ... and falls to gamma's {found.gamma:.4f}; last factor {found.factor:.3f}, 1/mu = {expected:.3f}",
                 abs(found.factor - expected) < 0.02 and factor == "1/mu",
-            )
+            ),
+            (
+                f"at h = 0.002 the first two are {twice}: v is of order h^2 on them",
+                all(abs(two / one - 1) < 0.02 for one, two in zip(found.heights, found.farther, strict=False)),
+            ),
         ],
         kind="supported",
     )

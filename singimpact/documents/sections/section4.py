@@ -109,31 +109,31 @@ def _return() -> tuple[Step, ...]:
     root = fold.h()[1].subs(fold.Q_r(), sympy.Symbol("Qrest"))
     return (
         Step(
-            "The state after the impact is $q = R \\circ \\phi$. Here and below $(\\sigma, \\eta)$ are the coordinates "
-            "before those further changes, in which the first component is exact and $\\psi \\circ p$ is known up to "
-            "$O(3)$:",
-            rf"\psi \circ q = \bigl({latex(first)},\ {in_powers(second, r)} + O(3)\bigr)",
+            "The state after the impact is $q = R \\circ \\phi$. From here on $(\\sigma, \\eta)$ are the coordinates "
+            "in which $\\psi \\circ p$ is the fold without higher terms; they keep $\\sigma$, and agree with those "
+            "above to first order only. The first component, which was $\\eta - \\frac12 \\sigma$ exactly, is now",
+            rf"\psi \circ q = \bigl({latex(first)} + O(2),\ {in_powers(second, r)} + O(3)\bigr)",
             "e:defq",
             ("e:defq",),
         ),
         Step(
-            "In the coordinates in which $\\psi \\circ p$ is the fold without higher terms the first component has "
-            "quadratic terms (lengths in units of $k$), and is $\\eta - \\frac12 \\sigma + O(2)$ only; $D h'$ on "
-            "$s = 0$ is the same in both.",
+            "with the quadratic terms (lengths in units of $k$)",
             rf"\bar\sigma = {latex(next_sigma())} + O(3)",
             "s4-next-sigma",
         ),
         Step(
-            "One impact is the map $h = p^{-1} \\circ q$ of the surface into itself: the next flight $(\\bar\\sigma, "
-            "\\bar\\eta)$ starts where this one ends, $\\psi \\circ p\\, (\\bar\\sigma, \\bar\\eta) = \\psi \\circ "
-            "q\\, (\\sigma, \\eta)$. The second components give $\\bar\\eta^2 = Q_r(\\sigma, \\eta) + O(3)$, with",
+            "Of these only the one in $\\sigma\\eta$ depends on how $\\eta$ was chosen. They do not matter on $s = 0$ "
+            "after the blow-up below, nor for $D\\bar h$ there. One impact is the map $h = p^{-1} \\circ q$ of the "
+            "surface into itself: the next flight $(\\bar\\sigma, \\bar\\eta)$ starts where this one ends, "
+            "$\\psi \\circ p\\, (\\bar\\sigma, \\bar\\eta) = \\psi \\circ q\\, (\\sigma, \\eta)$. The second "
+            "components give $\\bar\\eta^2 = Q_r(\\sigma, \\eta) + O(3)$, with",
             rf"Q_r(\sigma, \eta) = {in_powers(fold.Q_r(), r)}",
             "e:qdef",
             ("e:qdef",),
         ),
         Step(
             "Of the two roots the first return is the one before the horizon, and $\\eta$ is negative there:",
-            rf"h(\sigma, \eta) = \bigl({latex(fold.h()[0])},\ {latex(root)}\,\bigr)\,, \qquad \sigma < 0",
+            rf"h(\sigma, \eta) = \bigl({latex(fold.h()[0])} + O(2),\ {latex(root)}\,\bigr)\,, \qquad \sigma < 0",
             "e:hdef",
             ("e:hdef",),
         ),

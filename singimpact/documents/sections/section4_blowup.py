@@ -45,7 +45,7 @@ def _blown_up() -> tuple[Step, ...]:
         Step(
             "which is $Q$ for short, with $Q'$ its derivative by $m$. The blown-up map on the visible part, $s < 0$ "
             "and $m > \\tfrac12$, is",
-            (rf"\bar s &= \bigl({latex(rate)}\bigr)\, s\,,", rf"\bar m &= {latex(with_Q(image))} + O(s)\,."),
+            (rf"\bar s &= \bigl({latex(rate)}\bigr)\, s + O(s^2)\,,", rf"\bar m &= {latex(with_Q(image))} + O(s)\,."),
             "s4-blowup",
             ("s4-blowup",),
         ),
