@@ -1,4 +1,4 @@
-"""Write what this folder holds, the golden equations of the suite, and generated/: `python derivations/freeze.py`.
+"""Write this folder, the suite's golden equations, the index of the claims and generated/: `python derivations/freeze.py`.
 
 The same as `singimpact derive -o derivations`, and from the same sections the LaTeX of each displayed equation, which
 the suite compares; the words around the equations may change freely.
@@ -9,14 +9,16 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from singimpact.documents.derivations import as_files, marks_of, sections
+from singimpact.documents.formats import as_files
 from singimpact.documents.rendering import Marks
 from singimpact.documents.steps import Section, equations_of
+from singimpact.paper.claims.index import PLACE, reread, written_index
+from singimpact.paper.sections.derivations import marks_of, sections
 from singimpact.store import folder, written
 
 HERE = Path(__file__).parent
 GENERATED = HERE.parent / "singimpact" / "generated"
-GOLDEN = HERE.parent / "tests" / "documents" / "golden"
+GOLDEN = HERE.parent / "tests" / "paper" / "sections" / "golden"
 
 
 def derivations(told: list[Section], marks: Marks) -> dict[Path, bytes]:
@@ -35,13 +37,18 @@ def golden(told: list[Section]) -> dict[Path, bytes]:
 
 def statements() -> dict[Path, bytes]:
     """id -> what is printed and, where another statement holds, that one: what a person reads of each claim."""
-    from singimpact.claims import CLAIMS
+    from singimpact.paper.claims import CLAIMS
 
     told = {
         name: {"printed": claim.printed.latex} | ({"corrected": claim.corrected().latex} if claim.corrected else {})
         for name, claim in CLAIMS.items()
     }
     return {GOLDEN / "statements.json": (json.dumps(told, indent=2) + "\n").encode()}
+
+
+def claim_index() -> dict[Path, bytes]:
+    """The index of the claims, from the sections that they are written in."""
+    return {PLACE: written_index().encode()}
 
 
 def generated() -> dict[Path, bytes]:
@@ -53,10 +60,11 @@ def generated() -> dict[Path, bytes]:
 
 def main() -> None:
     """Write them all."""
-    for path, content in generated().items():  # first: what follows may use them
+    for path, content in {**generated(), **claim_index()}.items():  # first: what follows may use them
         with written(path) as draft:
             draft.write_bytes(content)
         print(path.relative_to(HERE.parent))
+    reread()
     told = sections()
     folder(GOLDEN)
     for path, content in {**derivations(told, marks_of(told)), **golden(told), **statements()}.items():

@@ -12,9 +12,6 @@ from singimpact.status import Status as Status
 if TYPE_CHECKING:
     from singimpact import theory as theory
     from singimpact.bench.selftest.run import selftest as selftest
-    from singimpact.claims import Claims as _Claims
-    from singimpact.documents.errata import errata as errata
-    from singimpact.documents.verdicts import verify as verify
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
     from singimpact.impact_oscillator import linear as linear
     from singimpact.impact_oscillator import read_model as read_model
@@ -23,9 +20,12 @@ if TYPE_CHECKING:
     from singimpact.impact_oscillator import tangency_points as tangency_points
     from singimpact.impact_oscillator import threshold as threshold
     from singimpact.impact_oscillator import universal as universal
+    from singimpact.paper.claims import Claims as _Claims
+    from singimpact.paper.claims.verdicts import verify as verify
+    from singimpact.paper.figures import figure as figure
+    from singimpact.paper.sections.errata import errata as errata
     from singimpact.scenes import Scene as Scene
     from singimpact.scenes import plot as plot
-    from singimpact.scenes.figures import figure as figure
     from singimpact.theory import fixed_points as fixed_points
 
     claims: _Claims
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _ROOMS = {
-    "claims": "singimpact.claims",
+    "claims": "singimpact.paper.claims",
     "theory": "singimpact.theory",
     "fixed_points": "singimpact.theory.fixed_points",
 }
@@ -48,9 +48,9 @@ _HOMES = {
     "threshold": "singimpact.impact_oscillator",
     "plot": "singimpact.scenes",
     "Scene": "singimpact.scenes",
-    "figure": "singimpact.scenes.figures",
-    "verify": "singimpact.documents.verdicts",
-    "errata": "singimpact.documents.errata",
+    "figure": "singimpact.paper.figures",
+    "verify": "singimpact.paper.claims.verdicts",
+    "errata": "singimpact.paper.sections.errata",
     "selftest": "singimpact.bench.selftest.run",
 }
 _PUBLIC = sorted(["Cause", "InputError", "Status", *_ROOMS, *_HOMES])

@@ -15,8 +15,8 @@ import pytest
 
 from singimpact import cache
 from singimpact.codegen import kernels
+from singimpact.paper.figures import kept as kept_figures
 from singimpact.scenes import kept
-from singimpact.scenes.figures import kept as kept_figures
 from singimpact.surface.curve import Curve
 
 SWEEP = [

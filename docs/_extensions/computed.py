@@ -45,8 +45,8 @@ def commands() -> str:
 
 def figures(place: Path) -> str:
     """The paper's figures with what they show, and the claims that they illustrate; the pictures go beside the page."""
-    from singimpact.scenes.figures import FIGURES, picture
-    from singimpact.scenes.figures.rendering import drawn
+    from singimpact.paper.figures import FIGURES, picture
+    from singimpact.paper.figures.rendering import drawn
 
     parts = ["# The figures", "", "Drawn from computed data by `singimpact figure all -o FOLDER`.", ""]
     for number in FIGURES:

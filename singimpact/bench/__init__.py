@@ -1,6 +1,6 @@
 """Run time against error beside what a user would pick instead; stress sweeps; the reference cases as package data.
 
-Not here: what is measured (`flights`, `surface`, `dynamics`), claims of the paper (`claims`), pictures (`scenes`).
+Not here: what is measured (`flights`, `surface`, `dynamics`), claims of the paper (`paper`), pictures (`scenes`).
 Files: `problems` (the table of reference cases, read by the tests too), `data/` (its numbers); `groups/` (what
 `singimpact bench` measures, one file a group), `measuring` (methods timed in turn and judged), `fresh` (in a process of
 their own), `exponents` (how cost grows), `report`, `plots`; `states`, `truth/` (random states),

@@ -19,9 +19,9 @@ def command() -> None:
 @output_options
 def listed(as_json: bool, output: str | None) -> None:
     """Every claim: id, section, statement."""
-    from singimpact.claims import CLAIMS
+    from singimpact.paper.claims import INDEX
 
-    rows = [[claim.id, claim.section, claim.title] for claim in CLAIMS.values()]
+    rows = [[entry.id, entry.section, entry.title] for entry in INDEX.values()]
     names = ("id", "section", "title")
     emit(as_json_text({"claims": [dict(zip(names, row, strict=True)) for row in rows]}) if as_json
          else columns(list(names), rows), output)  # fmt: skip
@@ -32,14 +32,14 @@ def listed(as_json: bool, output: str | None) -> None:
 @output_options
 def show(name: str, as_json: bool, output: str | None) -> None:
     """One claim: what is printed, its verdict, its evidence, what it rests on and what rests on it."""
-    from singimpact.claims import CLAIMS, run, select
-    from singimpact.claims.graph import dependants
+    from singimpact.paper.claims import CLAIMS, INDEX, run, select
+    from singimpact.paper.claims.graph import dependants
 
     verdict = run(select([name]), kept=True)[-1]
     data: dict[str, Any] = verdict.as_dict() | {
         "mutants": len(CLAIMS[name].mutants),
-        "rested_on_by": [other for other, claim in CLAIMS.items() if name in claim.rests_on],
-        "falls_with_it": dependants(CLAIMS, name),
+        "rested_on_by": [other for other, entry in INDEX.items() if name in entry.rests_on],
+        "falls_with_it": dependants(INDEX, name),
     }
     emit(
         as_json_text(data) if as_json else "\n".join(f"{key:14} {_told(value)}" for key, value in data.items()), output
@@ -67,19 +67,19 @@ def _item(item: dict[str, Any]) -> str:
 @output_options
 def graph(svg: bool, as_json: bool, output: str | None) -> None:
     """What each claim rests on, as text, as JSON or as an SVG picture."""
-    from singimpact.claims import CLAIMS
-    from singimpact.claims.graph import as_svg, as_text
+    from singimpact.paper.claims import INDEX
+    from singimpact.paper.claims.graph import as_svg, as_text
 
     if as_json:
-        emit(as_json_text({name: list(claim.rests_on) for name, claim in CLAIMS.items()}), output)
+        emit(as_json_text({name: list(entry.rests_on) for name, entry in INDEX.items()}), output)
     elif svg:
-        emit(as_svg(CLAIMS, _kinds()), output)
+        emit(as_svg(INDEX, _kinds()), output)
     else:
-        emit(as_text(CLAIMS), output)
+        emit(as_text(INDEX), output)
 
 
 def _kinds() -> dict[str, str]:
-    from singimpact.claims import run, select
+    from singimpact.paper.claims import run, select
 
     return {v.id: v.kind if v.corrected else v.effective for v in run(select(), kept=True)}
 
@@ -89,11 +89,11 @@ def _kinds() -> dict[str, str]:
 @output_options
 def impact(name: str, as_json: bool, output: str | None) -> None:
     """What falls if a claim falls."""
-    from singimpact.claims import CLAIMS, select
-    from singimpact.claims.graph import dependants
+    from singimpact.paper.claims import INDEX, select
+    from singimpact.paper.claims.graph import dependants
 
     select([name])  # an unknown id is refused with the nearest known ones
-    found = dependants(CLAIMS, name)
-    rows = [[other, CLAIMS[other].title] for other in found]
+    found = dependants(INDEX, name)
+    rows = [[other, INDEX[other].title] for other in found]
     emit(as_json_text({"id": name, "falls": found}) if as_json
          else columns(["id", "statement"], rows) if rows else f"nothing rests on {name}", output)  # fmt: skip

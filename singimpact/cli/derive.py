@@ -65,7 +65,8 @@ def command(
 
 
 def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
-    from singimpact.documents.derivations import as_text, marks_of, sections
+    from singimpact.documents.formats import as_text
+    from singimpact.paper.sections.derivations import marks_of, sections
 
     told = sections(names)
     with ProgressLine() as line:
@@ -90,9 +91,9 @@ def _asked(order: int | None, model: str | None, tau: str | None, keep: tuple[st
 
 def _series(asked: Asked, form: str, output: str | None) -> None:
     """The series as text to standard output, or as files in the folder."""
-    from singimpact.documents.derivations import as_text
-    from singimpact.documents.sections import NOTATION
+    from singimpact.documents.formats import as_text
     from singimpact.documents.series import series_section, series_text
+    from singimpact.paper.sections.notation import NOTATION
     from singimpact.store import written
 
     if form in ("sympy", "numpy", "json"):
@@ -113,7 +114,7 @@ def _series(asked: Asked, form: str, output: str | None) -> None:
 
 def _write(told: list[Section], marks: dict[str, Mark], form: str, output: str) -> None:
     from singimpact.documents.compiling import CompileError
-    from singimpact.documents.derivations import as_files
+    from singimpact.documents.formats import as_files
     from singimpact.store import written
 
     try:

@@ -21,7 +21,7 @@ FORMATS = ("text", "markdown", "latex", "pdf", "json")
 @click.option("-o", "--output", metavar="FILE", help="Write there instead of standard output.")
 def command(form: str, as_json: bool, output: str | None) -> None:
     """Every statement that fails as printed, with the corrected one, its witness and what survives downstream."""
-    from singimpact.documents.errata import errata
+    from singimpact.paper.sections.errata import errata
 
     form = "json" if as_json else form
     if form == "pdf" and output is None:

@@ -24,7 +24,7 @@ def command(ctx: click.Context, ids: tuple[str, ...], as_json: bool, output: str
 
     Ends with the list of what is misprinted. The exit code is 1 when a claim ends in `error`.
     """
-    from singimpact.documents.verdicts import verify
+    from singimpact.paper.claims.verdicts import verify
 
     with ProgressLine(delay=0.2) as line:
         done = iter(range(1, sys.maxsize))

@@ -1,5 +1,7 @@
-"""What is written to be read: derivations, verdicts and misprints as text, LaTeX, PDF and Markdown.
+"""Any formula, series or table as LaTeX, PDF, Markdown or HTML.
 
-Not here: pictures (`scenes`), the mathematics that is told (`theory`), the verdicts themselves (`claims`).
-Files: `steps` (what a document is), `escape`, `breaking`, `rendering`, `compiling`; `verdicts` and its `layout`.
+Not here: pictures (`scenes`), the mathematics that is shown (`theory`), the words about the paper (`paper.sections`).
+Files: `steps` (what a document is: sections of steps), `series` (the series of the theory as data and as steps),
+`arranging` (an expression laid out as a sum), `breaking` (long lines of LaTeX), `escape`, `rendering` (templates),
+`formats` (as one text or as files), `compiling` (LaTeX into a PDF).
 """

@@ -16,7 +16,7 @@ from singimpact import cache
 from singimpact.store import cache_folder
 from singimpact.surface.curve import Curve, Mark
 
-ABOVE = ("claims/", "documents/", "scenes/", "bench/", "cli/", "generated/")  # rooms that no curve depends on
+ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/", "generated/")  # rooms that no curve depends on
 
 
 def key_of(*parts: Any) -> str:
@@ -32,7 +32,7 @@ def key_of(*parts: Any) -> str:
 
 @lru_cache(maxsize=1)
 def ground() -> str:
-    """The versions of the libraries, and the digest of the package's source below the claims."""
+    """The versions of the libraries, and the digest of the package's source below the pictures."""
     libraries = repr([version(name) for name in ("numpy", "numba", "contourpy")])
     return libraries + cache.source_digest(Path(__file__).parents[1], ABOVE)
 

@@ -1,7 +1,7 @@
 """The local theory as exact power series at one point of the tau-axis, one body of code for every contact order.
 
-Not here: the points and their jets (`contact`), finite flights (`flights`), verdicts on the paper (`claims`).
-The paper's own steps, a second route in sympy: `implicit_route` (sections 2, 3), `fold_route` (4), `swan_route` (5).
+Not here: the points and their jets (`contact`), finite flights (`flights`), the paper's own steps in sympy
+(`paper.routes`), verdicts on the paper (`paper.claims`).
 """
 
 from typing import TYPE_CHECKING, Any

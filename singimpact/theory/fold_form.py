@@ -15,13 +15,12 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.jets import Jet
-from singimpact.contact.contact import Contact
+from singimpact.contact.contact import Contact, derivative_name
 from singimpact.germs.normal_form import normal_form
-from singimpact.theory.equations import equation
-from singimpact.theory.fold_route import eta, k
-from singimpact.theory.implicit_route import a_symbol, sigma, t
 from singimpact.theory.sheet import Sheet, sheet
 from singimpact.theory.symbolic_curve import length_weight
+
+sigma, t, eta, k = sympy.symbols("sigma t eta k")
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,7 @@ class FoldForm:
         >>> sympy.Poly(fold_form(3).outline_of_p, sigma).coeff_monomial(sigma**2)
         3*a_d1/8
         """
-        unit = a_symbol(1) / 6
+        unit = sympy.Symbol(derivative_name(1)) / 6
         names = [str(letter) for letter in self.outline.free_symbols - {sigma}]
         jets = {sympy.Symbol(name): sympy.Symbol(name) * unit ** length_weight(name) for name in names}
         return sympy.expand(unit * self.outline.subs(jets, simultaneous=True))
@@ -72,39 +71,6 @@ def _in_eta(jet: Jet) -> Jet:
 
 def _shown(jet: Jet, made: Sheet) -> Any:
     return made.to_sympy(jet).xreplace({t: eta})
-
-
-@equation("s4-next-sigma")
-def next_sigma() -> Any:
-    """The next sigma in the coordinates of the fold form without higher terms, to second order, lengths in units of k.
-
-    In (sigma, eta), eta = 3 sigma/2 + t, it is eta - sigma/2 exactly; the source change eta -> T(sigma, eta) of
-    `fold_form`, which keeps the phase sigma, gives it quadratic terms, so that s' = (m - 1/2) s + O(s^2) there.
-    Another T that keeps sigma is (1 + c sigma + ...) T, which moves the term in sigma eta alone.
-
-    Examples
-    --------
-    >>> poly = sympy.Poly(next_sigma(), sigma, eta)
-    >>> poly.coeff_monomial(eta), poly.coeff_monomial(sigma), poly.coeff_monomial(eta**2)
-    (1, -1/2, -a_d2/48 - f_01/8)
-    """
-    source = sympy.Poly(fold_form(3).source, sigma, eta)
-    bent = sum(value * sigma**i * eta**n for (i, n), value in source.terms() if i + n == 2)
-    return sympy.expand(eta - sigma / 2 - bent)
-
-
-def next_sigma_remainder(leading: Any) -> tuple[Any, dict[tuple[int, int], Any]]:
-    """(lowest degree, its terms) of `next_sigma` minus a polynomial; the degree is oo where nothing is left.
-
-    Examples
-    --------
-    >>> next_sigma_remainder(eta - sigma / 2)[0], next_sigma_remainder(next_sigma())[0]
-    (2, oo)
-    """
-    poly = sympy.Poly(next_sigma() - leading, sigma, eta)
-    terms = {key: value for key, value in poly.terms() if value != 0}
-    lowest = min((sum(key) for key in terms), default=sympy.oo)
-    return lowest, {key: value for key, value in terms.items() if sum(key) == lowest}
 
 
 def cubic_terms() -> dict[tuple[int, int], Any]:

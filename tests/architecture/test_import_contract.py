@@ -32,23 +32,33 @@ PLANTED = {
         "from singimpact.flights.flow import planted_two",
         "The flows are witnesses of each other",
     ),
-    "sheet": (
-        "theory/implicit_route.py",
+    "routes": (
+        "paper/routes/implicit.py",
         "from singimpact.theory import sheet",
-        "The sheet and the paper's route to it share no solver",
+        "The paper's routes and the theory share no solver",
     ),
-    "tangency": (
-        "theory/fold_route.py",
-        "from singimpact.theory import invariant_curve",
-        "The invariant curve and the paper's route at a tangency share no solver",
+    "routes, inside a function": (
+        "paper/routes/swan.py",
+        "def late() -> None:\n    from singimpact.theory.invariant_curve import invariant_curve",
+        "The paper's routes and the theory share no solver",
     ),
-    "swan": (
-        "theory/swan_route.py",
-        "from singimpact.theory import invariant_curve",
-        "The invariant curve and the paper's route at a swan share no solver",
+    "theory takes a route": (
+        "theory/planted.py",
+        "from singimpact.paper.routes import fold",
+        "An import points downwards only",
+    ),
+    "trials that know their claim": (
+        "paper/trials/arcs.py",
+        "from singimpact.paper.claims import verifiers",
+        "In the room of the paper an import points downwards only",
+    ),
+    "a user's picture of the paper": (
+        "scenes/orbit.py",
+        "from singimpact.paper.figures import panel",
+        "An import points downwards only",
     ),
 }
-NEEDED = ["flights/flow/planted_two.py", "theory/invariant_curve.py", "theory/sheet.py"]
+NEEDED = ["flights/flow/planted_two.py"]
 
 
 def contracts(folder):

@@ -29,8 +29,8 @@ def test_graph_as_text_and_svg(singimpact):
     told = json.loads(singimpact("claims", "graph", "--json").stdout)
     assert told["s3-DG"] == ["s3-Dp", "s3-Dphi"]
     assert len(singimpact("claims", "graph").stdout.splitlines()) == 131
-    from singimpact.claims import CLAIMS
-    from singimpact.claims.graph import as_svg
+    from singimpact.paper.claims import CLAIMS
+    from singimpact.paper.claims.graph import as_svg
 
     picture = ElementTree.fromstring(as_svg(CLAIMS, {"e:yeq": "proved"}))
     names = [element.text for element in picture.iter() if element.tag.endswith("}text")]

@@ -11,7 +11,7 @@ STATE = ["--tau", "0.9", "--v", "0.005"]
 
 @pytest.fixture(autouse=True)
 def rooms(monkeypatch):
-    monkeypatch.setitem(sys.modules, "singimpact.claims", claims_room())
+    monkeypatch.setitem(sys.modules, "singimpact.paper.claims", claims_room())
     monkeypatch.setitem(sys.modules, "singimpact.impact_oscillator", oscillator_room())
     monkeypatch.setitem(sys.modules, "singimpact.scenes", scenes_room())
 

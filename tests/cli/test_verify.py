@@ -7,12 +7,12 @@ import sys
 import pytest
 from fakes import CLAIMS, VERDICTS, FakeVerdict, claims_room
 
-from singimpact.documents.verdicts import VerdictTable, verify
+from singimpact.paper.claims.verdicts import VerdictTable, verify
 
 
 @pytest.fixture(autouse=True)
 def room(monkeypatch):
-    monkeypatch.setitem(sys.modules, "singimpact.claims", claims_room())
+    monkeypatch.setitem(sys.modules, "singimpact.paper.claims", claims_room())
 
 
 TABLE = VerdictTable(CLAIMS, list(VERDICTS.values()))
@@ -38,7 +38,7 @@ def test_json_alone_on_standard_output(singimpact):
 
 def test_error_is_exit_code_one(singimpact, monkeypatch):
     failed = VERDICTS | {"e:meq": FakeVerdict("e:meq", "error", "error", evidence="timed out after 10 s")}
-    monkeypatch.setitem(sys.modules, "singimpact.claims", claims_room(failed))
+    monkeypatch.setitem(sys.modules, "singimpact.paper.claims", claims_room(failed))
     result = singimpact("verify")
     assert result.exit_code == 1
     assert "timed out after 10 s" in result.stdout

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 from singimpact.documents.breaking import PAGE, lines_of, width
 from singimpact.documents.compiling import CompileError, compiled
-from singimpact.documents.derivations import sections
 from singimpact.documents.escape import latex
 from singimpact.documents.rendering import as_data, as_latex, as_markdown
-from singimpact.documents.sections import NOTATION, SECTIONS
 from singimpact.documents.steps import Mark, Section, Step
+from singimpact.paper.sections.derivations import SECTIONS, sections
+from singimpact.paper.sections.notation import NOTATION
 
 LONG = "v = " + " + ".join(
     rf"\frac{{{k} a_{{{k}}}}}{{{k + 1}}} \sigma^{{{k}}} \left(1 - \lambda_{{{k}}}\right)" for k in range(1, 30)
@@ -41,7 +41,7 @@ MARKS = {
 
 @pytest.fixture
 def demo(monkeypatch):
-    monkeypatch.setitem(sys.modules, "singimpact.claims", claims_room())
+    monkeypatch.setitem(sys.modules, "singimpact.paper.claims", claims_room())
     monkeypatch.setitem(SECTIONS, "demo", lambda: DEMO)
 
 

@@ -157,7 +157,7 @@ class Trial:
         Scene.read(path)
 
     def _claim(self, text: str, fly: bool) -> None:  # noqa: ARG002
-        from singimpact.claims import select
+        from singimpact.paper.claims import select
 
         select([text])
 

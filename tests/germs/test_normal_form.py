@@ -13,7 +13,7 @@ from singimpact.algebra.rings import EXACT, Multiprecision
 from singimpact.algebra.univariate import precision_of
 from singimpact.germs.normal_form import normal_form
 from singimpact.inputs import InputError
-from singimpact.theory import unfolding
+from singimpact.paper.routes import unfolding
 from singimpact.theory.plane_forms import normal_form as public_form
 
 ORDERS = [3, 5, 8]

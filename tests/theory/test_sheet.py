@@ -8,7 +8,7 @@ import sympy
 from singimpact.contact.contact import Contact
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
-from singimpact.theory import implicit_route as route
+from singimpact.paper.routes import implicit as route
 from singimpact.theory import v_c
 from singimpact.theory.homogeneous import P, Q, lambda_, launch_velocity, leading_coefficient, mu_of_lambda, r_of_lambda
 from singimpact.theory.involution import iota

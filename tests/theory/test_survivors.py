@@ -8,7 +8,8 @@ import sympy
 
 from singimpact.algebra.rings import EXACT
 from singimpact.contact.contact import Contact
-from singimpact.theory import fixed_points, homogeneous, swan_route, unfolding
+from singimpact.paper.routes import swan, unfolding
+from singimpact.theory import fixed_points, homogeneous
 from singimpact.theory.invariant_curve import invariant_curve
 
 lambda_ = homogeneous.lambda_
@@ -41,12 +42,12 @@ def test_mu_is_the_rate_across_the_invariant_curve(j):
 
 def test_the_jacobian_at_the_swan_is_the_derivative_of_the_new_m():
     """h_bar(m, mbar) = 0 defines the new m: implicit differentiation at the fixed point, for several r."""
-    m, mbar, r = swan_route.m, swan_route.mbar, swan_route.r
-    equation = swan_route.h_bar()
+    m, mbar, r = swan.m, swan.mbar, swan.r
+    equation = swan.h_bar()
     implicit = -sympy.diff(equation, m) / sympy.diff(equation, mbar)
-    at = {mbar: m, r: swan_route.r_of_m()}
-    assert sympy.cancel(implicit.subs(at) - swan_route.Dh_bar()[1, 1].subs(r, swan_route.r_of_m())) == 0
-    assert sympy.cancel(swan_route.mu_of_m() - implicit.subs(at)) == 0
+    at = {mbar: m, r: swan.r_of_m()}
+    assert sympy.cancel(implicit.subs(at) - swan.Dh_bar()[1, 1].subs(r, swan.r_of_m())) == 0
+    assert sympy.cancel(swan.mu_of_m() - implicit.subs(at)) == 0
 
 
 @pytest.mark.parametrize("j", [1, 2])

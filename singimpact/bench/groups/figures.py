@@ -15,7 +15,7 @@ from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import contours
 from singimpact.codegen.interpreted import forget
 from singimpact.impact_oscillator import linear
-from singimpact.scenes.figures import FIGURES, figure
+from singimpact.paper.figures import FIGURES, figure
 
 OMEGA, CLEARANCE = 2.0, 0.7
 TAU, T, PIXELS = (-1.2, 1.0), (0.2, 4.0), 800

@@ -42,7 +42,7 @@ SYMPY = """
 import sympy
 from sympy import Rational
 from singimpact.bench.peers import plain_series as plain
-from singimpact.theory import implicit_route
+from singimpact.paper.routes import implicit
 
 FORCE, CLEARANCE = plain.x + plain.xdot/10 + 3*plain.x**3/10, Rational(3, 10)
 FORCING = Rational(3081, 10000) + plain.t + plain.t**2/3
@@ -137,7 +137,7 @@ def _curve(order: int, ring: str, limit: float | None = None, long: bool = False
 
 
 def _implicit(order: int, long: bool = False) -> Task:
-    made = f"implicit_route.at_contact(implicit_route.v_c({order}), 1)"
+    made = f"implicit.at_contact(implicit.v_c({order}), 1)"
     return Task(SYMBOLS, "sympy, implicit function", order, made, SYMPY, JETS, None, long)
 
 

@@ -13,7 +13,8 @@ from singimpact.bench.stress.judging import Function, Trial, moved, powers
 from singimpact.bench.stress.launches import Launch, both
 from singimpact.dynamics.swan_configuration import swan_configuration
 from singimpact.impact_oscillator import swan_points, tangency_points, universal
-from singimpact.theory import fixed_points, unfolding
+from singimpact.paper.routes import unfolding
+from singimpact.theory import fixed_points
 
 
 def _acceleration(place: str, points: int) -> Iterator[Trial]:

@@ -1,0 +1,7 @@
+"""The paper, checked: whoever studies an oscillator of his own never needs this room.
+
+Not here: the theory for any oscillator (`theory`), flights and orbits (`flights`, `dynamics`), formulas as text
+(`documents`), pictures of a user's model (`scenes`).
+Rooms: `claims/` (statements, verifiers, verdicts), `trials/` (true orbits and surfaces on which claims are tried),
+`routes/` (the paper's own steps in sympy), `figures/` (1 to 17), `sections/` (the words of the derivations and errata).
+"""

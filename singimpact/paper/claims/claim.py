@@ -1,0 +1,203 @@
+"""`Claim`: a sentence of the paper that can be checked.  `Verdict`: what its verifier found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from singimpact.notebook import table
+
+KINDS = ("proved", "certified", "supported", "cited", "corrected", "open", "error")
+IN_MODEL = "proved in the model"  # an exact argument about x'' = 12 kappa (s^2 - 1) alone, which oscillators tend to
+STRENGTH = {"proved": 6, "certified": 5, IN_MODEL: 4, "supported": 3, "cited": 2, "open": 1, "error": 0}
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A statement in two forms: LaTeX to be read, and the object that the verifier takes."""
+
+    latex: str
+    value: Any
+
+
+@dataclass(frozen=True)
+class Check:
+    """What a verifier says of one statement.
+
+    Attributes
+    ----------
+    holds : whether the statement passed.
+    kind : what the argument is worth if it holds: proved, certified, supported or cited.
+    evidence : one line for a person. witness : numbers at which a failing statement fails.
+    """
+
+    holds: bool
+    kind: str
+    evidence: str
+    witness: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True)
+class Trial:
+    """The printed and the corrected statement on one model.
+
+    Attributes
+    ----------
+    model : an oscillator at a point; where the statement is about r alone, a value of r.
+    quantity : what is compared. found : what the model gives. printed, corrected : what the statements say.
+    """
+
+    model: str
+    quantity: str
+    found: str
+    printed: str
+    corrected: str
+    printed_holds: bool
+    corrected_holds: bool
+
+    def __post_init__(self) -> None:
+        for name in ("printed_holds", "corrected_holds"):  # a comparison of numpy numbers is not a bool for JSON
+            object.__setattr__(self, name, bool(getattr(self, name)))
+
+    @property
+    def tells(self) -> bool:
+        """Whether the printed statement fails here and the corrected one holds."""
+        return self.corrected_holds and not self.printed_holds
+
+    def line(self) -> str:
+        """One line for a table."""
+        return f"{self.model}: {self.quantity} = {self.found}; printed {self.printed}, corrected {self.corrected}"
+
+
+def compared(
+    model: str, quantity: str, found: float, printed: float, corrected: float, tolerance: float = 1e-3
+) -> Trial:
+    """A trial of two numbers against the one found, to a part `tolerance` of the largest of the three."""
+    near = tolerance * max(abs(found), abs(printed), abs(corrected))
+    told = [f"{value:.8g}" for value in (found, printed, corrected)]
+    holds = [abs(value - found) <= near for value in (printed, corrected)]
+    return Trial(model, quantity, told[0], told[1], told[2], holds[0], holds[1])
+
+
+Trials = Callable[[Any, Any], Sequence[Trial]]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A checkable statement of the paper.
+
+    Attributes
+    ----------
+    id : the claim's name; the paper's equation label where it has one.
+    section : where it stands. title : the statement in our words, one line.
+    printed : as printed. verify : decides any statement of this form; also shown the mutants.
+    corrected : makes the statement that holds instead, from what was derived; None if the printed one should hold.
+    mutants : wrong statements that the verifier must reject.
+    rests_on : ids of the claims that the verifier uses.
+    trials : tries the printed and the corrected statement on models; a correction needs two that tell them apart.
+    """
+
+    id: str
+    section: str
+    title: str
+    printed: Statement
+    verify: Callable[[Any], Check]
+    mutants: tuple[Any, ...]
+    corrected: Callable[[], Statement] | None = None
+    rests_on: tuple[str, ...] = ()
+    trials: Trials | None = None
+
+    @property
+    def label(self) -> str | None:
+        """The equation label, when the claim is a displayed equation."""
+        return self.id if self.id.startswith(("e:", "e3")) else None
+
+    def _repr_html_(self) -> str:
+        rows = [("printed", f"${self.printed.latex}$"), ("rests on", ", ".join(self.rests_on) or "no other claim")]
+        return table([], rows, f"{self.id}, section {self.section}: {self.title}")
+
+
+def in_section(section: str) -> Callable[..., Claim]:
+    """A maker of claims of one section: id, title, printed, verify, mutants, then rests_on and corrected if any."""
+
+    def claim(
+        name: str,
+        title: str,
+        printed: Statement,
+        verify: Callable[[Any], Check],
+        mutants: tuple[Any, ...],
+        rests_on: tuple[str, ...] = (),
+        corrected: Callable[[], Statement] | None = None,
+    ) -> Claim:
+        return Claim(name, section, title, printed, verify, mutants, corrected, rests_on)
+
+    return claim
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The verdict on a claim, as computed.
+
+    Attributes
+    ----------
+    kind : one of `KINDS`. effective : the weakest kind along what it rests on, and what documents print.
+    in_model : whether its verifier used the universal model of section 6, so that a proof is one in that model.
+    corrected, corrected_kind : the statement that holds instead, in LaTeX, and its own verdict.
+    witness : numbers at which the printed statement fails. seconds : of CPU time.
+    certificates : plain data on which the verdict rests where it is proved, each accepted by `algebra.checking`.
+    trials : of the printed and the corrected statement, on two models or more.
+    """
+
+    id: str
+    section: str
+    title: str
+    kind: str
+    effective: str
+    printed: str
+    corrected: str | None
+    corrected_kind: str | None
+    witness: Mapping[str, str] | None
+    evidence: str
+    rests_on: tuple[str, ...]
+    certificates: tuple[dict[str, Any], ...]
+    trials: tuple[Trial, ...]
+    seconds: float
+    in_model: bool = False
+
+    @property
+    def strength(self) -> str:
+        """The kind that dependants rest on: of the corrected statement when the printed one fails."""
+        return self.corrected_kind if self.kind == "corrected" and self.corrected_kind else self.kind
+
+    @property
+    def in_words(self) -> str:
+        """The kind, with the effective verdict in brackets where that is another word.
+
+        Examples
+        --------
+        >>> from singimpact.paper.claims import run, select
+        >>> [verdict.in_words for verdict in run(select(["s6-a0-typo"]))]
+        ['corrected (proved in the model)']
+        """
+        if self.effective.startswith(self.kind):
+            return self.effective
+        return f"{self.kind} ({self.effective})"
+
+    def _repr_html_(self) -> str:
+        rows = [("verdict", self.in_words), ("printed", f"${self.printed}$")]
+        if self.corrected is not None:
+            rows.append((f"corrected ({self.effective})", f"${self.corrected}$"))
+        return table([], [*rows, ("evidence", self.evidence)], f"{self.id}, section {self.section}: {self.title}")
+
+    def as_dict(self) -> dict[str, Any]:
+        """The verdict as plain data; the kind is called "verdict" there."""
+        data = asdict(self)
+        data["verdict"] = data.pop("kind")
+        data["witness"] = dict(self.witness) if self.witness is not None else None
+        data["rests_on"] = list(self.rests_on)
+        data["certificates"] = list(self.certificates)
+        data["trials"] = [asdict(trial) for trial in self.trials]
+        data["seconds"] = round(self.seconds, 4)
+        first = ("id", "verdict", "effective", "title", "printed", "corrected", "corrected_kind", "witness")
+        return {key: data[key] for key in first} | {key: value for key, value in data.items() if key not in first}

@@ -1,0 +1,116 @@
+"""Decide one claim: its verifier on the printed statement, on the corrected one, and trials of the two on models."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from singimpact.algebra.certificates import Certificate, collected
+from singimpact.paper.claims.claim import IN_MODEL, STRENGTH, Check, Claim, Trial, Verdict
+from singimpact.paper.routes.equations import derived_from, watched
+from singimpact.paper.routes.unfolding import acceleration as model_acceleration
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What came of one claim by itself."""
+
+    kind: str
+    evidence: str
+    witness: Mapping[str, str] | None = None
+    corrected: str | None = None
+    corrected_kind: str | None = None
+    certificates: tuple[Certificate, ...] = ()
+    trials: tuple[Trial, ...] = ()
+    in_model: bool = False
+
+
+def decide(claim: Claim, known: Mapping[str, Verdict]) -> Verdict:
+    """The verdict on one claim, given the verdicts on what it rests on."""
+    started = time.process_time()
+    try:
+        found = _found(claim)
+    except Exception as error:  # a verifier that raises is a verdict, not a crash of the run
+        found = _Found("error", f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")
+    below = [known[name].effective for name in claim.rests_on if name in known]
+    return Verdict(
+        id=claim.id,
+        section=claim.section,
+        title=claim.title,
+        effective=effective(found.corrected_kind or found.kind, found.in_model, below),
+        printed=claim.printed.latex,
+        rests_on=claim.rests_on,
+        seconds=time.process_time() - started,
+        **vars(found),
+    )
+
+
+def effective(kind: str, in_model: bool, below: Sequence[str]) -> str:
+    """The verdict that a claim is worth: the weakest of its own and of the effective ones that it rests on.
+
+    Parameters
+    ----------
+    kind : what its verifier's argument is worth. in_model : whether that argument is about the universal model.
+    below : effective verdicts of the claims that it rests on.
+
+    Examples
+    --------
+    >>> effective("proved", True, ["proved"]), effective("proved", False, ["supported"])
+    ('proved in the model', 'supported')
+    """
+    own = IN_MODEL if in_model and kind == "proved" else kind
+    return min([own, *below], key=lambda name: STRENGTH[name])
+
+
+def _found(claim: Claim) -> _Found:
+    check, certificates, in_model = _verified(claim, claim.printed.value)
+    if check.holds:
+        return _Found(check.kind, check.evidence, certificates=certificates, in_model=in_model)
+    return _corrected(claim, check)
+
+
+def _verified(claim: Claim, value: Any) -> tuple[Check, tuple[Certificate, ...], bool]:
+    """What the verifier says of a statement, the certificates on which that rests, and whether it used the model."""
+    with collected() as gathered:
+        check, labels = watched(lambda: claim.verify(value))
+    return check, tuple(gathered), _reaches(labels, model_acceleration.label)  # type: ignore[attr-defined]
+
+
+def _reaches(labels: Iterable[str], goal: str) -> bool:
+    """Whether an equation is among some, or among those that they were derived from."""
+    todo, seen = set(labels), set[str]()
+    while todo - seen:
+        seen |= todo
+        todo = {below for label in todo for below in derived_from(label)}
+    return goal in seen
+
+
+def _corrected(claim: Claim, failed: Check) -> _Found:
+    """What holds instead of a printed statement that failed."""
+    if claim.corrected is None:
+        raise ArithmeticError(f"the printed statement fails and nothing is known to hold instead: {failed.evidence}")
+    statement = claim.corrected()
+    check, certificates, in_model = _verified(claim, statement.value)
+    if not check.holds:
+        raise ArithmeticError(f"printed and corrected statement both fail: {failed.evidence}; {check.evidence}")
+    if not failed.witness:
+        raise ArithmeticError("the printed statement fails without a witness")
+    evidence = f"printed: {failed.evidence}; corrected: {check.evidence}"
+    trials = _tried(claim, statement.value)
+    return _Found("corrected", evidence, failed.witness, statement.latex, check.kind, certificates, trials, in_model)
+
+
+def _tried(claim: Claim, corrected: Any) -> tuple[Trial, ...]:
+    """The trials of a correction: two models must tell it from the printed statement, and none may speak against it."""
+    trials = tuple(claim.trials(claim.printed.value, corrected)) if claim.trials else ()
+    against = [trial.line() for trial in trials if not trial.corrected_holds]
+    if against:
+        raise ArithmeticError(f"the corrected statement fails on a model: {against[0]}")
+    telling = {trial.model for trial in trials if trial.tells}
+    if len(telling) < 2:
+        raise ArithmeticError(
+            f"a correction needs two models that tell it from what is printed, there are {len(telling)}"
+        )
+    return trials

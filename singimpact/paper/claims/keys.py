@@ -1,0 +1,82 @@
+"""The canonical key of a claim: what its verdict depends on, so that a kept verdict serves while nothing changed.
+
+A key is a digest of the package's source outside `claims/sections`, of the versions of Python and the libraries, of
+the claim's line in the index, of the source of its file of `sections` with the files of `sections` that this one
+imports, and of the keys of what the claim rests on.  An edited verifier runs again with its file and their dependants;
+an edit below the claims runs all again.  No claim is built for its key.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import asdict
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+
+from singimpact.cache import source_digest
+from singimpact.paper.claims.index import Entry
+
+LIBRARIES = ("sympy", "numpy", "scipy", "python-flint", "mpmath", "numba")
+SECTIONS = Path(__file__).with_name("sections")
+IMPORTED = re.compile(
+    r"^\s*from singimpact\.paper\.claims\.sections(?:\.(\w+) import|\s+import ([\w, ]+))", re.MULTILINE
+)
+ABOVE = (  # folders that no verdict depends on, and the sections, which each claim adds for itself
+    "paper/claims/sections/", "paper/sections/", "paper/figures/", "cli/", "documents/", "scenes/", "bench/",
+    "generated/",
+)  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def ground() -> str:
+    """The digest of everything below the sections: the package's source, Python and the libraries."""
+    source = source_digest(Path(__file__).parents[2], ABOVE)
+    libraries = repr((sys.version_info[:2], [version(name) for name in LIBRARIES]))
+    return hashlib.sha256((libraries + source).encode()).hexdigest()
+
+
+def source_of(file: str) -> str:
+    """The source of one file of `sections`."""
+    return (SECTIONS / f"{file}.py").read_text(encoding="utf-8")
+
+
+def imported_by(file: str) -> list[str]:
+    """A file of `sections` and those that it imports from there, directly or not, in alphabetical order.
+
+    Examples
+    --------
+    >>> imported_by("section4a_fold")
+    ['section2_trials', 'section4_trials', 'section4a_fold']
+    """
+    found: set[str] = set()
+    todo = [file]
+    while todo:
+        name = todo.pop()
+        if name not in found:
+            found.add(name)
+            todo += [each.strip() for pair in IMPORTED.findall(source_of(name)) for each in "".join(pair).split(",")]
+    return sorted(found)
+
+
+@lru_cache(maxsize=64)
+def file_digest(file: str) -> str:
+    """The digest of a file of `sections` with what it imports from there."""
+    return hashlib.sha256("\0".join(source_of(name) for name in imported_by(file)).encode()).hexdigest()
+
+
+def key_of(entry: Entry, below: Mapping[str, str]) -> str:
+    """The key of a claim, given the keys of the claims it rests on.
+
+    Examples
+    --------
+    >>> from singimpact.paper.claims.index import INDEX
+    >>> len(key_of(INDEX["e:yeq"], {}))
+    64
+    """
+    parts = [ground(), asdict(entry), file_digest(entry.file), [below.get(name, "") for name in entry.rests_on]]
+    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()

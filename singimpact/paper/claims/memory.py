@@ -1,0 +1,49 @@
+"""Verdicts kept in the user's cache folder, one sealed file of JSON a claim, under the claim's canonical key."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+from singimpact import cache
+from singimpact.algebra.checking import accepts
+from singimpact.paper.claims.claim import KINDS, Trial, Verdict
+from singimpact.store import cache_folder
+
+
+def _place(name: str) -> Path:
+    return cache_folder() / "verdicts" / f"{name.replace(':', '_')}.verdict"
+
+
+def recall(name: str, key: str) -> Verdict | None:
+    """The kept verdict of a claim, or None when there is none for this key or the file is damaged."""
+    content = cache.recall(_place(name))
+    if content is None:
+        return None
+    try:
+        data = json.loads(content)
+        return _verdict(data["verdict"]) if data["key"] == key else None
+    except (ValueError, KeyError, TypeError) as error:
+        cache.damaged(_place(name), str(error))
+        return None
+
+
+def _verdict(data: dict[str, Any]) -> Verdict:
+    if set(data) != {field.name for field in fields(Verdict)} or data["kind"] not in KINDS:
+        raise ValueError("not a verdict")
+    certificates = tuple(data["certificates"])
+    trials = tuple(Trial(**trial) for trial in data["trials"])
+    if not all(accepts(certificate) for certificate in certificates):
+        raise ValueError("a certificate is not accepted")
+    return Verdict(**(data | {"rests_on": tuple(data["rests_on"]), "certificates": certificates, "trials": trials}))
+
+
+def keep(verdict: Verdict, key: str) -> None:
+    """Keep a verdict that was reached; one that ended in an error is tried again next time.
+
+    A cache that cannot be written is no reason to fail: the verdict stands, it is only not kept.
+    """
+    if verdict.kind != "error":
+        cache.keep(_place(verdict.id), json.dumps({"key": key, "verdict": asdict(verdict)}).encode())

@@ -1,0 +1,301 @@
+"""Section 4.1(a): the discontinuity arc P_* and the theorem on the invariant arc gamma at a tangency with a' > 0."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.certificates import negative_on, positive_on, value_at
+from singimpact.paper.claims.claim import Check, Claim, Statement
+from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
+from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
+from singimpact.paper.claims.verifiers import every, is_zero
+from singimpact.paper.routes import fold
+from singimpact.paper.routes import implicit as route
+from singimpact.paper.routes.fold import m
+from singimpact.paper.routes.implicit import a_symbol, t
+from singimpact.paper.trials import arcs, true_orbits
+from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
+from singimpact.theory.notation import latex
+
+REACHED = 1e-3  # relative error to which DOP853 finds a leading coefficient of gamma: double precision near Pi_0
+
+
+def _discontinuity(stated: tuple[Any, int]) -> Check:
+    """Jumps of F on true flights: on v = coefficient a' sigma^2 on one side of tau_*, and nowhere else."""
+    coefficient, side = stated
+    found = arcs.jumps()
+    near = [case for case in found if case.side == side]
+    far = [case for case in found if case.side != side]
+    good = [case for case in near if case.count == 1 and abs(case.coefficient - float(coefficient)) < 1e-3]
+    return every(
+        [
+            (
+                f"one jump on each line sigma = const < 0, at v/(a' sigma^2) -> {near[0].coefficient:.6f} on {len(near)} models",
+                bool(near) and len(good) == len(near),
+            ),
+            ("no jump on the other side", all(case.count == 0 for case in far) and bool(far)),
+        ],
+        kind="supported",
+        witness=lambda: {"model": found[0].name, "v/(a' sigma^2) at the jump": f"{found[0].coefficient:.9f}"},
+    )
+
+
+def _exists(stated: tuple[int, int]) -> Check:
+    """gamma has the stated tangency, from the stated side: a hyperbolic saddle for every r, found on true orbits."""
+    power, side = stated
+    coefficient = leading_coefficient(1)  # beside a' sigma^2
+    cases = true_orbits.gamma_cases(1)
+    worst = max(case.error for case in cases)
+    curved = all(abs(case.found) > 0 for case in cases) and power == 2
+    rate = r_of_lambda(1)
+    jump = sympy.cancel(fold.horizon()[1] / (6 * fold.k * route.sigma**2))  # of P_*, beside a' sigma^2 too
+    return every(
+        [
+            (
+                "h' has a hyperbolic saddle on s = 0 for every r in (0, 1) (its stable manifold is gamma)",
+                _interval_map(rate) and negative_on(_transverse(), lambda_, 0, 1),
+            ),
+            (
+                f"gamma lies between Pi_0 and P_*: 0 < coefficient < {jump}",
+                positive_on(coefficient, lambda_, 0, 1) and positive_on(jump - coefficient, lambda_, 0, 1),
+            ),
+            (
+                f"quadratic, from sigma < 0, found on true orbits: {cases[0].line()}; worst relative error {worst:.0e}",
+                curved and side == -1 and worst < REACHED,
+            ),
+        ],
+        kind="supported",
+    )
+
+
+def _interval_map(rate: Any) -> bool:
+    """lambda -> r is an increasing bijection of (0, 1) onto itself, so "every r" is "every lambda"."""
+    ends = (value_at(rate, lambda_, 0), value_at(rate, lambda_, 1))
+    return ends == (0, 1) and positive_on(sympy.diff(rate, lambda_), lambda_, 0, 1)
+
+
+def _transverse() -> Any:
+    """1 - mu as a function of lambda = m3 - 1/2, from the blow-up."""
+    return 1 - fold.N_r_at_fixed_points().subs(m, lambda_ + HALF)
+
+
+def _unique(stated: tuple[str, int]) -> Check:
+    """The number of invariant directions at w_* within a region: fixed rays m > 1/2 of h', |m| <= 3/2 or < 3/2."""
+    region, count = stated
+    cubic = fold.fixed_point_factors()[1]
+    inside = [fold.r_of_m().subs(m, end) for end in (HALF, THREE_HALVES)]
+    one = (
+        inside == [0, 1]
+        and positive_on(sympy.diff(fold.r_of_m(), m), m, HALF, THREE_HALVES)
+        and sympy.degree(cubic, m) == 3
+    )
+    found = 1 + (1 if region == "v >= 0" and is_zero(fold.fixed_point_equation().subs(m, THREE_HALVES)) else 0)
+    leaving = arcs.leaves_gamma()
+    return every(
+        [
+            (
+                "exactly one fixed ray m3 in (1/2, 3/2) for every r in (0, 1), a hyperbolic saddle: one invariant arc",
+                one,
+            ),
+            (
+                "Pi_0 (the ray m = 3/2, points at rest) is invariant too and ends at w_*"
+                if region == "v >= 0"
+                else "Pi_0 is left out",
+                found == count,
+            ),
+            (
+                f"orbits beside gamma leave it on both models (v/gamma off by 1e-3 grows {leaving:.3g}-fold)",
+                leaving > 10,
+            ),
+        ],
+        kind="supported",
+        witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(found)},
+    )
+
+
+def _attracting(stated: tuple[int, int]) -> Check:
+    """On gamma sigma -> lambda sigma + ..., and lambda lies in the stated interval for every r in (0, 1)."""
+    low, high = stated
+    cases = true_orbits.gamma_cases(1)
+    worst = max(abs(case.ratio / case.multiplier - 1) for case in cases)
+    return every(
+        [
+            (
+                "lambda = m3 - 1/2 runs through (0, 1) as r does",
+                _interval_map(r_of_lambda(1)) and (low, high) == (0, 1),
+            ),
+            ("it is the rate of h' at m3", is_zero(fold.r_of_m().subs(m, lambda_ + HALF) - r_of_lambda(1))),
+            (f"sigma'/sigma on true orbits agrees to {worst:.0e}", worst < REACHED),
+        ]
+    )
+
+
+def _repelling(stated: int) -> Check:
+    """DG at points of gamma has one eigenvalue > 1, in the limit at w_*, whose direction is not gamma's."""
+    matrix = DG_on_ray(1)
+    at_one = sympy.cancel(1 - matrix.trace() + matrix.det())
+    slope = 2 * leading_coefficient(1)  # tangent of gamma at sigma = 1, in units of a'
+    image = matrix * sympy.Matrix([1, slope])
+    turned = sympy.cancel(image[0] * slope - image[1])
+    off = positive_on(turned, lambda_, 0, 1) or negative_on(turned, lambda_, 0, 1)
+    count = 1 if negative_on(at_one, lambda_, 0, 1) and positive_on(matrix.det(), lambda_, 0, 1) else 0
+    return every(
+        [
+            (
+                "the characteristic polynomial is negative at 1 and positive at 0 and at infinity for every r in (0, 1)",
+                count == 1 and _interval_map(r_of_lambda(1)),
+            ),
+            ("so one eigenvalue is > 1", count == stated),
+            ("the tangent of gamma is no eigenvector, so its direction is transverse", off),
+        ]
+    )
+
+
+def _at_rest(stated: str) -> Check:
+    """What happens from (tau_*, 0): x_c - c = t y_c with y_c ~ a' t^2/6 > 0, so the mass lifts off."""
+    leading = route.at_contact(route.y_c(2), 1).subs({route.sigma: 0, route.v: 0})
+    positive = is_zero(leading - a_symbol(1) * t**2 / 6)
+    flights = arcs.lift_off()
+    away = all(time > 0.5 for _, time in flights)
+    return every(
+        [
+            ("from w_* x_c - c = a' t^3/6 + ... > 0, so the flight lifts off", positive),
+            (
+                f"first hit from (tau_*, 0) after {flights[0][1]:.6f} ({flights[0][0]}): F(w_*) is not w_*",
+                away and stated == "flight",
+            ),
+        ],
+        witness=lambda: {"model": flights[0][0], "v": "0", "flight time from (tau_*, 0)": f"{flights[0][1]:.12g}"},
+    )
+
+
+def _sides(stated: tuple[str, str]) -> Check:
+    """(below, above) gamma: "chatter" to rest before tau_*, or "lost" contact after finitely many impacts."""
+    found = arcs.sides()
+    good = all((case.below, case.above) == stated for case in found)
+    shown = "; ".join(f"{case.name}: {case.line()}" for case in found)
+    return every(
+        [(f"on true orbits, {shown}", good)],
+        kind="supported",
+        witness=lambda: {"model": found[0].name, "below": found[0].below, "above": found[0].above},
+    )
+
+
+def _limit(stated: Any) -> Check:
+    """The eigenvalue > 1 of DG(w) in the limit along gamma, as a function of lambda."""
+    matrix = DG_on_ray(1)
+    residual = stated**2 - matrix.trace() * stated + matrix.det()
+    larger = eigenvalues_on_gamma(1)[0]
+    cases = arcs.eigenvalues()
+    values = [float(sympy.N(stated.subs(lambda_, true_orbits.lambda_of(case.r, 1)))) for case in cases]
+    worst = max(abs(case.found / value - 1) for case, value in zip(cases, values, strict=True))
+    return every(
+        [
+            ("it is a root of the characteristic polynomial of DG on gamma for every r", is_zero(residual)),
+            (
+                f"true orbits give {cases[0].found:.8f} at r = {cases[0].r} ({cases[0].name}), the statement is off by {worst:.0e}",
+                worst < REACHED,
+            ),
+        ],
+        witness=lambda: {
+            "r": "1/2",
+            "limit of the eigenvalue": str(sympy.N(larger.subs(lambda_, _lambda_half()), 20)),
+            "found on true orbits": f"{cases[0].found:.8f}",
+        },
+    )
+
+
+def _lambda_half() -> Any:
+    equation = sympy.Poly(sympy.fraction(sympy.together(r_of_lambda(1) - HALF))[0], lambda_)
+    return next(root for root in equation.nroots(n=30) if 0 < root < 1)
+
+
+CLAIMS = (
+    Claim(
+        id="s4-P-star",
+        section="4.1(a)",
+        title="for a' > 0 the arc P_* (sigma < 0) is the set of points v > 0 near w_* where F is discontinuous",
+        printed=Statement(r"P_*:\ v=\tfrac38a'\sigma^2+O(3),\ \sigma<0", (sympy.Rational(3, 8), -1)),
+        verify=_discontinuity,
+        mutants=((sympy.Rational(3, 8), 1), (sympy.Rational(1, 4), -1)),
+        rests_on=("s4-horizon-line",),
+    ),
+    Claim(
+        id="t:t2-exists",
+        section="4.1(a)",
+        title="G has an invariant arc gamma, quadratically tangent to Pi_0 from tau < tau_*, between P_* and Pi_0",
+        printed=Statement(r"\gamma:\ v\sim C\sigma^2,\ \sigma<0,\quad0<C<\tfrac38a'", (2, -1)),
+        verify=_exists,
+        mutants=((3, -1), (2, 1)),
+        rests_on=("s4-saddle-m3", "s4-horizon-line"),
+    ),
+    Claim(
+        id="t:t2-unique",
+        section="4.1(a)",
+        title="gamma is the only invariant arc in v >= 0 ending at w_*; Pi_0 itself is another",
+        printed=Statement(r"\gamma\subset\Pi_0^+\ \text{is the only invariant arc ending at}\ w_*", ("v >= 0", 1)),
+        verify=_unique,
+        corrected=lambda: Statement(
+            r"\gamma\ \text{is the only invariant arc ending at}\ w_*\ \text{with}\ v>0\ \text{off}\ w_*", ("v > 0", 1)
+        ),
+        mutants=(("v > 0", 2), ("v > 0", 0)),
+        rests_on=("s4-m3", "s4-saddle-m3", "e:meq"),
+    ),
+    Claim(
+        id="t:t2-attracting",
+        section="4.1(a)",
+        title="w_* is exponentially attracting for G on gamma",
+        printed=Statement(r"\sigma\mapsto\lambda\sigma+O(2)\ \text{on}\ \gamma,\quad0<\lambda<1", (0, 1)),
+        verify=_attracting,
+        mutants=((1, 2), (0, 2)),
+        rests_on=("t:t2-exists", "s4-saddle-m3"),
+    ),
+    Claim(
+        id="t:t2-repelling",
+        section="4.1(a)",
+        title="at points of gamma DG has an eigenvalue > 1 with direction transverse to gamma",
+        printed=Statement(r"\#\{\text{eigenvalues of}\ DG(w)>1\}=1,\ w\in\gamma", 1),
+        verify=_repelling,
+        mutants=(0, 2),
+        rests_on=("t:t2-exists",),
+    ),
+    Claim(
+        id="t:t2-fixed",
+        section="4.1(a)",
+        title="w_* is a fixed point of G; with F as the paper defines it there, the mass lifts off instead",
+        printed=Statement(r"G(w_*)=w_*", "rest"),
+        verify=_at_rest,
+        corrected=lambda: Statement(
+            r"F(w_*)\ne w_*:\ x_c-c=\tfrac16a't^3+\dots>0;\quad G(w)\to w_*\ \text{as}\ w\to w_*\ \text{along}\ \gamma",
+            "flight",
+        ),
+        mutants=("penetrates",),
+        rests_on=("e:yeq", "t:t2-exists"),  # the second half of the corrected statement needs gamma
+    ),
+    Claim(
+        id="t:t2-sides",
+        section="4.1(a)",
+        title="below gamma chatter is complete; above it contact is lost after finitely many impacts",
+        printed=Statement(
+            r"v<\gamma:\ \text{complete chatter};\quad v>\gamma:\ \text{contact is lost}", ("chatter", "lost")
+        ),
+        verify=_sides,
+        mutants=(("lost", "chatter"), ("chatter", "chatter")),
+        rests_on=("t:t2-exists",),
+    ),
+    Claim(
+        id="t:t2-eigenvalue-limit",
+        section="4.1(a)",
+        title="the eigenvalue > 1 of DG tends to 1 along gamma; for fixed r < 1 its limit is above 1",
+        printed=Statement(r"\lim_{w\to w_*,\,w\in\gamma}\Lambda(w)=1", sympy.Integer(1)),
+        verify=_limit,
+        corrected=lambda: Statement(
+            rf"\lim_{{w\to w_*,\,w\in\gamma}}\Lambda(w)={latex(eigenvalues_on_gamma(1)[0])}>1",
+            eigenvalues_on_gamma(1)[0],
+        ),
+        mutants=(sympy.Integer(2), lambda_, eigenvalues_on_gamma(1)[1]),
+        rests_on=("t:t2-repelling",),
+    ),
+)

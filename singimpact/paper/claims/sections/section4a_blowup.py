@@ -1,0 +1,283 @@
+"""Section 4.1(a): the blow-up h' at a tangency, and its fixed points for all r in (0, 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import sympy
+
+from singimpact.algebra import certificates
+from singimpact.algebra.certificates import negative_on, positive_on
+from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
+from singimpact.paper.claims.sections.section4a_fold import bent, first_component
+from singimpact.paper.claims.verifiers import every, identity, is_zero
+from singimpact.paper.routes import fold
+from singimpact.paper.routes.fold import eta, m
+from singimpact.paper.routes.implicit import r, sigma
+
+HALF, THREE_HALVES = sympy.Rational(1, 2), sympy.Rational(3, 2)
+QUARTIC = m**2 * (m - HALF) ** 2
+ROOT = sympy.sqrt(r * (2 * m**2 - 3 * m) + sympy.Rational(9, 4) * (m - HALF) ** 2)  # of Q_r(1, m)
+CUBIC = (m - HALF) ** 2 * (m + THREE_HALVES)
+ROOT_SIGNS = ((-sympy.oo, -1), (-THREE_HALVES, 1), (0, 1), (HALF, -1), (sympy.oo, 1))
+
+
+def sign_chain(expression: Any, signs: tuple[tuple[Any, int], ...]) -> bool:
+    """The polynomial in m has the stated sign at each place, for every r in (0, 1); the places may be infinite."""
+    return certificates.sign_chain(expression, m, signs, {r: (0, 1)})
+
+
+def _blow_up(stated: tuple[Any, Any, Any]) -> Check:
+    """(s'/s at s = 0, m' at s = 0, power of s in what s' leaves out): with sigma = s, eta = s m degree n becomes s^n."""
+    rate, image, power = stated
+    check = identity(fold.h_blown_up, "derived from h with s < 0 and the root that lands before the horizon")(
+        (rate, image)
+    )
+    return every(
+        [(check.evidence, check.holds), *first_component(eta + (rate - m) * sigma, power)],
+        witness=lambda: dict(check.witness or bent(eta + (rate - m) * sigma)),
+    )
+
+
+def _q_zeros(stated: tuple[Any, Any, Any]) -> Check:
+    """Q_r(1, m) has its zeros in (stated[0], stated[1]) and (stated[1], stated[2]); both tend to stated[1]."""
+    low, middle, high = stated
+    polynomial = fold.Q_at_one()
+    at_zero = sympy.factor(polynomial.subs(r, 0))
+    chain = sign_chain(polynomial, ((-sympy.oo, 1), (low, 1), (middle, -1), (high, 1), (sympy.oo, 1)))
+    return every(
+        [
+            (f"signs + + - + + at -oo, {low}, {middle}, {high}, oo for every r in (0, 1)", chain),
+            (
+                "it is quadratic, so there is one zero in each gap and it is positive outside",
+                sympy.degree(polynomial, m) == 2,
+            ),
+            (
+                f"at r = 0 both zeros are {middle}",
+                is_zero(at_zero.subs(m, middle)) and is_zero(at_zero.diff(m).subs(m, middle)),
+            ),
+        ]
+    )
+
+
+def _q_positive(stated: str) -> Check:
+    """Q_r(1, m) has the stated sign (">" or ">=") on the closed set E_r; the closed ends are the zeros themselves."""
+    polynomial = fold.Q_at_one()
+    outside = sign_chain(polynomial, ((-sympy.oo, 1), (0, 1), (HALF, -1), (THREE_HALVES, 1), (sympy.oo, 1)))
+    end = sympy.Poly(polynomial.subs(r, HALF), m).nroots(n=30)[1]
+    at_end = abs(polynomial.subs({r: HALF, m: end}))
+    strict_fails = at_end < sympy.Rational(1, 10**20)
+    return every(
+        [
+            ("positive outside [m_-, m_+] for every r in (0, 1)", outside),
+            ("the zeros m_-, m_+ belong to E_r, so the sign there is 0", stated == ">=" or not strict_fails),
+            ("and not negative anywhere on E_r", stated in (">", ">=")),
+        ],
+        witness=lambda: {"r": "1/2", "m_+": str(end), "Q_r(1, m_+)": "0"},
+    )
+
+
+def _domain(stated: tuple[str, str]) -> Check:
+    """Near s = 0 the equation Q_r(1, m) + O(s) = 0 has smooth solutions through the zeros, which are simple."""
+    discriminant = sympy.discriminant(fold.Q_at_one(), m)
+    simple = sign_chain(fold.Q_at_one(), ((-sympy.oo, 1), (HALF, -1), (sympy.oo, 1)))
+    ends = ("m_-", "m_+")
+    return every(
+        [
+            (
+                "the discriminant of Q_r(1, m) is positive for every r in (0, 1), so dQ/dm is not 0 at m_-, m_+ "
+                "and the implicit function theorem gives delta_-, delta_+",
+                simple and positive_on(discriminant, r, 0, 1),
+            ),
+            ("delta_-(0), delta_+(0) are the zeros of Q_r(1, m), at which the root leaves the reals", stated == ends),
+        ]
+    )
+
+
+def _converse(stated: Callable[[Any], Any]) -> Check:
+    """Solutions of Q = m^2 (m - 1/2)^2 in the stated set satisfy m = (m - 1/2)^(-1) sqrt(Q).
+
+    There sqrt(Q) = |m (m - 1/2)|, so the equation holds where m/(m - 1/2) >= 0 and m is not 0; the solutions have places
+    m1 < -3/2, 0 < m2 < 1/2 < m3 and 3/2.
+    """
+    places = {"m1": (-sympy.Integer(5), -THREE_HALVES), "m2": (sympy.Integer(0), HALF), "m3": (HALF, THREE_HALVES)}
+    root = sympy.Poly((CUBIC - 2 * r * m).subs(r, HALF), m).nroots(n=20)[1]
+    image = sympy.sqrt(fold.Q_at_one()) / (m - HALF)
+    failing = [
+        name
+        for name, (low, high) in places.items()
+        if stated((low + high) / 2) and negative_on(m * (m - HALF), m, low, high)
+    ]
+    missing = [
+        name
+        for name, (low, high) in places.items()
+        if not stated((low + high) / 2) and positive_on(m * (m - HALF), m, low, high)
+    ]
+    return every(
+        [
+            ("m (m - 1/2) has one sign on the place of each root", sign_chain(CUBIC - 2 * r * m, ROOT_SIGNS)),
+            ("it is positive for each root in the stated set", not failing),
+            ("no root with m (m - 1/2) > 0 is left out", not missing),
+        ],
+        witness=lambda: {
+            "r": "1/2",
+            "m2": str(root),
+            "(m2-1/2)^(-1) sqrt(Q)": str(sympy.N(image.subs({m: root, r: HALF}), 15)),
+        },
+    )
+
+
+def _fixed_points(stated: Any) -> Check:
+    """m' = m squared and cleared: the polynomial equation is the stated one."""
+    rate, new = fold.h_blown_up()
+    cleared = sympy.cancel(sympy.expand((new * rate) ** 2 - (m * rate) ** 2))
+    return every(
+        [
+            ("squaring m = (m - 1/2)^(-1) sqrt(Q) gives it", is_zero(stated - cleared)),
+            ("m = 1/2 is not lost: it lies outside E_r", negative_on(fold.Q_at_one().subs(m, HALF), r, 0, 1)),
+        ],
+        witness=lambda: {
+            "m": "2",
+            "r": "1/2",
+            "stated": str(stated.subs({m: 2, r: HALF})),
+            "derived": str(cleared.subs({m: 2, r: HALF})),
+        },
+    )
+
+
+def _root_places(stated: tuple[Any, Any, Any]) -> Check:
+    """Three real roots: one below stated[0], one in (stated[1], stated[2]), one above stated[2]."""
+    low, left, right = stated
+    cubic = fold.fixed_point_factors()[1]
+    chain = ((-sympy.oo, -1), (low, 1), (left, 1), (right, -1), (sympy.oo, 1))
+    return every(
+        [
+            (f"signs - + + - + at -oo, {low}, {left}, {right}, oo for every r in (0, 1)", sign_chain(cubic, chain)),
+            ("it is a cubic, so these are all", sympy.degree(cubic, m) == 3),
+        ]
+    )
+
+
+def _trivial_root(stated: str) -> Check:
+    """Where m = 3/2 solves e:fixm: "r = 1" or "every r"."""
+    value = certificates.value_at(fold.fixed_point_equation(), m, THREE_HALVES)
+    cubic = certificates.value_at(fold.fixed_point_factors()[1], m, THREE_HALVES)
+    always = value == 0
+    return every(
+        [
+            (
+                "m = 3/2 solves e:fixm for every r" if always else "m = 3/2 does not solve e:fixm for every r",
+                always == (stated == "every r"),
+            ),
+            (
+                "it is a root of the cubic e:meq only for r = 1",
+                sympy.Poly(cubic, r).all_roots() == [1] and positive_on(cubic, r, 0, 1),
+            ),
+        ],
+        witness=lambda: {"r": "1/2", "m": "3/2", "Q_r(1,m) - m^2(m-1/2)^2": str(value)},
+    )
+
+
+claim_4a = in_section("4.1(a)")
+
+
+CLAIMS = (
+    claim_4a(
+        "s4-blowup",
+        "the blown-up h' on the visible part, s < 0, m > 1/2; in the coordinates of e:pdef s' has a term in s^2",
+        Statement(
+            r"s'=(m-\tfrac12)s,\quad m'=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)+O(s)}",
+            (m - HALF, ROOT / (m - HALF), sympy.oo),
+        ),
+        _blow_up,
+        (
+            (m - HALF, -ROOT / (m - HALF), 2),
+            (m + HALF, ROOT / (m - HALF), 1),
+            (m - HALF, ROOT / (m - HALF), 1),
+            (m - HALF, ROOT / (m - HALF), 3),
+        ),
+        ("e:hdef", "e:qdef"),
+        lambda: Statement(
+            r"s'=(m-\tfrac12)s+O(s^2),\quad m'=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)+O(s)}", (*fold.h_blown_up(), 2)
+        ),
+    ),
+    claim_4a(
+        "s4-Qr-zeros",
+        "Q_r(1, m) has zeros 0 < m_- < 1/2 < m_+ < 3/2, is positive outside, and both tend to 1/2 as r -> 0",
+        Statement(
+            r"0<m_-<\tfrac12<m_+<\tfrac32,\qquad m_\pm\to\tfrac12\ (r\to0)", (sympy.Integer(0), HALF, THREE_HALVES)
+        ),
+        _q_zeros,
+        ((sympy.Integer(0), sympy.Integer(1), THREE_HALVES), (HALF, THREE_HALVES, sympy.Integer(2))),
+        ("e:qdef",),
+    ),
+    claim_4a(
+        "s4-Er-closed",
+        "Q_r(1, m) > 0 on the closed set E_r; at its ends it is 0",
+        Statement(r"Q_r(1,m)>0\ \text{for}\ m\in E_r=(-\infty,m_-]\cup[m_+,\infty)", ">"),
+        _q_positive,
+        ("<", "<="),
+        ("s4-Qr-zeros",),
+        lambda: Statement(r"Q_r(1,m)\ge0\ \text{for}\ m\in E_r,\ \text{with}\ 0\ \text{at}\ m_\pm\ \text{only}", ">="),
+    ),
+    claim_4a(
+        "s4-domain",
+        "near s = 0 the domain of h' is bounded by smooth curves through m_- and m_+",
+        Statement(r"m=\delta_\pm(s),\qquad\delta_\pm(0)=m_\pm", ("m_-", "m_+")),
+        _domain,
+        (("m_-", "m_-"), ("1/2", "3/2")),
+        ("s4-Qr-zeros", "s4-blowup"),
+    ),
+    claim_4a(
+        "e:fixm-converse",
+        "every solution of the squared equation solves the fixed-point equation; m2 does not",
+        Statement(r"Q_r(1,m)=m^2(m-\tfrac12)^2\Rightarrow m=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)}", lambda _place: True),
+        _converse,
+        (lambda place: place < 0, lambda place: place < HALF),
+        ("e:fixm", "s4-root-places"),
+        lambda: Statement(
+            r"Q_r(1,m)=m^2(m-\tfrac12)^2\ \text{and}\ m(m-\tfrac12)>0\Rightarrow m=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)}",
+            lambda place: place * (place - HALF) > 0,
+        ),
+    ),
+    claim_4a(
+        "e:fixm",
+        "a fixed point of h' on s = 0 satisfies Q_r(1, m) = m^2 (m - 1/2)^2",
+        Statement(
+            r"Q_r(1,m)=m^2(m-\tfrac12)^2", r * (2 * m**2 - 3 * m) + sympy.Rational(9, 4) * (m - HALF) ** 2 - QUARTIC
+        ),
+        _fixed_points,
+        (
+            r * (2 * m**2 - 3 * m) + sympy.Rational(9, 4) * (m - HALF) ** 2 - m**2 * (m + HALF) ** 2,
+            r * (2 * m**2 - 3 * m) + sympy.Rational(9, 4) * (m - HALF) ** 2 - m * (m - HALF) ** 2,
+        ),
+        ("s4-blowup", "e:qdef"),
+    ),
+    claim_4a(
+        "e:meq",
+        "besides m = 3/2 the solutions are the roots of 2 r m = (m - 1/2)^2 (m + 3/2)",
+        Statement(r"2rm=(m-\tfrac12)^2(m+\tfrac32)", CUBIC - 2 * r * m),
+        identity(lambda: fold.fixed_point_factors()[1]),
+        (CUBIC + 2 * r * m, CUBIC - r * m, (m - HALF) ** 2 * (m - THREE_HALVES) - 2 * r * m),
+        ("e:fixm",),
+    ),
+    claim_4a(
+        "s4-root-places",
+        "the cubic has three real roots m1 < -3/2 and 0 < m2 < 1/2 < m3",
+        Statement(r"m_1<-\tfrac32,\quad0<m_2<\tfrac12<m_3", (-THREE_HALVES, sympy.Integer(0), HALF)),
+        _root_places,
+        ((-HALF, HALF, THREE_HALVES), (-sympy.Integer(3), sympy.Integer(0), HALF)),
+        ("e:meq",),
+    ),
+    claim_4a(
+        "s4-m32-r1",
+        "m = 3/2 solves e:fixm only if r = 1; it solves it for every r",
+        Statement(r"m=\tfrac32\Rightarrow r=1", "r = 1"),
+        _trivial_root,
+        ("r = 0",),
+        ("e:fixm", "e:meq"),
+        lambda: Statement(r"m=\tfrac32\ \text{solves}\ Q_r(1,m)=m^2(m-\tfrac12)^2\ \text{for every}\ r", "every r"),
+    ),
+)

@@ -1,0 +1,207 @@
+"""Section 4.1(a): the Jacobian of h' on s = 0, the saddle at m3, and the tangent of beta."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.certificates import positive_on, value_at
+from singimpact.paper.claims.claim import Check, Statement
+from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
+from singimpact.paper.claims.sections.section4a_blowup import (
+    CUBIC,
+    HALF,
+    ROOT_SIGNS,
+    THREE_HALVES,
+    claim_4a,
+    sign_chain,
+)
+from singimpact.paper.claims.sections.section4a_rays import ray_m3
+from singimpact.paper.claims.verifiers import every, identity, is_zero, same
+from singimpact.paper.routes import fold
+from singimpact.paper.routes.fold import m
+from singimpact.paper.routes.implicit import r
+from singimpact.theory.notation import latex
+
+Q = sympy.Symbol("Q")
+
+
+_ON_FORM3 = (2 * m + 3) ** 2 / (8 * m**2 * (2 * m - 1))
+_FORM1 = (HALF / (m - HALF) * (r * (4 * m - 3) + sympy.Rational(9, 2) * (m - HALF)) - Q / (m - HALF) ** 2) / sympy.sqrt(
+    Q
+)
+_FORM2 = r * (2 * m + 3) / (2 * m - 1) ** 2 / sympy.sqrt(Q)
+
+
+def _N_r(stated: Any) -> Check:
+    return identity(fold.N_r, "derived by differentiating m'")(stated.subs(Q, fold.Q_at_one()))
+
+
+def _N_r_form(stated: tuple[Any, str]) -> Check:
+    """N_r at the solutions of e:fixm: on the cubic with m (m - 1/2) > 0, and in "all" of them, m2 and 3/2 too."""
+    formula, where = stated
+    check = identity(fold.N_r_at_fixed_points, "derived on the cubic with m (m - 1/2) > 0")(formula)
+    trivial = fold.N_r_collected().subs(m, THREE_HALVES)
+    covers = where == "m1, m3" or is_zero(trivial - formula.subs(m, THREE_HALVES))
+    return every(
+        [
+            (check.evidence, check.holds),
+            (
+                "at m = 3/2 N_r is r, the formula gives 1" if where == "all" else "m1 and m3 have m (m - 1/2) > 0",
+                covers and sign_chain(CUBIC - 2 * r * m, ROOT_SIGNS),
+            ),
+        ],
+        witness=lambda: dict(
+            check.witness
+            or {
+                "r": "1/2",
+                "m": "3/2",
+                "N_r": str(trivial.subs(r, HALF)),
+                "formula": str(formula.subs(m, THREE_HALVES)),
+            }
+        ),
+    )
+
+
+def _jacobian(stated: Any) -> Check:
+    """The first row of Dh'(0, m) and the entry below the diagonal's end; * is not tested, it depends on O(3)."""
+    derived = fold.Dh_blown_up()
+    return identity(lambda: (derived[0, 0], derived[0, 1], derived[1, 1]))(
+        (stated[0, 0], stated[0, 1], stated[1, 1].subs(Q, fold.Q_at_one()))
+    )
+
+
+def _saddle(stated: tuple[Any, Any, Any, Any]) -> Check:
+    """Limits of (lambda, mu) as r -> 0 and as r -> 1, and 0 < lambda < 1 < mu for every r in (0, 1)."""
+    rate, _ = fold.h_blown_up()
+    multiplier = fold.N_r_at_fixed_points()
+    ends = tuple(value_at(part, m, end) for end in (HALF, THREE_HALVES) for part in (rate, multiplier))
+    return every(
+        [
+            ("m3 in (1/2, 3/2) runs once through r in (0, 1)", ray_m3((HALF, THREE_HALVES)).holds),
+            (
+                "0 < lambda < 1",
+                positive_on(rate, m, HALF, THREE_HALVES) and positive_on(1 - rate, m, HALF, THREE_HALVES),
+            ),
+            ("mu > 1", positive_on(multiplier - 1, m, HALF, THREE_HALVES)),
+            (f"limits {ends[0]}, {ends[1]} as r -> 0 and {ends[2]}, {ends[3]} as r -> 1", ends == stated),
+        ]
+    )
+
+
+def _direction(stated: tuple[int, int]) -> Check:
+    """The eigenvector of Dh'(0, m3) for mu, whatever * is."""
+    matrix, vector = fold.Dh_blown_up(), sympy.Matrix(stated)
+    pairs = zip(matrix * vector, matrix[1, 1] * vector, strict=True)
+    return every([("Dh' v = mu v for the direction stated, for any *", all(same(x, y) for x, y in pairs))])
+
+
+def _tangent(stated: tuple[Any, int]) -> Check:
+    """chi(W^s) = {(s, s m(s))}, m(0) = m3: its tangent at 0 has slope m3, and eta has the sign of sigma."""
+    slope, sign = stated
+    s, start, bend = sympy.symbols("s m_3 c")
+    derived = sympy.diff(s * (start + bend * s), s).subs(s, 0)  # eta = s m(s) with m(s) = m_3 + c s + ...
+    value = sympy.Poly(fold.fixed_point_factors()[1].subs(r, HALF), m).nroots(n=20)[2]
+    positive = positive_on(m, m, HALF, THREE_HALVES)
+    return every(
+        [
+            ("the tangent at the origin has slope m(0) = m3 in (1/2, 3/2)", slope == derived),
+            ("for sigma < 0 the sign of eta = m sigma is -", positive and sign == -1),
+        ],
+        witness=lambda: {"r": "1/2", "slope of the tangent": str(value), "stated slope": str(slope)},
+    )
+
+
+CLAIMS = (
+    claim_4a(
+        "s4-Dh-form",
+        "Dh'(0, m) is lower triangular with m - 1/2 and N_r(m)",
+        Statement(
+            r"Dh'(0,m)=\begin{pmatrix}m-\tfrac12&0\\ *&N_r(m)\end{pmatrix}", sympy.Matrix([[m - HALF, 0], [0, _FORM2]])
+        ),
+        _jacobian,
+        (
+            sympy.Matrix([[m + HALF, 0], [0, _FORM2]]),
+            sympy.Matrix([[m - HALF, 0], [0, -_FORM2]]),
+            sympy.Matrix([[m - HALF, 1], [0, _FORM2]]),
+        ),
+        ("s4-blowup", "s4-Nr-2"),
+    ),
+    claim_4a(
+        "s4-Nr-2",
+        "N_r(m) over one denominator",
+        Statement(r"N_r(m)=r(2m+3)(2m-1)^{-2}Q^{-\frac12}", _FORM2),
+        _N_r,
+        (r * (2 * m - 3) / (2 * m - 1) ** 2 / sympy.sqrt(Q), r * (2 * m + 3) / (2 * m - 1) / sympy.sqrt(Q)),
+        ("s4-Nr-1",),
+    ),
+    claim_4a(
+        "s4-Nr-1",
+        "N_r(m) = dm'/dm at s = 0, as differentiated",
+        Statement(
+            r"N_r(m)=Q^{-\frac12}\bigl(\tfrac12(m-\tfrac12)^{-1}[r(4m-3)+\tfrac92(m-\tfrac12)]-Q(m-\tfrac12)^{-2}\bigr)",
+            _FORM1,
+        ),
+        _N_r,
+        (-_FORM1, _FORM1 + 2 * sympy.sqrt(Q) / (m - HALF) ** 2),
+        ("s4-blowup",),
+    ),
+    claim_4a(
+        "s4-Nr-3-all",
+        "the third form of N_r at every solution of e:fixm; at m = 3/2 it fails",
+        Statement(
+            r"N_r(m)=\frac{(2m+3)^2}{8m^2(2m-1)}\ \text{for every solution of}\ Q_r(1,m)=m^2(m-\tfrac12)^2",
+            (_ON_FORM3, "all"),
+        ),
+        _N_r_form,
+        ((-_ON_FORM3, "all"), (-_ON_FORM3, "m1, m3")),
+        ("e:fixm", "s4-Nr-2", "s4-Nr-3"),
+        lambda: Statement(
+            rf"N_r(m)={latex(fold.N_r_at_fixed_points())}\ \text{{at the roots of the cubic with}}\ m(m-\tfrac12)>0",
+            (fold.N_r_at_fixed_points(), "m1, m3"),
+        ),
+    ),
+    claim_4a(
+        "s4-Nr-3",
+        "the third form of N_r at m1 and m3",
+        Statement(r"N_r(m)=\frac{(2m+3)^2}{8m^2(2m-1)}", (_ON_FORM3, "m1, m3")),
+        _N_r_form,
+        ((_ON_FORM3 / 2, "m1, m3"), ((2 * m - 3) ** 2 / (8 * m**2 * (2 * m - 1)), "m1, m3")),
+        ("s4-Nr-2", "e:meq", "s4-root-places"),
+    ),
+    claim_4a(
+        "s4-saddle-m3",
+        "0 < lambda < 1 < mu for 0 < r < 1, with the limits as r -> 0 and r -> 1",
+        Statement(
+            r"0<\lambda<1<\lambda',\quad(\lambda,\lambda')\to(0,\infty)\ (r\to0),\quad(\lambda,\lambda')\to(1,1)\ (r\to1)",
+            (sympy.Integer(0), sympy.zoo, sympy.Integer(1), sympy.Integer(1)),
+        ),
+        _saddle,
+        (
+            (sympy.Integer(0), sympy.Integer(1), sympy.Integer(1), sympy.Integer(1)),
+            (sympy.Integer(1), sympy.zoo, sympy.Integer(0), sympy.Integer(1)),
+        ),
+        ("s4-Dh-form", "s4-Nr-3", "s4-m3"),
+    ),
+    claim_4a(
+        "s4-mu-direction",
+        "the eigendirection of Dh'(0, m3) for the eigenvalue > 1 is the m-axis",
+        Statement(r"\ker(Dh'(0,m_3)-\lambda'I)=\langle(0,1)\rangle", (0, 1)),
+        _direction,
+        ((1, 0), (1, 1)),
+        ("s4-Dh-form", "s4-saddle-m3"),
+    ),
+    claim_4a(
+        "s4-beta-tangent",
+        "chi(W^s) is tangent to the s-axis with eta > 0 for sigma < 0; it is tangent to eta = m3 sigma",
+        Statement(r"\beta=\chi(W^s)\ \text{tangent to}\ \eta=0,\ \eta>0\ \text{for}\ \sigma<0", (sympy.Integer(0), 1)),
+        _tangent,
+        ((sympy.Integer(0), -1), (sympy.Symbol("m_3"), 1)),
+        ("s4-saddle-m3", "s4-m3"),
+        lambda: Statement(
+            r"\beta=\chi(W^s)\ \text{tangent to}\ \eta=m_3\sigma,\ \eta<0\ \text{for}\ \sigma<0",
+            (sympy.Symbol("m_3"), -1),
+        ),
+    ),
+)

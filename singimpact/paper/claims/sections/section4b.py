@@ -1,0 +1,463 @@
+"""Section 4.1(b): tangency points with a' < 0; k = a'/6 < 0 and rays t = l sigma."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.certificates import negative_on, positive_in, positive_on
+from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.sections.section4b_trials import TRIALS as TRIALS
+from singimpact.paper.claims.verifiers import every, identity, is_zero, same
+from singimpact.paper.routes import fold
+from singimpact.paper.routes.fold import k
+from singimpact.paper.routes.implicit import a_symbol, r, sigma, t
+from singimpact.paper.trials import leaves
+
+ell, slope = sympy.symbols("ell p")
+THIRD = sympy.Rational(1, 3)
+
+
+def on_ray() -> tuple[Any, Any]:
+    """p and q on t = l sigma: v of p over sigma^2, and v of q over the square of its own first component, at sigma = 0."""
+    first, second = fold.phi()
+    launch = sympy.cancel(fold.p()[1].subs(t, ell * sigma) / sigma**2)
+    landed = sympy.cancel((-r * second / first**2).subs(t, ell * sigma))
+    return sympy.factor(launch), sympy.factor(landed)
+
+
+def _positive_for_all(expression: Any, *, rate: bool = True) -> bool:
+    """A rational function of (l, r) is positive for l > 0 and 0 < r < 1; one of l alone, for l > 0."""
+    return positive_in(expression, {ell: (0, sympy.oo)} | ({r: (0, 1)} if rate else {}))
+
+
+def _continuous(side: int) -> Check:
+    """v on the horizon has the stated sign off w_*, and F has no jump near a tangency with a' < 0."""
+    _, outline = fold.horizon()
+    height = sympy.cancel(outline / k / sigma**2)
+    found = leaves.no_jumps()
+    return every(
+        [
+            (f"v on the horizon is {height} k sigma^2 + O(3) with k < 0", height.is_positive and side == -1),
+            (
+                f"no jump of F among {found.states} neighbouring states on two models, largest step {found.largest:.1e}",
+                found.largest < 0.05,
+            ),
+        ],
+        kind="supported",
+    )
+
+
+def _sector(stated: tuple[Any, Any]) -> Check:
+    """F lands where v >= 0 and t >= 0: for k < 0 that is stated[0] sigma + t >= 0, t >= 0."""
+    factor, least = stated
+    launch = sympy.cancel(fold.p()[1] / (-k * t))
+    rise = sympy.cancel(sympy.diff(fold.p()[1], t) / -k)
+    return every(
+        [
+            (
+                f"v = -k t ({launch}), so for k < 0 and t > 0 v >= 0 where {launch} >= 0",
+                same(launch, factor * sigma + t) and least == 0,
+            ),
+            (
+                f"dv/dt = -k ({launch} + t) > 0 inside, so there p is one to one for each sigma",
+                same(rise, launch + t),
+            ),
+        ]
+    )
+
+
+def _image_bounds(bound: Any) -> Check:
+    """phi of the sector: with p = t/(sigma + t) in [0, 3/2], v/(sigma + t)^2 = k (3p - p^2) runs from 0 to bound a'."""
+    first, second = fold.phi()
+    ratio = sympy.expand(sympy.cancel((second / (k * first**2)).subs(sigma, t * (1 - slope) / slope)))
+    edge = ratio.subs(slope, sympy.Rational(3, 2))
+    return every(
+        [
+            (
+                f"v/(k s^2) = {ratio}, s = sigma + t, increases on 0 <= p <= 3/2, the sector",
+                positive_on(sympy.diff(ratio, slope), slope, 0, sympy.Rational(3, 2)),
+            ),
+            (
+                f"from 0 to {edge}, that is to v = {edge / 6} a' s^2",
+                ratio.subs(slope, 0) == 0 and is_zero(edge / 6 - bound),
+            ),
+        ]
+    )
+
+
+def _half_plane(stated: int) -> Check:
+    """The sign of v on {(3/8) a' sigma^2 <= v <= 0}, a' < 0: the half-plane it lies in."""
+    lower = sympy.Rational(3, 8) * a_symbol(1)
+    return every(
+        [
+            (
+                "both bounds are <= 0 for a' < 0, so it lies in v <= 0",
+                negative_on(lower, a_symbol(1), -sympy.oo, 0) and stated == -1,
+            )
+        ],
+        witness=lambda: {"a'": "-1", "sigma": "1", "v between": "-3/8 and 0"},
+    )
+
+
+def _range(stated: Any) -> Check:
+    """Rays 0 <= l <= stated(k, r) reach the upper edge v = -(9/4) r k sigma^2 of R T'' under p."""
+    launch, _ = on_ray()
+    short = sympy.factor(sympy.cancel((launch / -k).subs(ell, stated)) - sympy.Rational(9, 4) * r)
+    small = short.subs(k, -sympy.Rational(1, 100)) if short.has(k) else short
+    return every(
+        [(f"3l + l^2 - (9/4) r at the last ray is {short}, positive for every k < 0", positive_on(small, r, 0, 1))],
+        witness=lambda: {
+            "k": "-1/100",
+            "r": "1/2",
+            "last l": str(stated.subs({k: -sympy.Rational(1, 100), r: sympy.Rational(1, 2)})),
+            "needed 3l + l^2": "9/8",
+            "reached": str((small + sympy.Rational(9, 4) * r).subs(r, sympy.Rational(1, 2))),
+        },
+    )
+
+
+def _bound_p(stated: Any) -> Check:
+    """p~ > stated for 0 <= sigma <= delta, k < 0: the leading part of p~ - stated at sigma = 0 and just after."""
+    launch, _ = on_ray()
+    gap = sympy.expand(launch * sigma**2 - stated)
+    lowest = min(degree for (degree,), _ in sympy.Poly(gap, sigma).terms())
+    leading = sympy.cancel(sympy.Poly(gap, sigma).coeff_monomial(sigma**lowest) / -k)
+    return every(
+        [
+            (
+                f"p~ - bound = -k ({sympy.factor(leading)}) sigma^{lowest} + ..., positive for l > 0, 0 < r < 1",
+                _positive_for_all(leading),
+            )
+        ],
+        witness=lambda: {
+            "sigma": "0",
+            "k": "-1",
+            "l": "1",
+            "r": "1/2",
+            "p~": "0",
+            "bound": str(stated.subs({sigma: 0, k: -1, ell: 1, r: sympy.Rational(1, 2)})),
+        },
+    )
+
+
+def _bound_q(stated: Any) -> Check:
+    """q~ < stated for small sigma > 0, k < 0: leading coefficients of sigma^2."""
+    _, landed = on_ray()
+    gap = sympy.cancel((stated / sigma**2 - landed) / -k)
+    point = {k: -1, ell: 1, r: sympy.Rational(1, 2)}
+    return every(
+        [(f"(bound - q~)/(-k sigma^2) -> {sympy.factor(gap)}, positive for l > 0, 0 < r < 1", _positive_for_all(gap))],
+        witness=lambda: {
+            "k": "-1",
+            "l": "1",
+            "r": "1/2",
+            "q~/sigma^2": str(landed.subs(point)),
+            "bound/sigma^2": str((stated / sigma**2).subs(point)),
+        },
+    )
+
+
+M = (3 + 2 * ell) / ((3 + ell) * (1 + ell) ** 2)
+
+
+def _ratio(stated: Any) -> Check:
+    """q~/p~ < stated for small sigma: the limit of q~/p~ is r M."""
+    launch, landed = on_ray()
+    limit = sympy.cancel(landed / launch)
+    point = {ell: 1, r: sympy.Rational(1, 2)}
+    return every(
+        [
+            ("q~/p~ -> r M", is_zero(limit - r * M)),
+            ("which is below the bound for l > 0, 0 < r < 1", _positive_for_all(stated - limit)),
+        ],
+        witness=lambda: {
+            "l": "1",
+            "r": "1/2",
+            "limit of q~/p~": str(limit.subs(point)),
+            "bound": str(stated.subs(point)),
+        },
+    )
+
+
+def _below_one(stated: Any) -> Check:
+    return every(
+        [
+            (
+                "1 - M over its positive denominator has positive coefficients in l",
+                is_zero(stated - M) and _positive_for_all(1 - stated, rate=False),
+            )
+        ],
+        witness=lambda: {"l": "1", "M": str(stated.subs(ell, 1))},
+    )
+
+
+def _r_inequality(stated: tuple[Any, Any]) -> Check:
+    small, large = stated
+    return every(
+        [("the difference is positive on (0, 1) (no root inside, by Sturm)", positive_on(large - small, r, 0, 1))],
+        witness=lambda: {
+            "r": "1/2",
+            "left": str(small.subs(r, sympy.Rational(1, 2))),
+            "right": str(large.subs(r, sympy.Rational(1, 2))),
+        },
+    )
+
+
+def _contracted(stated: int) -> Check:
+    """The limit of q~/p~ is r M with 0 < r M < 1, so a constant N between serves for small sigma."""
+    launch, landed = on_ray()
+    limit = sympy.cancel(landed / launch)
+    return every(
+        [
+            (
+                "0 < lim q~/p~ < 1 for l > 0, 0 < r < 1",
+                _positive_for_all(limit) and _positive_for_all(1 - limit) and stated == 1,
+            )
+        ]
+    )
+
+
+def _iterates(stated: int) -> Check:
+    found = leaves.iterates()
+    return every(
+        [
+            (
+                f"the largest v over arcs t = l sigma falls below {found.last:.0e} of its start after {found.count} impacts on two models, "
+                f"by a factor of at most {found.factor:.3f} an impact in the end",
+                found.last < 1e-6 and found.factor < 1 and stated == 0,
+            )
+        ],
+        kind="supported",
+    )
+
+
+def _backwards(stated: str) -> Check:
+    """Stable manifolds followed backwards from (tau_* + sigma, 0) end at tau' < tau_*; as sigma -> 0 tau' -> tau_*.
+
+    That tau' tends to tau_* is read from sigma'/sigma, which moves by less than 2 % while sigma falls fourfold.
+    """
+    found = leaves.ends()
+    shown = ", ".join(f"{case.foot:.3g} -> {case.end:.5g}" for case in found[:3])
+    proportional = all(case.end < 0 for case in found)
+    ratios = {name: [case.end / case.foot for case in found if case.name == name] for name in (c.name for c in found)}
+    shrinking = all(abs(one / two - 1) < 0.02 for row in ratios.values() for one, two in pairwise(row))
+    told = "; ".join(f"{name}: {', '.join(f'{ratio:.4f}' for ratio in row)}" for name, row in ratios.items())
+    return every(
+        [
+            (f"the leaf of sigma > 0 ends at sigma' < 0 (sigma -> sigma': {shown})", proportional),
+            (
+                f"sigma'/sigma of leaves nearer and nearer to tau_* is {told}, so no sigma' < 0 is left for sigma = 0",
+                shrinking and stated == "(0, delta]",
+            ),
+        ],
+        kind="supported",
+        witness=lambda: {
+            "sigma": "0",
+            "sigma'/sigma as sigma -> 0": ", ".join(
+                f"{case.end / case.foot:.4f} at {case.foot:.3g}" for case in found[:3]
+            ),
+        },
+    )
+
+
+def _foliated(stated: tuple[int, int]) -> Check:
+    found = leaves.ends()
+    sides = (1 if all(case.foot > 0 for case in found) else 0, -1 if all(case.end < 0 for case in found) else 0)
+    ordered = all(abs(one.end) > abs(two.end) for one, two in pairwise(found) if one.name == two.name)
+    return every(
+        [
+            (f"{len(found)} leaves on two models run from sigma > 0 to sigma' < 0 on Pi_0", sides == stated),
+            ("nested: a leaf with a smaller foot lies inside", ordered),
+        ],
+        kind="supported",
+    )
+
+
+def _epsilon(stated: tuple[int, Any]) -> Check:
+    """G of (tau_* + sigma, 0), sigma < 0: the flight lands where 3 sigma + t = 0."""
+    first, second = fold.phi()
+    landed = first.subs(t, -3 * sigma)
+    speed = sympy.cancel((-r * second).subs(t, -3 * sigma) / landed**2)
+    return every(
+        [
+            (
+                f"it lands at {landed} (sigma < 0, so on the other side) with v = {speed} sigma'^2",
+                is_zero(landed + 2 * sigma) and stated[0] == 1 and is_zero(speed - stated[1]),
+            ),
+            (
+                "v > 0 for k < 0, quadratically tangent to Pi_0",
+                positive_on(speed.subs(r, sympy.Rational(1, 2)), k, -sympy.oo, 0),
+            ),
+        ]
+    )
+
+
+_claim = in_section("4.1(b)")
+
+
+_P = -k * (3 * ell + ell**2)
+_Q = -r * k * (3 * ell + 2 * ell**2)
+
+CLAIMS = (
+    _claim(
+        "s4b-continuous",
+        "for a' < 0 the horizon lies in v < 0, and F, G are continuous near w_* in v >= 0",
+        Statement(r"v|_H<0\ (\sigma\ne0),\quad F,G\ \text{continuous}", -1),
+        _continuous,
+        (1,),
+        ("s4-horizon-line",),
+    ),
+    _claim(
+        "s4b-sector",
+        "F maps a neighbourhood of w_* onto one of the origin in 3 sigma + t >= 0, t >= 0",
+        Statement(r"3\sigma+t\ge0,\ t\ge0", (3, 0)),
+        _sector,
+        ((2, 0), (3, 1)),
+        ("e:pnew",),
+    ),
+    _claim(
+        "s4b-T2-bounds",
+        "phi maps that sector onto T'' = {(3/8) a' sigma^2 <= v <= 0, sigma >= 0}",
+        Statement(r"\tfrac38a'\sigma^2\le v\le0,\ \sigma\ge0", sympy.Rational(3, 8)),
+        _image_bounds,
+        (sympy.Rational(1, 8), sympy.Rational(3, 4)),
+        ("e:phinew", "s4b-sector"),
+    ),
+    _claim(
+        "s4b-T2-place",
+        "T'' lies in Pi_0^+; it lies in v <= 0",
+        Statement(r"\mathcal T''\subset\Pi_0^+", 1),
+        _half_plane,
+        (0,),
+        ("s4b-T2-bounds",),
+        lambda: Statement(r"\mathcal T''\subset\Pi_0^-", -1),
+    ),
+    _claim(
+        "s4b-rays",
+        "p and q on a ray t = l sigma",
+        Statement(
+            r"p=(\sigma,-k(3\ell+\ell^2)\sigma^2+O(\sigma^3)),\ q=(\sigma(1+\ell),-rk(3\ell+2\ell^2)\sigma^2+O(\sigma^3))",
+            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2),
+        ),
+        identity(
+            lambda: (
+                fold.p()[0],
+                fold.p()[1].subs(t, ell * sigma),
+                fold.phi()[0].subs(t, ell * sigma),
+                (-r * fold.phi()[1]).subs(t, ell * sigma),
+            )
+        ),
+        (
+            (sigma, -_P * sigma**2, sigma * (1 + ell), _Q * sigma**2),
+            (sigma, _P * sigma**2, sigma * (1 - ell), _Q * sigma**2),
+        ),
+        ("e:pnew", "e:phinew"),
+    ),
+    _claim(
+        "s4b-l-range",
+        "the rays 0 <= l <= -(9/4) k r cover R T'' under p for every k < 0; for small |k| they do not",
+        Statement(
+            r"0\le\ell\le-\tfrac94kr\ \text{covers}\ 0\le v\le-\tfrac94rk\sigma^2", -sympy.Rational(9, 4) * k * r
+        ),
+        _range,
+        (r / 4, -k * r),
+        ("s4b-rays", "s4b-T2-bounds"),
+        lambda: Statement(
+            r"0\le\ell\le\tfrac34r\ \text{covers}\ 0\le v\le-\tfrac94rk\sigma^2", sympy.Rational(3, 4) * r
+        ),
+    ),
+    _claim(
+        "s4b-p-bound",
+        "the lower bound on p~, printed without sigma^2",
+        Statement(r"\tilde p(\sigma)>-k(3\ell+\ell^2)\tfrac13(2+r),\ 0\le\sigma\le\delta", _P * (2 + r) * THIRD),
+        _bound_p,
+        (_P * sigma**2, _P * (4 - r) * THIRD * sigma**2),
+        ("s4b-rays",),
+        lambda: Statement(
+            r"\tilde p(\sigma)>-k(3\ell+\ell^2)\tfrac13(2+r)\,\sigma^2,\ 0<\sigma\le\delta",
+            _P * (2 + r) * THIRD * sigma**2,
+        ),
+    ),
+    _claim(
+        "s4b-q-bound",
+        "the upper bound on q~; the factor (1+2r)/3 < 1 is on the wrong side, (4-r)/3 serves",
+        Statement(
+            r"\tilde q(\sigma)<-rk(3\ell+2\ell^2)(1+\ell)^{-2}\tfrac13(1+2r)\,\sigma^2",
+            _Q / (1 + ell) ** 2 * (1 + 2 * r) * THIRD * sigma**2,
+        ),
+        _bound_q,
+        (_Q / (1 + ell) ** 2 * sigma**2, _Q / (1 + ell) ** 2 * (2 + r) * THIRD * sigma**2),
+        ("s4b-rays",),
+        lambda: Statement(
+            r"\tilde q(\sigma)<-rk(3\ell+2\ell^2)(1+\ell)^{-2}\tfrac13(4-r)\,\sigma^2",
+            _Q / (1 + ell) ** 2 * (4 - r) * THIRD * sigma**2,
+        ),
+    ),
+    _claim(
+        "s4b-ratio",
+        "the bound on q~/p~ that follows; with (1+2r) it fails, with (4-r) it holds",
+        Statement(r"\tilde q/\tilde p<Mr(1+2r)(2+r)^{-1}", M * r * (1 + 2 * r) / (2 + r)),
+        _ratio,
+        (M * r, M * r * r),
+        ("s4b-p-bound", "s4b-q-bound", "s4b-M"),
+        lambda: Statement(r"\tilde q/\tilde p<Mr(4-r)(2+r)^{-1}", M * r * (4 - r) / (2 + r)),
+    ),
+    _claim(
+        "s4b-M",
+        "M < 1 for l > 0",
+        Statement(r"M=(3+2\ell)(3+\ell)^{-1}(1+\ell)^{-2}<1", M),
+        _below_one,
+        ((3 + 2 * ell) / (3 + ell), (9 + 2 * ell) / ((3 + ell) * (1 + ell) ** 2)),
+    ),
+    _claim(
+        "s4b-r-ineq",
+        "r (1 + 2r) < 2 + r for 0 < r < 1",
+        Statement(r"r(1+2r)<2+r", (r * (1 + 2 * r), 2 + r)),
+        _r_inequality,
+        ((r * (2 + 2 * r), 2 + r), (2 + r, r * (1 + 2 * r))),
+    ),
+    _claim(
+        "s4b-Np",
+        "there is N < 1 with q~ < N p~ for small sigma",
+        Statement(r"\tilde q(\sigma)<N\tilde p(\sigma),\ 0<N<1", 1),
+        _contracted,
+        (0,),
+        ("s4b-rays", "s4b-M"),
+    ),
+    _claim(
+        "s4b-contraction",
+        "the iterates G^n(p(alpha)) tend uniformly to the tau-axis",
+        Statement(r"G^n(p(\alpha))\to\Pi_0\ \text{uniformly}", 0),
+        _iterates,
+        (1,),
+        ("s4b-Np",),
+    ),
+    _claim(
+        "s4b-back",
+        "for every sigma in [0, delta] the stable manifold extends backwards to tau' < tau_*; not for sigma = 0",
+        Statement(r"W^s_{\tau_*+\sigma}\ni(\tau',0),\ \tau'<\tau_*,\ \sigma\in[0,\delta]", "[0, delta]"),
+        _backwards,
+        ("[-delta, delta]",),
+        ("s4b-contraction", "t:t1"),
+        lambda: Statement(r"W^s_{\tau_*+\sigma}\ni(\tau',0),\ \tau'<\tau_*,\ \sigma\in(0,\delta]", "(0, delta]"),
+    ),
+    _claim(
+        "t:foliate",
+        "for a' < 0 a neighbourhood is foliated by arcs of stable manifolds with ends on both sides of tau_*",
+        Statement(r"W^s_\tau,\ \tau>\tau_*:\ \text{ends on}\ \Pi_0\ \text{on opposite sides of}\ \tau_*", (1, -1)),
+        _foliated,
+        ((1, 0), (0, -1)),
+        ("s4b-back",),
+    ),
+    _claim(
+        "s4b-eps",
+        "G takes [w_1, w_*], tau < tau_*, to an arc tangent to Pi_0 at w_* in sigma > 0, v > 0",
+        Statement(r"G([w_1,w_*]):\ v=-\tfrac94rk\sigma^2+O(3),\ \sigma>0", (1, -sympy.Rational(9, 4) * r * k)),
+        _epsilon,
+        ((-1, -sympy.Rational(9, 4) * r * k), (1, sympy.Rational(9, 4) * r * k)),
+        ("s4b-sector", "e:phinew"),
+    ),
+)

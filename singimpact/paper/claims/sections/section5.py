@@ -1,0 +1,447 @@
+"""Section 5: swan points, a = a' = 0, a'' != 0."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.certificates import definite, negative_on, positive_on, roots_inside, value_at
+from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.sections.section5_trials import TRIALS as TRIALS
+from singimpact.paper.claims.verifiers import every, identity, is_zero
+from singimpact.paper.routes import swan
+from singimpact.paper.routes.implicit import r
+from singimpact.paper.trials import swans, true_orbits
+from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient
+from singimpact.theory.notation import latex
+from singimpact.theory.sheet import generic_sheet
+
+m, s, ell, mbar = swan.m, swan.s, swan.ell, swan.mbar
+a2, sigma, t = sympy.symbols("a_d2 sigma t")
+HALF = sympy.Rational(1, 2)
+REACHED = 1e-3  # as in section 4(a)
+
+
+def _sheet(which: str) -> Any:
+    sheet = generic_sheet(2, 3)
+    return sheet.to_sympy(sheet.v if which == "p" else sheet.xdot).subs(a2, -24 * ell)
+
+
+def _p(stated: tuple[Any, Any]) -> Check:
+    """p in (s, m) by the boundary value route with a = a' = 0 set first, and by the paper's own."""
+    velocity = _sheet("p").subs({sigma: s, t: s * m})
+    first = identity(lambda: (s, velocity), "the solution of the boundary value problem")(stated)
+    second = identity(lambda: (s * swan.p_blown_up()[0], ell * s**3 * swan.p_blown_up()[1]))(stated)
+    return every(
+        [(first.evidence, first.holds), (second.evidence, second.holds)],
+        witness=lambda: dict(first.witness or second.witness or {}),
+    )
+
+
+def _phi(stated: tuple[Any, Any]) -> Check:
+    """phi in (s, m): launch velocity after the involution."""
+    return identity(
+        lambda: (s * (1 + m), _sheet("phi").subs({sigma: s, t: s * m})), "the launch velocity after the involution"
+    )(stated)
+
+
+def _coordinates(time: Any) -> Check:
+    """e:pdeg3 and s5-phi hold when the flight time is `time` in (s, m)."""
+    launch = sympy.expand(_sheet("p").subs({sigma: s, t: time}))
+    impact = sympy.expand(_sheet("phi").subs({sigma: s, t: time}))
+    stated = (ell * s**3 * swan.p_blown_up()[1], ell * s**3 * swan.phi_blown_up()[1])
+    point = {s: 1, m: -HALF, ell: 1}
+    return every(
+        [
+            ("p has the printed form", is_zero(launch - stated[0])),
+            ("phi has the printed form", is_zero(impact - stated[1])),
+        ],
+        witness=lambda: {
+            "s": "1",
+            "m": "-1/2",
+            "ell": "1",
+            "t": str(time.subs(point)),
+            "v of p": str(launch.subs(point)),
+            "printed": str(stated[0].subs(point)),
+        },
+    )
+
+
+def _h_bar(stated: Any) -> Check:
+    """r (impact polynomial of m) = (1+m)^3 (launch polynomial of mbar), as left side minus right side."""
+    return identity(swan.h_bar)(stated)
+
+
+def _intersections(count: int) -> Check:
+    """Common points of f and g on (-1, oo): m = 0, which is Pi_0, and one in (-1, 0)."""
+    polynomial = sympy.Poly(swan.fixed_point_polynomial(), m)
+    zero = is_zero(swan.h_bar().subs({m: 0, mbar: 0}))
+    rule = swan.r_of_m()
+    one = value_at(rule, m, -1) == 0 and value_at(rule, m, 0) == 1 and positive_on(sympy.diff(rule, m), m, -1, 0)
+    beyond = positive_on(rule - 1, m, 0, sympy.oo)
+    return every(
+        [
+            (
+                "r(m) rises from 0 to 1 on (-1, 0): one common point there for every r in (0, 1)",
+                one and polynomial.degree() == 5,
+            ),
+            ("r(m) > 1 for m > 0: none there", beyond),
+            ("f(0) = g(0) = 0: m = 0, the axis Pi_0, is another" if zero else "f(0) != g(0)", count == 1 + int(zero)),
+        ],
+        witness=lambda: {"m": "0", "f": str(swan.f_map().subs(m, 0)), "g": str(swan.g_map().subs(m, 0))},
+    )
+
+
+def _place(stated: tuple[Any, Any]) -> Check:
+    low, high = stated
+    polynomial = swan.fixed_point_polynomial()
+    half = polynomial.subs(r, HALF)
+    rule = swan.r_of_m()
+    return every(
+        [
+            (
+                "r(m) is an increasing bijection of the interval onto (0, 1)",
+                value_at(rule, m, low) == 0
+                and value_at(rule, m, high) == 1
+                and positive_on(sympy.diff(rule, m), m, low, high),
+            ),
+            ("one root there at r = 1/2, by Sturm", roots_inside(half, m, low, high) == 1),
+        ]
+    )
+
+
+def _slopes(sign: int) -> Check:
+    """f'(m_*) - g'(m_*) with r eliminated, on (-1, 0)."""
+    difference = sympy.cancel((sympy.diff(swan.f_map(), m) - sympy.diff(swan.g_map(), m)).subs(r, swan.r_of_m()))
+    found = 1 if positive_on(difference, m, -1, 0) else -1 if negative_on(difference, m, -1, 0) else 0
+    return every([("f' - g' at m_* keeps one sign on (-1, 0), that is for every r in (0, 1)", found == sign)])
+
+
+def _jacobian(stated: Any) -> Check:
+    derived = swan.Dh_bar()
+    slope = sympy.diff(swan.f_map(), m) / sympy.diff(swan.g_map(), m)
+    return identity(lambda: (derived[0, 0], derived[0, 1], slope))((stated[0, 0], stated[0, 1], stated[1, 1]))
+
+
+def _saddle(stated: tuple[int, int]) -> Check:
+    """Number of multipliers in (0, 1) and above 1 at (0, m_*), and the m-axis is invariant with the larger one."""
+    rate, multiplier = swan.Dh_bar()[0, 0], swan.mu_of_m()
+    inside = int(positive_on(rate, m, -1, 0) and positive_on(1 - rate, m, -1, 0))
+    above = int(positive_on(multiplier - 1, m, -1, 0))
+    return every(
+        [
+            ("1 + m_* in (0, 1) and f'/g' > 1 for every r in (0, 1)", (inside, above) == stated),
+            ("s = 0 is invariant, and carries f'/g'", swan.Dh_bar()[0, 1] == 0),
+        ]
+    )
+
+
+def _positive_slope(sign: int) -> Check:
+    """dv_c/dt = -(a''/24)(6 sigma^2 + 8 sigma t + 3 t^2): the form is definite."""
+    leading = sympy.expand(sympy.diff(swan_velocity(), t) / (-a2 / 24))
+    found = definite(leading, sigma, t)
+    return every(
+        [
+            (
+                f"dv_c/dt = -(a''/24)({leading}) + ..., a definite form, so > 0 off w_* for a'' < 0",
+                found == 1 and sign == 1,
+            )
+        ]
+    )
+
+
+def swan_velocity() -> Any:
+    """v_c at a swan to third order."""
+    sheet = generic_sheet(2, 3)
+    return sheet.to_sympy(sheet.v)
+
+
+def _smoothness(stated: str) -> Check:
+    """F on sigma = 0 solves v = -(a''/24) t^3 + ...: t grows like the cube root of v."""
+    cubic = swan_velocity().subs(sigma, 0)
+    power = sympy.Poly(cubic, t).degree()
+    found = swans.cube_root()
+    return every(
+        [
+            (f"on sigma = 0 v = {cubic} + ..., so t ~ v^(1/{power}) and dt/dv is unbounded at w_*", power == 3),
+            (f"true flights: t ~ v^{found:.4f} as v -> 0", abs(found - 1 / 3) < 1e-2),
+            ("F is continuous there, and smooth elsewhere since dv_c/dt > 0", stated == "continuous"),
+        ],
+        kind="supported",
+        witness=lambda: {
+            "sigma": "0",
+            "exponent of v in the flight time": f"{found:.4f}",
+            "needed for C^infinity": "1",
+        },
+    )
+
+
+def _unique(stated: tuple[str, int]) -> Check:
+    """Invariant directions at a swan within v >= 0 or v > 0: fixed points m in (-1, 0] or (-1, 0)."""
+    region, count = stated
+    one = _place((sympy.Integer(-1), sympy.Integer(0))).holds and _saddle((1, 1)).holds
+    axis = is_zero(swan.h_bar().subs({m: 0, mbar: 0}))
+    found = 1 + int(region == "v >= 0" and axis)
+    return every(
+        [
+            ("one fixed m_* in (-1, 0) for every r in (0, 1), a hyperbolic saddle: one invariant arc with v > 0", one),
+            (
+                "Pi_0 (m = 0) is invariant too and ends at w_*" if region == "v >= 0" else "Pi_0 is left out",
+                found == count,
+            ),
+        ],
+        kind="supported",
+        witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(found)},
+    )
+
+
+def _exists(stated: tuple[int, int]) -> Check:
+    """gamma at a swan with a'' < 0: cubic tangency, from sigma < 0, v > 0."""
+    power, side = stated
+    cases = true_orbits.gamma_cases(2)
+    worst = max(case.error for case in cases)
+    sign = negative_on(
+        -leading_coefficient(2), lambda_, 0, 1
+    )  # v = (a''/2) coefficient sigma^3 > 0 for a'' < 0, sigma < 0
+    return every(
+        [
+            ("hyperbolic saddle for every r in (0, 1); its stable manifold is gamma", _saddle((1, 1)).holds),
+            (
+                f"v ~ sigma^3 > 0 for sigma < 0 on true orbits: {cases[-1].line()}; worst relative error {worst:.0e}",
+                worst < REACHED and sign and (power, side) == (3, -1),
+            ),
+        ],
+        kind="supported",
+    )
+
+
+def _repelling(stated: int) -> Check:
+    """DG at points of gamma: one eigenvalue > 1, not along gamma, in the limit at w_*."""
+    matrix = DG_on_ray(2)
+    at_one = sympy.cancel(1 - matrix.trace() + matrix.det())
+    slope = 3 * leading_coefficient(2)
+    image = matrix * sympy.Matrix([1, slope])
+    turned = sympy.cancel(image[0] * slope - image[1])
+    count = int(negative_on(at_one, lambda_, 0, 1) and positive_on(matrix.det(), lambda_, 0, 1))
+    return every(
+        [
+            (
+                "the characteristic polynomial is negative at 1, positive at 0 and infinity, for every r in (0, 1)",
+                count == stated,
+            ),
+            (
+                "the tangent of gamma is no eigenvector",
+                positive_on(turned, lambda_, 0, 1) or negative_on(turned, lambda_, 0, 1),
+            ),
+        ]
+    )
+
+
+def _limit(stated: Any) -> Check:
+    """The limit of that eigenvalue along gamma, as a function of lambda."""
+    matrix = DG_on_ray(2)
+    residual = stated**2 - matrix.trace() * stated + matrix.det()
+    numbers = swans.eigenvalue()
+    value = float(sympy.N(stated.subs(lambda_, true_orbits.lambda_of(0.5, 2))))
+    return every(
+        [
+            ("it is a root of the characteristic polynomial of DG on gamma for every r", is_zero(residual)),
+            (
+                f"true orbits give {numbers.found:.6f} at r = 1/2, the statement {value:.6f}",
+                abs(numbers.found / value - 1) < REACHED,
+            ),
+        ],
+        witness=lambda: {
+            "r": "1/2",
+            "limit of the eigenvalue": f"{numbers.expected:.15f}",
+            "found on true orbits": f"{numbers.found:.6f}",
+        },
+    )
+
+
+def _others(stated: str) -> Check:
+    found = swans.fates()
+    return every(
+        [
+            (
+                f"{found.count} orbits from states near w_*, below and above gamma on two models, all come to rest at points with a < 0 "
+                f"(largest a there {found.largest:.1e})",
+                found.largest < 0 and found.lost == 0 and stated == "chatter",
+            )
+        ],
+        kind="supported",
+    )
+
+
+def _no_impacts(stated: int) -> Check:
+    """v_c = -(a''/24) t (6 sigma^2 + 4 sigma t + t^2): the form is definite, so v_c < 0 for t > 0, a'' > 0."""
+    leading = sympy.expand(sympy.cancel(swan_velocity() / (-a2 * t / 24)))
+    discriminant = sympy.discriminant(leading.subs(sigma, 1), t)
+    return every(
+        [
+            (
+                f"v_c = -(a''/24) t ({leading}) + ..., discriminant {discriminant} < 0: negative for t > 0, a'' > 0",
+                definite(leading, sigma, t) == 1 and stated == -1,
+            )
+        ]
+    )
+
+
+_claim = in_section("5")
+
+
+_LAUNCH, _IMPACT = 6 * m + 4 * m**2 + m**3, 6 * m + 8 * m**2 + 3 * m**3
+_STAR = sympy.Symbol("*")
+_SLOPE = sympy.diff(r * _IMPACT / (1 + m) ** 3, m) / sympy.diff(_LAUNCH, m)
+
+CLAIMS = (
+    _claim(
+        "s5-coordinates",
+        "the blown-up maps hold with (sigma, eta) = (s, s m); they hold with (sigma, t) = (s, s m)",
+        Statement(r"(\sigma,\eta)=(s,sm),\ \eta=\tfrac32\sigma+t", s * m - 3 * s / 2),
+        _coordinates,
+        (s * m + 3 * s / 2, -s * m),
+        ("e:pdeg3", "s5-phi"),
+        lambda: Statement(r"(\sigma,t)=(s,sm)", s * m),
+    ),
+    _claim(
+        "e:pdeg3",
+        "p at a swan point in the blown-up coordinates (sigma, t) = (s, s m)",
+        Statement(r"p:(s,m)\mapsto(s,\ \ell s^3(6m+4m^2+m^3+O(s))),\ \ell=-\tfrac1{24}a''", (s, ell * s**3 * _LAUNCH)),
+        _p,
+        ((s, -ell * s**3 * _LAUNCH), (s, ell * s**3 * (6 * m + 8 * m**2 + m**3))),
+        ("e:swan",),
+    ),
+    _claim(
+        "s5-phi",
+        "phi at a swan point in the blown-up coordinates",
+        Statement(r"\phi:(s,m)\mapsto(s(1+m),\ -\ell s^3(6m+8m^2+3m^3+O(s)))", (s * (1 + m), -ell * s**3 * _IMPACT)),
+        _phi,
+        ((s * (1 + m), ell * s**3 * _IMPACT), (s * (1 + m), -ell * s**3 * _LAUNCH)),
+        ("e:swan", "e:phi"),
+    ),
+    _claim(
+        "s5-hbar",
+        "the equation of h-bar",
+        Statement(
+            r"r(6m+8m^2+3m^3)=(1+m)^3(6\bar m+4\bar m^2+\bar m^3)+O(s)",
+            r * _IMPACT - (1 + m) ** 3 * _LAUNCH.subs(m, mbar),
+        ),
+        _h_bar,
+        (r * _IMPACT - (1 + m) ** 2 * _LAUNCH.subs(m, mbar), -r * _IMPACT - (1 + m) ** 3 * _LAUNCH.subs(m, mbar)),
+        ("e:pdeg3", "s5-phi"),
+    ),
+    _claim(
+        "s5-unique",
+        "f and g meet in a single point; m = 0, the axis Pi_0, is a second one",
+        Statement(r"\#\{f=g\}=1", 1),
+        _intersections,
+        (0, 3),
+        ("s5-hbar",),
+        lambda: Statement(r"\{m>-1:f(m)=g(m)\}=\{m_*,0\}", 2),
+    ),
+    _claim(
+        "s5-mstar-place",
+        "the nonzero intersection is unique and lies in (-1, 0) for every r in (0, 1)",
+        Statement(r"-1<m_*<0", (sympy.Integer(-1), sympy.Integer(0))),
+        _place,
+        ((-HALF, sympy.Integer(0)), (sympy.Integer(0), sympy.Integer(1))),
+        ("s5-hbar",),
+    ),
+    _claim("s5-slopes", "f'(m_*) > g'(m_*)", Statement(r"f'(m_*)>g'(m_*)", 1), _slopes, (-1, 0), ("s5-mstar-place",)),
+    _claim(
+        "s5-jacobian",
+        "the Jacobian of h-bar at (0, m_*)",
+        Statement(
+            r"D\bar h(0,m_*)=\begin{pmatrix}1+m_*&0\\ *&f'(m_*)/g'(m_*)\end{pmatrix}",
+            sympy.Matrix([[1 + m, 0], [_STAR, _SLOPE]]),
+        ),
+        _jacobian,
+        (sympy.Matrix([[1 - m, 0], [_STAR, _SLOPE]]), sympy.Matrix([[1 + m, 0], [_STAR, 1 / _SLOPE]])),
+        ("s5-hbar",),
+    ),
+    _claim(
+        "s5-saddle",
+        "(0, m_*) is a hyperbolic saddle for 0 < r < 1 with its unstable manifold in the m-axis",
+        Statement(r"0<1+m_*<1<f'(m_*)/g'(m_*)", (1, 1)),
+        _saddle,
+        ((2, 0), (0, 2)),
+        ("s5-jacobian", "s5-mstar-place", "s5-slopes"),
+    ),
+    _claim(
+        "s5-vt-positive",
+        "for a'' < 0, dv_c/dt > 0 near w_* except at w_*",
+        Statement(r"\partial v_c/\partial t>0\ \text{off}\ w_*,\ a''<0", 1),
+        _positive_slope,
+        (-1,),
+        ("e:swan",),
+    ),
+    _claim(
+        "s5-F-smooth",
+        "for a'' < 0, F is smooth at w_*; it is a homeomorphism with a cube root there",
+        Statement(r"F\ \text{is}\ C^\infty\ \text{at}\ w_*,\ a''<0", "smooth"),
+        _smoothness,
+        ("discontinuous",),
+        ("s5-vt-positive",),
+        lambda: Statement(
+            r"F\ \text{is a homeomorphism near}\ w_*,\ C^\infty\ \text{except at}\ w_*,\ t\sim(-24v/a'')^{1/3}\ \text{on}\ \sigma=0",
+            "continuous",
+        ),
+    ),
+    _claim(
+        "t:t3-unique",
+        "gamma is the only invariant arc in v >= 0 ending at the swan point; Pi_0 is another",
+        Statement(r"\gamma\subset\Pi_0^+\ \text{is the only invariant arc ending at}\ w_*", ("v >= 0", 1)),
+        _unique,
+        (("v > 0", 2), ("v > 0", 0)),
+        ("s5-saddle", "s5-mstar-place", "s5-unique"),
+        lambda: Statement(
+            r"\gamma\ \text{is the only invariant arc ending at}\ w_*\ \text{with}\ v>0\ \text{off}\ w_*", ("v > 0", 1)
+        ),
+    ),
+    _claim(
+        "t:t3",
+        "for a'' < 0 G has an invariant arc gamma, cubically tangent to Pi_0 from tau < tau_*, v > 0",
+        Statement(r"\gamma:\ v\sim C\sigma^3>0,\ \sigma<0", (3, -1)),
+        _exists,
+        ((2, -1), (3, 1)),
+        ("s5-saddle",),
+    ),
+    _claim(
+        "t:t3-repelling",
+        "at points of gamma DG has an eigenvalue > 1 with direction transverse to gamma",
+        Statement(r"\#\{\text{eigenvalues of}\ DG(w)>1\}=1,\ w\in\gamma", 1),
+        _repelling,
+        (0, 2),
+        ("t:t3",),
+    ),
+    _claim(
+        "t:t3-eigenvalue-limit",
+        "that eigenvalue tends to 1 along gamma; for fixed r < 1 its limit is above 1",
+        Statement(r"\lim_{w\to w_*,\,w\in\gamma}\Lambda(w)=1", sympy.Integer(1)),
+        _limit,
+        (sympy.Integer(2), lambda_, eigenvalues_on_gamma(2)[1]),
+        ("t:t3-repelling",),
+        lambda: Statement(
+            rf"\lim_{{w\to w_*,\,w\in\gamma}}\Lambda(w)={latex(eigenvalues_on_gamma(2)[0])}>1",
+            eigenvalues_on_gamma(2)[0],
+        ),
+    ),
+    _claim(
+        "t:t3-others",
+        "points near w_* off gamma lie on stable manifolds of regular points of Pi_0",
+        Statement(r"w\notin\gamma\Rightarrow w\in W^s_\tau,\ a(\tau)<0", "chatter"),
+        _others,
+        ("lost",),
+        ("t:t3",),
+    ),
+    _claim(
+        "s5-positive",
+        "for a'' > 0, v_c < 0 for small t > 0, so no low-velocity impacts follow",
+        Statement(r"v_c(\tau,t)<0,\ t>0,\ a''>0", -1),
+        _no_impacts,
+        (1,),
+        ("e:swan",),
+    ),
+)

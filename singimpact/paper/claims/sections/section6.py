@@ -1,0 +1,309 @@
+"""Section 6: the unfolded swan, in its universal model x'' = 12 kappa (t^2 - 1); kappa > 0 positive, < 0 negative."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.certificates import definite
+from singimpact.impact_oscillator import linear, tangency_points
+from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.sections.section6_trials import TRIALS as TRIALS
+from singimpact.paper.claims.verifiers import every, is_zero, same
+from singimpact.paper.routes import unfolding as model
+from singimpact.paper.routes.unfolding import kappa, sigma, t
+from singimpact.paper.trials import unfolded
+
+SQRT3 = sympy.sqrt(3)
+STEP, LIFT = 1e-6, 1e-4  # along sigma to either side of the end of gamma; in v, to measure its slope there
+
+
+def _birth(stated: int) -> Check:
+    """Sign of d (c - c_0) for which a_c has two zeros near a swan: a'' sigma^2/2 + (da/dc)(c - c_0) = 0."""
+    second, rate, step = sympy.symbols("a_d2 a_c delta", nonzero=True)
+    near = sympy.Poly(second * sigma**2 / 2 + rate * step, sigma)
+    square = sympy.cancel(-near.nth(0) / near.nth(2))
+    product = sympy.cancel(square * second**2 / (second * rate * step))  # sigma^2 in units of d delta / a''^2
+    return every(
+        [
+            (
+                f"sigma^2 = {product} d (c - c_0)/a''^2: two zeros where d (c - c_0) < 0, none where it is > 0",
+                sympy.sign(product) == stated,
+            )
+        ]
+    )
+
+
+def _side(stated: int) -> Check:
+    """For x'' + x = cos 2t, on which side of c_0 = 1 the two zeros of a_c near 0 exist."""
+    below, above = (len(tangency_points(linear(2, c, 1))) for c in ("0.99", "1.01"))
+    return every(
+        [
+            (
+                f"{below} zeros of a_c at c = 0.99, {above} at c = 1.01 (isolated by balls); da/dc = -1, a'' = -4, so d > 0",
+                (below, above) == ((2, 0) if stated < 0 else (0, 2)),
+            )
+        ],
+        kind="supported",
+        witness=lambda: {"omega": "2", "c": "1.01", "zeros of a_c": str(above), "zeros at c = 0.99": str(below)},
+    )
+
+
+def _lips(cusps: int) -> Check:
+    """H is an ellipse, and p has cusps at exactly the points of H with v_tt = 0."""
+    conic, second = model.horizon(), sympy.diff(model.launch_velocity(), t, 2)
+    line = sympy.cancel(-sympy.Poly(second, t).nth(0) / sympy.Poly(second, t).nth(1))
+    on_line = sympy.Poly(conic.subs(t, line), sigma)
+    points = [(root, line.subs(sigma, root)) for root in on_line.real_roots()]
+    good = [model.cusp_conditions(point) for point in points]
+    return every(
+        [
+            (
+                "H is an ellipse (its quadratic form is definite), in lengths that shrink with the distance of the zeros",
+                definite(conic + 6, sigma, t) == 1,
+            ),
+            (
+                f"v_tt = 0 on it at {points}, both nondegenerate cusps",
+                all(g[0] == g[1] == 0 and 0 not in g[2:] for g in good) and len(points) == cusps,
+            ),
+        ]
+    )
+
+
+def _second_derivative(order: int) -> Check:
+    """The number that tells a positive from a negative swan: a derivative of a_c0 of this order at tau_*."""
+    values = [sympy.diff(model.acceleration_at_swan(), sigma, n).subs(sigma, 0) for n in range(3)]
+    return every(
+        [(f"at a swan a = {values[0]}, a' = {values[1]}, a'' = {values[2]}: only a'' has a sign", values[order] != 0)],
+        witness=lambda: {"a_c0(tau_*)": "0", "a_c0''(tau_*)": "24 kappa"},
+    )
+
+
+def _none(sign: int) -> Check:
+    """v for a positive swan before the zeros are born: a = 12 kappa (sigma^2 + e), e >= 0."""
+    e = sympy.Symbol("e")
+    form = 6 * (sigma**2 + e) + 4 * sigma * t + t**2
+    moved = sympy.expand(-kappa * t * form - model.launch_velocity() + kappa * t * (6 * e + 6))
+    return every(
+        [
+            (
+                "v = -kappa t (6 (sigma^2 + e) + 4 sigma t + t^2), a definite form for e >= 0: v < 0 for t > 0",
+                is_zero(moved) and definite(6 * sigma**2 + 4 * sigma * t + t**2, sigma, t) == 1 and sign == -1,
+            )
+        ]
+    )
+
+
+def _symmetric(stated: int) -> Check:
+    v = model.launch_velocity()
+    mirrored = v.subs({sigma: -sigma, t: -t}, simultaneous=True)
+    return every([("v(-sigma, -t) = -v(sigma, t)", same(mirrored, stated * v))])
+
+
+def _ends(stated: tuple[int, int]) -> Check:
+    """Signs of a' at A and at B for kappa > 0."""
+    slope = sympy.diff(model.acceleration(), sigma) / kappa
+    found = (int(sympy.sign(slope.subs(sigma, -1))), int(sympy.sign(slope.subs(sigma, 1))))
+    return every(
+        [(f"a' at A and B is {slope.subs(sigma, -1)} kappa and {slope.subs(sigma, 1)} kappa", found == stated)],
+        witness=lambda: {"kappa": "1", "a'(A)": str(slope.subs(sigma, -1)), "a'(B)": str(slope.subs(sigma, 1))},
+    )
+
+
+def _slopes_of_outline(stated: tuple[Any, Any]) -> Check:
+    """Slope of p(H) at B and at E' = p(E): along H it is dv/dsigma, since v_t = 0 there."""
+    rate = sympy.diff(model.launch_velocity(), sigma)
+    found = tuple(
+        sympy.expand(rate.subs({sigma: point[0], t: point[1]}, simultaneous=True)) for point in (model.B, model.E)
+    )
+    on_both = (
+        model.E[1] > 0,
+        *[
+            sympy.expand(curve.subs({sigma: model.E[0], t: model.E[1]}, simultaneous=True))
+            for curve in (model.horizon(), model.zero_set())
+        ],
+    )
+    return every(
+        [
+            (f"E = {model.E} lies on H and Z, and its flight time is positive", on_both == (True, 0, 0)),
+            (
+                f"slopes {found[0]} at B and {found[1]} at E'",
+                all(is_zero(x - y) for x, y in zip(found, stated, strict=True)),
+            ),
+        ]
+    )
+
+
+def _slopes_of_reset(stated: tuple[Any, Any, int]) -> Check:
+    """Slope of phi(Z) at A and at E'' = phi(E), and the sign of v on phi(AE): phi(Z) = p(iota(Z)), on H again."""
+    rate = sympy.diff(model.launch_velocity(), sigma)
+    involuted = [(point[0] + point[1], -point[1]) for point in (model.A, model.E)]
+    found = [sympy.expand(rate.subs({sigma: a, t: b}, simultaneous=True)) for a, b in involuted]
+    middle = (-sympy.Rational(7, 5), -2 * -sympy.Rational(7, 5) - sympy.sqrt(6 - 2 * sympy.Rational(49, 25)))
+    speed = model.reset(middle)[1].subs(kappa, 1)
+    common = _common_points()
+    ends = {model.A, model.E} <= set(common) and model.E[1] > 0
+    return every(
+        [
+            (
+                f"slopes {found[0]} at A and {found[1]} at E''",
+                all(is_zero(x - y) for x, y in zip(found, stated[:2], strict=True)),
+            ),
+            (
+                f"Z and H meet at sigma = {', '.join(str(point[0]) for point in common)} only, of which A and E are the ends of the arc, so x-dot keeps its sign on it, which is negative at sigma = -7/5",
+                ends
+                and not any(model.E[0] < point[0] < model.A[0] for point in common)
+                and int(sympy.sign(speed)) == stated[2]
+                and is_zero(sympy.expand(model.zero_set().subs({sigma: middle[0], t: middle[1]}, simultaneous=True))),
+            ),
+        ]
+    )
+
+
+def _common_points() -> list[tuple[Any, Any]]:
+    """The points where Z and H meet, by the factors of their difference, each of which is linear."""
+    found = []
+    for factor, _ in sympy.factor_list(model.horizon() - model.zero_set(), t)[1]:
+        line = sympy.Poly(factor, t)
+        time = -line.nth(0) / line.nth(1)
+        places = sympy.Poly(model.zero_set().subs(t, time), sigma).real_roots()
+        found += [(place, sympy.expand(time.subs(sigma, place))) for place in places]
+    return sorted(found)
+
+
+def _epsilon(count: int) -> Check:
+    found = unfolded.epsilon()
+    return every(
+        [
+            (
+                f"R(phi(AE)) crosses the outline {found.counts} times over AB for r = 0.1, 0.5, 0.9, slope at A -> {found.slope:.1e}",
+                set(found.counts) == {count} and abs(found.slope) < 0.05,
+            )
+        ],
+        kind="supported",
+    )
+
+
+def _gamma(stated: tuple[float, float]) -> Check:
+    found = {rate: unfolded.gamma_end(rate) for rate in ("1/10", "1/2", "9/10")}
+    sides = [(unfolded.completes(rate, at - STEP), unfolded.completes(rate, at + STEP)) for rate, at in found.items()]
+    expected = [float(model.acceleration().subs({kappa: 1, sigma: value})) for value in found.values()]
+    slopes = [LIFT / (unfolded.gamma_end(rate, LIFT, 24) - value) for rate, value in found.items()]
+    shown = ", ".join(f"{value:.6f} at r = {rate}" for rate, value in found.items())
+    return every(
+        [
+            (
+                f"gamma of B meets Pi_0 again at sigma = {shown}",
+                all(stated[0] < value < stated[1] for value in found.values()),
+            ),
+            (
+                f"from rest {STEP:g} to the right chatter is complete, to the left it is not",
+                all(side == (False, True) for side in sides),
+            ),
+            (
+                f"the slope of gamma there is {', '.join(f'{slope:.3f}' for slope in slopes)}, that is a(sigma) to 1 %: transverse",
+                all(abs(slope / a - 1) < 0.01 for slope, a in zip(slopes, expected, strict=True)),
+            ),
+        ],
+        kind="supported",
+    )
+
+
+claim_6 = in_section("6")
+
+
+CLAIMS = (
+    claim_6(
+        "s6-d",
+        "as c passes c_0 a pair of zeros of a_c is born or dies according to the sign of d = a'' da/dc",
+        Statement(r"\#\{a_c=0\}=2\iff d\,(c-c_0)<0", -1),
+        _birth,
+        (1,),
+    ),
+    claim_6(
+        "s6-c-side",
+        "negative swan: the zeros exist for c > c_0; for the linear oscillator they exist for c < 1",
+        Statement(r"\ddot x+x=\cos2t:\ \text{two zeros near}\ 0\ \text{for}\ c>1", 1),
+        _side,
+        (0,),
+        ("s6-d",),
+        lambda: Statement(r"\ddot x+x=\cos2t:\ d_0>0,\ \text{two zeros near}\ 0\ \text{for}\ c<1", -1),
+    ),
+    claim_6(
+        "s6-lips",
+        "the horizon near an unfolded swan is one closed curve that shrinks to w_*, its image has two cusps",
+        Statement(r"\#\{\text{cusps of}\ P_c\ \text{near}\ w_*\}=2", 2),
+        _lips,
+        (0, 4),
+        ("e:swan",),
+    ),
+    claim_6(
+        "s6-a0-typo",
+        "a_0'' is defined as a_{c_0} without primes",
+        Statement(r"a_0''(\tau_*):=a_{c_0}(\tau_*)", 0),
+        _second_derivative,
+        (1,),
+        (),
+        lambda: Statement(r"a_0''(\tau_*):=a_{c_0}''(\tau_*)", 2),
+    ),
+    claim_6(
+        "s6p-none",
+        "positive swan: no low-velocity impacts for c <= c_0",
+        Statement(r"v_c(\tau,t)<0\ (t>0),\ c\le c_0", -1),
+        _none,
+        (1,),
+        ("e:swan",),
+    ),
+    claim_6(
+        "s6-sections",
+        "the sections for tau >= tau_* are those for tau <= tau_* with t and v reversed",
+        Statement(r"v(-\sigma,-t)=-v(\sigma,t)", -1),
+        _symmetric,
+        (1,),
+        ("e:swan",),
+    ),
+    claim_6(
+        "s6p-AB",
+        "positive swan: near A as for a' > 0, near B as for a' < 0; the signs are the other way round",
+        Statement(r"a'(A)>0,\quad a'(B)<0", (1, -1)),
+        _ends,
+        ((1, 1),),
+        ("s6-d",),
+        lambda: Statement(r"a'(A)<0,\quad a'(B)>0", (-1, 1)),
+    ),
+    claim_6(
+        "s6p-BE",
+        "the arc BE of H goes under p to an arc tangent to Pi_0 at B and transverse to it at E'",
+        Statement(r"dv/d\sigma=0\ \text{at}\ B,\quad24\kappa\ \text{at}\ E'", (sympy.Integer(0), 24 * kappa)),
+        _slopes_of_outline,
+        ((24 * kappa, 24 * kappa), (sympy.Integer(0), sympy.Integer(0))),
+        ("s6-lips",),
+    ),
+    claim_6(
+        "s6p-AE",
+        "phi takes the arc AE of Z to an arc in v <= 0 tangent to Pi_0 at A and transverse at E''",
+        Statement(
+            r"dv/d\sigma=0\ \text{at}\ A,\quad24\kappa\ \text{at}\ E'',\quad v\le0", (sympy.Integer(0), 24 * kappa, -1)
+        ),
+        _slopes_of_reset,
+        ((sympy.Integer(0), 24 * kappa, 1), (sympy.Integer(0), sympy.Integer(0), -1)),
+        ("s6p-BE",),
+    ),
+    claim_6(
+        "s6p-eps",
+        "R(phi(AE)) meets S' in one arc, tangent to Pi_0 at A, whose other end is on the outline",
+        Statement(r"\#(R\phi(AE)\cap p(BE))=1", 1),
+        _epsilon,
+        (0, 2),
+        ("s6p-BE", "s6p-AE"),
+    ),
+    claim_6(
+        "s6p-gamma",
+        "gamma is tangent to Pi_0 at B and transverse to it at its other end, in E'A",
+        Statement(r"\gamma\cap\Pi_0=\{B,(\sigma_\gamma,0)\},\ -\sqrt3<\sigma_\gamma<-1", (-float(SQRT3), -1.0)),
+        _gamma,
+        ((-1.0, 1.0), (-3.0, -float(SQRT3))),
+        ("t:t2-exists", "s6p-BE"),
+    ),
+)

@@ -1,0 +1,134 @@
+"""The verdicts of a run: as a table for any width, as the list of misprints, and as data."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, overload
+
+from singimpact.notebook import table
+from singimpact.paper.claims.layout import Painter, Row, laid_out, unpainted, wrapped
+
+if TYPE_CHECKING:
+    from singimpact.paper.claims.claim import Claim, Verdict
+    from singimpact.paper.claims.index import Entry
+
+ERROR = "error"
+CORRECTED = "corrected"
+
+
+def verify(
+    ids: str | Sequence[str] | None = None, on_start: Callable[[Entry | Claim, int, int], None] | None = None
+) -> VerdictTable:
+    """Derive, prove and cross-check claims of the paper; the twin of the command `singimpact verify`.
+
+    Parameters
+    ----------
+    ids : one id, several, or None for every claim; what they rest on is run with them.
+    on_start : called with the claim, its place and the number of claims before each is worked on.
+
+    Returns
+    -------
+    VerdictTable : a sequence of verdicts that prints as the table.
+
+    Raises
+    ------
+    InputError : an unknown id; the nearest known ones are named.
+
+    Examples
+    --------
+    >>> import singimpact as si
+    >>> si.verify("e:meq").exit_code                                    # doctest: +SKIP
+    0
+    """
+    from singimpact.paper.claims import run, select
+
+    wanted = [ids] if isinstance(ids, str) else None if ids is None else list(ids)
+    claims = select(wanted)
+    return VerdictTable(claims, run(claims, on_start=on_start, kept=True))
+
+
+@dataclass(frozen=True, repr=False)
+class VerdictTable(Sequence["Verdict"]):
+    """Claims and their verdicts, in the order of the paper."""
+
+    claims: Sequence[Entry]
+    verdicts: Sequence[Verdict]
+
+    @overload
+    def __getitem__(self, at: int) -> Verdict: ...
+    @overload
+    def __getitem__(self, at: slice) -> Sequence[Verdict]: ...
+    def __getitem__(self, at: int | slice) -> Verdict | Sequence[Verdict]:
+        return self.verdicts[at]
+
+    def __len__(self) -> int:
+        return len(self.verdicts)
+
+    def __iter__(self) -> Iterator[Verdict]:
+        return iter(self.verdicts)
+
+    @property
+    def exit_code(self) -> int:
+        """1 when a claim ends in `error`, else 0."""
+        return int(any(verdict.kind == ERROR for verdict in self.verdicts))
+
+    def as_dict(self) -> dict[str, Any]:
+        """What ``singimpact verify --json`` prints."""
+        return {"claims": [verdict.as_dict() for verdict in self.verdicts]}
+
+    def text(self, width: int | None = None, paint: Painter = unpainted) -> str:
+        """The table, the count of each verdict, and the list of what is misprinted.
+
+        Parameters
+        ----------
+        width : int or None. Columns to lay it out in; None leaves each claim on one line.
+        paint : colours a verdict's name.
+        """
+        parts = [laid_out(self._rows(), width, paint), self._summary(), self._misprints(width)]
+        return "\n\n".join(part for part in parts if part)
+
+    def __str__(self) -> str:
+        import shutil
+
+        return self.text(shutil.get_terminal_size().columns if sys.stdout.isatty() else None)
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        rows = [(row.id, row.statement, row.verdict, row.evidence) for row in self._rows()]
+        return table(["claim", "what it says", "verdict", "evidence"], rows, self._summary(), most=len(rows))
+
+    def _rows(self) -> list[Row]:
+        titles = {claim.id: claim.title for claim in self.claims}
+        return [
+            Row(v.id, titles.get(v.id, ""), v.kind, v.in_words, v.evidence, f"{v.seconds:.2f}") for v in self.verdicts
+        ]
+
+    def _summary(self) -> str:
+        counts = Counter(verdict.kind for verdict in self.verdicts)
+        seconds = sum(verdict.seconds for verdict in self.verdicts)
+        told = ", ".join(f"{count} {kind}" for kind, count in counts.most_common())
+        return f"{len(self.verdicts)} claims: {told or 'none'}; {seconds:.1f} s"
+
+    def _misprints(self, width: int | None) -> str:
+        found = [verdict for verdict in self.verdicts if verdict.kind == CORRECTED]
+        if not found:
+            return ""
+        return "\n\n".join([f"Misprinted: {len(found)}", *(_misprint(verdict, width) for verdict in found)])
+
+
+def _misprint(verdict: Verdict, width: int | None) -> str:
+    lines = [
+        verdict.id,
+        *wrapped("  printed    ", verdict.printed, width),
+        *wrapped("  corrected  ", f"{verdict.corrected}   [{verdict.effective}]", width),
+        *wrapped("  witness    ", _witness(verdict.witness), width),
+    ]
+    return "\n".join(lines)
+
+
+def _witness(witness: Mapping[str, Any] | None) -> str:
+    return ", ".join(f"{name} = {value}" for name, value in (witness or {}).items()) or "none"

@@ -1,0 +1,124 @@
+"""Ways to decide a statement: an identity of exact expressions, and signs proved on an interval."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.certificates import identical
+from singimpact.paper.claims.claim import Check
+
+_SAMPLES = [Fraction(n, d) for n, d in ((3, 5), (7, 4), (2, 9), (11, 6), (5, 13), (17, 8), (1, 7), (19, 12))]
+
+
+def is_zero(expression: Any) -> bool:
+    """Whether an expression with rational coefficients and one square root vanishes identically, decided exactly.
+
+    That the terms of a sum cancel is kept as a certificate.
+
+    Raises
+    ------
+    ArithmeticError : two roots whose radicands are not in the ratio of two rational squares.
+    """
+    expression = sympy.sympify(expression)
+    if not _cancels(sympy.together(expression)):
+        return False
+    if expression.is_Add:
+        identical(expression.args[0], sympy.Add(*(-part for part in expression.args[1:])))
+    return True
+
+
+def same(left: Any, right: Any) -> bool:
+    """Whether two expressions are equal, decided as by `is_zero`, with a certificate of that."""
+    left, right = sympy.sympify(left), sympy.sympify(right)
+    equal = _cancels(sympy.together(left - right))
+    if equal:
+        identical(left, right)
+    return equal
+
+
+def _cancels(expression: Any) -> bool:
+    roots = sorted((p for p in expression.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2), key=str)
+    if not roots:
+        return bool(sympy.cancel(expression) == 0)
+    w, base = sympy.Dummy("w"), sympy.expand(roots[0].base)
+    replaced = expression.subs({root: (w * _root_ratio(root.base, base)) ** (2 * root.exp) for root in roots})
+    numerator = sympy.fraction(sympy.cancel(replaced))[0]
+    below, above = sympy.fraction(sympy.cancel(base))[::-1]
+    return bool(sympy.cancel(sympy.rem(numerator, below * w**2 - above, w)) == 0)
+
+
+def _root_ratio(radicand: Any, base: Any) -> Any:
+    """sqrt(radicand)/sqrt(base), when it is a positive rational."""
+    ratio = sympy.sqrt(sympy.cancel(radicand / base))
+    if not ratio.is_Rational:
+        raise ArithmeticError(f"more than one radical: {radicand} and {base}")
+    return ratio
+
+
+def parts_of(value: Any) -> list[Any]:
+    """The scalar parts of an expression, a tuple (nested or not) or a matrix."""
+    if isinstance(value, tuple | list):
+        return [part for item in value for part in parts_of(item)]
+    return list(value.flat()) if isinstance(value, sympy.MatrixBase) else [sympy.sympify(value)]
+
+
+def identity(truth: Callable[[], Any], what: str = "derived from the equation of motion") -> Callable[[Any], Check]:
+    """A verifier: the statement equals what `truth` derives, part by part, as exact expressions.
+
+    Parameters
+    ----------
+    truth : derives the expression, tuple or matrix; called when the claim runs.
+    what : where the derived side comes from, for the evidence.
+    """
+
+    def verify(value: Any) -> Check:
+        stated, derived = parts_of(value), parts_of(truth())
+        if len(stated) != len(derived):
+            raise ArithmeticError(f"{len(stated)} parts are stated, {len(derived)} derived")
+        for left, right in zip(stated, derived, strict=True):
+            if not _cancels(sympy.together(left - right)):
+                return Check(False, "proved", f"differs from what is {what}", sample(left, right))
+        for left, right in zip(stated, derived, strict=True):
+            identical(left, right)
+        return Check(True, "proved", f"equal to what is {what}, as exact expressions")
+
+    return verify
+
+
+def sample(stated: Any, derived: Any) -> dict[str, str]:
+    """Numbers at which two expressions differ."""
+    symbols = sorted(stated.free_symbols | derived.free_symbols, key=str)
+    for shift in range(len(_SAMPLES)):
+        point = {
+            symbol: sympy.Rational(*_SAMPLES[(n + shift) % len(_SAMPLES)].as_integer_ratio())
+            for n, symbol in enumerate(symbols)
+        }
+        left, right = (sympy.nsimplify(side.subs(point)) for side in (stated, derived))
+        if left.is_finite and right.is_finite and left != right:
+            at = ", ".join(f"{symbol} = {value}" for symbol, value in point.items())
+            return {"at": at or "every point", "stated": _short(left), "derived": _short(right)}
+    raise ArithmeticError("no sample point tells the two expressions apart")
+
+
+def _short(value: Any) -> str:
+    return str(value) if value.is_Rational else str(sympy.N(value, 15))
+
+
+def every(
+    checks: Sequence[tuple[str, bool]], kind: str = "proved", witness: Callable[[], dict[str, str]] | None = None
+) -> Check:
+    """One check from several named ones; all must pass.
+
+    Parameters
+    ----------
+    checks : (what was tested, whether it passed).
+    witness : numbers for a failure; without it the parts that failed are named.
+    """
+    failed = [name for name, passed in checks if not passed]
+    if not failed:
+        return Check(True, kind, "; ".join(name for name, _ in checks))
+    return Check(False, kind, f"fails: {'; '.join(failed)}", witness() if witness else {"fails": "; ".join(failed)})

@@ -1,0 +1,153 @@
+"""Figures 1 and 2: the impact surface with its horizon, and how its outline changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from singimpact.impact_oscillator import ImpactOscillator
+from singimpact.paper.figures.contact import oscillator
+from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture, Point
+from singimpact.paper.figures.sheet import launch_and_landing
+from singimpact.surface.curve import Curve
+from singimpact.surface.impact_surface import ImpactSurface
+
+LEFT, RIGHT, HIGH, LOW, LONG = 1.95, 2.8, 0.25, -0.1, 1.6  # times, velocities and flight times shown
+
+
+def figure_1() -> Picture:
+    """V_c over (tau, t), folded along H; the lines over w_1, w_2, w_3 touch it there."""
+    model = oscillator()
+    surface = ImpactSurface(model, (LEFT, RIGHT + LONG), (-2.5, 2.5))  # H is shifted Z
+    folds = [np.column_stack([outline.points, horizon.points[:, 1]])[_shown(outline.points, horizon.points[:, 1])]
+             for horizon, outline in zip(surface.horizon, surface.outline, strict=True)]  # fmt: skip
+    fold = max(folds, key=len)
+    fold = fold[np.argsort(fold[:, 0])]
+    lines = [Line(fold, "H", "H", "$H$", 0.1), Line(fold * [1, 1, 0], "P", "P", "$P$", 0.12)]
+    for n, share in enumerate((0.2, 0.45, 0.7)):
+        place = fold[int(share * (len(fold) - 1))]
+        over = np.array([place * [1, 1, 0], place + np.array([0, 0, 0.4])])
+        lines.append(Line(over, "epsilon", f"line over w_{n + 1}", f"$w_{n + 1}$", 0.0))
+    panel = Panel(((LEFT, RIGHT), (LOW, HIGH)), mesh=_mesh(), lines=lines)
+    return Picture(
+        1, "The impact surface and its horizon", ("s2-smooth", "s2-horizon", "s2-two-sheets"), str(model), [panel]
+    )
+
+
+def _shown(points: Array, t: Array) -> Array:
+    tau, v = points.T
+    return np.asarray((tau > LEFT) & (tau < RIGHT) & (v >= 0) & (v < HIGH) & (t >= 0) & (t < LONG))
+
+
+def _mesh() -> tuple[Array, Array, Array]:
+    """The surface from t = 0 on each line of constant tau up to where v leaves the box."""
+    tau, t = np.linspace(LEFT, RIGHT, 61), np.linspace(0.0, LONG, 241)
+    grid = np.stack([np.repeat(tau, t.size), np.tile(t, tau.size)], axis=1)
+    v = launch_and_landing(oscillator(), grid)[0].reshape(tau.size, t.size)
+    share = np.linspace(0.0, 1.0, 41)
+    times, speeds = [], []
+    for row in v:
+        out = np.flatnonzero(row < LOW)
+        end = t[out[0]] if out.size else LONG
+        times.append(share * end)
+        speeds.append(np.interp(share * end, t, row))
+    return np.repeat(tau[:, None], share.size, axis=1), np.array(speeds), np.array(times)
+
+
+@lru_cache(maxsize=1)
+def damped() -> ImpactOscillator:
+    """x'' + x'/10 + x = cos wt, whose outline shows all three transitions."""
+    return ImpactOscillator("x + 0.1*xdot", "cos(w*t)", "0.3", "0.6", parameters={"w": "1.7"})
+
+
+@dataclass(frozen=True)
+class Change:
+    """A transition of the outline of `damped`, as `surface.transitions` finds it.
+
+    over, value : the number that moves and its value. tau, t : the flight from rest. half : of the window around it.
+    step : of the number, before and after. degree : of the polynomial in tau that is taken off v, so that branches
+    which nearly coincide are seen apart; it does not change what kind a point of the outline is. shown : half of the
+    width of the picture. pixels : of the curves, many where the shear magnifies.
+    """
+
+    kind: str
+    over: str
+    value: float
+    tau: float
+    t: float
+    half: float
+    step: float
+    degree: int
+    shown: float
+    pixels: int
+
+
+CHANGES = (
+    Change("lips", "w", 2.2346139563997207, 0.5665872036436089, 4.089046551292352, 0.2, 0.0001, 3, 0.03, 3000),
+    Change("beaks", "w", 1.9669260638735848, 2.5507220258801437, 5.89964018967169, 0.42, 0.003, 3, 0.25, 600),
+    Change("swallowtail", "clearance", 1.0, 0.0, 5.1927096149235386, 0.6, 0.04, 1, 0.03, 1500),
+)
+
+
+def figure_2() -> Picture:
+    """The three generic transitions of the outline, each before, at and after."""
+    panels, facts = list[Panel](), dict[str, float]()
+    for letter, change in zip("abc", CHANGES, strict=True):
+        rows = [(told, _outline(change, sign)) for sign, told in ((-1, "<"), (0, "="), (1, ">"))]
+        facts |= {f"{change.kind} {told}": float(sum(len(c.marked("cusp")) for c in made)) for told, made in rows}
+        together = [rows] if change.kind != "swallowtail" else [[row] for row in rows]  # its tip moves away at once
+        panels += [panel for part in together for panel in _panels(letter, change, part)]
+    return Picture(2, "The three generic transitions of the outline", ("s2-fold-cusp-forms", "s6-lips"), str(damped()),
+                   panels, 3, facts)  # fmt: skip
+
+
+def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) -> list[Panel]:
+    """Panels in one box, sheared alike."""
+    middle = _middle(change, rows)
+    shear = _shear(change, rows, middle)
+    point = np.array([[change.tau + change.t, 0.0]])  # where lips are born; the shear of that panel goes through it
+    shown = [shear(curve.points) for _, made in rows for curve in made]
+    box = _box(change, middle, shown)
+    name, panels = "c" if change.over == "clearance" else change.over, []
+    for told, made in rows:
+        cusps = [shear(curve.marked("cusp")) for curve in made]
+        cusps += [point] if told == "=" and change.kind == "lips" else []
+        dots = [Dot("", (float(x), float(y))) for each in cusps for x, y in each]
+        lines = [Line(shear(curve.points), "P", "P") for curve in made]
+        panels.append(Panel(box, y="$v$, sheared", title=f"({letter}) {change.kind}: ${name} {told} {name}_0$",
+                            lines=lines, dots=dots))  # fmt: skip
+    return panels
+
+
+def _shear(change: Change, rows: list[tuple[str, list[Curve]]], middle: float) -> Callable[[Array], Array]:
+    """(tau, v) -> (tau, v - q(tau)) with q near to all branches."""
+    points = np.vstack([curve.points for _, made in rows for curve in made])
+    points = points[np.abs(points[:, 0] - middle) < change.shown]
+    fitted = np.polyfit(points[:, 0] - middle, points[:, 1], change.degree)
+    return lambda place: np.stack([place[:, 0], place[:, 1] - np.polyval(fitted, place[:, 0] - middle)], axis=1)
+
+
+def _middle(change: Change, rows: list[tuple[str, list[Curve]]]) -> float:
+    if change.kind != "swallowtail":
+        return change.tau + change.t
+    return min(float(curve.points[:, 0].min()) for _, made in rows for curve in made) + 0.8 * change.shown
+
+
+def _outline(change: Change, sign: int) -> list[Curve]:
+    if change.kind == "lips" and sign == 0:
+        return []  # a single point, which no contour can hold
+    aside = 1e-2 if change.kind == "beaks" and not sign else 0.0  # two lines that cross are traced a hair apart
+    model = damped().replace(**{change.over: change.value + (sign + aside) * change.step})
+    tau, t = ((middle - change.half, middle + change.half) for middle in (change.tau, change.t))
+    found = ImpactSurface(model, tau, t, change.pixels).outline
+    return [curve for curve in found if curve.closed] if change.kind == "lips" else found
+
+
+def _box(change: Change, middle: float, lines: list[Array]) -> tuple[Point, Point]:
+    points = np.vstack(lines)
+    points = points[np.abs(points[:, 0] - middle) < change.shown]
+    low, high = float(points[:, 1].min()), float(points[:, 1].max())
+    return (middle - change.shown, middle + change.shown), (1.1 * low - 0.1 * high, 1.1 * high - 0.1 * low)

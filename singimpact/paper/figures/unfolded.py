@@ -1,0 +1,185 @@
+"""Figures 13, 16, 17: the dynamics of G that an unfolded swan creates."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from singimpact.dynamics.invariant_arcs import Frame, before, gammas_within, stable_manifold
+from singimpact.flights.hits import rebound
+from singimpact.paper.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Region, arc
+from singimpact.paper.figures.sheet import rebounded, reset
+from singimpact.paper.figures.swans import box, half, negative, positive, ring, shadow
+
+LEAVES = 9
+GENERATIONS = 3  # of inverse images of delta; further ones lie within a line's width of gamma
+
+
+def figure_13() -> Picture:
+    """gamma divides S': below it chatter to a point of AB, above it orbits leave."""
+    swan, size, outline = positive(), half(positive()), ring(positive(), "P")
+    places = swan.projected
+    edge = arc(outline, places["E"], places["B"], places["D"])
+    v = 1.35 * float(edge[:, 1].max())
+    window = box(swan, -2.2, 1.7, -0.08 * v, v)
+    frame = Frame(window[0][0], window[0][1], v, ARCS)
+    lines = [Line(edge, "jump", "arc BE' of P", "$P$", 0.35, (-16, 6))]
+    for foot in np.linspace(swan.A, swan.B, LEAVES + 2)[1:-1].tolist():
+        lines += [Line(curve.points, "manifold", "leaf") for curve in stable_manifold(swan.model, frame, repr(foot))]
+    curve = next(each for each in gammas_within(swan.model, frame) if abs(each.points[0, 0] - swan.B) < 1e-6)
+    lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", 0.55, (-4, 6)))
+    lines.append(Line(_epsilon(), "epsilon", "epsilon", r"$\varepsilon$", 0.5, (4, -12)))
+    dots = [Dot("$A$", places["A"], (0, -6)), Dot("$B$", places["B"], (0, -6)), Dot("$E'$", places["E"], (-2, -6)),
+            Dot("$N$", swan.N, (6, 4))]  # fmt: skip
+    facts = {"gamma_end": float(curve.points[-1, 0]), "E": places["E"][0], "A": swan.A, "N": float(swan.N[0])}
+    panel = Panel(window, lines=lines, dots=dots, regions=[Region(edge)])
+    return Picture(13, "Invariant foliation of S' at an unfolded positive swan", ("s6p-gamma", "s6p-eps", "t:t1"),
+                   str(swan.model), [panel], facts={**facts, "size": size})  # fmt: skip
+
+
+def _epsilon() -> Array:
+    """R(phi(AE)) from A to N."""
+    swan, outline = positive(), ring(positive(), "P")
+    lower = arc(outline, swan.reset["A"], swan.reset["E"], swan.projected["D"])
+    upper = np.stack([lower[:, 0], rebound(swan.model, np.minimum(lower[:, 1], 0.0))], axis=1)
+    return np.vstack([upper[upper[:, 0] < swan.N[0]], [swan.N]])
+
+
+@lru_cache(maxsize=1)
+def delta() -> Array:
+    """The discontinuity arc AD' of the negative swan, from A on."""
+    swan = negative()
+    return arc(ring(swan, "P"), swan.projected["A"], swan.projected["D"], swan.reset["C"])
+
+
+def figure_16() -> Picture:
+    """What phi o F does to the edges of the cut delta, to AB and to what lies left of A."""
+    swan, size = negative(), half(negative())
+    model, v = swan.model, 1.15 * swan.projected["D"][1]
+    jump, landed = delta(), reset(model, shadow())
+    bottom = arc(ring(swan, "P"), swan.reset["C"], swan.reset["B"], swan.projected["D"])
+    left = np.array([[swan.A - 3 * size, 0.0], [swan.A, 0.0]])
+    between, right = np.array([[swan.A, 0.0], [swan.B, 0.0]]), np.array([[swan.B, 0.0], [swan.B + 3 * size, 0.0]])
+    onto = _landed_right(4 * size)
+    first = [Line(left, "axis", "left of A", "1", 0.5, (-4, 6)),
+             Line(jump, "graph", "lower edge", "2", 0.6, (-18, -8), True),
+             Line(jump + np.array([0.09 * size, 0.035 * v]), "shadow", "upper edge", "3", 0.55, (10, 4), True),
+             Line(between, "Z", "AB", "4", 0.5, (-4, 6), True),
+             Line(right, "gamma", "right of B", "5", 0.5, (-4, 6))]  # fmt: skip
+    second = [Line(left, "axis", "image of 1", "1", 0.5, (-4, 6)),
+              Line(np.array([swan.reset["A"], swan.reset["D"]]), "graph", "image of 2", "2", 0.5, (-4, 6), True),
+              Line(landed[::-1], "shadow", "image of 3", "3", 0.5, (-20, -12), True),
+              Line(bottom + np.array([0.2 * size, 0.0]), "Z", "image of 4, moved right", "4", 0.4, (10, 4), True),
+              Line(onto, "gamma", "image of 5", "5", 0.5, (-4, 6))]  # fmt: skip
+    third = [Line(rebounded(line.points, 0.5), line.pen, line.name, line.label, line.at, line.shift, line.arrow)
+             for line in second]  # fmt: skip
+    letters = [Dot("$A$", (swan.A, 0.0), (-4, -6)), Dot("$B$", (swan.B, 0.0), (-2, -6))]
+    panels = [
+        Panel(box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"$\Pi^+$, cut along $\delta$", lines=first,
+              dots=[*letters, Dot("$D'$", swan.projected["D"], (6, 0))]),
+        Panel(box(swan, -4, 4.2, -1.1 * v, 0.25 * v), title=r"after $\phi\circ F$", y=r"$\dot x$", lines=second,
+              dots=[Dot("$A''$", swan.reset["A"], (-4, -6)), Dot("$D''=B''$", swan.reset["B"], (2, 14)),
+                    Dot("$C''$", swan.reset["C"], (-8, -2))]),
+        Panel(box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"after $R$", lines=third,
+              dots=[*letters, Dot("$Q$", swan.Q, (6, 2))]),
+    ]  # fmt: skip
+    return Picture(16, "The action of the map on the segments of a negative swan",
+                   ("s6n-maps", "s6n-AB", "s2-discontinuity"),
+                   str(model), panels, 3)  # fmt: skip
+
+
+def _landed_right(length: float) -> Array:
+    """Pi_0 right of B stays where it is: rest."""
+    B = negative().B
+    return np.array([[B, 0.0], [B + 0.75 * length, 0.0]])
+
+
+def figure_17() -> Picture:
+    """W^s(X) with its loops, the inverse images of delta, and gamma on which they accumulate."""
+    swan, size = negative(), half(negative())
+    v = 1.12 * swan.projected["D"][1]
+    window = box(swan, -4.2, 5.6, -0.06 * v, v)
+    frame = Frame(window[0][0] - size, window[0][1], 1.3 * v, ARCS)
+    manifold = stable_manifold(swan.model, frame, repr(swan.X))
+    lines = [Line(curve.points, "manifold", "beyond X") for foot in (1.02, 1.08, 1.16)
+             for curve in stable_manifold(swan.model, frame, repr(swan.X + (foot - 1) * 5 * size))]  # fmt: skip
+    loops = _loops([curve.points for curve in manifold], swan.A)
+    lines += _foot_and_lambda(manifold[0].points, swan.A, swan.Q)
+    lines += [
+        Line(part, "loop", f"G^-{n}(lambda), {side} branch", r"$G^{-1}(\lambda)$" if label else "", 0.45, (14, 2))
+        for n, branches in enumerate(loops, 1)
+        for side, part, label in (("right", branches[0], n == 1), ("left", branches[1], False))
+    ]
+    lines += [Line(points, "P", f"G^-{n + 1}(delta)", at=0.5) for n, points in enumerate(_preimages(frame))]
+    lines.append(Line(delta(), "jump", "delta", r"$\delta$", 0.75, (8, 2)))
+    arcs = gammas_within(swan.model, frame)
+    lines.append(Line(arcs[0].points, "gamma", "gamma", r"$\gamma$", 0.35, (-16, -12)))
+    across = rebounded(reset(swan.model, shadow()), 0.5)
+    lines.append(Line(across, "epsilon", "R(D''C'')", r"$R(D''C'')$", 0.45, (6, -14)))
+    dots = [Dot("$A$", (swan.A, 0.0), (-4, -6)), Dot("$B=D''$", (swan.B, 0.0), (-4, -6)),
+            Dot("$X$", (swan.X, 0.0), (2, -6)),
+            Dot("$Q$", swan.Q, (6, 3)), Dot("$D'$", swan.projected["D"], (5, 2))]  # fmt: skip
+    facts = {"X": swan.X, "Q": swan.Q[0], "pieces": float(len(manifold)), "generations": float(len(loops))}
+    facts |= _accumulation(loops, arcs[0].points, swan.projected["D"][1] / 2)
+    return Picture(17, "Dynamics created at the unfolding of a negative swan",
+                   ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate"), str(swan.model),
+                   [Panel(window, lines=lines, dots=dots)], facts=facts)  # fmt: skip
+
+
+def _foot_and_lambda(points: Array, foot: float, crossing: tuple[float, float]) -> list[Line]:
+    """W^s(X) from X to Q, and lambda from Q to A."""
+    turn = _turn(points, foot)
+    met = int(np.argmin(np.abs(points[:turn, 0] - crossing[0])))
+    at = met if points[met, 0] > crossing[0] else met - 1
+    first, second = np.vstack([points[: at + 1], [crossing]]), np.vstack([[crossing], points[at + 1 : turn + 1]])
+    end = np.array([[foot, 0.0]])
+    return [
+        Line(first, "loop", "W^s(X)"),
+        Line(np.vstack([second, end]), "loop", "lambda", r"$\lambda\subset W^s(X)$", 0.5, (10, -10)),
+    ]
+
+
+def _turn(points: Array, foot: float) -> int:
+    """Where a stretch of W^s(X) comes nearest to A from the left."""
+    return int(np.argmin(np.where(points[:, 0] < foot, points[:, 1], np.inf)))
+
+
+def _loops(pieces: list[Array], foot: float) -> list[tuple[Array, Array]]:
+    """G^{-n}(lambda), n = 1, 2, ...: the branch from A up, to the right, and the one down to A again, to the left.
+
+    W^s(X) runs from X over lambda to A, up out of the picture and down again: it is parted where v is least, at A.
+    """
+    turns = [_turn(piece, foot) for piece in pieces]
+    up = [piece[turn:] for piece, turn in zip(pieces, turns, strict=True)]
+    down = [piece[: turn + 1] for piece, turn in zip(pieces, turns, strict=True)]
+    return [pair for pair in zip(up, down[1:], strict=False) if min(map(len, pair)) > 1]
+
+
+def _accumulation(loops: list[tuple[Array, Array]], gamma: Array, height: float) -> dict[str, float]:
+    """How far right of gamma the branches, and delta, pass a height."""
+
+    def at(points: Array) -> float:
+        order = np.argsort(points[:, 1])
+        return float(np.interp(height, points[order, 1], points[order, 0]))
+
+    names = ("right", "left")
+    return {"gap delta": at(delta()) - at(gamma)} | {
+        f"gap {n} {side}": at(part) - at(gamma)
+        for n, branches in enumerate(loops, 1)
+        for side, part in zip(names, branches, strict=True)
+    }
+
+
+def _preimages(frame: Frame) -> list[Array]:
+    """G^{-n}(delta) inside the frame."""
+    found, points = [], delta()[delta()[:, 1] > 0]
+    share = np.linspace(0, len(points) - 1, 600)
+    points = np.stack([np.interp(share, np.arange(len(points)), column) for column in points.T], axis=1)
+    for _ in range(GENERATIONS):
+        points = before(negative().model, points)
+        points = points[np.isfinite(points).all(axis=1)]
+        inside = points[frame.holds(points)]
+        if len(inside) > 1:
+            found.append(inside)
+    return found

@@ -1,0 +1,7 @@
+"""The paper's own steps in sympy, each made from the one before: a second route to what `theory` computes over rings.
+
+Not here: the solvers of `theory`, which these steps never import; the statements compared with them (`paper.claims`).
+Files: `implicit` (sections 2 and 3: y_c, then v_c by the implicit function), `fold` (section 4: a tangency),
+`swan` (section 5), `unfolding` (section 6: x'' = 12 kappa (s^2 - 1)), `equations` (which equation was derived from
+which).
+"""

@@ -1,0 +1,177 @@
+"""The paper's steps at a tangency point (section 4): fold coordinate, psi, Q_r, h, blow-up, fixed points, multipliers.
+
+Every step is made from the one before it; nothing is transcribed.  Symbols: sigma, eta, s, m; k = a'/6; r.
+The leading parts are exact polynomials; what is cut is O(3) before the blow-up and O(s) after it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.paper.routes.equations import equation
+from singimpact.paper.routes.implicit import a_symbol, at_contact, p_c, phi_c, r, sigma, t
+
+eta, s, m, k = sympy.symbols("eta s m k")
+_left = sympy.Symbol("s", negative=True)  # the visible part lies in s < 0
+
+
+def in_k(expression: Any) -> Any:
+    """An expression in a' rewritten with k = a'/6."""
+    return sympy.expand(expression.subs(a_symbol(1), 6 * k))
+
+
+@equation("e:pnew")
+def p() -> tuple[Any, Any]:
+    """p at a tangency point, to second order in (sigma, t) [e:pnew]."""
+    first, second = p_c(2)
+    return in_k(at_contact(first, 1)), in_k(at_contact(second, 1))
+
+
+@equation("e:phinew")
+def phi() -> tuple[Any, Any]:
+    """phi at a tangency point, to second order in (sigma, t) [e:phinew]."""
+    first, second = phi_c(2)
+    return in_k(at_contact(first, 1)), in_k(at_contact(second, 1))
+
+
+@equation("s4-horizon-line")
+def horizon() -> tuple[Any, Any]:
+    """(t on the horizon as a function of sigma, v on its image): dv_c/dt = 0 to first order, then p."""
+    _, velocity = p()
+    slope = sympy.Poly(sympy.diff(velocity, t), t)
+    line = sympy.cancel(-slope.nth(0) / slope.nth(1))
+    return line, sympy.expand(velocity.subs(t, line))
+
+
+@equation("s4-fold-eta")
+def fold_coordinate() -> Any:
+    """eta: the distance in t from the horizon, which completes the square in v_c."""
+    line, _ = horizon()
+    return t - line
+
+
+def in_fold_coordinates(expression: Any) -> Any:
+    """An expression in (sigma, t) rewritten in (sigma, eta)."""
+    return sympy.expand(expression.subs(t, t + eta - fold_coordinate()))
+
+
+@equation("s4-fold-p")
+def p_folded() -> tuple[Any, Any]:
+    """p in the coordinates (sigma, eta)."""
+    first, second = p()
+    return first, in_fold_coordinates(second)
+
+
+@equation("s4-psi")
+def psi(u: Any, w: Any) -> tuple[Any, Any]:
+    """psi(u, w): takes the image of the horizon, w = (9/4) k u^2, to w = 0."""
+    _, outline = horizon()
+    return u, sympy.expand(w - outline.subs(sigma, u))
+
+
+@equation("e:pdef")
+def psi_p() -> tuple[Any, Any]:
+    """psi o p in (sigma, eta), to second order: the fold form [e:pdef]."""
+    return psi(*p_folded())
+
+
+@equation("e:defq")
+def psi_q() -> tuple[Any, Any]:
+    """psi o q with q = R o phi, in (sigma, eta), to second order [e:defq]."""
+    first, second = phi()
+    return psi(in_fold_coordinates(first), in_fold_coordinates(-r * second))
+
+
+@equation("e:qdef")
+def Q_r() -> Any:
+    """Q_r(sigma, eta): the square of the new eta, from psi o p(new) = psi o q(old) [e:qdef]."""
+    _, folded = psi_p()
+    square = sympy.cancel(folded / eta**2)  # psi o p = (sigma, square * eta^2)
+    return sympy.expand(sympy.cancel(psi_q()[1] / square))
+
+
+@equation("e:hdef")
+def h() -> tuple[Any, Any]:
+    """h = p^{-1} o q in (sigma, eta) on the visible part, to leading order [e:hdef].
+
+    A first hit comes before the horizon, and t grows with eta, so the new eta is the negative root.
+    """
+    return psi_q()[0], -sympy.sqrt(Q_r())
+
+
+@equation("s4-blowup")
+def h_blown_up() -> tuple[Any, Any]:
+    """h' in (s, m), (sigma, eta) = (s, s m), at s = 0: (s'/s, m') on the visible part s < 0, m > 1/2."""
+    first, second = h()
+    rate = sympy.cancel(first.subs({sigma: s, eta: s * m}) / s)
+    sign = sympy.cancel(second / sympy.sqrt(Q_r()))
+    return rate, sign * sympy.sqrt(_left**2) / _left * sympy.sqrt(Q_at_one()) / rate  # Q_r(s, s m) = s^2 Q_r(1, m)
+
+
+@equation("s4-Q1m")
+def Q_at_one() -> Any:
+    """Q_r(1, m), by homogeneity Q_r(s, s m)/s^2."""
+    return sympy.expand(sympy.cancel(Q_r().subs({sigma: s, eta: s * m}) / s**2))
+
+
+@equation("e:fixm")
+def fixed_point_equation() -> Any:
+    """The polynomial Q_r(1, m) - m^2 (m - 1/2)^2, zero at the fixed points of h' [e:fixm]."""
+    rate, _ = h_blown_up()
+    return sympy.expand(Q_at_one() - m**2 * rate**2)
+
+
+@equation("e:meq")
+def fixed_point_factors() -> tuple[Any, Any]:
+    """(m - 3/2 and the cubic) whose product is the fixed-point polynomial [e:meq].
+
+    The cubic is (m - 1/2)^2 (m + 3/2) - 2 r m.
+    """
+    trivial = m - sympy.Rational(3, 2)  # Pi_0 itself: t = 0 is eta = 3 sigma/2
+    quotient, rest = sympy.div(sympy.Poly(fixed_point_equation(), m), sympy.Poly(trivial, m))
+    if not rest.is_zero:
+        raise ArithmeticError("the tau-axis is not a fixed ray of h'")
+    return trivial, sympy.expand(-quotient.as_expr())
+
+
+@equation("s4-r-of-m")
+def r_of_m() -> Any:
+    """r as a rational function of a root m of the cubic, which is linear in r."""
+    cubic = sympy.Poly(fixed_point_factors()[1], r)
+    return sympy.factor(-cubic.nth(0) / cubic.nth(1))
+
+
+@equation("s4-Nr-1")
+def N_r() -> Any:
+    """N_r(m) = dm'/dm at s = 0, by differentiating h'; Q stands for Q_r(1, m)."""
+    return sympy.diff(h_blown_up()[1], m)
+
+
+@equation("s4-Nr-2")
+def N_r_collected() -> Any:
+    """N_r(m) over one denominator: a rational function times Q^(-1/2)."""
+    root = sympy.sqrt(Q_at_one())
+    return sympy.factor(sympy.cancel(sympy.expand(N_r() * root))) / root
+
+
+@equation("s4-Nr-3")
+def N_r_at_fixed_points() -> Any:
+    """N_r(m) at a root of the cubic with m (m - 1/2) > 0: r eliminated, and Q^(1/2) = m (m - 1/2)."""
+    rate, _ = h_blown_up()
+    rational = sympy.cancel(N_r_collected() * sympy.sqrt(Q_at_one())) / (m * rate)
+    return sympy.factor(sympy.cancel(rational.subs(r, r_of_m())))
+
+
+@equation("s4-Dh-form")
+def Dh_blown_up() -> Any:
+    """Dh'(0, m): lower triangular; the entry * depends on the O(3) terms."""
+    rate, _ = h_blown_up()
+    return sympy.Matrix([[rate, 0], [sympy.Symbol("*"), N_r_collected()]])
+
+
+@equation("s4-gamma-leading")
+def gamma_leading() -> Any:
+    """The factor of sigma^2 in v along the ray eta = m sigma: p(sigma, m sigma)/sigma^2."""
+    return sympy.factor(sympy.cancel(p_folded()[1].subs(eta, m * sigma) / sigma**2))

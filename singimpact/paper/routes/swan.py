@@ -1,0 +1,94 @@
+"""The paper's steps at a swan point (section 5): p, phi and h blown up, the functions f and g, m_*, the multipliers.
+
+Symbols: s, m with (sigma, t) = (s, s m); mbar for the new m; ell = -a''/24; r.  What is cut is O(s).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.paper.routes.equations import equation
+from singimpact.paper.routes.implicit import a_symbol, at_contact, p_c, phi_c, r, sigma, t
+
+s, m, mbar, ell = sympy.symbols("s m mbar ell")
+
+
+def _blown_up(images: tuple[Any, Any]) -> tuple[Any, Any]:
+    """(first/s, second/(ell s^3)) of a map of (sigma, t) at a swan point, in (s, m)."""
+    first, second = (at_contact(part, 2).subs(a_symbol(2), -24 * ell).subs({sigma: s, t: s * m}) for part in images)
+    return sympy.expand(sympy.cancel(first / s)), sympy.expand(sympy.cancel(second / (ell * s**3)))
+
+
+@equation("e:pdeg3")
+def p_blown_up() -> tuple[Any, Any]:
+    """p: (s, m) -> (s first, ell s^3 second) at s = 0, as (first, second) [e:pdeg3]."""
+    return _blown_up(p_c(3))
+
+
+@equation("s5-phi")
+def phi_blown_up() -> tuple[Any, Any]:
+    """phi: (s, m) -> (s first, ell s^3 second) at s = 0, as (first, second)."""
+    return _blown_up(phi_c(3))
+
+
+@equation("s5-hbar")
+def h_bar() -> Any:
+    """r (impact polynomial of m) - (new s/s)^3 (launch polynomial of mbar), zero where mbar is the image of m."""
+    growth, impact = phi_blown_up()
+    _, launch = p_blown_up()
+    return -r * impact - growth**3 * launch.subs(m, mbar)
+
+
+@equation("s5-f")
+def f_map() -> Any:
+    """f(m) = r (6m + 8m^2 + 3m^3)/(1 + m)^3: the new launch polynomial as a function of the old m."""
+    growth, impact = phi_blown_up()
+    return sympy.factor(-r * impact) / sympy.factor(growth) ** 3
+
+
+@equation("s5-g")
+def g_map() -> Any:
+    """g(m) = 6m + 4m^2 + m^3: the launch polynomial."""
+    return p_blown_up()[1]
+
+
+@equation("s5-fixed")
+def fixed_point_polynomial() -> Any:
+    """The polynomial in m, without the factor m of Pi_0, whose root in (-1, 0) is m_*."""
+    return sympy.expand(sympy.cancel(-h_bar().subs(mbar, m) / m))
+
+
+@equation("s5-r-of-m")
+def r_of_m() -> Any:
+    """r as a rational function of m_*: the fixed-point polynomial is linear in r."""
+    poly = sympy.Poly(fixed_point_polynomial(), r)
+    return sympy.factor(-poly.nth(0) / poly.nth(1))
+
+
+@equation("s5-jacobian")
+def Dh_bar() -> Any:
+    """D h-bar(0, m) at the fixed point: lower triangular with 1 + m and f'/g'; * depends on the O(s) terms."""
+    slope = sympy.factor(sympy.cancel(sympy.diff(f_map(), m) / sympy.diff(g_map(), m)))
+    return sympy.Matrix([[phi_blown_up()[0], 0], [sympy.Symbol("*"), slope]])
+
+
+@equation("s5-mu")
+def mu_of_m() -> Any:
+    """f'(m)/g'(m) with r eliminated."""
+    return sympy.factor(sympy.cancel(Dh_bar()[1, 1].subs(r, r_of_m())))
+
+
+@equation("s5-mstar")
+def m_star(rate: Any) -> Any:
+    """m_*, the root in (-1, 0) of the fixed-point polynomial, for a rational restitution: an exact algebraic number.
+
+    Examples
+    --------
+    >>> m_star("1/2").evalf(20)
+    -0.25629759628453099805
+    """
+    poly = sympy.Poly(fixed_point_polynomial().subs(r, sympy.Rational(rate)), m)
+    (root,) = [root for root in poly.real_roots() if -1 < root < 0]
+    return root

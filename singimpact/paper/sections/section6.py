@@ -1,0 +1,150 @@
+"""Section 6: the unfolded swan in its universal form, where every curve is algebraic."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.documents.arranging import factored, in_powers
+from singimpact.documents.steps import Section, Step
+from singimpact.paper.routes import unfolding as swan
+from singimpact.paper.routes.unfolding import A, B, C, D, E, r, sigma, t
+from singimpact.theory.notation import latex, name_of
+
+
+def told() -> Section:
+    """The steps of section 6."""
+    return Section("section6", "6. An unfolded swan", (*_model(), *_curves(), *_positive(), *_negative()))
+
+
+def _model() -> tuple[Step, ...]:
+    return (
+        Step(
+            "As $c$ passes the value $c_0$ of a swan point, where $a_c = a_c' = 0$ at $\\tau_*$, two zeros $A$, $B$ of "
+            "$a_c$ are born on one side. Measured from the middle between them, in units of half their distance and "
+            "of the lengths that go with it, every oscillator tends to one model as $c \\to c_0$:",
+            rf"a(\sigma) = {latex(swan.acceleration())}",
+            "s6-model",
+            ("s6-d", "s6-c-side"),
+        ),
+        Step(
+            "with $\\kappa > 0$ at a positive swan and $\\kappa < 0$ at a negative one. Two integrations give the "
+            "launch velocity of the flight that lands after $t$,",
+            rf"v(\sigma, t) = {factored(swan.launch_velocity())}",
+            "s6-launch",
+            ("s6-sections",),
+        ),
+        Step(
+            "and the involution the velocity at its landing:",
+            rf"\dot x(\sigma, t) = {factored(swan.impact_velocity())}",
+            "s6-impact",
+        ),
+    )
+
+
+def _curves() -> tuple[Step, ...]:
+    return (
+        Step(
+            "So the horizon and the zero set are two ellipses, images of each other under the involution; both pass "
+            "through $A = (-1, 0)$ and $B = (1, 0)$.",
+            rf"H:\ {in_powers(swan.horizon(), t)} = 0",
+            "s6-horizon",
+            ("s6-lips",),
+        ),
+        Step("and", rf"Z:\ {in_powers(swan.zero_set(), t)} = 0", "s6-zero-set"),
+        Step(
+            "The two curves meet again at the flight that starts and ends at rest,",
+            rf"E = {latex(E)}",
+            "s6-E",
+        ),
+        Step(
+            "The zeros $A$ and $B$ of $a$ are each the landing of one more flight: $p$ has cusps where a flight lands "
+            "at rest on one of them, $\\phi$ where it leaves there at rest. For $t > 0$ these are, with their images,",
+            rf"D = {latex(D)},\quad p(D) = {latex(swan.project(D))},\quad \phi(D) = {latex(swan.reset(D))}",
+            "s6n-corr",
+            ("s6n-corr",),
+        ),
+        Step(
+            "and",
+            rf"C = {latex(C)},\quad p(C) = {latex(swan.project(C))},\quad \phi(C) = {latex(swan.reset(C))}",
+            "s6n-cusp",
+            ("s6n-cusp",),
+        ),
+    )
+
+
+def _slope(place: tuple[Any, Any], curve: Any, image: tuple[Any, Any]) -> Any:
+    """The slope of the image of a curve at a place, along the curve's tangent."""
+    along = (sympy.diff(curve, t), -sympy.diff(curve, sigma))
+    rates = [sympy.diff(part, sigma) * along[0] + sympy.diff(part, t) * along[1] for part in image]
+    at = {sigma: place[0], t: place[1]}
+    first, second = (sympy.expand(rate.subs(at, simultaneous=True)) for rate in rates)
+    return sympy.cancel(second / first)
+
+
+def _positive() -> tuple[Step, ...]:
+    outline = (sigma, swan.launch_velocity())
+    return (
+        Step(
+            "At a positive swan $a < 0$ between $A$ and $B$, so that $a' < 0$ at $A$ and $a' > 0$ at $B$:",
+            rf"a'(A) = {latex(_rate(A))},\quad a'(B) = {latex(_rate(B))}",
+            "s6p-AB",
+            ("s6p-none", "s6p-AB"),
+        ),
+        Step(
+            "What is visible for small velocities is bounded by the arc $BE$ of $H$ and the arc $AE$ of $Z$. The "
+            "image of the first under $p$ is tangent to $\\Pi_0$ at $B$ and leaves it at $E'$ with the slope",
+            rf"\frac{{dv}}{{d\sigma}}(E') = {latex(_slope(E, swan.horizon(), outline))}",
+            "s6p-BE",
+            ("s6p-BE", "s6p-AE"),
+        ),
+        Step(
+            "The restitution takes the image of the second under $\\phi$ into it: one arc, tangent to $\\Pi_0$ at $A$, "
+            "that ends on the outline at one point $N$. The invariant curve $\\gamma$ of the tangency point $B$ comes "
+            "back to $\\Pi_0$ between $E'$ and $A$; below it chatter is complete, above it orbits leave:",
+            r"\gamma \cap \Pi_0 = \{B,\ (\sigma_\gamma, 0)\},\quad -\sqrt{3} < \sigma_\gamma < -1",
+            "s6p-gamma",
+            ("s6p-gamma", "s6p-eps"),
+        ),
+    )
+
+
+def _rate(point: tuple[Any, Any]) -> Any:
+    return sympy.diff(swan.acceleration(), sigma).subs(sigma, point[0])
+
+
+def _negative() -> tuple[Step, ...]:
+    velocity = name_of(r)
+    after = (swan.reset(C)[0], sympy.expand(-r * swan.reset(C)[1]))
+    return (
+        Step(
+            "At a negative swan the flights launched between $D'$ and $A$ on the outline graze at the arc $DA$ of $H$, "
+            "and land beyond it. The height of a flight that grazes after $t$ has the roots $0$, $t$, $t$ and one "
+            "more, and their sum is known; so the shadow of $DA$ lies at",
+            rf"t_1 = {latex(swan.shadow())}",
+            "s6-shadow",
+            ("s6n-visible", "s6n-shadow-neg"),
+        ),
+        Step(
+            "The loop $ADCBA$ of horizon, shadow, zero set and axis bounds what is not visible. $\\phi$ takes $DA$ to "
+            "the interval between $A''$ and $D'' = B$ on $\\Pi_0$, the shadow to an arc that ends at $C''$, and $F$ "
+            "takes $AB$ to the arc $CB$ of $Z$. The map is torn along $\\delta = p(DA)$:",
+            rf"\phi(DA) = [-1, 1] \times 0,\quad \phi(C) = {latex(swan.reset(C))}",
+            "s6n-maps",
+            ("s6n-maps", "s6n-AB"),
+        ),
+        Step(
+            f"From $A$ the orbit goes to $R(C'')$, which depends on ${velocity}$ alone,",
+            rf"G(A) = {latex(after)}",
+            "s6-GA",
+        ),
+        Step(
+            "and chatters from there into a regular point $X = (\\tau_3, 0)$ to the right of $B$. Its stable manifold "
+            "contains $A$ and is tangent to $\\Pi_0$ there; the inverse images of its arc from $A$ to $R(C'')$ are "
+            "loops around the inverse images of $\\delta$, which accumulate on the invariant curve of $A$:",
+            r"A \in W^s(X),\quad X = (\tau_3, 0),\quad \tau_3 > \tau_2",
+            "s6n-X",
+            ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate"),
+        ),
+    )

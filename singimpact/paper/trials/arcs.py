@@ -1,0 +1,210 @@
+"""What the impact map of the package says near a tangency with a' > 0: jumps, sides of gamma, eigenvalues, lift-off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import sympy
+
+from singimpact.algebra.numbers import as_float
+from singimpact.impact_oscillator import ImpactOscillator
+from singimpact.paper.trials import true_orbits
+from singimpact.status import Status
+from singimpact.theory.homogeneous import eigenvalues_on_gamma, lambda_
+
+
+@dataclass(frozen=True)
+class Place:
+    """A model at its tangency with a' > 0: `slope` is a'(tau_*), `coefficient` that of sigma^2 on gamma."""
+
+    name: str
+    model: ImpactOscillator
+    tau: float
+    slope: float
+    r: float
+    multiplier: float
+    coefficient: float
+
+
+@lru_cache(maxsize=1)
+def places() -> tuple[Place, ...]:
+    """Both models of `true_orbits`."""
+    found = []
+    for name, oscillator in true_orbits.MODELS.items():
+        model = ImpactOscillator(**oscillator.to_dict())
+        _, tau = true_orbits.contact_model(model, 1)
+        slope, r = float(model.acceleration(tau, order=1)), as_float(model.restitution)
+        rate = true_orbits.lambda_of(r, 1)
+        found.append(Place(name, model, tau, slope, r, rate, slope * (1 - rate) * (2 + rate) / 6))
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class JumpCase:
+    """Jumps of the flight time on lines sigma = const: how many on each, v/(a' sigma^2) there as sigma -> 0."""
+
+    name: str
+    side: int
+    count: int
+    coefficient: float
+
+
+@lru_cache(maxsize=1)
+def jumps() -> tuple[JumpCase, ...]:
+    """Jumps of F near the tangency: the flight time changes by more than |sigma| between neighbours of a grid in v."""
+    return tuple(_jumps_on(place, side) for place in places() for side in (-1, 1))
+
+
+def _jumps_on(place: Place, side: int) -> JumpCase:
+    scaled = np.linspace(0.02, 1.2, 400)
+    counts, found = [], []
+    for size in (0.02, 0.01, 0.005):
+        unit = place.slope * size**2
+        tau = place.tau + side * size
+        times = _flight_times(place, tau, scaled * unit)
+        at = np.flatnonzero(np.abs(np.diff(times)) > size)
+        counts.append(len(at))
+        if len(at) == 1:
+            found.append((size, _bisected(place, tau, scaled[at[0]] * unit, scaled[at[0] + 1] * unit, size) / unit))
+    coefficient = float(true_orbits.extrapolated(found)) if found else float("nan")
+    return JumpCase(place.name, side, max(counts), coefficient)
+
+
+def _flight_times(place: Place, tau: float, v: Any) -> Any:
+    step = place.model.impact_map(tau, v)
+    if not np.all(np.isin(step.status, (Status.hit, Status.graze))):
+        raise ArithmeticError(f"a flight near the tangency of {place.name} has status {np.unique(step.status)}")
+    return np.asarray(step.flight_time)
+
+
+def _bisected(place: Place, tau: float, low: float, high: float, size: float) -> float:
+    """The v of the jump between two values on its two sides, to a part in 1e9."""
+    start = float(_flight_times(place, tau, low))
+    while high - low > 1e-9 * high:
+        middle = (low + high) / 2
+        jumped = abs(float(_flight_times(place, tau, middle)) - start) > size
+        low, high = (low, middle) if jumped else (middle, high)
+    return (low + high) / 2
+
+
+@dataclass(frozen=True)
+class SideCase:
+    """What happens below and above gamma: "chatter", "lost" or "undecided", after how many impacts at the most."""
+
+    name: str
+    below: str
+    above: str
+    impacts: int
+
+    def line(self) -> str:
+        """One line for a table."""
+        return f"below: {self.below}, above: {self.above}, at most {self.impacts} impacts"
+
+
+@lru_cache(maxsize=1)
+def sides() -> tuple[SideCase, ...]:
+    """Orbits launched at sigma = -0.02 a tenth below and above gamma, and at half and nearly at P_*."""
+    cases = []
+    for place in places():
+        below = [_fate(place, factor) for factor in (0.3, 0.9)]
+        above = [_fate(place, factor) for factor in (1.1, 1.3)]
+        cases.append(SideCase(place.name, _common(below), _common(above), max(count for _, count in below + above)))
+    return tuple(cases)
+
+
+def _common(fates: list[tuple[str, int]]) -> str:
+    names = {name for name, _ in fates}
+    return names.pop() if len(names) == 1 else "undecided"
+
+
+def _fate(place: Place, factor: float, impacts: int = 400) -> tuple[str, int]:
+    """Follow impacts until the speed has died out before tau_*, or a flight leaves the neighbourhood of tau_*."""
+    start = 0.02
+    tau, v = place.tau - start, factor * place.coefficient * start**2
+    first = v
+    for count in range(impacts):
+        step = place.model.impact_map(tau, v)
+        if float(step.flight_time) > 10 * start:
+            return "lost", count
+        tau, v = float(step.tau), float(step.v)
+        if v < 1e-9 * first and tau < place.tau:
+            return "chatter", count
+    return "undecided", impacts
+
+
+@lru_cache(maxsize=1)
+def leaves_gamma() -> float:
+    """Factor by which an orbit started beside gamma (v off by 1e-3) has left it once sigma has shrunk 30-fold."""
+    growth = []
+    for place in places():
+        sigma, v = _on_gamma(place)
+        offset = 1e-3
+        tau, speed, along = place.tau + sigma, v * (1 - offset), place.coefficient
+        while abs(tau - place.tau) > abs(sigma) / 30:
+            step = place.model.impact_map(tau, speed)
+            tau, speed = float(step.tau), float(step.v)
+        growth.append(abs(speed / (along * (tau - place.tau) ** 2) - 1) / offset)
+    return min(growth)
+
+
+def _on_gamma(place: Place) -> tuple[float, float]:
+    """A point of gamma near sigma = -0.02, found by following G backwards."""
+    flow = true_orbits.scipy_flow(place.model, place.tau)
+    start = true_orbits.SETTINGS.start[0]
+    orbit = true_orbits.backwards(flow, place.r, -start, place.coefficient * start**2, place.multiplier, 0.02)
+    return orbit[-1]
+
+
+@dataclass(frozen=True)
+class EigenvalueCase:
+    """The larger eigenvalue of DG at points of gamma, extrapolated to w_*."""
+
+    name: str
+    r: float
+    expected: float
+    found: float
+
+
+@lru_cache(maxsize=1)
+def eigenvalues() -> tuple[EigenvalueCase, ...]:
+    """From differences of the impact map at points of gamma on both models, against the homogeneous model."""
+    cases = []
+    for place in places():
+        expected = float(eigenvalues_on_gamma(1)[0].subs(lambda_, sympy.Float(place.multiplier, 30)))
+        flow = true_orbits.scipy_flow(place.model, place.tau)
+        start = true_orbits.SETTINGS.start[0]
+        orbit = true_orbits.backwards(flow, place.r, -start, place.coefficient * start**2, place.multiplier, 0.02)
+        points = [(sigma, _larger_eigenvalue(place, sigma, v)) for sigma, v in orbit[-4:]]
+        cases.append(EigenvalueCase(place.name, place.r, expected, float(true_orbits.extrapolated(points))))
+    return tuple(cases)
+
+
+def _larger_eigenvalue(place: Place, sigma: float, v: float) -> float:
+    """By central differences, steps in proportion to sigma and v."""
+    step = 1e-5
+    columns = []
+    for d_tau, d_v in ((step * abs(sigma), 0.0), (0.0, step * v)):
+        ahead = place.model.impact_map(place.tau + sigma + d_tau, v + d_v)
+        behind = place.model.impact_map(place.tau + sigma - d_tau, v - d_v)
+        width = 2 * (d_tau + d_v)
+        columns.append([float(ahead.tau - behind.tau) / width, float(ahead.v - behind.v) / width])
+    return float(max(np.linalg.eigvals(np.array(columns).T).real))
+
+
+LIFT_OFF = {
+    "x'' + x = sin 2t": ("x", "sin(2*t)"),
+    "damped Duffing, sin 1.7t": ("x + 0.1*xdot + 0.3*x**3", "sin(1.7*t)"),
+}
+
+
+@lru_cache(maxsize=1)
+def lift_off() -> tuple[tuple[str, float], ...]:
+    """(model, flight time) of the first hit from (tau_*, 0), on models for which tau_* = 0 is a double exactly."""
+    found = []
+    for name, (f, g) in LIFT_OFF.items():
+        step = ImpactOscillator(f, g, 0, "0.5").impact_map(0.0, 0.0)
+        found.append((name, float(step.flight_time)))
+    return tuple(found)

@@ -1,0 +1,65 @@
+"""The index of the claims agrees with the sections, and serves without building a claim."""
+
+import subprocess
+import sys
+
+import pytest
+
+from singimpact.paper.claims import CLAIMS, INDEX, index
+from singimpact.paper.claims.index import PLACE, claims_in, written_index
+from singimpact.paper.claims.sections import SECTIONS
+
+
+def test_index_is_what_the_sections_say():
+    assert PLACE.read_text() == written_index(), "python derivations/freeze.py writes it anew"
+
+
+def test_order_is_that_of_the_paper():
+    assert list(dict.fromkeys(entry.file for entry in INDEX.values())) == list(SECTIONS)
+    assert list(CLAIMS) == list(INDEX)
+    assert [claim.id for claim in CLAIMS.values()] == list(INDEX)
+
+
+def test_an_index_that_is_out_of_date_is_named(monkeypatch):
+    claims_in.cache_clear()
+    monkeypatch.setitem(index.INDEX, "e:yeq", index.Entry("e:yeq", "2.1", "another title", "section2"))
+    with pytest.raises(RuntimeError, match=r"index\.json does not agree with sections/section2\.py"):
+        CLAIMS["e:yeq"]
+    claims_in.cache_clear()
+
+
+BUILT = "import sys; print(*sorted(m for m in sys.modules if m.startswith('singimpact.paper.claims.sections.')))"
+
+
+@pytest.mark.parametrize(
+    ("statement", "files"),
+    [
+        ("import singimpact.paper.claims", []),
+        ("import singimpact as si; si.claims; list(si.claims); len(si.claims)", []),
+        ("import singimpact as si; si.claims['s3-DG']", ["section2_trials", "section3"]),
+    ],
+)
+def test_what_is_not_asked_for_is_not_built(statement, files, clone):
+    command = [sys.executable, "-c", f"{statement}; {BUILT}"]
+    found = subprocess.run(command, cwd=clone, capture_output=True, text=True, check=True).stdout.split()
+    assert [name.rpartition(".")[2] for name in found] == files
+
+
+LOADED = "print('sympy' in sys.modules, file=sys.stderr)"
+COMMAND = "import sys\nfrom singimpact.cli import main\ntry:\n    main({})\nexcept SystemExit:\n    pass\n"
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        COMMAND.format(["claims", "list"]),
+        COMMAND.format(["claims", "graph"]),
+        COMMAND.format(["verify", "e:meq"]),
+        "import sys, singimpact.paper.sections.errata\n",
+    ],
+)
+def test_kept_verdicts_are_shown_without_sympy(program, clone):
+    for _ in range(2):  # the first run keeps the verdicts
+        command = [sys.executable, "-c", program + LOADED]
+        found = subprocess.run(command, cwd=clone, capture_output=True, text=True, check=True)
+    assert found.stderr.split()[-1] == "False"

@@ -1,0 +1,167 @@
+"""The paper's figures by their data: named points, tangencies, crossings, orders of contact."""
+
+import json
+import re
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import singimpact as si
+from singimpact.inputs import InputError
+from singimpact.paper.claims import CLAIMS
+from singimpact.paper.figures import FIGURES, picture
+
+made = lru_cache(maxsize=None)(picture)
+LETTERS = {
+    1: set(), 2: set(), 3: {"w_*"}, 4: {"w_*"}, 5: {"w_*"}, 6: {"w_*"}, 7: {"w_*", "w_1"}, 8: {"w_*"}, 9: {"A", "B"},
+    10: {"A", "D", "E"}, 11: set("ABCDE"), 12: {"D'", "B'", "E'", "A''", "C''", "E''"}, 13: {"A", "B", "E'", "N"},
+    14: set("ABCDE"), 15: {"D'", "B'", "E'", "A''", "C''", "E''"}, 16: {"A", "B", "D'", "C''", "Q"},
+    17: {"A", "X", "Q", "D'"},
+}  # fmt: skip
+
+
+def lines(number, name):
+    return [line.points for panel in made(number).panels for line in panel.lines if line.name == name]
+
+
+def dots(number):
+    found = {}
+    for panel in made(number).panels:
+        for dot in panel.dots:
+            found.setdefault(dot.letter.strip("$"), dot.place)
+    return found
+
+
+def test_there_are_seventeen():
+    assert list(FIGURES) == list(range(1, 18))
+
+
+@pytest.mark.parametrize("number", FIGURES)
+def test_claims_letters_and_data(number):
+    found = made(number)
+    assert found.number == number
+    assert found.claims
+    assert set(found.claims) <= set(CLAIMS)
+    assert set(dots(number)) >= LETTERS[number]
+    json.dumps(found.to_dict(), allow_nan=False)
+
+
+@pytest.mark.parametrize("number", FIGURES)
+def test_letters_stand_inside_the_picture(number):
+    for panel in made(number).panels:
+        (left, right), (low, high) = panel.box
+        for dot in panel.dots:
+            assert left <= dot.place[0] <= right, dot
+            assert low <= dot.place[1] <= high, dot
+
+
+def test_2_cusps_come_and_go():
+    facts = made(2).facts
+    assert (facts["lips <"], facts["lips >"]) == (2, 0)
+    assert (facts["beaks <"], facts["beaks >"]) == (2, 0)
+    assert (facts["swallowtail <"], facts["swallowtail >"]) == (2, 0)
+
+
+@pytest.mark.slow
+def test_2_shows_what_the_transitions_are():
+    from singimpact.paper.figures.outlines import CHANGES, damped
+    from singimpact.surface.transitions import transitions
+
+    for change in CHANGES:
+        near = change.value - 0.01, change.value + 0.01
+        found = [each for each in transitions(damped(), change.over, near, (0, 12)) if each.kind == change.kind]
+        assert min(abs(each.value - change.value) + abs(each.t - change.t) for each in found) < 1e-4
+
+
+def test_3_leaves_have_the_eigendirection():
+    facts = made(3).facts
+    assert abs(facts["drawn"] / facts["slope"] - 1) < 0.05
+
+
+def test_5_gamma_lies_between_p_and_the_axis_with_a_quadratic_tangency():
+    assert 0 < made(5).facts["gamma_below_P"] < 1
+    assert abs(made(5).facts["order"] - 2) < 0.1
+
+
+def test_7_epsilon_is_tangent():
+    assert abs(made(7).facts["order"] - 2) < 0.15
+
+
+def test_8_gamma_is_cubically_tangent():
+    assert abs(made(8).facts["order"] - 3) < 0.1
+
+
+def test_9_two_cusps():
+    assert made(9).facts == {"cusps_positive": 2, "cusps_negative": 2}
+
+
+def test_13_gamma_ends_between_e_and_a():
+    facts = made(13).facts
+    assert facts["E"] < facts["gamma_end"] < facts["A"] < facts["N"]
+
+
+def test_14_the_shadow_joins_d_to_c():
+    (shadow,) = lines(14, "shadow DC")
+    named = dots(14)
+    assert np.abs(shadow[0] - named["D"]).max() < 1e-12
+    assert np.abs(shadow[-1] - named["C"]).max() < 1e-12
+    assert np.hypot(*np.diff(shadow, axis=0).T).max() < 0.06
+
+
+def test_15_the_edges_of_the_cut():
+    (jump,) = lines(15, "arc D''C''")[:1]
+    assert made(15).facts["gap"] < 1e-12
+    assert jump[1:, 1].max() < 0
+
+
+def test_17_w_s_of_x_passes_a_and_q():
+    points = np.vstack([*lines(17, "W^s(X)"), *lines(17, "lambda")])
+    for name in ("A", "Q", "X"):
+        assert np.hypot(*(points - dots(17)[name]).T).min() < 1e-2
+    assert made(17).facts["pieces"] > 2
+    arcs = [part for n in (1, 2, 3) for part in lines(17, f"G^-{n}(delta)")]
+    heights = [np.interp(-0.3, *part[np.argsort(part[:, 0])].T) for part in arcs]
+    (gamma,) = lines(17, "gamma")
+    floor = np.interp(-0.3, *gamma[np.argsort(gamma[:, 0])].T)
+    assert sorted(heights, reverse=True) == heights
+    assert heights[-1] > floor
+
+
+def test_17_loops_close_around_delta_and_accumulate_on_gamma():
+    """G^{-1}(lambda) is a loop at A around delta; each further one is nearer to gamma by the multiplier across it."""
+    facts, size = made(17).facts, np.ptp([dots(17)["A"][0], dots(17)["X"][0]])
+    assert any(line.label == r"$G^{-1}(\lambda)$" for line in made(17).panels[0].lines)
+    (right,), (left,) = (lines(17, f"G^-1(lambda), {side} branch") for side in ("right", "left"))
+    assert max(np.hypot(*(end - dots(17)["A"])) for end in (right[0], left[-1])) < 0.02 * size
+    assert facts["gap 1 left"] < facts["gap delta"] < facts["gap 1 right"]
+    count = int(facts["generations"])
+    assert count >= 5
+    gaps = [facts[f"gap {n} {side}"] for n in range(1, count + 1) for side in ("right", "left")]
+    assert sorted(gaps, reverse=True) == gaps
+    assert gaps[-1] > 0
+    shrunk = float(1 / si.fixed_points.tangency("1/2").mu.value)
+    assert facts["gap 6 right"] / facts["gap 5 right"] == pytest.approx(shrunk, rel=0.02)
+
+
+@pytest.mark.parametrize("number", [2, 11, 16])
+def test_drawn_without_a_warning(number):
+    si.figure(number).canvas.draw()
+
+
+def test_the_command(tmp_path):
+    from singimpact.cli.figure import command
+
+    told = CliRunner().invoke(command, ["11", "-o", str(tmp_path), "--format", "svg", "--data"])
+    assert told.exit_code == 0, told.output
+    assert (tmp_path / "figure11.svg").read_text().count("<path") > 5
+    data = json.loads((tmp_path / "figure11.json").read_text())
+    assert re.match("x", data["model"]) or data["model"]
+    assert set("ABCDE") <= {letter.strip("$") for letter in data["panels"][0]["points"]}
+
+
+@pytest.mark.parametrize("wrong", [0, 18, "x", True, 2.5])
+def test_no_such_figure(wrong):
+    with pytest.raises(InputError, match="a number from 1 to 17"):
+        si.figure(wrong)

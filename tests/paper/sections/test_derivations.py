@@ -1,0 +1,167 @@
+"""Sections 2 to 5: what they show is derived, golden, judged, the same in every run, and fits the page."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+import sympy
+
+from singimpact.documents.compiling import compiled
+from singimpact.documents.formats import as_files, as_text
+from singimpact.documents.rendering import as_data, as_latex
+from singimpact.documents.steps import claims_of, equations_of
+from singimpact.paper.claims import CLAIMS
+from singimpact.paper.routes import fold, swan
+from singimpact.paper.routes.implicit import a_symbol
+from singimpact.paper.sections import section4_blowup as blowup
+from singimpact.theory.homogeneous import lambda_, leading_coefficient, mu_of_lambda, r_of_lambda
+
+REFRESH = "python derivations/freeze.py writes it anew"
+LABELS = [
+    "e:yeq", "e3", "e:imp", "e:acc", "e:proj", "e:phi", "s3-Dp", "s3-Dphi", "s3-DG", "s3-eigenvectors", "s3-slope",
+    "e:vtaylor", "e:degen", "e:swan", "s4-saddle", "e:pnew", "e:phinew", "s4-horizon-line", "s4-fold-eta",
+    "s4-fold-form", "s4-psi", "e:pdef", "e:defq", "s4-next-sigma", "e:qdef", "e:hdef", "s4-Q1m", "s4-blowup", "e:fixm",
+    "e:meq", "s4-r-of-m", "s4-Nr-1", "s4-Nr-2", "s4-Nr-3", "s4-Dh-form", "s4-gamma-leading", "s4-lambda-P",
+    "s4-lambda-r", "s4-lambda-mu", "s4-lambda-gamma", "s4-lambda-DG", "e:pdeg3", "s5-phi", "s5-hbar", "s5-f", "s5-g",
+    "s5-fixed", "s5-r-of-m", "s5-jacobian", "s5-mu", "s5-lambda-P", "s5-lambda-r", "s5-gamma-leading",
+    "s6-model", "s6-launch", "s6-impact", "s6-horizon", "s6-zero-set", "s6-E", "s6n-corr", "s6n-cusp", "s6p-AB",
+    "s6p-BE", "s6p-gamma", "s6-shadow", "s6n-maps", "s6-GA", "s6n-X",
+]  # fmt: skip
+
+
+def test_every_step_is_there_in_order(told):
+    assert list(equations_of(told)) == LABELS
+
+
+def test_every_equation_has_a_label_of_its_own(told):
+    labels = [step.label for section in told for step in section.steps if step.equation]
+    assert "" not in labels
+    assert len(set(labels)) == len(labels)
+
+
+def test_golden_equations(told, freeze):
+    for path, content in freeze.golden(told).items():
+        assert json.loads(path.read_text()) == json.loads(content), REFRESH
+
+
+def test_golden_statements(freeze):
+    ((path, content),) = freeze.statements().items()
+    assert json.loads(path.read_text()) == json.loads(content), REFRESH
+
+
+def test_the_folder_holds_what_is_derived_now(told, marks, freeze):
+    files = freeze.derivations(told, marks)
+    for path, content in files.items():
+        assert path.read_bytes() == content, f"{path.name}: {REFRESH}"
+    assert {path.name for path in freeze.HERE.glob("*.tex")} == {path.name for path in files}
+
+
+def test_a_claim_with_the_name_of_a_label_stands_beside_it(told):
+    for section in told:
+        for step in section.steps:
+            assert step.label not in CLAIMS or step.label in step.claims, step.label
+
+
+def test_every_misprint_of_a_labelled_equation_is_quoted(told, marks):
+    text = as_latex(told, marks)
+    corrected = [claim for claim in claims_of(told) if marks[claim].verdict == "corrected"]
+    assert {"e:phi", "e:phinew", "e:hdef", "e:vtaylor-t3"} <= set(corrected)
+    for claim in corrected:
+        assert rf"\printed{{{marks[claim].printed}}}" in text
+
+
+def test_no_claim_ends_in_error(marks):
+    assert {mark.verdict for mark in marks.values()} <= {"proved", "certified", "supported", "cited", "corrected"}
+
+
+def test_effective_verdicts_are_shown(told, marks):
+    text = as_latex(told, marks)
+    assert r"\beside{s6p-AB}{corrected, proved in the model}" in text
+    assert marks["s3-slope"].text == "supported"
+
+
+def test_the_two_routes_show_one_theory():
+    half = sympy.Rational(1, 2)
+    for stated, derived in [
+        (r_of_lambda(1), fold.r_of_m().subs(fold.m, lambda_ + half)),
+        (mu_of_lambda(1), fold.N_r_at_fixed_points().subs(fold.m, lambda_ + half)),
+        (
+            a_symbol(1) * leading_coefficient(1),
+            fold.gamma_leading().subs({fold.m: lambda_ + half, fold.k: a_symbol(1) / 6}),
+        ),
+        (r_of_lambda(2), swan.r_of_m().subs(swan.m, lambda_ - 1)),
+        (mu_of_lambda(2), swan.mu_of_m().subs(swan.m, lambda_ - 1)),
+    ]:
+        assert sympy.cancel(stated - derived) == 0
+
+
+def test_writing_Q_is_refused_where_it_does_not_fit():
+    assert "r" not in {str(symbol) for symbol in blowup.with_Q(fold.N_r()).free_symbols}
+    assert blowup.with_Q(sympy.Symbol("r")) == sympy.Symbol("r")
+
+
+_PROGRAM = """
+import json, sys
+from singimpact.documents.formats import as_text
+from singimpact.documents.steps import Mark, claims_of
+from singimpact.paper.sections.derivations import sections
+told = sections()
+marks = {claim: Mark("proved", "proved") for claim in claims_of(told)}
+sys.stdout.write("".join(as_text(told, marks, form) for form in ("latex", "markdown", "json")))
+"""
+
+
+def test_same_bytes_under_two_hash_seeds(clone):
+    texts = [
+        subprocess.run(
+            [sys.executable, "-c", _PROGRAM],
+            env=os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(clone)},
+            capture_output=True,
+            check=True,
+        ).stdout
+        for seed in ("0", "1")
+    ]
+    assert texts[0] == texts[1]
+    assert len(texts[0]) > 20_000
+
+
+@pytest.mark.slow
+def test_the_whole_command_is_deterministic(clone):
+    command = [sys.executable, "-m", "singimpact", "derive"]
+    texts = [
+        subprocess.run(
+            command,
+            env=os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(clone)},
+            capture_output=True,
+            check=True,
+        ).stdout
+        for seed in ("0", "1")
+    ]
+    assert texts[0] == texts[1]
+
+
+def test_no_word_escapes_its_dollars(told, marks):
+    for section in told:
+        for step in section.steps:
+            assert step.text.count("$") % 2 == 0, step.text
+    assert "\\$" not in as_text(told, marks, "latex")
+
+
+def test_json_has_verdicts_and_what_is_printed(told, marks):
+    steps = {step["label"]: step for section in told for step in as_data(section, marks)["steps"]}
+    assert steps["e:phinew"]["claims"]["e:phinew"]["verdict"] == "corrected"
+    assert steps["e:phinew"]["claims"]["e:phinew"]["effective"] == "proved"
+
+
+@pytest.mark.slow
+def test_master_and_single_document_compile_with_nothing_sticking_out(told, marks):
+    assert shutil.which("latexmk"), "CI installs latexmk"
+    files = {name: content.decode() for name, content in as_files(told, marks, "latex").items()}
+    master = files.pop("derivations.tex")
+    for done in (compiled(master, files), compiled(as_latex(told, marks))):
+        assert done.pdf.startswith(b"%PDF")
+        assert max(done.overfull, default=0) <= 20
+        assert "undefined references" not in done.log
