@@ -1,4 +1,4 @@
-"""Write this folder, the suite's golden equations, the index of the claims and generated/: `python derivations/freeze.py`.
+"""Write this folder, the golden equations, the index of the claims and generated/: `python derivations/freeze.py`.
 
 The same as `singimpact derive -o derivations`, and from the same sections the LaTeX of each displayed equation, which
 the suite compares; the words around the equations may change freely.

@@ -1,5 +1,7 @@
 """Points of the tau-axis by contact order: the jets of a_c, f and rho there; tangency points; swan points of a family.
 
-Not here: the model itself (`oscillator`), power series built from the jets (`theory`), flights (`flights`).
-Files: `contact` (the jets at a point), `zeros` (real zeros isolated by balls), `points` (tangency and swan points).
+Not here: the model itself (`oscillator`), zeros of functions (`algebra`), power series built from the jets (`theory`),
+flights (`flights`).
+Files: `contact` (the jets at a point), `points` (tangency points, and what a point is), `swans` (swan points as the
+clearance varies), `next_zero` (the next zero of a_c after a phase).
 """

@@ -1,8 +1,9 @@
-"""Pictures: orbits over time, scenes of V_c' and of the plane of states, the paper's figures, basins.
+"""Pictures of a user's model: orbits over time, scenes of V_c' and of the plane of states, basins, an interactive page.
 
-Not here: what is drawn (`dynamics`, `surface`, `flights`), text with formulas (`documents`).
+Not here: what is drawn (`dynamics`, `surface`, `flights`), text with formulas (`documents`), the paper's figures
+(`paper.figures`).
 Files: `drawing` (`plot`: one call for everything that can be drawn), `orbit` (x(t)), `scene` (a window and its layers),
-`needs` (what layers ask for), `layers`, `kept` (results on disk), `looks` (colours and lines), `figures/` 1 to 17,
+`needs` (what layers ask for), `layers`, `kept` (results on disk), `looks` (colours and lines), `basins`,
 `clearance_frames` and `explore` (the page).
 """
 

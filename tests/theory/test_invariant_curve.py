@@ -11,7 +11,7 @@ from singimpact.algebra.rings import DOUBLES, EXACT, Multiprecision
 from singimpact.algebra.sympy_ring import SympyExact
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact
-from singimpact.theory.fold_series import fold_series
+from singimpact.paper.routes.fold_series import fold_series
 from singimpact.theory.homogeneous import P, lambda_
 from singimpact.theory.invariant_curve import invariant_curve, multiplier_across, restitution_of
 from singimpact.theory.sheet import sheet

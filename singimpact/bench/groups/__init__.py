@@ -1,5 +1,7 @@
 """The groups of `singimpact bench`: each a function from an effort to its cases, found when it is asked for.
 
+Files: `flights` (`bench map`), `chatter`, `threshold`, `fixed_points`, `series`, `emitted`, `figures`, `growth` (how
+cost grows), `grid` (orbits of many states), `start` (a new process).
 A new group: a file with a function `cases`, and its name here.
 """
 

@@ -1,7 +1,7 @@
 """Every public numerical function towards each of its bad places, judged against 60 digits in units of rounding.
 
 Not here: the slow impact map (`bench.truth`), random states (`bench.states`), run time (`bench.groups`).
-Files: `judging` (units, the worst trial), `launches` (states towards each place), `layered` (impacts of steep models
-in balls), then the functions by what they need: `flown`, `chattered`, `expanded` (series), `named` (points and
-constants).
+Files: `table` (what is run, and how it is shown), `judging` (units, the worst trial), `launches` (states towards each
+place), `layered` (impacts of steep models in balls), then the functions by what they need: `flown`, `chattered`,
+`repeated` (periodic orbits), `traced` (curves), `expanded` (series), `named` (points and constants).
 """

@@ -1,7 +1,10 @@
 """The paper's figures 1 to 17, from computed data of real oscillators.
 
-Not here: what they show (`surface`, `dynamics`), what is claimed of it (`claims`).  One file a group of figures that
-share an idea; each figure is data (`panel.Picture`), drawn by `rendering`.
+Not here: what they show (`surface`, `dynamics`), what is claimed of it (`paper.claims`), pictures of a user's model
+(`scenes`).
+Files: `registry` (number -> function), then one file a group that shares an idea: `outlines` (1, 2), `contact`
+(3 to 8), `sections` (9, 10), `swans` (11, 12, 14, 15), `unfolded` (13, 16, 17); `sheet` (p and phi at points of V'),
+`panel` (a figure as data), `rendering` (drawn by matplotlib), `kept` (on disk).
 """
 
 from singimpact.paper.figures.registry import FIGURES as FIGURES

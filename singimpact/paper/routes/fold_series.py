@@ -9,11 +9,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, Protocol
 
 from singimpact.algebra.jet_maps import blow_up, divided, implicit, inverse_map
 from singimpact.algebra.jets import Jet
-from singimpact.theory.sheet import Sheet
+from singimpact.contact.contact import Contact
+
+
+class TangencySheet(Protocol):
+    """The sheet that is given, whoever solved for it: jets of v and x-dot in (sigma, t), and where they hold."""
+
+    @property
+    def contact(self) -> Contact: ...
+    @property
+    def order(self) -> int: ...
+    @property
+    def v(self) -> Jet: ...
+    @property
+    def xdot(self) -> Jet: ...
 
 
 @dataclass(frozen=True)
@@ -35,7 +48,9 @@ class FoldSeries:
     graph: Mapping[int, Fraction]
 
 
-def fold_series(sheet: Sheet, lambda_: Fraction, restitution: Fraction, rho: Mapping[int, Fraction]) -> FoldSeries:
+def fold_series(
+    sheet: TangencySheet, lambda_: Fraction, restitution: Fraction, rho: Mapping[int, Fraction]
+) -> FoldSeries:
     """gamma at a tangency by the fold form, for a sheet over rationals.
 
     Parameters
@@ -73,7 +88,12 @@ def fold_coordinate(v: Jet) -> tuple[Jet, Jet]:
 
 
 def eta_after(
-    sheet: Sheet, k: Fraction, outline: Jet, flight_time: Jet, restitution: Fraction, rho: Mapping[int, Fraction]
+    sheet: TangencySheet,
+    k: Fraction,
+    outline: Jet,
+    flight_time: Jet,
+    restitution: Fraction,
+    rho: Mapping[int, Fraction],
 ) -> Jet:
     """eta'^2 = P(sigma') - v'/k of h, as a jet in (sigma, eta): psi o q, since psi o p = (sigma, -eta^2)."""
     space = sheet.v.space
