@@ -22,7 +22,7 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-from singimpact.surface.curve import STATES, Curve, Mark, distances
+from singimpact.surface.curve import STATES, Curve, Mark, Window, distances
 from singimpact.theory.formulas import arc_in_numbers
 from singimpact.theory.places import points_of
 from singimpact.theory.power_series import PowerSeries
@@ -32,59 +32,35 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """order, trust : of the series, and how good it must be on the fundamental piece.
-    tolerance : of a flight; thousands are flown, and polishing their last digits shows in no picture.
-    start, least : points of the picture for one of the fundamental piece, and how many it has at least.
-    longest : chord, in points of the picture. most : points of one generation. generations : inverse images at most.
-    told : a piece nearer than this to the generation before, in points of the picture, is not told apart from it.
-    """
+    """How curves are grown; lengths are in resolutions of the window."""
 
-    order: int = 12
-    trust: float = 1e-13
-    tolerance: float = 1e-13
-    start: int = 100
-    least: int = 4
-    longest: float = 8.0
-    most: int = 4000
-    told: float = 0.25
-    generations: int = 60
+    order: int = 12  # of the series
+    trust: float = 1e-13  # relative truncation error of the series on the fundamental piece
+    tolerance: float = 1e-13  # of a flight: thousands are flown, and more digits change no curve visibly
+    start: int = 100  # resolutions between two points of the fundamental piece
+    least: int = 4  # points of the fundamental piece
+    longest: float = 8.0  # a chord
+    bend: float = 0.5  # deviation of a vertex from the chord of its neighbours that is refined
+    jump: float = 8.0  # a step between neighbours in s that are torn apart
+    graze: float = 0.01  # an arc ends at a graze like a square root: its end is located to within this length
+    most: int = 4000  # points of one generation
+    distinct: float = 0.25  # a piece nearer than this to the generation before is the end of the growth
+    generations: int = 60  # inverse images at most
 
 
 SETTINGS = GrowthSettings()
 CURVED = {"tangency": 1, "swan": 2}  # contact orders of the points where gamma may end
 
 
-@dataclass(frozen=True)
-class Frame:
-    """What is drawn of the plane of states: times from tau_low, velocities to v_high, points to a quarter of a pixel.
+def held(window: Window, points: Array) -> Array:
+    """Which points lie in the window; v has no lower end, for no state has v < 0."""
+    tau, v = points.T
+    return np.asarray((tau >= window.x[0]) & (tau <= window.x[1]) & (v <= window.y[1]))
 
-    Attributes
-    ----------
-    pixel_tau, pixel_v : the size of a point of the picture.
-    """
 
-    tau_low: float
-    tau_high: float
-    v_high: float
-    pixels: int = 800
-
-    @property
-    def scale(self) -> Array:
-        """The size of the picture in both directions."""
-        return np.array([self.tau_high - self.tau_low, self.v_high])
-
-    @property
-    def apart(self) -> float:
-        """Neighbours in s nearer than this share of a piece, still far apart in the picture, are torn.
-
-        An arc ends at a graze like a square root: its end is then known to a hundredth of a point of the picture.
-        """
-        return (0.01 / self.pixels) ** 2
-
-    def holds(self, points: Array) -> Array:
-        """Which points lie inside."""
-        tau, v = points.T
-        return np.asarray((tau >= self.tau_low) & (tau <= self.tau_high) & (v <= self.v_high))
+def _closest(window: Window) -> float:
+    """Neighbours in s nearer than this share of a piece, still far apart in the window, are torn."""
+    return float((SETTINGS.graze * window.resolution) ** 2)
 
 
 @dataclass(frozen=True)
@@ -96,8 +72,8 @@ class Piece:
     generation: int
 
 
-def grown_gamma(model: Oscillator, frame: Frame, tau: Any = None) -> list[Curve]:
-    """gamma from its series at a tangency (or swan) point to the edge of the frame [t:t2, t:t3].
+def grown_gamma(model: Oscillator, window: Window, tau: Any = None) -> list[Curve]:
+    """gamma from its series at a tangency (or swan) point to the edge of the window [t:t2, t:t3].
 
     Parameters
     ----------
@@ -109,7 +85,7 @@ def grown_gamma(model: Oscillator, frame: Frame, tau: Any = None) -> list[Curve]
 
     Examples
     --------
-    >>> curve = grown_gamma(Oscillator("0", "12*(t**2 - 1)", 0, "1/2"), Frame(-2, 1, 20), 1)[0]
+    >>> curve = grown_gamma(Oscillator("0", "12*(t**2 - 1)", 0, "1/2"), Window((-2, 1), (0, 20)), 1)[0]
     >>> round(float(curve.points[-1, 0]), 3), bool(curve.points[-1, 1] < 1e-3)
     (-1.385, True)
     """
@@ -117,15 +93,15 @@ def grown_gamma(model: Oscillator, frame: Frame, tau: Any = None) -> list[Curve]
     series, motion = arc_in_numbers(SETTINGS.order, CURVED[at], model, tau)
     foot = _foot(model, tau, at)
     size = min(series.valid_within(SETTINGS.trust), motion.valid_within(SETTINGS.trust))
-    return _grown(model, frame, foot, series, -size, float(motion(-size)))
+    return _grown(model, window, foot, series, -size, float(motion(-size)))
 
 
-def gammas_within(model: Oscillator, frame: Frame) -> list[Curve]:
-    """gamma from every tangency point with a' > 0, and every swan point with a'' < 0, whose tau lies in the frame.
+def gammas_within(model: Oscillator, window: Window) -> list[Curve]:
+    """gamma from every tangency point with a' > 0, and every swan point with a'' < 0, whose tau lies in the window.
 
     Examples
     --------
-    >>> curves = gammas_within(Oscillator("x", "cos(2*t)", "0.3", "1/2"), Frame(2, 6, 1))
+    >>> curves = gammas_within(Oscillator("x", "cos(2*t)", "0.3", "1/2"), Window((2, 6), (0, 1)))
     >>> [round(float(curve.points[0, 0]), 3) for curve in curves if curve.marked("foot").size]
     [2.509, 5.65]
     """
@@ -134,28 +110,28 @@ def gammas_within(model: Oscillator, frame: Frame) -> list[Curve]:
         bent = float(acceleration(model, np.array([point.tau]), 2)[0])
         if point.kind == "foliation" or (point.kind == "degenerate" and bent > 0):
             continue
-        for shift in _turns(model, point.tau, frame):
-            moved = replace(frame, tau_low=frame.tau_low - shift, tau_high=frame.tau_high - shift)
+        for shift in _turns(model, point.tau, window):
+            moved = replace(window, x=(window.x[0] - shift, window.x[1] - shift))
             grown = grown_gamma(model, moved, repr(point.tau))
             found += [replace(curve, points=curve.points + np.array([shift, 0.0])) for curve in grown]
     return found
 
 
-def _turns(model: Oscillator, tau: float, frame: Frame) -> list[float]:
-    """Multiples of the period that bring a time into the frame."""
+def _turns(model: Oscillator, tau: float, window: Window) -> list[float]:
+    """Multiples of the period that bring a time into the window."""
     if model.period is None:
-        return [0.0] if frame.tau_low <= tau <= frame.tau_high else []
+        return [0.0] if window.x[0] <= tau <= window.x[1] else []
     period = as_float(model.period)
-    first, last = np.ceil((frame.tau_low - tau) / period), np.floor((frame.tau_high - tau) / period)
+    first, last = np.ceil((window.x[0] - tau) / period), np.floor((window.x[1] - tau) / period)
     return [n * period for n in np.arange(first, last + 1).tolist()]
 
 
-def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
+def stable_manifold(model: Oscillator, window: Window, tau: Any) -> list[Curve]:
     """W^s_tau of a regular point with a_c(tau) < 0, grown backwards across discontinuities [t:t1].
 
     Examples
     --------
-    >>> curves = stable_manifold(Oscillator("0", "12*(t**2 - 1)", 0, "1/2"), Frame(-2, 1, 20), "0.5")
+    >>> curves = stable_manifold(Oscillator("0", "12*(t**2 - 1)", 0, "1/2"), Window((-2, 1), (0, 20)), "0.5")
     >>> curves[0].points[0].tolist()
     [0.5, 0.0]
     """
@@ -166,7 +142,7 @@ def stable_manifold(model: Oscillator, frame: Frame, tau: Any) -> list[Curve]:
     size = series.valid_within(SETTINGS.trust)
     # along the fibre the map contracts by r to first order; the exact image bounds the fundamental piece
     landed = model_step(model, np.array([[foot - size, float(series(-size))]]))[0, 0] - foot
-    return _grown(model, frame, foot, series, -size, float(landed))
+    return _grown(model, window, foot, series, -size, float(landed))
 
 
 def _curved(model: Oscillator, tau: Any) -> str:
@@ -215,14 +191,14 @@ def before(model: Oscillator, points: Array) -> Array:
 
 
 def _grown(
-    model: Oscillator, frame: Frame, foot: float, series: PowerSeries, outer: float, inner: float
+    model: Oscillator, window: Window, foot: float, series: PowerSeries, outer: float, inner: float
 ) -> list[Curve]:
     """The series from its foot to the fundamental piece, then the inverse images of that."""
 
     def start(s: Array) -> Array:
         return np.stack([foot + s, series(s)], axis=1)
 
-    count = max(SETTINGS.least, frame.pixels // SETTINGS.start + 1)
+    count = max(SETTINGS.least, round(1 / window.resolution) // SETTINGS.start + 1)
     s = np.linspace(inner, outer, count)
     whole = np.linspace(0.0, inner, 2 * count)
     pieces, done = [Piece(s, start(s), 0)], [Piece(whole, start(whole), 0)]
@@ -230,25 +206,25 @@ def _grown(
         if not pieces:
             break
         done += pieces
-        new = [image for piece in pieces for image in _images(model, frame, start, piece, generation + 1)]
-        pieces = [piece for piece in new if _tells(piece, pieces, frame)]
-    return list(_joined(done, frame))
+        new = [image for piece in pieces for image in _images(model, window, start, piece, generation + 1)]
+        pieces = [piece for piece in new if _adds(piece, pieces, window)]
+    return list(_joined(done, window))
 
 
-def _tells(piece: Piece, before: list[Piece], frame: Frame) -> bool:
-    """Whether the picture tells a piece from those of one generation before, so that growing it shows something new.
+def _adds(piece: Piece, before: list[Piece], window: Window) -> bool:
+    """Whether a piece is resolved from those of one generation before, so that growing it on adds something new.
 
     Loops of stable manifolds accumulate on gamma: each generation has one more, soon nearer than a line is wide.
     """
-    seen = piece.points[frame.holds(piece.points)] / frame.scale
-    gaps = [distances(seen, old.points / frame.scale) for old in before]
-    return not len(seen) or bool(np.min(gaps, axis=0).max() * frame.pixels > SETTINGS.told)
+    seen = piece.points[held(window, piece.points)] / window.sides
+    gaps = [distances(seen, old.points / window.sides) for old in before]
+    return not len(seen) or bool(np.min(gaps, axis=0).max() > SETTINGS.distinct * window.resolution)
 
 
 def _images(
-    model: Oscillator, frame: Frame, start: Callable[[Array], Array], piece: Piece, generation: int
+    model: Oscillator, window: Window, start: Callable[[Array], Array], piece: Piece, generation: int
 ) -> list[Piece]:
-    """The inverse image of a piece, with points added where the picture asks for them, in stretches without a tear."""
+    """The inverse image of a piece, with points added to the resolution, in stretches without a tear."""
 
     def image(s: Array) -> Array:
         points = start(s)
@@ -257,20 +233,20 @@ def _images(
         return points
 
     s, points = piece.s, before(model, piece.points)
-    s, points = _refined(s, points, image, frame)
-    known = np.isfinite(points).all(axis=1) & (points[:, 0] >= frame.tau_low - 0.2 * frame.scale[0])
-    jump = np.hypot(*(np.diff(points, axis=0) / frame.scale).T) * frame.pixels > 8
-    torn = jump & (np.abs(np.diff(s)) <= frame.apart * np.ptp(piece.s))
+    s, points = _refined(s, points, image, window)
+    known = np.isfinite(points).all(axis=1) & (points[:, 0] >= window.x[0] - 0.2 * window.sides[0])
+    jump = np.hypot(*(np.diff(points, axis=0) / window.sides).T) > SETTINGS.jump * window.resolution
+    torn = jump & (np.abs(np.diff(s)) <= _closest(window) * np.ptp(piece.s))
     cuts = np.flatnonzero(torn | ~known[1:] | ~known[:-1]) + 1
     parts = np.split(np.arange(len(s)), cuts)
     return [Piece(s[part], points[part], generation) for part in parts if len(part) > 1 and known[part].all()]
 
 
-def _refined(s: Array, points: Array, image: Callable[[Array], Array], frame: Frame) -> tuple[Array, Array]:
-    """Midpoints put in until chords are as short or as straight as the picture asks, or their ends as close in s."""
-    least = frame.apart * np.ptp(s)
+def _refined(s: Array, points: Array, image: Callable[[Array], Array], window: Window) -> tuple[Array, Array]:
+    """Midpoints put in until chords are short or straight enough for the resolution, or their ends close in s."""
+    least = _closest(window) * np.ptp(s)
     for _ in range(60):
-        wanted = _too_coarse(points, frame) & (np.abs(np.diff(s)) > least)
+        wanted = _too_coarse(points, window) & (np.abs(np.diff(s)) > least)
         at = np.flatnonzero(wanted)
         if not at.size or len(s) + at.size > SETTINGS.most:
             break
@@ -279,28 +255,28 @@ def _refined(s: Array, points: Array, image: Callable[[Array], Array], frame: Fr
     return s, points
 
 
-def _too_coarse(points: Array, frame: Frame) -> Array:
-    """Chords too long for the picture, or at a bend that shows; or with one end that is not known."""
+def _too_coarse(points: Array, window: Window) -> Array:
+    """Chords too long for the resolution, or at a bend beyond it; or with one end that is not known."""
     known: Array = np.asarray(np.isfinite(points).all(axis=1))
-    near: Array = np.logical_or(frame.holds(points), ~known)
-    step = np.diff(points, axis=0) / frame.scale
+    near: Array = np.logical_or(held(window, points), ~known)
+    step = np.diff(points, axis=0) / window.sides
     length = np.hypot(*step.T)
     with np.errstate(all="ignore"):
         cross = np.abs(step[:-1, 0] * step[1:, 1] - step[:-1, 1] * step[1:, 0])
-        off = cross / np.maximum(np.hypot(*(step[:-1] + step[1:]).T), 1e-300) * frame.pixels
+        off = cross / np.maximum(np.hypot(*(step[:-1] + step[1:]).T), 1e-300)
     bend = np.zeros(len(length), dtype=bool)
-    bend[:-1] |= off > 0.5
-    bend[1:] |= off > 0.5
-    coarse = (length > min(SETTINGS.longest / frame.pixels, 1 / 25)) | (bend & (length * frame.pixels > 1))
+    bend[:-1] |= off > SETTINGS.bend * window.resolution
+    bend[1:] |= off > SETTINGS.bend * window.resolution
+    coarse = (length > min(SETTINGS.longest * window.resolution, 1 / 25)) | (bend & (length > window.resolution))
     return np.asarray((near[:-1] | near[1:]) & ((known[:-1] != known[1:]) | (known[:-1] & known[1:] & coarse)))
 
 
-def _joined(pieces: list[Piece], frame: Frame) -> list[Curve]:
-    """Pieces that follow one another as curves, cut to the frame."""
+def _joined(pieces: list[Piece], window: Window) -> list[Curve]:
+    """Pieces that follow one another as curves, cut to the window."""
     chains: list[list[Piece]] = []
     for piece in pieces:
         for chain in chains:
-            if np.hypot(*((chain[-1].points[-1] - piece.points[0]) / frame.scale)) * frame.pixels < 1:
+            if np.hypot(*((chain[-1].points[-1] - piece.points[0]) / window.sides)) < window.resolution:
                 chain.append(piece)
                 break
         else:
@@ -309,6 +285,6 @@ def _joined(pieces: list[Piece], frame: Frame) -> list[Curve]:
     for n, chain in enumerate(chains):
         points = np.vstack([chain[0].points, *(piece.points[1:] for piece in chain[1:])])
         marks = (Mark(0, "foot"),) if n == 0 else ()
-        whole = Curve(f"history {chain[0].generation}", points, STATES, marks, first_hits=frame.holds(points))
+        whole = Curve(f"history {chain[0].generation}", points, STATES, marks, first_hits=held(window, points))
         curves += [replace(part, first_hits=np.ones(len(part), dtype=bool)) for part in whole.parts(whole.visible)]
     return [curve for curve in curves if len(curve) > 1]

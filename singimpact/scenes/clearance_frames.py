@@ -14,13 +14,13 @@ from singimpact.algebra.expressions import evaluate, names_in, number, substitut
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
-from singimpact.dynamics.invariant_arcs import Frame, grown_gamma
+from singimpact.dynamics.invariant_arcs import grown_gamma
 from singimpact.impact_oscillator import clearances
 from singimpact.inputs import refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.surface.classification import default_window
-from singimpact.surface.curve import Curve
+from singimpact.surface.curve import Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface
 
 Array = np.ndarray[Any, Any]
@@ -146,7 +146,7 @@ def clearance_film(
     for n, clearance in enumerate(view.places):
         told(n, len(view.places), f"c = {clearance:.6g}")
         at = swan.place if swan is not None and clearance == swan.clearance else clearance
-        surface = ImpactSurface(model.replace(clearance=at), view.tau, view.t, SETTINGS.pixels)
+        surface = ImpactSurface(model.replace(clearance=at), view.tau, view.t, 1 / SETTINGS.pixels)
         frames.append(_frame(surface, clearance, view.size))
         flights += surface.flights
     return ClearanceFilm(model, swan, tuple(frames), view.tau, view.t, (-view.size, view.size), flights)
@@ -167,7 +167,7 @@ def _across(model: Oscillator, between: tuple[Fraction, Fraction] | None, steps:
     here = as_float(model.clearance)
     low, high = (here - SETTINGS.aside, here + SETTINGS.aside) if between is None else map(float, between)
     tau, t = default_window(model)
-    outline = ImpactSurface(model, tau, t, SETTINGS.pixels).outline
+    outline = ImpactSurface(model, tau, t, 1 / SETTINGS.pixels).outline
     heights = [float(np.abs(curve.points[:, 1]).max()) for curve in outline]
     return _View(np.linspace(low, high, steps).tolist(), tau, t, SETTINGS.height * max(heights, default=1.0))
 
@@ -210,12 +210,12 @@ def _frame(surface: ImpactSurface, clearance: float, size: float) -> ClearanceFr
 def _gammas(surface: ImpactSurface, size: float) -> list[Curve]:
     """gamma at each point of the window that has one, cut to the picture."""
     found = []
-    low, high = surface.window.tau
+    low, high = surface.window.x
     for point, tau in surface.placed_tangencies:
         turns = tau - point.tau  # whole periods
         swan = point.kind == "degenerate" and acceleration(surface.model, np.array([tau]), 2)[0] < 0
         if point.kind == "gamma" or swan:
-            frame = Frame(low - turns, high - turns, size, surface.window.pixels)
+            frame = Window((low - turns, high - turns), (0.0, size), surface.window.resolution)
             for curve in grown_gamma(surface.model, frame, point.tau):
                 moved = curve.points + np.array([turns, 0.0])
                 found.append(Curve("gamma", moved, curve.axes, curve.marks))

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from singimpact.dynamics.invariant_arcs import Frame, gammas_within, stable_manifold
+from singimpact.dynamics.invariant_arcs import gammas_within, stable_manifold
 from singimpact.dynamics.orbit import orbit
 from singimpact.flights.counted import counted
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.scenes.kept import keep, key_of, recall
-from singimpact.surface.curve import STATES, SURFACE, Curve
+from singimpact.surface.curve import STATES, SURFACE, Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface
 from singimpact.surface.named_vertices import NamedLine
 
@@ -69,13 +69,12 @@ class Results:
     def surface(self) -> ImpactSurface:
         """V_c' of the scene; what is known of it is not flown again."""
         scene = self.scene
-        return ImpactSurface(scene.model, scene.tau, scene.times, scene.pixels)
+        return ImpactSurface(scene.model, scene.tau, scene.times, 1 / scene.pixels)
 
     @property
-    def frame(self) -> Frame:
-        """The window of the (tau, v)-plane as curves beyond their series want it."""
-        low, high = self.scene.tau
-        return Frame(low, high, self.scene.speeds[1], self.scene.pixels)
+    def states(self) -> Window:
+        """The window of the (tau, v)-plane from v = 0, where gamma and W^s begin."""
+        return Window(self.scene.tau, (0.0, self.scene.speeds[1]), 1 / self.scene.pixels)
 
 
 def _lines(results: Results) -> list[Curve]:
@@ -110,11 +109,11 @@ def _visible(results: Results) -> list[Curve]:
 
 
 def _gamma(results: Results) -> list[Curve]:
-    return gammas_within(results.scene.model, results.frame)
+    return gammas_within(results.scene.model, results.states)
 
 
 def _manifolds(results: Results, feet: Iterable[Any]) -> list[Curve]:
-    return [curve for foot in feet for curve in stable_manifold(results.scene.model, results.frame, foot)]
+    return [curve for foot in feet for curve in stable_manifold(results.scene.model, results.states, foot)]
 
 
 def _leaves(results: Results) -> list[Curve]:

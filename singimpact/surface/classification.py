@@ -111,7 +111,7 @@ def classify(model: Oscillator, tau: Any = None, t: Any = None, between: Any = N
     if singular:
         notes += (f"V_c' is singular at {len(singular)} flights from rest to rest: curves are cut there",)
     return Classification(
-        surface.window.tau, surface.window.t, tuple(points), tuple(folds), swans, notes, surface.flights
+        surface.window.x, surface.window.y, tuple(points), tuple(folds), swans, notes, surface.flights
     )
 
 

@@ -42,39 +42,65 @@ def window_ends(name: str, given: Any) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Window:
-    """A part of the (tau, t)-plane, and how many points a picture of it is wide.
+class ResolutionSettings:
+    """What lengths a curve may be resolved to, as shares of its window."""
 
-    Parameters
+    usual: float = 1 / 800  # drawn across a page, half the width of a line
+    coarsest: float = 1 / 16  # fewer chords than this show no curve
+    finest: float = 1e-6  # a curve through the window has about 1/(6 resolution) vertices
+
+
+RESOLUTION = ResolutionSettings()
+
+
+@dataclass(frozen=True)
+class Window:
+    """A part of a plane, and the smallest length in it that matters.
+
+    Attributes
     ----------
-    tau, t : (low, high). pixels : curves are drawn to half of such a point.
+    x, y : (low, high) of the two axes: tau and t on V_c', tau and v in the plane of states.
+    resolution : a length in units of the window, that is a share of its side; of the longer one where both axes have
+        one unit.  Chords of a curve stay within half of it.
     """
 
-    tau: tuple[float, float]
-    t: tuple[float, float]
-    pixels: int = 800
+    x: tuple[float, float]
+    y: tuple[float, float]
+    resolution: float = RESOLUTION.usual
 
     @classmethod
-    def read(cls, tau: Any, t: Any, pixels: Any = 800) -> Window:
-        """A window from what a user gives.
+    def read(cls, x: Any, y: Any, resolution: Any = RESOLUTION.usual, axes: tuple[str, str] = SURFACE) -> Window:
+        """A window from what a user gives; `axes` are the names of the two ranges.
 
         Raises
         ------
-        InputError : ends that are no numbers in rising order, or a size outside 16..20000.
+        InputError : ends that are no numbers in rising order, or a resolution outside 1e-6..1/16.
 
         Examples
         --------
-        >>> Window.read(("-pi", "pi"), (-2, 2)).tau[1]
+        >>> Window.read(("-pi", "pi"), (-2, 2)).x[1]
         3.141592653589793
         """
-        if isinstance(pixels, bool) or not isinstance(pixels, int) or not 16 <= pixels <= 20000:
-            raise refuse("pixels", pixels, "an integer from 16 to 20000")
-        return cls(window_ends("tau", tau), window_ends("t", t), pixels)
+        ends = window_ends(axes[0], x), window_ends(axes[1], y)
+        share = as_float(constant("resolution", resolution))
+        if not RESOLUTION.finest <= share <= RESOLUTION.coarsest:
+            raise refuse("resolution", resolution, "a share of the window from 1e-6 to 1/16")
+        return cls(*ends, share)
 
     @property
-    def pixel(self) -> float:
-        """The size of a point of the picture, in units of time."""
-        return max(self.tau[1] - self.tau[0], self.t[1] - self.t[0]) / self.pixels
+    def sides(self) -> Array:
+        """The lengths of both sides, each in its own unit."""
+        return np.array([self.x[1] - self.x[0], self.y[1] - self.y[0]])
+
+    @property
+    def longer(self) -> float:
+        """The length of the longer side, where both have one unit."""
+        return float(self.sides.max())
+
+    @property
+    def least(self) -> float:
+        """The resolution in the unit of the axes, where both have one."""
+        return self.longer * self.resolution
 
 
 @dataclass(frozen=True)

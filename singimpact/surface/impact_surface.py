@@ -21,7 +21,7 @@ from singimpact.flights.launch import fastest_rate
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-from singimpact.surface.curve import STATES, SURFACE, Curve, Window
+from singimpact.surface.curve import RESOLUTION, STATES, SURFACE, Curve, Window
 from singimpact.surface.named_vertices import NamedLine, named
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.tracing import traced
@@ -54,7 +54,7 @@ class Cusp:
 
 
 CELLS_A_RADIAN = 6  # of the sketch, of the fastest rate that the model shows
-SAME = 1e-6  # a vertex is the first hit when that comes at its time: two crossings nearer than this meet on the picture
+SAME = 1e-6  # a vertex is the first hit when that comes at its time: two crossings nearer than this are one
 
 
 class ImpactSurface:
@@ -63,7 +63,7 @@ class ImpactSurface:
     Parameters
     ----------
     model : the oscillator. tau, t : ends of the window; t of either sign, or a polynomial's zeros are cut off.
-    pixels : how wide a picture of it is; curves are drawn to half of such a point.
+    resolution : a share of the window's longer side; chords of the curves stay within half of it.
 
     Attributes
     ----------
@@ -76,10 +76,10 @@ class ImpactSurface:
     [(True, 2)]
     """
 
-    def __init__(self, model: Oscillator, tau: Any, t: Any, pixels: Any = 800) -> None:
+    def __init__(self, model: Oscillator, tau: Any, t: Any, resolution: Any = RESOLUTION.usual) -> None:
         if not isinstance(model, Oscillator):
             raise refuse("model", model, "an ImpactOscillator")
-        self.model, self.window = model, Window.read(tau, t, pixels)
+        self.model, self.window = model, Window.read(tau, t, resolution)
         self._rest = RestFlights(model)
 
     def take(self, **found: list[Any]) -> None:
@@ -100,7 +100,7 @@ class ImpactSurface:
     def placed_tangencies(self) -> list[tuple[TangencyPoint, float]]:
         """Each zero of a_c with its time in the window: that of its own period, moved by whole ones."""
         points = tangency_points(self.model)
-        low, high = self.window.tau
+        low, high = self.window.x
         if self.model.period is None:
             return [(point, point.tau) for point in points if low <= point.tau <= high]
         period = as_float(self.model.period)
@@ -119,8 +119,8 @@ class ImpactSurface:
     @cached_property
     def _speed(self) -> float:
         """A size of the velocities in the window, for the spacing of P."""
-        tau = np.linspace(*self.window.tau, 65)
-        return float(np.abs(self._rest.acceleration(tau)).max() * max(map(abs, self.window.t)) / 8 or 1.0)
+        tau = np.linspace(*self.window.x, 65)
+        return float(np.abs(self._rest.acceleration(tau)).max() * max(map(abs, self.window.y)) / 8 or 1.0)
 
     @cached_property
     def zero_set(self) -> list[Curve]:

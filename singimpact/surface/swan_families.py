@@ -15,7 +15,7 @@ from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
-from singimpact.surface.curve import Curve, Window
+from singimpact.surface.curve import Curve, window_ends
 
 Array = np.ndarray[Any, Any]
 STEPS = 60  # between the ends of a number that is sampled: rows of a picture of curves, places where others are met
@@ -123,11 +123,11 @@ def swan_curves(model: Oscillator, over: tuple[str, str], between: tuple[Any, An
     for name in over:
         if name != "clearance" and name not in model.parameters:
             raise unknown("parameter", name, ["clearance", *model.parameters])
-    window = Window.read(between[0], between[1])
+    along, across = (window_ends(name, ends) for name, ends in zip(over, between, strict=True))
     rows: list[list[tuple[float, float, Transition]]] = []
-    for value in np.linspace(*window.t, STEPS + 1).tolist():
+    for value in np.linspace(*across, STEPS + 1).tolist():
         family = Family(Family(model, second).at(value), first)
-        found, _ = swans_met(family, np.linspace(*window.tau, STEPS + 1))
+        found, _ = swans_met(family, np.linspace(*along, STEPS + 1))
         rows.append([(swan.value, value, swan) for swan in found])
     return [Curve("swan", np.array(line), over) for line in _linked(rows) if len(line) > 1]
 

@@ -25,8 +25,8 @@ Grid = Callable[[Array, Array], Array]
 @dataclass(frozen=True)
 class TraceSettings:
     """close : Newton's last step, relative to 1 + |place|, of a vertex that counts as on the curve.
-    rounds : of Newton, and of halving. deviation : of a chord from the curve, in points of the picture.
-    longest : chord, in points of the picture: where a curve goes out of sight is known to one chord.
+    rounds : of Newton, and of halving. deviation : of a chord from the curve, in resolutions of the window.
+    longest : chord, in resolutions: the end of the visible part is located to within one chord length.
     finest : times a grid is made finer around an extremum of y. least_cells, most_cells : of the sketch, a side.
     finer_tau, finer_t : parts of a cell in the sketch, along tau at most. A thin piece that is cut there is walked
         along, which costs far more flights than further columns; and one flight gives all of a column.
@@ -53,7 +53,7 @@ SETTINGS = TraceSettings()
 
 
 class Untraced(Unfinished):
-    """A curve that was not followed to the accuracy of the picture, in a window that was accepted."""
+    """A curve that was not followed to the resolution of the window, in a window that was accepted."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def traced(grid: Grid, gradient: Gradient, window: Window, cell: float, scale: f
     values = grid(*axes)
     found = _small_ones(grid, axes, values, window)
     small = (_followed(seed, gradient, window, size) for seed, size in found)
-    sketched = (*(_thinned(line, window.pixel) for line in _sketched(axes, values)), *small)
+    sketched = (*(_thinned(line, window.least) for line in _sketched(axes, values)), *small)
     made = [one for line in sketched if (one := _on_curve(line, gradient, window, scale, cell)) is not None]
     kept: list[Polyline] = []
     for line in sorted(made, key=lambda one: -float(np.ptp(one.points, axis=0).sum())):
@@ -101,10 +101,10 @@ def _axes(window: Window, cell: float) -> tuple[Array, Array]:
     def cells(ends: tuple[float, float]) -> int:
         return max(int(np.ceil((ends[1] - ends[0]) / cell)), SETTINGS.least_cells)
 
-    # no wider than the chords that are drawn: a picture that shows smaller pieces looks for smaller ones
-    chords = (window.tau[1] - window.tau[0]) / (SETTINGS.longest * window.pixel)
-    finer = float(np.clip(chords / cells(window.tau), 1, SETTINGS.finer_tau))
-    return axis(window.tau, finer), axis(window.t, SETTINGS.finer_t)
+    # columns no wider than the longest chord: at a finer resolution smaller pieces are looked for
+    chords = window.sides[0] / (SETTINGS.longest * window.least)
+    finer = float(np.clip(chords / cells(window.x), 1, SETTINGS.finer_tau))
+    return axis(window.x, finer), axis(window.y, SETTINGS.finer_t)
 
 
 def _sketched(axes: tuple[Array, Array], values: Array) -> list[Array]:
@@ -114,11 +114,11 @@ def _sketched(axes: tuple[Array, Array], values: Array) -> list[Array]:
     return [np.asarray(line) for line in made if len(line) > 1]
 
 
-def _thinned(line: Array, pixel: float) -> Array:
-    """Every vertex of a sketch costs flights: those that a coarse picture does not show are left out."""
+def _thinned(line: Array, least: float) -> Array:
+    """Every vertex of a sketch costs flights: those within the resolution, a length, are left out."""
     if len(line) < 8:
         return line
-    limit, kept = 0.5 * pixel, {0, len(line) // 3, 2 * len(line) // 3, len(line) - 1}
+    limit, kept = 0.5 * least, {0, len(line) // 3, 2 * len(line) // 3, len(line) - 1}
     waiting = list(pairwise(sorted(kept)))
     while waiting:
         first, last = waiting.pop()
@@ -127,7 +127,7 @@ def _thinned(line: Array, pixel: float) -> Array:
         chord = line[last] - line[first]
         inner = line[first + 1 : last] - line[first]
         away = np.abs(inner[:, 0] * chord[1] - inner[:, 1] * chord[0]) / max(np.hypot(*chord), 1e-300)
-        if away.max() > limit or np.hypot(*chord) > SETTINGS.longest * pixel:
+        if away.max() > limit or np.hypot(*chord) > SETTINGS.longest * least:
             middle = (first + last) // 2
             kept.add(middle)
             waiting += [(first, middle), (middle, last)]
@@ -142,15 +142,15 @@ def _small_ones(
     found: list[tuple[Array, float]] = []
     for i, j in _extrema(values):
         small = Window((tau[max(j - 1, 0)], tau[min(j + 1, len(tau) - 1)]),
-                       (t[max(i - 1, 0)], t[min(i + 1, len(t) - 1)]), window.pixels)  # fmt: skip
-        finer = np.linspace(*small.tau, 17), np.linspace(*small.t, 17)
+                       (t[max(i - 1, 0)], t[min(i + 1, len(t) - 1)]), window.resolution)  # fmt: skip
+        finer = np.linspace(*small.x, 17), np.linspace(*small.y, 17)
         inner = grid(*finer)
         if inner.min() < 0 < inner.max():
             rising = inner if values[i, j] < 0 else -inner
             place = np.unravel_index(np.argmax(rising), inner.shape)
             found.append((np.array([finer[0][place[1]], finer[1][place[0]]]), float(np.ptp(finer[0])) / 16))
         elif depth < SETTINGS.finest and np.abs(inner).min() < 0.5 * np.abs(values[i, j]):
-            fine = _axes(small, (small.tau[1] - small.tau[0]) / 16)
+            fine = _axes(small, (small.x[1] - small.x[0]) / 16)
             found += _small_ones(grid, fine, grid(*fine), small, depth + 1)
     return found
 
@@ -178,7 +178,7 @@ def _walked(start: Array, along: Array, side: int, gradient: Gradient, window: W
         ahead, h = turned, min(h * 1.4, size)
         if len(line) > 4 and np.hypot(*(line[-1] - line[0])) < h:
             return np.array([*line, line[0]])
-        if not (window.tau[0] <= found[0, 0] <= window.tau[1] and window.t[0] <= found[0, 1] <= window.t[1]):
+        if not (window.x[0] <= found[0, 0] <= window.x[1] and window.y[0] <= found[0, 1] <= window.y[1]):
             break
     return np.array(line)
 
@@ -210,7 +210,7 @@ def _on_curve(line: Array, gradient: Gradient, window: Window, scale: float, cel
         return None
     points, column, step, slope = newton(line, gradient)
     if not _in_order(points, step, slope):  # thinner than a cell: the sketch has cut it to pieces
-        line = _followed(line[0], gradient, window, max(cell / 4, SETTINGS.longest * window.pixel))
+        line = _followed(line[0], gradient, window, max(cell / 4, SETTINGS.longest * window.least))
         if len(line) < 3:
             return None
         points, column, step, _ = newton(line, gradient)
@@ -263,8 +263,8 @@ def _step(y: Array, slope: Array, column: Array, bend: Array) -> tuple[Array, Ar
 
 
 def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, scale: float) -> tuple[Array, Array]:
-    """Vertices added where a chord leaves the curve by more than the picture shows, dropped where they crowd."""
-    limit = SETTINGS.deviation * window.pixel
+    """Vertices added where a chord leaves the curve by more than the resolution allows, dropped where they crowd."""
+    limit = SETTINGS.deviation * window.least
     checked = np.zeros(len(points) - 1, dtype=bool)  # chords known to be good
     for _ in range(SETTINGS.halvings):
         open_ = np.flatnonzero(~checked)
@@ -273,11 +273,11 @@ def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, sc
         middle = (points[open_] + points[open_ + 1]) / 2
         half = (column[open_] + column[open_ + 1]) / 2
         chord = np.hypot(*(points[open_ + 1] - points[open_]).T)
-        long = chord > SETTINGS.longest * window.pixel
+        long = chord > SETTINGS.longest * window.least
 
         def shows(away: Array, apart: Array) -> Array:
-            """Whether the curve leaves a chord by more than the picture hides."""
-            return np.hypot(away, apart / scale * window.pixel * window.pixels) > limit
+            """Whether the curve leaves a chord by more than the resolution allows."""
+            return np.hypot(away, apart / scale * window.longer) > limit
 
         # one step towards the curve tells how far it is: most chords are good, and cost no more than that
         move, value = _step(*gradient(middle))
@@ -297,7 +297,7 @@ def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, sc
     if not checked.all():
         most = 2**SETTINGS.halvings
         raise Untraced(
-            f"a curve in tau = {window.tau}, t = {window.t} still leaves its chords by more than {SETTINGS.deviation} "
-            f"points, of {window.pixels} in width, with each cut into {most}: choose fewer points or a smaller window"
+            f"a curve in tau = {window.x}, t = {window.y} still leaves its chords by more than {limit:.2g} "
+            f"with each cut into {most}: choose a coarser resolution or a smaller window"
         )
     return points, column

@@ -20,7 +20,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import tangency_points
 from singimpact.inputs import unknown
 from singimpact.oscillator.model import Oscillator
-from singimpact.surface.curve import Window
+from singimpact.surface.curve import window_ends
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.swan_families import STEPS, Family, Transition, swans_met
 
@@ -84,17 +84,17 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) ->
     """
     if over != "clearance" and over not in model.parameters:
         raise unknown("parameter", over, ["clearance", *model.parameters])
-    window = Window.read(between, t)
-    values = np.linspace(*window.tau, STEPS + 1)
+    ends, times = window_ends(over, between), window_ends("t", t)
+    values = np.linspace(*ends, STEPS + 1)
     family = Family(model, over)
     swans, notes = swans_met(family, values)
-    found = [*swans, *_swallowtails(family, swans, window.t), *_each_once(_touches(family, values, window.t), window)]
+    found = [*swans, *_swallowtails(family, swans, times), *_each_once(_touches(family, values, times), ends)]
     made = Transitions(sorted(found, key=lambda each: (each.value, each.tau, each.t)))
     made.notes = notes
     return made
 
 
-def _each_once(found: Iterable[Transition], window: Window) -> list[Transition]:
+def _each_once(found: Iterable[Transition], ends: tuple[float, float]) -> list[Transition]:
     """Those between the ends; Newton's method may leave them, or come to one place from two."""
     kept: list[Transition] = []
     for each in found:
@@ -102,7 +102,7 @@ def _each_once(found: Iterable[Transition], window: Window) -> list[Transition]:
             max(abs(each.value - old.value), abs(each.tau - old.tau), abs(each.t - old.t)) < SETTINGS.same
             for old in kept
         )  # fmt: skip
-        if window.tau[0] <= each.value <= window.tau[1] and not twice:
+        if ends[0] <= each.value <= ends[1] and not twice:
             kept.append(each)
     return kept
 

@@ -172,3 +172,13 @@ def test_every_room_names_its_files(clone):
     found = {room: names for room, names in unnamed(clone).items() if names}
     assert {room: names for room, names in found.items() if room not in UNFINISHED_SIGNPOSTS} == {}
     assert set(found) >= UNFINISHED_SIGNPOSTS, "what is finished leaves the set"
+
+
+SHOWN = ("scenes/", "paper/figures/", "cli/", "bench/")
+
+
+def test_pixels_are_known_to_pictures_alone(clone):
+    """Below them a resolution is a length in units of the window."""
+    found = [path for path, text in sources(clone).items() if re.search("pixel", text, re.IGNORECASE)]
+    assert found
+    assert [path for path in found if not path.startswith(SHOWN)] == []

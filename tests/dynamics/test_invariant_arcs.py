@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.invariant_arcs import Frame, before, grown_gamma, model_step, stable_manifold
+from singimpact.dynamics.invariant_arcs import before, grown_gamma, held, model_step, stable_manifold
+from singimpact.surface.curve import Window
 
 SWAN = si.universal(-1, "0.5")
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
@@ -26,20 +27,20 @@ def distance(points, curves):
 
 @pytest.mark.parametrize(
     ("model", "frame", "tau"),
-    [(si.linear(2, "0.3", "0.5"), Frame(0.3, 4, 1.0), None), (DUFFING, Frame(0.5, 5, 1.5), None),
-     (si.universal(1, "0.5"), Frame(-2, 1.2, 25), 1)],
+    [(si.linear(2, "0.3", "0.5"), Window((0.3, 4), (0, 1.0)), None), (DUFFING, Window((0.5, 5), (0, 1.5)), None),
+     (si.universal(1, "0.5"), Window((-2, 1.2), (0, 25)), 1)],
 )  # fmt: skip
 def test_gamma_is_carried_into_itself(model, frame, tau):
     (curve, *_) = grown_gamma(model, frame, tau)
-    inner = curve.points[curve.points[:, 1] > 1e-3 * frame.v_high][::5]
+    inner = curve.points[curve.points[:, 1] > 1e-3 * frame.y[1]][::5]
     assert len(inner) > 10
-    assert distance(model_step(model, inner), [curve]).max() < 2e-3 * frame.v_high
-    off = inner + np.array([0, 0.02 * frame.v_high])  # beside the curve the map leads away from it
-    assert np.nanmax(distance(model_step(model, off), [curve])) > 2e-3 * frame.v_high
+    assert distance(model_step(model, inner), [curve]).max() < 2e-3 * frame.y[1]
+    off = inner + np.array([0, 0.02 * frame.y[1]])  # beside the curve the map leads away from it
+    assert np.nanmax(distance(model_step(model, off), [curve])) > 2e-3 * frame.y[1]
 
 
 def test_gamma_of_the_unfolded_positive_swan_meets_the_axis_again():
-    (curve, *_) = grown_gamma(si.universal(1, "0.5"), Frame(-2, 1.2, 25), 1)
+    (curve, *_) = grown_gamma(si.universal(1, "0.5"), Window((-2, 1.2), (0, 25)), 1)
     assert abs(curve.points[-1, 0] + 1.3851) < 1e-4
     slope = np.diff(curve.points[-3:], axis=0)
     assert abs(slope[0, 1] / slope[0, 0] - 12 * (1.3851**2 - 1)) < 0.2
@@ -47,7 +48,7 @@ def test_gamma_of_the_unfolded_positive_swan_meets_the_axis_again():
 
 def test_stable_manifolds_of_the_negative_swan_are_torn_to_the_right_of_a():
     """Between B and X each W^s has pieces of several hit histories; beyond X none is torn locally."""
-    frame = Frame(-6, 9, 120)
+    frame = Window((-6, 9), (0, 120))
     assert len(stable_manifold(SWAN, frame, "3.2")) > 3
     torn = stable_manifold(SWAN, frame, "3.2")
     for first, second in itertools.pairwise(torn):
@@ -55,7 +56,7 @@ def test_stable_manifolds_of_the_negative_swan_are_torn_to_the_right_of_a():
     for curve in torn:
         inner = curve.points[curve.points[:, 1] > 1][::6]
         image = model_step(SWAN, inner)
-        inside = frame.holds(image)
+        inside = held(frame, image)
         assert distance(image[inside], torn).max(initial=0) < 0.3
 
 
@@ -68,7 +69,7 @@ def test_before_undoes_the_map():
 @pytest.mark.parametrize("tau", [None, 0, 0.0])
 def test_gamma_of_a_swan_is_found_by_its_exact_time(tau):
     """a_c vanishes at a swan as at a tangency: a_c' tells them apart, however tau is given."""
-    (curve, *_) = grown_gamma(si.linear(2, 1, "0.5"), Frame(-1.3, 3, 2), tau)
+    (curve, *_) = grown_gamma(si.linear(2, 1, "0.5"), Window((-1.3, 3), (0, 2)), tau)
     assert np.isfinite(curve.points).all()
     assert np.array_equal(curve.points[0], [0, 0])
 
@@ -76,4 +77,4 @@ def test_gamma_of_a_swan_is_found_by_its_exact_time(tau):
 @pytest.mark.parametrize(("clearance", "tau", "told"), [("0.3", 1, "does not vanish"), (-1, "pi/2", "positive one")])
 def test_no_gamma_at_a_regular_point_or_a_positive_swan(clearance, tau, told):
     with pytest.raises(si.InputError, match=told):
-        grown_gamma(si.linear(2, clearance, "0.5"), Frame(-1.3, 3, 2), tau)
+        grown_gamma(si.linear(2, clearance, "0.5"), Window((-1.3, 3), (0, 2)), tau)

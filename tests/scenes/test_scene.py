@@ -99,12 +99,13 @@ def test_a_coarse_picture_costs_a_third_of_a_fine_one(layers, clearance, window,
 
 def test_growth_ends_where_the_picture_tells_nothing_new():
     """Loops of W^s accumulate on gamma: a fine picture shows more of them, and none without end."""
-    model, frame = si.linear(2, "0.95", "0.5"), (-1.2, 1.0, 0.06)
-    from singimpact.dynamics.invariant_arcs import Frame, stable_manifold
+    model, window = si.linear(2, "0.95", "0.5"), ((-1.2, 1.0), (0.0, 0.06))
+    from singimpact.dynamics.invariant_arcs import stable_manifold
     from singimpact.dynamics.swan_configuration import swan_configuration
+    from singimpact.surface.curve import Window
 
     foot = repr(swan_configuration(model, near=0).X)
-    coarse, fine = (stable_manifold(model, Frame(*frame, pixels), foot) for pixels in (300, 1500))
+    coarse, fine = (stable_manifold(model, Window(*window, 1 / pixels), foot) for pixels in (300, 1500))
     assert 2 < len(coarse) < len(fine) < 40
     assert sum(map(len, fine)) < 20_000
 

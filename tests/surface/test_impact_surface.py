@@ -71,7 +71,7 @@ def test_vertices_are_on_the_true_curve_to_1e_12(linear):
 
 @pytest.mark.parametrize("model", [si.linear(2, "0.3", "0.5"), DUFFING])
 def test_involution_and_images(model):
-    surface = ImpactSurface(model, (0, 4), (-4, 4), 200)
+    surface = ImpactSurface(model, (0, 4), (-4, 4), 1 / 200)
     for zero, horizon, outline in zip(surface.zero_set, surface.horizon, surface.outline, strict=True):
         assert np.abs(horizon.points.sum(axis=1) - zero.points[:, 0]).max() < 1e-14
         assert np.abs(outline.points[:, 0] - zero.points.sum(axis=1)).max() < 1e-14
@@ -79,7 +79,7 @@ def test_involution_and_images(model):
 
 @pytest.mark.parametrize("model", [si.linear(2, "0.3", "0.5"), DUFFING])
 def test_the_map_jumps_across_the_discontinuities(model):
-    surface = ImpactSurface(model, (0, 4), (-5, 5), 200)
+    surface = ImpactSurface(model, (0, 4), (-5, 5), 1 / 200)
     assert surface.discontinuities
     for arc in surface.discontinuities:
         # across the arc, by its normal: the time of the first hit jumps
@@ -104,7 +104,7 @@ def test_nothing_beyond_the_swan():
 
 
 def test_a_coarse_picture_costs_a_third_of_a_fine_one():
-    small, large = (ImpactSurface(si.linear(2, "0.3", "0.5"), (0, 6), (-6, 6), pixels) for pixels in (400, 2000))
+    small, large = (ImpactSurface(si.linear(2, "0.3", "0.5"), (0, 6), (-6, 6), share) for share in (1 / 400, 1 / 2000))
     assert small.zero_set
     assert large.zero_set
     assert small.flights < large.flights
@@ -126,7 +126,7 @@ def test_what_is_not_asked_for_is_not_flown():
         (lambda: ImpactSurface(3, (0, 1), (0, 1)), "model = 3"),
         (lambda: ImpactSurface(DUFFING, (1, 0), (0, 1)), "window of tau"),
         (lambda: ImpactSurface(DUFFING, (0, 1), 4), "window of t"),
-        (lambda: ImpactSurface(DUFFING, (0, 1), (0, 1), 5), "pixels = 5"),
+        (lambda: ImpactSurface(DUFFING, (0, 1), (0, 1), 0.2), "resolution = 0.2"),
     ],
 )
 def test_refusals(ask, told):
@@ -137,7 +137,7 @@ def test_refusals(ask, told):
 def test_only_what_may_be_a_first_hit_is_asked_for():
     from singimpact.flights.counted import counted
 
-    surface = ImpactSurface(si.ImpactOscillator("x", "cos(2*t)", "0.7", "1/2"), (-1.2, 1.0), (-3, 3), 400)
+    surface = ImpactSurface(si.ImpactOscillator("x", "cos(2*t)", "0.7", "1/2"), (-1.2, 1.0), (-3, 3), 1 / 400)
     lines = surface.lines
     with counted() as count:
         curves = surface.zero_set
@@ -184,6 +184,6 @@ def test_a_curve_that_is_not_followed_is_no_mistake_of_the_caller(monkeypatch):
     from singimpact.surface import tracing
 
     monkeypatch.setattr(tracing, "SETTINGS", replace(tracing.SETTINGS, halvings=1, deviation=1e-6))
-    with pytest.raises(tracing.Untraced, match="choose fewer points or a smaller window") as found:
-        list(ImpactSurface(si.universal(-1, "1/2"), (-3, 2), (-1, 5), 400).lines)
+    with pytest.raises(tracing.Untraced, match="choose a coarser resolution") as found:
+        list(ImpactSurface(si.universal(-1, "1/2"), (-3, 2), (-1, 5), 1 / 400).lines)
     assert not isinstance(found.value, InputError)

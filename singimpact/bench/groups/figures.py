@@ -49,7 +49,7 @@ def _method(name: str, setting: str, curves: Callable[[], list[Any]]) -> Method:
 def _own() -> list[Any]:
     from singimpact.surface.impact_surface import ImpactSurface
 
-    surface = ImpactSurface(linear(2, "0.7", "0.5"), TAU, T, PIXELS)
+    surface = ImpactSurface(linear(2, "0.7", "0.5"), TAU, T, 1 / PIXELS)
     return [line.points for line in surface.lines]  # whether a flight gets there first is not asked of a contour
 
 

@@ -11,9 +11,10 @@ import numpy as np
 from singimpact.bench.measuring import condition
 from singimpact.bench.stress.judging import DIGITS, Function, Trial, powers
 from singimpact.bench.stress.launches import Launch
-from singimpact.dynamics.invariant_arcs import Frame, grown_gamma, stable_manifold
+from singimpact.dynamics.invariant_arcs import grown_gamma, stable_manifold
 from singimpact.impact_oscillator import linear, threshold
 from singimpact.status import Status
+from singimpact.surface.curve import Window
 
 FEW = 5  # each of these truths takes a tenth of a second or more
 START = Launch("linear", tau=0.9, v=0.005)
@@ -78,7 +79,7 @@ def _gamma_grown(place: str, points: int) -> Iterator[Trial]:
     """Vertices beside the threshold over the same phase."""
     rate = RATES.get(place, 0.5)
     osc = linear("2.8", 0, rate)
-    points_of = np.vstack([curve.points for curve in grown_gamma(osc, Frame(0.6, 2.0, 1.0))])
+    points_of = np.vstack([curve.points for curve in grown_gamma(osc, Window((0.6, 2.0), (0.0, 1.0)))])
     far = END - points_of[:, 0]
     for off in powers(min(points, 2), 3 if place == "a -> 0" else 1, 0.3):
         tau, v = points_of[int(np.argmin(np.abs(far - off) + (far < off / 2)))].tolist()
@@ -91,7 +92,7 @@ def _stable_manifold(place: str, points: int) -> Iterator[Trial]:
     """Chatter from a vertex ends at the foot, to the condition of its end."""
     rate, foot = RATES.get(place, 0.5), END - 1e-3 if place == "a -> 0" else 1.0
     osc = linear("2.8", 0, rate)
-    vertices = np.vstack([curve.points for curve in stable_manifold(osc, Frame(0.2, 1.5, 1.0), foot)])
+    vertices = np.vstack([curve.points for curve in stable_manifold(osc, Window((0.2, 1.5), (0.0, 1.0)), foot)])
     for index in np.linspace(2, len(vertices) - 2, min(points, 6)).astype(int).tolist():
         tau, v = vertices[index].tolist()
         if not v > 0:

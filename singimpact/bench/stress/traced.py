@@ -28,7 +28,7 @@ def _judged(outline: bool, place: str, points: int) -> Iterator[Trial]:
     """Of Z one coordinate over the other is judged, of P v over the phase, except next to a cusp where P turns back."""
     for off in powers(min(points, 6), LAST[place]):
         launch, tau, t = NEAR[place](off)
-        surface = ImpactSurface(launch.model, tau, t, 400)
+        surface = ImpactSurface(launch.model, tau, t, 1 / 400)
         for line, image in zip(surface.zero_set, surface.outline, strict=True):
             for index in np.linspace(0, len(line) - 1, VERTICES).astype(int).tolist():
                 vertex, landing = line.points[index].tolist(), image.points[index].tolist()

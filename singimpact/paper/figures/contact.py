@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from singimpact.contact.points import tangency_points
-from singimpact.dynamics.invariant_arcs import Frame, gammas_within, model_step, stable_manifold
+from singimpact.dynamics.invariant_arcs import gammas_within, model_step, stable_manifold
 from singimpact.impact_oscillator import ImpactOscillator, linear, swan_points
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.paper.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Point, Region
 from singimpact.paper.figures.sheet import projected, rebounded, reset
-from singimpact.surface.curve import Curve
+from singimpact.surface.curve import Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface
 
 R = 0.5
@@ -32,7 +32,7 @@ def tangency(kind: str) -> float:
     return next(point.tau for point in tangency_points(oscillator()) if point.kind == kind)
 
 
-def leaves(model: Any, frame: Frame, feet: Iterable[float], pen: str = "manifold") -> list[Line]:
+def leaves(model: Any, frame: Window, feet: Iterable[float], pen: str = "manifold") -> list[Line]:
     """Stable manifolds of times with a < 0."""
     kept = [foot for foot in feet if float(acceleration(model, np.array([foot]))[0]) < 0]
     return [Line(curve.points, pen, "leaf") for foot in kept for curve in stable_manifold(model, frame, repr(foot))]
@@ -47,7 +47,7 @@ def figure_3() -> Picture:
     feet = np.linspace(low, high + 0.8, 15)
     straight = [Line(np.array([[foot + v / slope, v], [foot, 0.0]]), "manifold", "eigendirection", at=0.6, arrow=True)
                 for foot in feet]  # fmt: skip
-    frame = Frame(low, high, v, ARCS)
+    frame = Window((low, high), (0.0, v), 1 / ARCS)
     curved = leaves(model, frame, feet.tolist())
     curved = [Line(line.points[::-1], line.pen, line.name, at=0.6, arrow=True) for line in curved]
     chosen = Line(np.array([[centre + v / slope, v], [centre, 0.0]]), "loop", "through w_*", at=0.6, arrow=True)
@@ -136,7 +136,7 @@ def figure_5() -> Picture:
     """Degenerate chatter: gamma between P_* and Pi_0."""
     model, tau = oscillator(), tangency("gamma")
     low, high, v = tau - 0.62, tau + 0.1, 0.11
-    frame = Frame(low, high, v, ARCS)
+    frame = Window((low, high), (0.0, v), 1 / ARCS)
     surface = ImpactSurface(model, (low - 0.5, high + 2), (-3, 3))  # H is shifted Z
     jump = next(c.points for c in surface.discontinuities if np.hypot(*(c.points - [tau, 0.0]).T).min() < 1e-9)
     (curve, *_) = gammas_within(model, frame)
@@ -180,7 +180,7 @@ def figure_7() -> Picture:
     """a' < 0: every orbit nearby chatters to a point right of w_*; epsilon is the image of [w_1, w_*]."""
     model, tau = oscillator(), tangency("foliation")
     low, high, v = tau - 0.4, tau + 0.6, 0.1
-    frame = Frame(low, high, v, ARCS)
+    frame = Window((low, high), (0.0, v), 1 / ARCS)
     start = tau - 0.25
     rest = np.stack([np.linspace(start, tau, 80)[:-1], np.zeros(79)], axis=1)
     epsilon = np.vstack([model_step(model, rest), [[tau, 0.0]]])
@@ -201,7 +201,7 @@ def figure_8() -> Picture:
     swan = next(each for each in swan_points("x", "cos(2*t)") if each.kind == "negative")
     model = swan.oscillator("0.5")
     low, high, v = -0.45, 0.45, 0.03
-    frame = Frame(low, high, v, ARCS)
+    frame = Window((low, high), (0.0, v), 1 / ARCS)
     (curve, *_) = gammas_within(model, frame)
     lines = leaves(model, frame, [*np.linspace(-0.42, -0.1, 7).tolist(), *np.linspace(0.1, 0.58, 9).tolist()])
     lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, -0.36), (8, 2)))

@@ -142,7 +142,7 @@ def _outline(change: Change, sign: int) -> list[Curve]:
     aside = 1e-2 if change.kind == "beaks" and not sign else 0.0  # two lines that cross are traced a hair apart
     model = damped().replace(**{change.over: change.value + (sign + aside) * change.step})
     tau, t = ((middle - change.half, middle + change.half) for middle in (change.tau, change.t))
-    found = ImpactSurface(model, tau, t, change.pixels).outline
+    found = ImpactSurface(model, tau, t, 1 / change.pixels).outline
     return [curve for curve in found if curve.closed] if change.kind == "lips" else found
 
 

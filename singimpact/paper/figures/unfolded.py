@@ -6,11 +6,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from singimpact.dynamics.invariant_arcs import Frame, before, gammas_within, stable_manifold
+from singimpact.dynamics.invariant_arcs import before, gammas_within, held, stable_manifold
 from singimpact.flights.hits import rebound
 from singimpact.paper.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Region, arc
 from singimpact.paper.figures.sheet import rebounded, reset
 from singimpact.paper.figures.swans import box, half, negative, positive, ring, shadow
+from singimpact.surface.curve import Window
 
 LEAVES = 9
 GENERATIONS = 3  # of inverse images of delta; further ones lie within a line's width of gamma
@@ -23,7 +24,7 @@ def figure_13() -> Picture:
     edge = arc(outline, places["E"], places["B"], places["D"])
     v = 1.35 * float(edge[:, 1].max())
     window = box(swan, -2.2, 1.7, -0.08 * v, v)
-    frame = Frame(window[0][0], window[0][1], v, ARCS)
+    frame = Window(window[0], (0.0, v), 1 / ARCS)
     lines = [Line(edge, "jump", "arc BE' of P", "$P$", 0.35, (-16, 6))]
     for foot in np.linspace(swan.A, swan.B, LEAVES + 2)[1:-1].tolist():
         lines += [Line(curve.points, "manifold", "leaf") for curve in stable_manifold(swan.model, frame, repr(foot))]
@@ -100,7 +101,7 @@ def figure_17() -> Picture:
     swan, size = negative(), half(negative())
     v = 1.12 * swan.projected["D"][1]
     window = box(swan, -4.2, 5.6, -0.06 * v, v)
-    frame = Frame(window[0][0] - size, window[0][1], 1.3 * v, ARCS)
+    frame = Window((window[0][0] - size, window[0][1]), (0.0, 1.3 * v), 1 / ARCS)
     manifold = stable_manifold(swan.model, frame, repr(swan.X))
     lines = [Line(curve.points, "manifold", "beyond X") for foot in (1.02, 1.08, 1.16)
              for curve in stable_manifold(swan.model, frame, repr(swan.X + (foot - 1) * 5 * size))]  # fmt: skip
@@ -171,7 +172,7 @@ def _accumulation(loops: list[tuple[Array, Array]], gamma: Array, height: float)
     }
 
 
-def _preimages(frame: Frame) -> list[Array]:
+def _preimages(frame: Window) -> list[Array]:
     """G^{-n}(delta) inside the frame."""
     found, points = [], delta()[delta()[:, 1] > 0]
     share = np.linspace(0, len(points) - 1, 600)
@@ -179,7 +180,7 @@ def _preimages(frame: Frame) -> list[Array]:
     for _ in range(GENERATIONS):
         points = before(negative().model, points)
         points = points[np.isfinite(points).all(axis=1)]
-        inside = points[frame.holds(points)]
+        inside = points[held(frame, points)]
         if len(inside) > 1:
             found.append(inside)
     return found
