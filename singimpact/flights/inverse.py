@@ -9,6 +9,7 @@ import numpy as np
 
 from singimpact.algebra.expressions import Name, multiply, names_in, number, substitute
 from singimpact.algebra.numbers import as_float, as_mpf
+from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights.carriers import Step
 from singimpact.flights.hits import first_hit, rebound
 from singimpact.flights.launch import States
@@ -81,38 +82,42 @@ def _inverse(osc: Oscillator) -> Any:
 
 
 def _sharper(osc: Oscillator, states: States, index: int, u: float, digits: int) -> Any:
-    import mpmath
-
     from singimpact.flights import manydigits
 
-    with mpmath.workdps(digits + 15):
-        v, place = as_mpf(states.exact_v(index), mpmath.mp), mpmath.mpf(u)
+    with digits_at(digits + 15) as mp:
+        v, place = as_mpf(states.exact_v(index), mp), mp.mpf(u)
         slope = float(rebound_slope(osc, u))
         for _ in range(2 + digits // 8):
-            place -= (manydigits.rebound(osc, place) - v) / slope
-        return -place
+            place -= (manydigits.rebound(osc, place, mp) - v) / slope
+        return for_user(-place)
 
 
 def _step(states: States, hit: Any, speeds: Any, dead: Any, digits: int | None) -> Step:
     shape = states.shape
     status = np.where(dead, np.int8(Status.no_rebound), np.ravel(hit.status)).astype(np.int8)
-    if digits is None:
-        start: Any = states.tau
-        before: Any = -np.array([as_float(s) if not isinstance(s, int | float) else float(s) for s in speeds])
-    else:
-        import mpmath
-
-        with mpmath.workdps(digits):
-            start = np.array([as_mpf(states.exact_tau(i), mpmath.mp) for i in range(speeds.size)] + [None])[:-1]
-            before = np.array([-_number(s) for s in speeds] + [None])[:-1]
-    fields = {"tau": start - np.ravel(hit.flight_time), "v": -np.ravel(hit.velocity) + 0, "velocity": before}
+    fields = _in_doubles(states, hit, speeds) if digits is None else _in_digits(states, hit, speeds, digits)
     fields |= {name: getattr(hit, name) for name in KEPT}
     fields["v"] = np.where(dead, np.nan, fields["v"])
     shaped = {name: np.reshape(value, shape)[()] for name, value in fields.items()}
     return Step(**shaped, status=status.reshape(shape)[()], notes=hit.notes)
 
 
-def _number(value: Any) -> Any:
-    import mpmath
+def _in_doubles(states: States, hit: Any, speeds: Any) -> dict[str, Any]:
+    """The state before, and the velocity just after its impact."""
+    before = -np.array([as_float(s) if not isinstance(s, int | float) else float(s) for s in speeds])
+    return {"tau": states.tau - np.ravel(hit.flight_time), "v": -np.ravel(hit.velocity) + 0, "velocity": before}
 
-    return mpmath.mpf(value) if isinstance(value, int | float) or hasattr(value, "_mpf_") else as_mpf(value, mpmath.mp)
+
+def _in_digits(states: States, hit: Any, speeds: Any, digits: int) -> dict[str, Any]:
+    """The same in mpmath numbers."""
+    fields = {name: np.empty(speeds.size, dtype=object) for name in ("tau", "v", "velocity")}
+    with digits_at(digits) as mp:
+        for index, (time, speed) in enumerate(zip(np.ravel(hit.flight_time), np.ravel(hit.velocity), strict=True)):
+            fields["tau"][index] = for_user(as_mpf(states.exact_tau(index), mp) - mp.convert(time))
+            fields["v"][index] = for_user(-mp.convert(speed) + 0)
+            fields["velocity"][index] = for_user(-_number(speeds[index], mp))
+    return fields
+
+
+def _number(value: Any, mp: Any) -> Any:
+    return mp.mpf(value) if isinstance(value, int | float) or hasattr(value, "_mpf_") else as_mpf(value, mp)

@@ -12,6 +12,7 @@ import numpy as np
 from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number, substitute
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.taylor import NotSmooth
 from singimpact.oscillator.model import Oscillator
@@ -93,14 +94,12 @@ def as_ball(osc: Oscillator, tau: Expression, order: int = 0) -> Any:
 
 
 def _ball(osc: Oscillator, tau: Expression, order: int, bits: int) -> Any:
-    import flint
-
     from singimpact.algebra.balls import Balls
 
     balls = Balls(bits + _exponent(tau))
     start = balls.evaluate(tau, {})
     force = balls.evaluate(resting_force(osc), {})
-    with flint.ctx.workprec(balls.bits):
+    with balls_at(balls.bits):
         if not order:
             return balls.evaluate(_forcing_tree(osc)[0], {"t": start}) - force
         space = JetSpace(("s",), order, balls)
