@@ -224,16 +224,25 @@ def test_eight_threads_give_the_bits_of_one(alone, rounds):
     assert (mpmath.mp.prec, flint.ctx.prec) == before
 
 
-def test_results_do_not_depend_on_the_precisions_of_the_user(alone):
+class Untouched(list):
+    """Where mpmath.mp keeps its precision: whoever sets it, even for a moment, fails."""
+
+    def __setitem__(self, *_):
+        raise AssertionError("the precision of mpmath.mp is set")
+
+
+def test_results_do_not_depend_on_the_precisions_of_the_user(alone, monkeypatch):
     """What is computed under no precision of its own would be computed with 20 bits here."""
     own = precision._own_context()
     before = mpmath.mp.prec, flint.ctx.prec, own.prec
     forget()
     try:
         mpmath.mp.prec, flint.ctx.prec, own.prec = 20, 20, 20
+        monkeypatch.setattr(mpmath.mp, "_prec_rounding", Untouched(mpmath.mp._prec_rounding))
         assert [job for job in work(set(CALLS)) if done(job) != alone[job]] == []
         assert (mpmath.mp.prec, flint.ctx.prec, own.prec) == (20, 20, 20)
     finally:
+        monkeypatch.undo()
         mpmath.mp.prec, flint.ctx.prec, own.prec = before
 
 
