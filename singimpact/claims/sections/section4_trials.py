@@ -128,8 +128,9 @@ def _numbers(r: str, mp: Any) -> dict[str, Any]:
 
 
 def _at(expression: Any, m: Any, r: Any) -> Any:
-    """A polynomial in m and r at mpmath numbers."""
-    return sympy.lambdify((fold.m, sympy.Symbol("r")), expression, "mpmath")(m, r)
+    """A polynomial in m and r at numbers of an mpmath context; sympy's own text has its rationals in mpmath.mp."""
+    spaces = [{"mpf": r.context.mpf}, "mpmath"]
+    return sympy.lambdify((fold.m, sympy.Symbol("r")), expression, spaces)(m, r)
 
 
 def _image(m: Any, r: Any) -> Any:
