@@ -21,6 +21,7 @@ import numpy as np
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Name, add, evaluate, multiply, number, substitute
 from singimpact.algebra.numbers import as_float
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.escape_polynomial import extremes_of_forcing
 from singimpact.oscillator.model import Oscillator
@@ -115,7 +116,8 @@ def _proved(osc: Oscillator, extremes: tuple[Any, Any], height: float, flat: flo
         first, second = (balls.evaluate(tree, {"z": piece}) for tree in (lower, upper))
         return bool(extremes[0] + first > 0) and bool(extremes[1] + second < 0)
 
-    return _on_pieces(holds, balls, height)
+    with balls_at(SEARCH.bits):
+        return _on_pieces(holds, balls, height)
 
 
 def _on_pieces(holds: Callable[[Any], bool], balls: Balls, height: float) -> bool:

@@ -9,10 +9,11 @@ import numpy as np
 
 from singimpact.algebra.expressions import Name, multiply, names_in, number, substitute
 from singimpact.algebra.numbers import as_float, as_mpf
+from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights.carriers import Step
 from singimpact.flights.hits import first_hit
 from singimpact.flights.launch import States
-from singimpact.flights.velocity_before import SPARE, sharpened, speed_before
+from singimpact.flights.velocity_before import sharpened, speed_before
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
@@ -66,16 +67,12 @@ def _speeds(osc: Oscillator, states: States, digits: int | None) -> Array:
         return found
     doubles = speed_before(osc, states.v)
     for index in np.flatnonzero(~np.isnan(doubles)).tolist():
-        found[index] = float(doubles[index]) if digits is None else _sharper(osc, states, index, doubles, digits)
+        found[index] = (
+            float(doubles[index])
+            if digits is None
+            else sharpened(osc, states.exact_v(index), float(doubles[index]), digits)
+        )
     return found
-
-
-def _sharper(osc: Oscillator, states: States, index: int, doubles: Array, digits: int) -> Any:
-    import mpmath
-
-    with mpmath.workdps(2 * digits + SPARE):
-        v = as_mpf(states.exact_v(index), mpmath.mp)
-    return sharpened(osc, v, float(doubles[index]), digits) if v else mpmath.mpf(0)
 
 
 def _inverse(osc: Oscillator) -> Any:
@@ -87,23 +84,29 @@ def _inverse(osc: Oscillator) -> Any:
 def _step(states: States, hit: Any, speeds: Any, dead: Any, digits: int | None) -> Step:
     shape = states.shape
     status = np.where(dead, np.int8(Status.no_rebound), np.ravel(hit.status)).astype(np.int8)
-    if digits is None:
-        start: Any = states.tau
-        before: Any = -np.array([as_float(s) if not isinstance(s, int | float) else float(s) for s in speeds])
-    else:
-        import mpmath
-
-        with mpmath.workdps(digits):
-            start = np.array([as_mpf(states.exact_tau(i), mpmath.mp) for i in range(speeds.size)] + [None])[:-1]
-            before = np.array([-_number(s) for s in speeds] + [None])[:-1]
-    fields = {"tau": start - np.ravel(hit.flight_time), "v": -np.ravel(hit.velocity) + 0, "velocity": before}
+    fields = _in_doubles(states, hit, speeds) if digits is None else _in_digits(states, hit, speeds, digits)
     fields |= {name: getattr(hit, name) for name in KEPT}
     fields["v"] = np.where(dead, np.nan, fields["v"])
     shaped = {name: np.reshape(value, shape)[()] for name, value in fields.items()}
     return Step(**shaped, status=status.reshape(shape)[()], notes=hit.notes)
 
 
-def _number(value: Any) -> Any:
-    import mpmath
+def _in_doubles(states: States, hit: Any, speeds: Any) -> dict[str, Any]:
+    """The state before, and the velocity just after its impact."""
+    before = -np.array([as_float(s) if not isinstance(s, int | float) else float(s) for s in speeds])
+    return {"tau": states.tau - np.ravel(hit.flight_time), "v": -np.ravel(hit.velocity) + 0, "velocity": before}
 
-    return mpmath.mpf(value) if isinstance(value, int | float) or hasattr(value, "_mpf_") else as_mpf(value, mpmath.mp)
+
+def _in_digits(states: States, hit: Any, speeds: Any, digits: int) -> dict[str, Any]:
+    """The same in mpmath numbers."""
+    fields = {name: np.empty(speeds.size, dtype=object) for name in ("tau", "v", "velocity")}
+    with digits_at(digits) as mp:
+        for index, (time, speed) in enumerate(zip(np.ravel(hit.flight_time), np.ravel(hit.velocity), strict=True)):
+            fields["tau"][index] = for_user(as_mpf(states.exact_tau(index), mp) - mp.convert(time))
+            fields["v"][index] = for_user(-mp.convert(speed) + 0)
+            fields["velocity"][index] = for_user(-_number(speeds[index], mp))
+    return fields
+
+
+def _number(value: Any, mp: Any) -> Any:
+    return mp.mpf(value) if isinstance(value, int | float) or hasattr(value, "_mpf_") else as_mpf(value, mp)

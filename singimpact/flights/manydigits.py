@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from math import ceil
+from math import ceil, inf, nan
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ import numpy as np
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
 from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_mpf
+from singimpact.algebra.precision import balls_at, bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
 from singimpact.codegen.kernels import FUNCTIONS, plain
 from singimpact.flights.carriers import Flight, Step
@@ -50,36 +51,31 @@ def flights(
     ----------
     known : codes of flights that are not flown here, by index. budgets : Taylor steps for each flight.
     """
-    import mpmath
-
     size = states.v.size
     codes, rough = np.zeros(size, dtype=np.int8), np.full((size, 4), np.nan)
     fields = [np.empty(size, dtype=object) for _ in range(5)]
     for index in range(size):
         if index in known:
-            codes[index], numbers = known[index], (mpmath.nan,) * 4
+            codes[index], numbers = known[index], (nan,) * 4
         else:
             codes[index], numbers = found(osc, states, index, digits, limit, int(budgets[index]))
         rough[index] = [float(part) for part in numbers]
         status = int(codes[index]) if codes[index] < 20 else int(Status.unresolved)
-        numbers = numbers if codes[index] < 20 else (mpmath.nan,) * 4
-        with mpmath.workdps(digits):
-            for field, value in zip(fields, (*_shown(status, numbers), mpmath.nan), strict=True):
-                field[index] = +mpmath.mpf(value)
+        numbers = numbers if codes[index] < 20 else (nan,) * 4
+        with digits_at(digits) as mp:
+            for field, value in zip(fields, (*_shown(status, numbers), nan), strict=True):
+                field[index] = for_user(+mp.mpf(value))
     time, velocity, depth, bound, condition = fields
     return Flight(time, velocity, decoded(codes)[0], depth, bound, condition), codes, rough
 
 
 def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, Any, Any]:
-    import mpmath
-
     time, velocity, depth, bound = numbers
-    nan = mpmath.nan
     match status:
         case Status.hit:
             return time, velocity, nan, nan
         case Status.no_return | Status.escaped:
-            return mpmath.inf, nan, nan, nan
+            return inf, nan, nan, nan
         case Status.sticks:
             return 0, 0, nan, nan
         case Status.graze:
@@ -89,28 +85,25 @@ def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, A
 
 def step(osc: Oscillator, states: States, hit: Flight, digits: int) -> Step:
     """The hit with the state after it."""
-    import mpmath
-
     times, speeds = np.asarray(hit.flight_time, dtype=object), np.asarray(hit.velocity, dtype=object)
     status = np.array(hit.status, dtype=np.int8).ravel()
     tau, v = np.empty(times.size, dtype=object), np.empty(times.size, dtype=object)
-    with mpmath.workdps(digits):
+    with digits_at(digits) as mp:
         for index, (time, speed) in enumerate(zip(times.ravel(), speeds.ravel(), strict=True)):
-            tau[index], v[index] = as_mpf(states.exact_tau(index), mpmath.mp) + time, rebound(osc, speed)
-            if status[index] == Status.hit and not v[index] > 0:
-                status[index], v[index] = Status.no_rebound, mpmath.nan
+            landed, bounce = as_mpf(states.exact_tau(index), mp) + time, rebound(osc, mp.convert(speed), mp)
+            if status[index] == Status.hit and not bounce > 0:
+                status[index], bounce = Status.no_rebound, mp.nan
+            tau[index], v[index] = for_user(landed), for_user(bounce)
     shape = states.shape
     fields = vars(hit) | {"status": status.reshape(shape)[()]}
     return Step(**fields, tau=tau.reshape(shape)[()], v=v.reshape(shape)[()])
 
 
-def rebound(osc: Oscillator, velocity: Any) -> Any:
-    """rho(velocity) at the working precision."""
-    import mpmath
-
+def rebound(osc: Oscillator, velocity: Any, mp: Any) -> Any:
+    """rho(velocity) at the precision of an mpmath context."""
     if not names_in(osc.restitution):
-        return abs(as_mpf(osc.restitution, mpmath.mp) * velocity)
-    return mpmath.re(evaluate(osc.rho(), {"v": velocity}, Multiprecision(mpmath.mp)))
+        return abs(as_mpf(osc.restitution, mp) * velocity)
+    return mp.re(evaluate(osc.rho(), {"v": velocity}, Multiprecision(mp)))
 
 
 def found(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
@@ -131,14 +124,12 @@ def _closing(osc: Oscillator, states: States, index: int, digits: int, limit: fl
 
 def _touching(osc: Oscillator, states: States, index: int, numbers: Any, digits: int) -> Outcome | None:
     """The graze at the common period, where a flight was followed to a place that is not decided."""
-    import mpmath
-
     rest = states.rest.get(index)
     period = None if rest is None else touches_again(osc, rest, float(numbers[0]))
     if period is None:
         return None
-    with mpmath.workdps(digits + LIMITS.guard):
-        return int(Status.graze), (as_mpf(period, mpmath.mp), mpmath.mpf(0), mpmath.mpf(0), numbers[3])
+    with digits_at(digits + LIMITS.guard) as mp:
+        return int(Status.graze), (as_mpf(period, mp), mp.mpf(0), mp.mpf(0), numbers[3])
 
 
 def _proved(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome | None:
@@ -146,25 +137,22 @@ def _proved(osc: Oscillator, states: States, index: int, digits: int, limit: flo
 
     They take a twentieth of the time of mpmath.
     """
-    import flint
-    import mpmath
-
     tau, v = states.exact_tau(index), states.exact_v(index)
     rest = states.rest.get(index, Zero(tau, -1, 1))
     for bits in (ceil(digits * BITS_A_DIGIT) + spare for spare in SPARE_BITS):
         flow = linear_flow(osc, bits)
         if flow is None or rest.sign <= 0:
             return None
-        with flint.ctx.workprec(bits):
+        with balls_at(bits):
             at, speed = (evaluate(tree, {}, flow.balls) for tree in (tau, v))
             hit = flow.first_hit(at, speed, flow.number(Fraction(limit)), rest.order + 2)
             if hit is None or hit.time is None:
                 return None
         numbers = hit.time, hit.velocity
         if all(part.rel_accuracy_bits() > digits * BITS_A_DIGIT + 4 for part in numbers):
-            with mpmath.workprec(bits):
-                time, velocity = (mpmath.ldexp(*map(int, part.mid().man_exp())) for part in numbers)
-            return int(Status.hit), (time, velocity, mpmath.nan, mpmath.nan)
+            with bits_at(bits) as mp:
+                time, velocity = (_centre(part, mp) for part in numbers)
+            return int(Status.hit), (time, velocity, nan, nan)
     return None
 
 
@@ -191,7 +179,8 @@ def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: floa
 def _over(outcome: Outcome) -> bool:
     """Whether a flight came to the horizon, or left the range of numbers, and to no graze."""
     code, (_, _, depth, bound) = outcome
-    return code == Status.no_return or code > 20 or (code == Status.unresolved and not depth <= 10 * bound)
+    with bits_at(53):
+        return code == Status.no_return or code > 20 or (code == Status.unresolved and not depth <= 10 * bound)
 
 
 def _escaping(osc: Oscillator, states: States, index: int, outcome: Outcome) -> Outcome:
@@ -204,16 +193,15 @@ def _escaping(osc: Oscillator, states: States, index: int, outcome: Outcome) -> 
 
 
 def _close(first: tuple[Any, ...], second: tuple[Any, ...], digits: int) -> bool:
-    import mpmath
-
-    with mpmath.workdps(digits + 5):
-        small = mpmath.mpf(10) ** (-digits - 1)
+    with digits_at(digits + 5) as mp:
+        small = mp.mpf(10) ** (-digits - 1)
         return all(abs(a - b) <= small * abs(b) for a, b in zip(first[:2], second[:2], strict=True))
 
 
 def _touches(numbers: tuple[Any, Any, Any, Any]) -> bool:
     depth, bound = numbers[2:]
-    return bool(abs(depth) <= 10 * bound)
+    with bits_at(53):
+        return bool(abs(depth) <= 10 * bound)
 
 
 def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[int, list[float]] | None:
@@ -233,10 +221,8 @@ def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[i
 
 def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
     """One flight in `digits` digits, rounding errors included in what is undecided."""
-    import mpmath
-
-    with mpmath.workdps(digits):
-        v = as_mpf(states.exact_v(index), mpmath.mp)
+    with digits_at(digits) as mp:
+        v = as_mpf(states.exact_v(index), mp)
         removed = 1
         if v == 0:
             rest = states.rest[index]
@@ -244,27 +230,25 @@ def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float
                 return int(Status.sticks), (v, v, v, v)
             removed = rest.order + 2
         try:
-            return _march(osc, states, index, v, removed, (limit, budget))
+            return _march(osc, states, index, v, removed, (limit, budget), mp)
         except (ArithmeticError, ValueError, TypeError):  # log or a root left its domain on the way
-            return int(Status.unresolved), (mpmath.nan,) * 4
+            return int(Status.unresolved), (nan,) * 4
 
 
 def _march(
-    osc: Oscillator, states: States, index: int, v: Any, removed: int, limits: tuple[float, int]
+    osc: Oscillator, states: States, index: int, v: Any, removed: int, limits: tuple[float, int], mp: Any
 ) -> Outcome:  # fmt: skip
-    import mpmath
-
     kernel = kernel_of(osc, exact_restart=False)
-    space = plain(kernel.text, {name: getattr(mpmath.mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
+    space = plain(kernel.text, {name: getattr(mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
     if kernel.form is None:
-        space["coefficients"] = partial(_coefficients, _in_balls(osc, mpmath.mp.prec + 32))
-    order = degree_for(float(mpmath.eps)) if mpmath.mp.prec < 1000 else int(mpmath.mp.prec / 2.15)
+        space["coefficients"] = partial(_coefficients, _in_balls(osc, mp.prec + 32), mp)
+    order = degree_for(float(mp.eps)) if mp.prec < 1000 else int(mp.prec / 2.15)
     order += removed - 1
-    p = [as_mpf(tree, mpmath.mp) for tree in kernel.constants]
-    work = workspace(mpmath.mpf(0), order, kernel.rows, 1)
+    p = [as_mpf(tree, mp) for tree in kernel.constants]
+    work = workspace(mp.mpf(0), order, kernel.rows, 1)
     code, *numbers = space["march"](
-        launch(osc, kernel, states, index), v, removed, mpmath.nan, order, mpmath.mpf(limits[0]), limits[1],
-        8 * mpmath.eps, p, *work, [],
+        launch(osc, kernel, states, index, mp), v, removed, mp.nan, order, mp.mpf(limits[0]), limits[1],
+        8 * mp.eps, p, *work, [],
     )  # fmt: skip
     return int(code), (numbers[0], numbers[1], numbers[2], numbers[3])
 
@@ -286,42 +270,40 @@ def _in_balls(osc: Oscillator, bits: int) -> _Numbers:
 
 
 def _coefficients(
-    numbers: _Numbers, start: Any, time: Any, z: Any, u: Any, shift: Any, n: int, _p: Any, X: Any, W: Any
+    numbers: _Numbers, mp: Any, start: Any, time: Any, z: Any, u: Any, shift: Any, n: int, _p: Any, X: Any, W: Any
 ) -> None:  # fmt: skip
     """`coefficients` of numbers of mpmath, computed in balls of 32 bits more, which takes a quarter of the time."""
     import flint
 
-    with flint.ctx.workprec(numbers.balls.bits):
+    with balls_at(numbers.balls.bits):
         exact = [flint.arb(value) for value in (start[0], time, z, u, shift)]
         x, w = workspace(flint.arb(0), n, numbers.rows, 0)
         numbers.call([exact[0]], *exact[1:], n, numbers.p, x, w)
-    X[: n + 1] = [_centre(value) for value in x[: n + 1]]
+    X[: n + 1] = [_centre(value, mp) for value in x[: n + 1]]
     for row, filled in zip(W, w, strict=True):
-        row[0] = _centre(filled[0])
+        row[0] = _centre(filled[0], mp)
 
 
-def _centre(ball: Any) -> Any:
-    """The centre of a ball as a number of mpmath, exactly."""
-    import mpmath
+def _centre(ball: Any, mp: Any) -> Any:
+    """The centre of a ball as a number of an mpmath context, exactly."""
+    from mpmath.libmp import from_man_exp
 
     if isinstance(ball, float | int):  # the time has series of plain numbers
-        return mpmath.mpf(ball)
+        return mp.mpf(ball)
     if not ball.is_finite():
-        return mpmath.nan
-    return mpmath.mp.make_mpf(mpmath.libmp.from_man_exp(*map(int, ball.mid().man_exp())))
+        return mp.nan
+    return mp.make_mpf(from_man_exp(*map(int, ball.mid().man_exp())))
 
 
-def launch(osc: Oscillator, kernel: Kernel, states: States, index: int) -> list[Any]:
-    """What the kernel wants to know of a launch, at the working precision whatever the size of tau."""
-    import mpmath
-
-    extra = max(int(mpmath.log(abs(states.tau[index]) + 1, 2)), 0) + 10
-    with mpmath.workprec(mpmath.mp.prec + extra):
-        tau = as_mpf(states.exact_tau(index), mpmath.mp)
+def launch(osc: Oscillator, kernel: Kernel, states: States, index: int, mp: Any) -> list[Any]:
+    """What the kernel wants to know of a launch, at the precision of a context whatever the size of tau."""
+    extra = max(int(mp.log(abs(states.tau[index]) + 1, 2)), 0) + 10
+    with bits_at(mp.prec + extra):
+        tau = as_mpf(states.exact_tau(index), mp)
         if kernel.form is None:
             if osc.period is None:
                 return [tau]
-            period = as_mpf(osc.period, mpmath.mp)
-            return [tau - period * mpmath.nint(tau / period)]
-        angles = [as_mpf(w.rate, mpmath.mp) * tau + as_mpf(w.phase, mpmath.mp) for w in kernel.form.harmonics]
-        return [value for angle in angles for value in (mpmath.cos(angle), mpmath.sin(angle))]
+            period = as_mpf(osc.period, mp)
+            return [tau - period * mp.nint(tau / period)]
+        angles = [as_mpf(w.rate, mp) * tau + as_mpf(w.phase, mp) for w in kernel.form.harmonics]
+        return [value for angle in angles for value in (mp.cos(angle), mp.sin(angle))]

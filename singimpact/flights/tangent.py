@@ -19,6 +19,7 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative as differentiated
 from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_float, as_mpf
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES, Multiprecision
 from singimpact.codegen.kernels import FUNCTIONS, plain
 from singimpact.flights.kernel import kernel_of, ready, taylor_kernel
@@ -162,20 +163,20 @@ def _cancelled(osc: Oscillator, at: float, velocity: float) -> float:
     balls = Balls(256)
     speed, time = (balls.rational(Fraction(float(value))) for value in (velocity, at))
     pull = balls.evaluate(osc.force(), {"x": balls.evaluate(osc.clearance, {}), "xdot": speed})
-    return float((balls.evaluate(osc.forcing(), {"t": time}) - pull).mid())
+    push = balls.evaluate(osc.forcing(), {"t": time})
+    with balls_at(53):
+        return float((push - pull).mid())
 
 
-def precise(osc: Oscillator, tau: Any, v: Any, time: Any, velocity: Any) -> Response:
-    """The response of one flight at the working precision of mpmath."""
-    import mpmath
-
+def precise(osc: Oscillator, tau: Any, v: Any, time: Any, velocity: Any, mp: Any) -> Response:
+    """The response of one flight, given and returned in an mpmath context, at its precision."""
     kernel = taylor_kernel(osc)
-    space = plain(kernel.text, {name: getattr(mpmath.mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
-    order = degree_for(float(mpmath.eps)) if mpmath.mp.prec < 1000 else int(mpmath.mp.prec / 2.15)
-    p = [as_mpf(tree, mpmath.mp) for tree in kernel.constants]
-    work = workspace(mpmath.mpf(0), order, kernel.rows, 3)
-    *variations, _ = space["respond"]([tau], v, time, order, LIMITS.steps, 8 * mpmath.eps, p, *work)
-    ring = Multiprecision(mpmath.mp)
-    values = {"x": as_mpf(osc.clearance, mpmath.mp), "xdot": velocity}
+    space = plain(kernel.text, {name: getattr(mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
+    order = degree_for(float(mp.eps)) if mp.prec < 1000 else int(mp.prec / 2.15)
+    p = [as_mpf(tree, mp) for tree in kernel.constants]
+    work = workspace(mp.mpf(0), order, kernel.rows, 3)
+    *variations, _ = space["respond"]([tau], v, time, order, LIMITS.steps, 8 * mp.eps, p, *work)
+    ring = Multiprecision(mp)
+    values = {"x": as_mpf(osc.clearance, mp), "xdot": velocity}
     pull = evaluate(osc.force(), values, ring)
     return _response(variations, velocity, evaluate(osc.forcing(), {"t": tau + time}, ring) - pull)

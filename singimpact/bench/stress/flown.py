@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.precision import balls_at
 from singimpact.bench.stress import layered
 from singimpact.bench.stress.judging import STEP, Function, Sweep, Trial
 from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch, both
@@ -68,10 +69,8 @@ def _status(found: Any, right: int) -> tuple[int, int]:
 
 
 def _swept(place: str, judge: Callable[[Launch], Trial | None], points: int) -> Iterator[Trial]:
-    import flint
-
     for launch in both(place, points):
-        with flint.ctx.workprec(launch.bits):
+        with balls_at(launch.bits):
             trial = judge(launch)
         if trial is not None:
             yield trial

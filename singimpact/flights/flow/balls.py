@@ -15,6 +15,7 @@ from typing import Any
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate, names_in
+from singimpact.algebra.precision import balls_at
 from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 
@@ -53,8 +54,8 @@ class LinearFlow:
 
     Examples
     --------
-    >>> import flint
-    >>> with flint.ctx.workprec(200):
+    >>> from singimpact.algebra.precision import balls_at
+    >>> with balls_at(200):
     ...     flow = LinearFlow(Oscillator("x", "cos(2*t)", "0.3", "0.5"), 200)
     ...     hit = flow.first_hit(flow.number(Fraction(0)), flow.number(Fraction(1)))
     ...     print(hit.time.str(25, radius=False))
@@ -209,12 +210,10 @@ def linear_flow(osc: Oscillator, bits: int) -> LinearFlow | None:
     >>> linear_flow(Oscillator("x**3", "cos(t)", 0, "1/2"), 100) is None
     True
     """
-    import flint
-
     if linear_form(osc) is None:
         return None
     plain_rebound = Oscillator(osc.force(), osc.forcing(), osc.clearance, 1, period=osc.period)
-    with flint.ctx.workprec(bits):
+    with balls_at(bits):
         return LinearFlow(plain_rebound, bits)
 
 
