@@ -13,7 +13,7 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.cases import sweep
 from singimpact.dynamics.orbit import orbit
-from singimpact.flights.sequences import sequence
+from singimpact.flights.orbits import orbit_segment
 from singimpact.inputs import refuse, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.surface.curve import window_ends
@@ -96,7 +96,7 @@ def _events(model: Oscillator, tau: Any, v: Any, impacts: int) -> Iterator[tuple
             return
         tau, v, flown = float(last.tau[-1]), float(last.v[-1]), flown + 1
         if v > 0 and flown < impacts:
-            found = sequence(model, tau, v, min(BLOCK, impacts - flown), slow)
+            found = orbit_segment(model, tau, v, min(BLOCK, impacts - flown), slow)
             yield from zip(found.tau, found.v, np.zeros(found.tau.size), strict=True)
             flown += found.tau.size
             if found.tau.size:

@@ -14,10 +14,12 @@ from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import DOUBLES, Multiprecision
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.completion import completion
-from singimpact.flights.hits import checked_digits, derivative, impact_map
-from singimpact.flights.kernel import kernel_of
-from singimpact.flights.launch import States
-from singimpact.flights.sequences import Sequence, sequence
+from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.derivative import derivative
+from singimpact.flights.impact_map import checked_digits, impact_map
+from singimpact.flights.kernels import layout
+from singimpact.flights.orbits import Segment, orbit_segment
+from singimpact.flights.states import States
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -150,9 +152,9 @@ def _slow(osc: Oscillator, tau: float) -> float:
 
 def _pace(osc: Oscillator) -> float:
     """How fast the model moves: the largest rate of a linear one, else the forcing's frequency, or 1."""
-    kernel = kernel_of(osc)
-    if kernel.form is not None:
-        return as_float(kernel.constants[4])
+    model = compiled_model(osc)
+    if model.linear:
+        return float(layout.linear_model(model.flat, model.sizes).numbers.fastest)
     return 1.0 if osc.period is None else 2 * np.pi / as_float(osc.period)
 
 
@@ -233,7 +235,7 @@ class _Flown:
 
     def _fly(self, count: int, slow: float) -> Status:
         """Fly on; where the acceleration changes sign the sequence is cut just after the first impact there."""
-        found = sequence(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), slow)
+        found = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), slow)
         kept = self._kept(found)
         self.times += found.tau[:kept].tolist()
         self.speeds += found.v[:kept].tolist()
@@ -245,7 +247,7 @@ class _Flown:
         self.cause = Cause(found.cause)
         return Status(found.status)
 
-    def _kept(self, found: Sequence) -> int:
+    def _kept(self, found: Segment) -> int:
         lifted = np.flatnonzero(found.acceleration[1:] >= 0)
         return int(lifted[0]) + 1 if lifted.size else int(found.tau.size)
 

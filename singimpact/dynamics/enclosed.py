@@ -20,8 +20,8 @@ from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.algebra.precision import balls_at
 from singimpact.contact.next_zero import ContactZero
-from singimpact.flights.flow.balls import LinearFlow
-from singimpact.flights.launch import States
+from singimpact.flights.balls import LinearFlow
+from singimpact.flights.states import States
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory.formulas import curve_at

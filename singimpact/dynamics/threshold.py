@@ -15,8 +15,9 @@ from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.contact.next_zero import ContactZero, next_zero
 from singimpact.dynamics import enclosed
-from singimpact.flights.hits import checked_digits, derivative, impact_map
-from singimpact.flights.sequences import sequence
+from singimpact.flights.derivative import derivative
+from singimpact.flights.impact_map import checked_digits, impact_map
+from singimpact.flights.orbits import orbit_segment
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
 from singimpact.oscillator.model import Oscillator
@@ -170,7 +171,7 @@ def _side(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> _S
     lost = 1 - as_float(osc.slope_at_rest())
     block, remaining = SEARCH.block, impacts
     while remaining > 0:
-        found = sequence(osc, tau, v, block)
+        found = orbit_segment(osc, tau, v, block)
         if np.any(found.tau >= end):
             return _Side.above
         with np.errstate(divide="ignore"):

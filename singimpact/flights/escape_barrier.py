@@ -57,12 +57,12 @@ def kept_up(osc: Oscillator, v: Array) -> Array:
     >>> kept_up(Oscillator("x + x**3/10 + 1000*xdot", "cos(t)", -1, 1), np.array([0.0, 1.0])).tolist()
     [False, True]
     """
-    fastest = _fastest_kept(osc)
+    fastest = fastest_kept(osc)
     return np.asarray((v > 0) & (v <= fastest))
 
 
 @lru_cache(maxsize=256)
-def _fastest_kept(osc: Oscillator) -> float:
+def fastest_kept(osc: Oscillator) -> float:
     """The largest launch velocity between proved barriers; 0 without any."""
     extremes = extremes_of_forcing(osc)
     if extremes is None:

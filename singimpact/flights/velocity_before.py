@@ -11,7 +11,7 @@ from singimpact.algebra.expressions import Expression, number
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
-from singimpact.flights.tangent import rebound_slope
+from singimpact.flights.derivative import rebound_slope
 from singimpact.oscillator.model import Oscillator
 
 DOUBLINGS = 64
@@ -80,7 +80,7 @@ def _decided(osc: Oscillator, v: Array, speed: Array) -> Array:
 
 def _rebound(osc: Oscillator, speed: Array) -> tuple[Array, Array]:
     """rho(-U), and its slope along U."""
-    from singimpact.flights.hits import rebound
+    from singimpact.flights.impact_map import rebound
 
     with np.errstate(all="ignore"):
         return rebound(osc, -speed), -np.asarray(rebound_slope(osc, -speed), dtype=float)
@@ -102,7 +102,7 @@ def sharpened(osc: Oscillator, v: Expression, speed: float, digits: int) -> Any:
     ----------
     v : an exact number. speed : U as a double.
     """
-    from singimpact.flights import manydigits
+    from singimpact.flights import in_digits
 
     with digits_at(2 * digits + SPARE) as mp:
         place, after, ring = mp.mpf(-speed), as_mpf(v, mp), Multiprecision(mp)
@@ -111,7 +111,7 @@ def sharpened(osc: Oscillator, v: Expression, speed: float, digits: int) -> Any:
             slope = rebound_slope(osc, place, ring)
             if not slope < 0:
                 return None
-            change = (manydigits.rebound(osc, place, mp) - after) / slope
+            change = (in_digits.rebound(osc, place, mp) - after) / slope
             place -= change
             if abs(change) <= small * abs(place):
                 return for_user(-place)

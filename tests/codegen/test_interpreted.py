@@ -55,7 +55,7 @@ def test_patience_ends():
 @pytest.mark.slow
 @pytest.mark.parametrize("force", ["x", "x + x**3"])
 def test_flights_are_the_same_both_ways(force, monkeypatch):
-    from singimpact.flights.hits import first_hit
+    from singimpact.flights.impact_map import first_hit
     from singimpact.oscillator.model import Oscillator
 
     model = Oscillator(force, "cos(2*t)", "0.3", "1/2")

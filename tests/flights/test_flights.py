@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from witness import integrate
 
-from singimpact.flights.flow.witness import integrate
-from singimpact.flights.hits import first_hit
+from singimpact.flights.impact_map import first_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear, universal
 from singimpact.inputs import InputError
 from singimpact.status import Status

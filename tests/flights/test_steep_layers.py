@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from witness import integrate
 
 import singimpact as si
 from singimpact.flights import kernel
-from singimpact.flights.flow.witness import integrate
 from singimpact.status import Cause, Status
 
 LAYERS = [  # f, g, tau, v, flight time by a Runge-Kutta method with steps of 0.002

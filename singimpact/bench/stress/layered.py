@@ -10,7 +10,7 @@ from singimpact.bench.stress.judging import STEP
 from singimpact.bench.stress.launches import SteepLaunch
 from singimpact.bench.truth import enclosed_flight
 from singimpact.bench.truth.enclosed_flight import EnclosureSettings
-from singimpact.flights.inverse import backwards
+from singimpact.flights.inverse_map import backwards
 
 # differences over 10^-STEP, and differences of these, keep 10 digits
 EXACT = EnclosureSettings(accuracy=1e-60, bits=240)

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from singimpact.dynamics.invariant_arcs import Frame, before, gammas_within, stable_manifold
-from singimpact.flights.hits import rebound
+from singimpact.flights.impact_map import rebound
 from singimpact.scenes.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Region, arc
 from singimpact.scenes.figures.sheet import rebounded, reset
 from singimpact.scenes.figures.swans import box, half, negative, positive, ring, shadow
