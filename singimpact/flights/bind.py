@@ -102,7 +102,7 @@ def over_lists(flow: str, rho: str = "", exact_restart: bool = True) -> Callable
     Examples
     --------
     >>> space = over_lists("")({name: getattr(math, name) for name in FUNCTIONS})
-    >>> space["first_root"]([2.0, -3.0, 1.0], 2, 3.0, 0.0, 1e-16)[:2]
+    >>> space["first_root"]([2.0, -2.0], 1, 3.0, 0.0, 1e-16)[:2]
     (1, 1.0)
     """
     codes = [_nested_code(module) for module in MODULES]

@@ -111,6 +111,7 @@ class CompiledModel:
         self.orbits: Machine = machine_of(Emitted(source, rows, text))
         self.main, self.second = self.machine.emitted.entries
         self.sizes, self.flat = self._laid_out()
+        self.r = float(self.rho[0]) if self.constant_restitution else np.nan
         self.price = LIMITS.interpreted_linear if self.linear else LIMITS.interpreted_taylor
         # launch times beyond are reduced by exact arithmetic first
         self.nearest = 2.0**25 * as_float(osc.period) if osc.period is not None else np.inf

@@ -87,7 +87,7 @@ def impact_map(
             model = compiled_model(osc)
             if model.constant_restitution:
                 later = fields.pop("later")
-                return Step.made(later, tau=tau + fields["flight_time"], v=-model.rho[0] * fields["velocity"], **fields)
+                return Step.made(later, tau=tau + fields["flight_time"], v=-model.r * fields["velocity"], **fields)
     states = States.of(osc, tau, v, digits)
     hit = _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps))
     if digits is not None:

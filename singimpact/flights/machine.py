@@ -6,6 +6,7 @@ cache; nothing waits for it.
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import os
 import subprocess
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
+from typing import Any
 
 from singimpact import cache
 from singimpact.flights import bind
@@ -121,21 +123,40 @@ class Machine:
                 return request.exists()
             write_text(request, "\0".join([self.emitted.flow, str(self.emitted.rows), self.emitted.rho]))
             command = [sys.executable, "-m", "singimpact.flights.machine", str(request)]
-            subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                             start_new_session=True, cwd=Path(__file__).parents[2],
-                             env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder())})  # fmt: skip
+            _outliving(command)
         except (InputError, OSError) as error:
             cache.not_kept(error)
         return True
 
 
+_STARTED: list[Any] = []
+
+
+def _outliving(command: list[str]) -> None:
+    """Start a process that goes on when this one ends."""
+    _STARTED.append(subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        start_new_session=True, cwd=Path(__file__).parents[2],
+        env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder())},
+    ))  # fmt: skip
+    if len(_STARTED) == 1:
+        atexit.register(_left_alone)
+
+
+def _left_alone() -> None:
+    for process in _STARTED:
+        if process.poll() is None:
+            process.returncode = 0  # else Python warns that it is still running
+
+
 @lru_cache(maxsize=1)
 def compilable() -> bool:
-    """Whether numba and llvmlite can be used."""
-    from importlib.util import find_spec
-
-    wanted = os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
-    return wanted and find_spec("llvmlite") is not None and find_spec("numba") is not None
+    """Whether object code can be loaded, and is wanted."""
+    try:
+        import llvmlite  # noqa: F401
+    except ImportError:
+        return False
+    return os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
 
 
 def compile_asked(request: Path) -> None:
