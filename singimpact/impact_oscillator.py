@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from singimpact.dynamics.orbit import Orbit
     from singimpact.dynamics.periodic import PeriodicOrbit
     from singimpact.dynamics.threshold import Threshold
-    from singimpact.flights.carriers import Derivative, Flight, Step
     from singimpact.flights.path import Path
+    from singimpact.flights.results import Derivative, Flight, Step
 
 
 class ImpactOscillator(Oscillator):
@@ -44,7 +44,7 @@ class ImpactOscillator(Oscillator):
         self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
         steps: int | None = None,
     ) -> Flight:  # fmt: skip
-        """The first hit F of flights from (tau, v): see `singimpact.flights.hits.first_hit`.
+        """The first hit F of flights from (tau, v): see `singimpact.flights.impact_map.first_hit`.
 
         Examples
         --------
@@ -53,7 +53,7 @@ class ImpactOscillator(Oscillator):
         >>> print(mpmath.nstr(hit.flight_time, 30))
         1.92790834380226439414926125583e-100
         """
-        from singimpact.flights.hits import first_hit
+        from singimpact.flights.impact_map import first_hit
 
         return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps)
 
@@ -61,7 +61,7 @@ class ImpactOscillator(Oscillator):
         self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
         steps: int | None = None,
     ) -> Step:  # fmt: skip
-        """The impact map G(tau, v): see `singimpact.flights.hits.impact_map`.
+        """The impact map G(tau, v): see `singimpact.flights.impact_map.impact_map`.
 
         Examples
         --------
@@ -69,7 +69,7 @@ class ImpactOscillator(Oscillator):
         >>> step.tau.round(12).tolist()
         [2.333796858489, 5.260348355721]
         """
-        from singimpact.flights.hits import impact_map
+        from singimpact.flights.impact_map import impact_map
 
         return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps)
 
@@ -95,8 +95,8 @@ class ImpactOscillator(Oscillator):
         return acceleration(self, np.atleast_1d(times).ravel(), order).reshape(times.shape)[()]
 
     def derivative(self, tau: Any, v: Any, *, horizon: Any = None) -> Derivative:
-        """D G at states, from the variational equation: see `singimpact.flights.hits.derivative`."""
-        from singimpact.flights.hits import derivative
+        """D G at states, from the variational equation: see `singimpact.flights.impact_map.derivative`."""
+        from singimpact.flights.derivative import derivative
 
         return derivative(self, tau, v, horizon=horizon)
 
@@ -111,7 +111,7 @@ class ImpactOscillator(Oscillator):
         >>> abs(before.tau) < 1e-15, round(float(before.v), 14)
         (np.True_, 1.0)
         """
-        from singimpact.flights.inverse import inverse_map
+        from singimpact.flights.inverse_map import inverse_map
 
         return inverse_map(self, tau, v, digits=digits, horizon=horizon)
 

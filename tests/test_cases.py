@@ -65,14 +65,14 @@ def test_results_of_other_cases_are_refused(tmp_path):
 
 
 def test_models_that_differ_in_numbers_compile_once():
-    from singimpact.codegen.kernels import compiled
+    from singimpact.flights.machine import machine_of
 
     for omega in (1.1, 1.7):
         linear(omega, 0.1, 0.5).impact_map(0.2, 0.3)
-    before = compiled.cache_info().misses
+    before = machine_of.cache_info().misses
     for omega in np.linspace(1, 3, 7):
         linear(float(omega), 0.2, 0.7, damping=0.01).impact_map(0.2, 0.3)
-    assert compiled.cache_info().misses == before
+    assert machine_of.cache_info().misses == before
 
 
 def test_dask_cluster(tmp_path):

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from singimpact.algebra.expressions import Expression, Root, evaluate
+from singimpact.algebra.precision import balls_at
 
 BITS_A_DIGIT = 3.3219281  # log2 10, rounded up
 
@@ -37,28 +38,24 @@ class Balls:
 
     def evaluate(self, tree: Expression, values: Mapping[str, Any]) -> Any:
         """The ball of a tree; `values` are balls."""
-        import flint
-
-        with flint.ctx.workprec(self.bits):
+        with balls_at(self.bits):
             return evaluate(tree, values, self)
 
     def rational(self, value: Fraction) -> Any:
         import flint
 
-        with flint.ctx.workprec(self.bits):
+        with balls_at(self.bits):
             return flint.arb(flint.fmpq(value.numerator, value.denominator))
 
     def interval(self, low: Fraction, high: Fraction) -> Any:
         """The smallest ball around [low, high] at this precision."""
-        import flint
-
-        with flint.ctx.workprec(self.bits):
+        with balls_at(self.bits):
             return self.rational(low).union(self.rational(high))
 
     def pi(self) -> Any:
         import flint
 
-        with flint.ctx.workprec(self.bits):
+        with balls_at(self.bits):
             return flint.arb.pi()
 
     def power(self, base: Any, exponent: Fraction) -> Any:

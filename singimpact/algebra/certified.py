@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from singimpact.algebra.precision import bits_at, digits_at, for_user
+
 
 @dataclass(frozen=True)
 class Certified:
@@ -25,10 +27,9 @@ class Certified:
 
     def as_dict(self) -> dict[str, str]:
         """value and radius as decimal text; the radius covers the rounding of the text, which has two more digits."""
-        import mpmath
-
-        with mpmath.workprec(64):
-            radius = 1.01 * (self.radius + abs(self.value) * mpmath.mpf(10) ** (-self.digits - 1))
+        with bits_at(64) as mp:
+            value, radius = mp.convert(self.value), mp.convert(self.radius)
+            radius = 1.01 * (radius + abs(value) * mp.mpf(10) ** (-self.digits - 1))
             return {"value": _text(self.value, self.digits + 2), "radius": _text(radius, 3)}
 
     def contains(self, number: Any) -> bool:
@@ -47,9 +48,9 @@ class Certified:
 
 
 def _text(value: Any, digits: int) -> str:
-    import mpmath
+    from mpmath.libmp import to_str
 
-    return str(mpmath.nstr(value, digits, strip_zeros=False))
+    return str(to_str(value._mpf_, digits, strip_zeros=False))
 
 
 def as_certified(ball: Any, digits: int) -> Certified | None:
@@ -57,36 +58,31 @@ def as_certified(ball: Any, digits: int) -> Certified | None:
 
     What a ball does not tell from zero passes when it is far below the digits asked for.
     """
-    import mpmath
-
     if not ball.is_finite():
         return None
-    value, radius = _exact(ball.mid()), _exact(ball.rad())
-    with mpmath.workprec(64):
-        small = mpmath.mpf(10) ** -digits
+    with bits_at(64) as mp:
+        value, radius = _exact(ball.mid(), mp), _exact(ball.rad(), mp)
+        small = mp.mpf(10) ** -digits
         narrow = 2 * radius <= small * abs(value) or abs(value) + radius <= small**2
-    return Certified(value, radius, digits) if narrow else None
+    return Certified(for_user(value), for_user(radius), digits) if narrow else None
 
 
 def from_ends(low: Fraction, high: Fraction, digits: int) -> Certified:
     """The certified number that two rationals enclose, the middle rounded and the radius enlarged for it."""
-    import mpmath
-
     middle, half = (low + high) / 2, (high - low) / 2
-    with mpmath.workdps(digits + 10):
-        value = mpmath.mpf(middle.numerator) / middle.denominator
+    with digits_at(digits + 10) as mp:
+        value = mp.mpf(middle.numerator) / middle.denominator
     from singimpact.algebra.numbers import exact
 
     off = half + abs(exact("value", value) - middle)
-    with mpmath.workprec(64):
-        radius = mpmath.mpf(off.numerator) / off.denominator * (1 + mpmath.mpf(2) ** -50)
-    return Certified(value, radius, digits)
+    with bits_at(64) as mp:
+        radius = mp.mpf(off.numerator) / off.denominator * (1 + mp.mpf(2) ** -50)
+    return Certified(for_user(value), for_user(radius), digits)
 
 
-def _exact(number: Any) -> Any:
-    """The mpmath number that an exact ball is, with all its bits."""
-    import mpmath
+def _exact(number: Any, mp: Any) -> Any:
+    """The number of an mpmath context that an exact ball is, with all its bits."""
+    from mpmath.libmp import from_man_exp
 
     mantissa, exponent = number.man_exp()
-    with mpmath.workprec(int(mantissa).bit_length() + 8):
-        return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))
+    return mp.make_mpf(from_man_exp(int(mantissa), int(exponent)))

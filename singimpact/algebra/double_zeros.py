@@ -14,6 +14,7 @@ from typing import Any
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression
+from singimpact.algebra.precision import balls_at
 
 Box = tuple[Fraction, Fraction, Fraction, Fraction]
 
@@ -77,9 +78,7 @@ def double_zeros(tree: Expression, names: tuple[str, str], window: Box) -> Doubl
     >>> [(round(float(each.at), 12) + 0.0, float(each.value), each.curvature) for each in made.found], made.complete
     ([(0.0, 1.0, -1)], True)
     """
-    import flint
-
-    with flint.ctx.workprec(SETTINGS.bits):
+    with balls_at(SETTINGS.bits):
         return _Search(tree, names, window).run()
 
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from typing import Any
 
 from singimpact.algebra.expressions import Expression, Root, evaluate
 from singimpact.algebra.polynomials import Exponents, SparsePolynomials
+from singimpact.algebra.precision import kept_property
 from singimpact.algebra.taylor import taylor_coefficients
 
 
@@ -44,7 +44,7 @@ class JetSpace:
         if not self.weights:
             object.__setattr__(self, "weights", (1,) * len(self.variables))
 
-    @cached_property
+    @kept_property
     def polynomials(self) -> Any:
         """What the parts of a jet are made of."""
         own = getattr(self.ring, "polynomials", None)
@@ -132,7 +132,7 @@ class Jet:
     space: JetSpace
     parts: Mapping[int, Any]
 
-    @cached_property
+    @kept_property
     def terms(self) -> Mapping[Exponents, Any]:
         """Exponents -> coefficient."""
         return {key: value for part in self.parts.values() for key, value in self.space.polynomials.terms(part).items()}

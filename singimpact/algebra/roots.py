@@ -8,6 +8,7 @@ from functools import cmp_to_key
 from typing import Any
 
 from singimpact.algebra.balls import Balls
+from singimpact.algebra.precision import balls_at
 
 TURNS = 8  # of Newton's method at one precision: each doubles the bits, three are enough
 FIRST_BITS = 128
@@ -39,11 +40,9 @@ def _order(left: Any, right: Any) -> int:
 
 def refined(poly: Any, isolated: Any, bits: int) -> Any:
     """The one root of an integer polynomial in an isolating ball, to about `bits` bits relative to its size."""
-    import flint
-
     root, work, slope = isolated, min(FIRST_BITS, bits + 32), poly.derivative()
     while True:
-        with flint.ctx.workprec(work):
+        with balls_at(work):
             for _ in range(TURNS):
                 middle = root.mid()
                 closer = (middle - poly(middle) / slope(root)).intersection(root)

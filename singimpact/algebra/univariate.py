@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import Balls
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import Doubles, Exact
 from singimpact.algebra.symbols import SymbolRing
 
@@ -184,7 +185,5 @@ def precision_of(ring: Any) -> Iterator[None]:
     if not isinstance(ring, Balls):
         yield
         return
-    import flint
-
-    with flint.ctx.workprec(ring.bits):
+    with balls_at(ring.bits):
         yield

@@ -15,9 +15,11 @@ from typing import Any
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import BOUND, Expression, Root
 from singimpact.algebra.jets import JetSpace
+from singimpact.algebra.precision import balls_at
 from singimpact.inputs import InputError, shown
 
 BITS = 128  # of the balls that isolate; far more than the least width needs
+END_BITS = 53  # of the ends of a piece between two precisions: Newton's steps find again what they lose
 LEAST_WIDTH = Fraction(1, 2**26)  # of the window: below it a double zero is suspected and handed on as undecided
 
 
@@ -58,12 +60,10 @@ def isolate(
     >>> [zero.slope for zero in isolate(parse("cos(t)", ["t"]), "t", Fraction(-1), Fraction(6))]
     [-1, 1]
     """
-    import flint
-
     balls = Balls(BITS)
     least = (high - low) * LEAST_WIDTH
     found: list[Zero] = []
-    with flint.ctx.workprec(BITS):
+    with balls_at(BITS):
         stack = [(low, high)]
         while stack:
             left, right = stack.pop()
@@ -90,11 +90,9 @@ def isolate(
 
 def sign_at(tree: Expression, variable: str, at: Fraction, order: int) -> int:
     """The sign of a derivative at an exact point; 0 when 2048 bits do not tell it from zero."""
-    import flint
-
     for bits in (128, 512, 2048):
         balls = Balls(bits)
-        with flint.ctx.workprec(bits):
+        with balls_at(bits):
             value = derivatives(tree, variable, balls.rational(at), order, balls)[order]
             if value > 0 or value < 0:
                 return 1 if value > 0 else -1
@@ -122,7 +120,7 @@ def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int =
     while True:
         work = min(2 * work, most)
         balls = Balls(work)
-        with flint.ctx.workprec(work):
+        with balls_at(work):
             enclosure = balls.interval(low, high)
             for _ in range(200):
                 middle = enclosure.mid()
@@ -163,12 +161,10 @@ def _monotone(tree: Expression, variable: str, zero: Zero, order: int) -> tuple[
 
     Next to a second zero the derivative is as small as the piece, so that every halving asks for bits of its own.
     """
-    import flint
-
     low, high, bits = zero.low, zero.high, BITS
     while True:
         balls = Balls(bits)
-        with flint.ctx.workprec(bits):
+        with balls_at(bits):
             slope = derivatives(tree, variable, balls.interval(low, high), order + 1, balls)[order + 1]
         if slope > 0 or slope < 0:
             return low, high, bits
@@ -181,5 +177,6 @@ def _monotone(tree: Expression, variable: str, zero: Zero, order: int) -> tuple[
 def _ends(ball: Any) -> tuple[Fraction, Fraction]:
     from singimpact.algebra.balls import as_rational
 
-    low, high = ball.lower(), ball.upper()
+    with balls_at(END_BITS):
+        low, high = ball.lower(), ball.upper()
     return as_rational(low), as_rational(high)

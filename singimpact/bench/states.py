@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.precision import balls_at
 from singimpact.bench.truth.first_hit import first_hit
 from singimpact.bench.truth.motions import Cubic, Linear
 from singimpact.cases import sweep
@@ -117,9 +118,7 @@ def _drawn(rng: Any, family: str, regime: str) -> tuple[float, float, list[tuple
 
 def _grazing(rng: Any, family: str, omega: float, clearance: float, tau: float) -> Iterator[tuple[float, float]]:
     """A state that a flight run backwards from a touch at tau started from, moved off it by 1e-10 to 1e-4."""
-    import flint
-
-    with flint.ctx.workprec(DRAW.bits):
+    with balls_at(DRAW.bits):
         motion = _motion(family, omega, clearance, -tau, 0.0, -1)
         if not motion.at(0)[2] > 1e-3:
             return
@@ -137,7 +136,7 @@ def _errors(
 
     status, time, next_v = found[:3]
     period = 2 * pi / omega
-    with flint.ctx.workprec(DRAW.bits + int(4 * max(-log2(v), 0))):
+    with balls_at(DRAW.bits + int(4 * max(-log2(v), 0))):
         motion = _motion(family, omega, clearance, tau, v)
         truth = first_hit(motion, v, _horizon(family, omega))
         if truth is None:

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from singimpact.algebra.precision import balls_at
 from singimpact.bench.steep_states import DRAW, EPSILON, drawn
 from singimpact.bench.truth import enclosed_flight
 from singimpact.bench.truth.graded_steps import FINENESS, HIT, MISS, UNDECIDED
@@ -105,7 +106,7 @@ def _off(found: float | str, ball: Any) -> float:
     """Relative error of a number against a ball, rounded up; nan for no number."""
     import flint
 
-    with flint.ctx.workprec(256):
+    with balls_at(256):
         return float(abs(flint.arb(found) / ball - 1).upper())
 
 

@@ -41,7 +41,7 @@ def command(
     from singimpact.scenes.basins import draw_bifurcation
 
     with WorkerPool(workers) as pool:
-        found = bifurcation(model, over, (low, high), points, start, impacts, kept, pool, keep)
+        found = bifurcation(model, over, (low, high), points, start, impacts, kept, executor=pool, output=keep)
     save(draw_bifurcation(found).figure, output)
     if as_json:
         rows = zip(found.values.tolist(), found.events.tolist(), strict=True)

@@ -61,8 +61,8 @@ def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int
     """tau, v and status after the last impact; a function of this module, so that another process can be sent it."""
     import numpy as np
 
-    from singimpact.flights.grids import after
+    from singimpact.flights.orbits import iterate
     from singimpact.impact_oscillator import ImpactOscillator
 
-    ends = after(ImpactOscillator(**fields).replace(**{over: value}), tau, v, impacts)
+    ends = iterate(ImpactOscillator(**fields).replace(**{over: value}), tau, v, impacts)
     return np.array([float(ends.tau), float(ends.v), float(ends.status)])

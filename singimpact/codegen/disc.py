@@ -253,7 +253,7 @@ def disc_source(writer: DiscWriter, parts: list[Expression]) -> str:
 
 
 def columns_source(writer: DiscWriter, push: list[Expression], by_x: Expression, by_xdot: Expression) -> str:
-    """The text of `disc_of_columns(X, W, A, B, Z, n, R, p)`: the bounds for the right-hand sides of three columns.
+    """The text of `disc_of_columns(work, columns, n, R, p)`: the bounds for the right-hand sides of three columns.
 
     Parameters
     ----------
@@ -268,10 +268,11 @@ def columns_source(writer: DiscWriter, push: list[Expression], by_x: Expression,
             parts.append(f"({size} + {more}) * {radius} + abs({centre}) * {more}")
         elif slope != number(0):
             parts.append(f"abs({writer.constant(slope)}) * {radius}")
-    lines = [line.format(name, f"r_{name.lower()}") for name in "XABZ" for line in SUMS]
+    lines = ["X, W, A, B, Z = work.X, work.W, columns.A, columns.B, columns.Z"]
+    lines += [line.format(name, f"r_{name.lower()}") for name in "XABZ" for line in SUMS]
     bounds = [_sum([part.format(name, name.lower()) for part in parts]) for name in "ABZ"]
     lines += [*writer.lines, f"return {bounds[0]}, {bounds[1]}, {bounds[2]} + {pushed}"]
-    return _function("disc_of_columns(X, W, A, B, Z, n, R, p)", lines)
+    return _function("disc_of_columns(work, columns, n, R, p)", lines)
 
 
 def rounding_source(writer: DiscWriter, parts: list[Expression], steady: list[Expression]) -> str:

@@ -45,7 +45,7 @@ class Recurrence:
 
     Parameters
     ----------
-    source : text of `coefficients(launch, time, z, u, shift, n, p, X, W)`; `launch[0]` is the time of the launch.
+    source : text of `coefficients(launch, time, z, u, shift, n, p, work)`; `launch[0]` is the time of the launch.
         After it, `disc(X, W, n, R, p)` bounds on a disc how far x'' is from its value, and `rounding(X, W, unit, p)`
         how well x'' is known; `variations(launch, time, z, u, n, p, X, W, A, B, Z)` adds three columns of the
         variational equation, whose entries 0 and 1 are given; `disc_of_columns(X, W, A, B, Z, n, R, p)` bounds them.
@@ -130,7 +130,7 @@ def recurrence(force: Expression, forcing: Expression) -> Recurrence:
     parts, steady = [*_parted(forcing)[1], *_parted(force)[1]], [_parted(forcing)[0], _parted(force)[0]]
     bound = writer.disc()
     body = [*motion, "if k == 0:", "    X[2] += shift"]
-    source = [_function("coefficients(launch, time, z, u, shift, n, p, X, W)", body), disc_source(bound, parts)]
+    source = [_function("coefficients(launch, time, z, u, shift, n, p, work)", body), disc_source(bound, parts)]
     source.append(rounding_source(writer.disc("", "unit"), parts, steady))
     source += _columns(writer, motion, force, forcing)
     return Recurrence("\n\n".join(source), tuple(writer.constants), max(writer.rows, 1), tuple(bound.suspects))
@@ -147,7 +147,8 @@ def _columns(writer: _Writer, motion: list[str], force: Expression, forcing: Exp
             "part = one / ((k + 1) * (k + 2))",
             "A[k + 2], B[k + 2], Z[k + 2] = by_x * part, by_v * part, by_tau * part"]  # fmt: skip
     bound = columns_source(writer.disc("inf, inf, inf"), _parted(push)[1], by_x, by_xdot)
-    return [_function("variations(launch, time, z, u, n, p, X, W, A, B, Z)", body), bound]
+    unpacked = "A, B, Z = columns.A, columns.B, columns.Z"
+    return [_function("variations(launch, time, z, u, n, p, work, columns)", body, unpacked), bound]
 
 
 def _motion(writer: _Writer, force: Expression, forcing: Expression) -> list[str]:
@@ -155,8 +156,9 @@ def _motion(writer: _Writer, force: Expression, forcing: Expression) -> list[str
     return [*writer.lines, "total = 0.0", *pulls, "X[k + 2] = total * (one / ((k + 1) * (k + 2)))"]  # fmt: skip
 
 
-def _function(head: str, body: list[str]) -> str:
-    lines = [f"def {head}:", "    t = launch[0] + time", "    X[0] = p[0] + z", "    X[1] = u"]
+def _function(head: str, body: list[str], unpacked: str = "") -> str:
+    lines = [f"def {head}:", "    X, W = work.X, work.W", *([f"    {unpacked}"] if unpacked else [])]
+    lines += ["    t = launch[0] + time", "    X[0] = p[0] + z", "    X[1] = u"]
     lines += ["    zero = 0 * (p[0] + z + u)", "    one = 1 + zero"]
     lines += ["    for k in range(n - 1):", "        part = one / max(k, 1)"]
     return "\n".join([*lines, *(f"        {line}" for line in body)]) + "\n"

@@ -27,6 +27,7 @@ from singimpact.algebra.expressions import (
     walk,
 )
 from singimpact.algebra.numbers import as_float
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import Symbolic
 from singimpact.algebra.taylor import NotSmooth
 from singimpact.algebra.zeros import Zero, derivatives, isolate, refined, sign_at
@@ -82,12 +83,10 @@ class ContactZero:
 
     def moved(self, bits: int = 128) -> Any:
         """A ball that contains the zero itself."""
-        import flint
-
         found = self.ball(bits)
         if self.period is None or not self.turns:
             return found
-        with flint.ctx.workprec(bits):
+        with balls_at(bits):
             return found + self.turns * evaluate(self.period, {}, Balls(bits))
 
     @property
@@ -161,12 +160,10 @@ def _ahead(
     piece: ContactZero | Zero, tau: Expression, period: Expression | None
 ) -> tuple[ContactZero | Zero | None, float] | None:
     """A zero moved behind tau, and the time to it (an undecided piece: to its beginning); None when undecided."""
-    import flint
-
     for bits in SETTINGS.bits:
         bits += max(frexp(as_float(tau))[1], 0)
         balls = Balls(bits)
-        with flint.ctx.workprec(bits):
+        with balls_at(bits):
             start = balls.evaluate(tau, {})
             at = piece.ball(bits) if isinstance(piece, ContactZero) else balls.rational(piece.low)
             end = at if isinstance(piece, ContactZero) else balls.rational(piece.high)
@@ -211,11 +208,9 @@ def _of_piece(osc: Oscillator, function: Expression, piece: Zero) -> list[Contac
 
 def _at_turn(osc: Oscillator, function: Expression, piece: Zero, turn: Zero, order: int) -> list[ContactZero | Zero]:
     """The only zero of a derivative of a_c on a piece: whether a_c and the derivatives before it vanish there too."""
-    import flint
-
     for bits in SETTINGS.bits:
         ball = refined(function, "t", turn, bits, order)
-        with flint.ctx.workprec(bits):
+        with balls_at(bits):
             values = derivatives(function, "t", ball, order - 1, Balls(bits))
         if not all(value.contains(0) for value in values):
             # next to a zero of higher order lie several of lower order; only those of order 1 are told apart

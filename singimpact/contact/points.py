@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from math import ceil
 from typing import Any
 
@@ -15,6 +14,7 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.certified import Certified, as_certified
 from singimpact.algebra.expressions import Call, Expression, Power, children, names_in, walk
 from singimpact.algebra.numbers import as_float
+from singimpact.algebra.precision import balls_at, digits_at, for_user, kept_property
 from singimpact.algebra.zeros import Zero, derivatives, isolate, refined, sign_at
 from singimpact.contact.contact import acceleration
 from singimpact.inputs import InputError, refuse
@@ -43,7 +43,7 @@ class TangencyPoint:
             return refined(self.function, "t", self.zero, bits, order=1)
         return refined(self.function, "t", self.zero, bits)
 
-    @cached_property
+    @kept_property
     def tau(self) -> float:
         """tau_* as a double."""
         return float(self.ball().mid())
@@ -60,10 +60,8 @@ class TangencyPoint:
 
     def value(self, digits: int = 30) -> Any:
         """tau_* as an mpmath number with this many digits."""
-        import mpmath
-
-        with mpmath.workdps(digits + 5):
-            return +self.certified(digits + 3).value
+        with digits_at(digits + 5) as mp:
+            return for_user(+mp.convert(self.certified(digits + 3).value))
 
 
 def enclosed(ball: Callable[[int], Any], digits: int) -> Certified:
@@ -170,8 +168,6 @@ def _root_bound(function: Expression) -> Fraction:
 
 def _decided(function: Expression, zero: Zero) -> list[TangencyPoint]:
     """An undecided piece: a_c at the zero of a_c' on it tells whether it holds no zero, two, or a double one."""
-    import flint
-
     turns = [piece for piece in isolate(function, "t", zero.low, zero.high, order=1) if piece.slope]
     if not turns:
         place = f"{float(zero.low):.6g}"
@@ -179,7 +175,7 @@ def _decided(function: Expression, zero: Zero) -> list[TangencyPoint]:
     turn = turns[0]
     for bits in (256, 2048):
         ball = refined(function, "t", turn, bits, order=1)
-        with flint.ctx.workprec(bits):
+        with balls_at(bits):
             value = derivatives(function, "t", ball, 0, Balls(bits))[0]
             if value > 0 or value < 0:
                 return _beside(function, zero, as_rational(ball), turn.slope)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from math import floor
 from typing import Any
 
@@ -28,6 +27,7 @@ from singimpact.algebra.expressions import (
     walk,
 )
 from singimpact.algebra.numbers import as_float
+from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC
 from singimpact.algebra.zeros import Zero, derivatives, is_one_root, isolate, refined
 from singimpact.contact.points import enclosed, window
@@ -66,12 +66,12 @@ class SwanPoint:
         """(tau_*, c_0), each with a certified radius and so many significant digits."""
         return enclosed(self.tau_ball, digits), enclosed(self.clearance_ball, digits)
 
-    @cached_property
+    @kept_property
     def tau(self) -> float:
         """tau_* as a double."""
         return as_float(self.time)
 
-    @cached_property
+    @kept_property
     def clearance(self) -> float:
         """c_0 as a double."""
         return as_float(self.place)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.flights.grids import after
+from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
@@ -53,7 +53,7 @@ def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float) -> Arra
     for n in range(1, SETTINGS.most_impacts + 1):
         if (codes != OTHER).all():
             break
-        ends = after(model, at, speed, 1)
+        ends = iterate(model, at, speed, 1)
         # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
         passed = np.floor(ends.tau / period)
         at, speed, turns = ends.tau - passed * period, ends.v, turns + passed
@@ -98,7 +98,7 @@ def states_of(model: Oscillator, code: int, tau: float, v: float) -> tuple[Array
     """tau and v of all impacts of a periodic orbit, from one of them on."""
     states = [(tau, v)]
     for _ in range(code // PLACES - 1):
-        ends = after(model, *states[-1], 1)
+        ends = iterate(model, *states[-1], 1)
         states.append((float(ends.tau), float(ends.v)))
     times, speeds = np.array(states).T
     return times, speeds
@@ -117,7 +117,7 @@ def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float)
             times[:, None] + period * edge[:, 0],
             np.maximum(speeds[:, None] + fast * edge[:, 1], 1e-3 * speeds[:, None]),
         )
-        ends = after(model, start[0].ravel(), start[1].ravel(), SETTINGS.turns * count)
+        ends = iterate(model, start[0].ravel(), start[1].ravel(), SETTINGS.turns * count)
         if (ends.status == 0).all() and within(made, model, ends.tau, ends.v, fast, size / 2).all():
             return made
         size /= 10

@@ -27,7 +27,7 @@ from singimpact.dynamics.attractors import (
     within,
 )
 from singimpact.dynamics.long_run import chaotic, futures, lift_offs, next_lift_off, settled
-from singimpact.flights.grids import after
+from singimpact.flights.orbits import iterate
 from singimpact.inputs import refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -163,7 +163,7 @@ def basins(
     speeds = slow + (np.arange(size) + 0.5) * (fast - slow) / size
     rows = SETTINGS.rows if size % SETTINGS.rows == 0 else 1
     blocks = [tuple(speeds[i : i + rows].tolist()) for i in range(0, size, rows)]
-    after(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
+    iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
     phases = lift_offs(model)
     work = partial(classified, dict(model.to_dict()), phases, tuple(times.tolist()), fast)
     table = sweep(work, blocks, executor, output).reshape(-1, 3)
@@ -222,7 +222,7 @@ def classify(model: Oscillator, phases: tuple[float, ...], fast: float, tau: Arr
     flown, block = 0, SETTINGS.block
     while open_.size and flown < most:
         block = min(block, most - flown)
-        ends = after(model, tau[open_], v[open_], block, SETTINGS.tolerance)
+        ends = iterate(model, tau[open_], v[open_], block, SETTINGS.tolerance)
         flown += block
         # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
         tau[open_], v[open_] = ends.tau - period * np.floor(ends.tau / period), ends.v

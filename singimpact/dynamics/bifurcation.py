@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -13,7 +12,7 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.cases import sweep
 from singimpact.dynamics.orbit import orbit
-from singimpact.flights.sequences import sequence
+from singimpact.flights.orbits import orbit_segment
 from singimpact.inputs import refuse, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.surface.curve import window_ends
@@ -40,14 +39,15 @@ class Bifurcation:
 
 def bifurcation(
     model: Oscillator, over: str, between: Any, points: int = 300, start: Any = (0, "0.1"), impacts: int = 200,
-    kept: int = 60, executor: Executor | None = None, output: Any = None,
+    kept: int = 60, **sweeping: Any,
 ) -> Bifurcation:  # fmt: skip
     """The last events of an orbit for evenly spaced values of a number of the model.
 
     Parameters
     ----------
     over : clearance, restitution or a parameter. between : its ends. points : values. start : the state (tau, v).
-    impacts : flown for each value. kept : events of the end that are shown. executor, output : as for `sweep`.
+    impacts : flown for each value. kept : events of the end that are shown. sweeping : `executor` and `output` of
+        `sweep`.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def bifurcation(
     low, high = window_ends(over, between)
     values = np.linspace(low, high, points)
     ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), impacts, kept)
-    return Bifurcation(over, values, sweep(ask, values.tolist(), executor, output))
+    return Bifurcation(over, values, sweep(ask, values.tolist(), **sweeping))
 
 
 def settled(
@@ -96,7 +96,7 @@ def _events(model: Oscillator, tau: Any, v: Any, impacts: int) -> Iterator[tuple
             return
         tau, v, flown = float(last.tau[-1]), float(last.v[-1]), flown + 1
         if v > 0 and flown < impacts:
-            found = sequence(model, tau, v, min(BLOCK, impacts - flown), slow)
+            found = orbit_segment(model, tau, v, min(BLOCK, impacts - flown), slow)
             yield from zip(found.tau, found.v, np.zeros(found.tau.size), strict=True)
             flown += found.tau.size
             if found.tau.size:

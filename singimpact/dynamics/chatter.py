@@ -10,13 +10,16 @@ import numpy as np
 
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.numbers import as_float, as_mpf, compare
+from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import DOUBLES, Multiprecision
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.completion import completion
-from singimpact.flights.hits import checked_digits, derivative, impact_map
-from singimpact.flights.kernel import kernel_of
-from singimpact.flights.launch import States
-from singimpact.flights.sequences import Sequence, sequence
+from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.derivative import derivative
+from singimpact.flights.impact_map import checked_digits, impact_map
+from singimpact.flights.kernels import layout
+from singimpact.flights.orbits import Segment, orbit_segment
+from singimpact.flights.states import States
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -126,9 +129,8 @@ def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | No
 
 def _covering(found: Certified) -> Any:
     """The radius, and the rounding of the value to its digits."""
-    import mpmath
-
-    return found.radius + abs(found.value) * mpmath.mpf(10) ** -found.digits
+    with bits_at(53) as mp:
+        return mp.convert(found.radius) + abs(mp.convert(found.value)) * mp.mpf(10) ** -found.digits
 
 
 def summed(osc: Oscillator, tau: float, v: float, resolution: float) -> float | None:
@@ -150,9 +152,9 @@ def _slow(osc: Oscillator, tau: float) -> float:
 
 def _pace(osc: Oscillator) -> float:
     """How fast the model moves: the largest rate of a linear one, else the forcing's frequency, or 1."""
-    kernel = kernel_of(osc)
-    if kernel.form is not None:
-        return as_float(kernel.constants[4])
+    model = compiled_model(osc)
+    if model.linear:
+        return float(layout.linear_model(model.flat, model.sizes).numbers.fastest)
     return 1.0 if osc.period is None else 2 * np.pi / as_float(osc.period)
 
 
@@ -233,7 +235,7 @@ class _Flown:
 
     def _fly(self, count: int, slow: float) -> Status:
         """Fly on; where the acceleration changes sign the sequence is cut just after the first impact there."""
-        found = sequence(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), slow)
+        found = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), slow)
         kept = self._kept(found)
         self.times += found.tau[:kept].tolist()
         self.speeds += found.v[:kept].tolist()
@@ -245,7 +247,7 @@ class _Flown:
         self.cause = Cause(found.cause)
         return Status(found.status)
 
-    def _kept(self, found: Sequence) -> int:
+    def _kept(self, found: Segment) -> int:
         lifted = np.flatnonzero(found.acceleration[1:] >= 0)
         return int(lifted[0]) + 1 if lifted.size else int(found.tau.size)
 
@@ -273,38 +275,31 @@ class _Flown:
 
 def _precise(osc: Oscillator, states: States, found: ChatterLimit, digits: int) -> ChatterLimit:
     """The same sequence in many digits, flown on until the last term is below them."""
-    import mpmath
-
     amplified = max(float(found.error) / (EPSILON * max(abs(float(found.tau)), 1e-300)), 1.0)
     precision = digits + 10 + ceil(log(amplified, 10))
-    with mpmath.workdps(precision):
-        small = mpmath.mpf(10) ** (-digits - 1)
+    with digits_at(precision) as mp:
+        small = mp.mpf(10) ** (-digits - 1)
         tau, v = states.given(0)
         if not states.rest:
-            tau, v = (as_mpf(tree, mpmath.mp) for tree in (states.exact_tau(0), states.exact_v(0)))
-        count, wanted, r = 0, int(found.impacts), as_mpf(osc.slope_at_rest(), mpmath.mp)
+            tau, v = (as_mpf(tree, mp) for tree in (states.exact_tau(0), states.exact_v(0)))
+        count, wanted, r = 0, int(found.impacts), as_mpf(osc.slope_at_rest(), mp)
         while True:
             while count < wanted:
                 step = impact_map(osc, tau, v, digits=precision)
-                tau, v, count = step.tau, step.v, count + 1
+                tau, v, count = mp.convert(step.tau), mp.convert(step.v), count + 1
             if found.status == Status.lifts_off:
                 return _rounded(tau, count, small * abs(tau), Status.lifts_off, digits)
-            time = impact_map(osc, tau, v, digits=precision).flight_time
-            series = completion(osc, tau, ENDING.many, Multiprecision(mpmath.mp))
+            time = mp.convert(impact_map(osc, tau, v, digits=precision).flight_time)
+            series = completion(osc, tau, ENDING.many, Multiprecision(mp))
             terms = [c * time ** (n + 1) for n, c in enumerate(series)]
-            error = max(
-                abs(terms[-1]), abs(terms[-2]) * abs(terms[-2] / terms[0]) ** (mpmath.mpf(1) / (ENDING.many - 2))
-            )
+            error = max(abs(terms[-1]), abs(terms[-2]) * abs(terms[-2] / terms[0]) ** (mp.mpf(1) / (ENDING.many - 2)))
             end = tau + sum(reversed(terms))
             if ENDING.trust * error <= small * abs(end) or v == 0:
                 return _rounded(end, count, ENDING.trust * error + small * abs(end), Status.complete, digits)
-            wanted = count + max(
-                1, int(mpmath.ceil(mpmath.log(small * abs(end) / (5 * error)) / mpmath.log(r) / ENDING.many))
-            )
+            wanted = count + max(1, int(mp.ceil(mp.log(small * abs(end) / (5 * error)) / mp.log(r) / ENDING.many)))
 
 
 def _rounded(tau: Any, count: int, error: Any, status: Status, digits: int) -> ChatterLimit:
-    import mpmath
-
-    with mpmath.workdps(digits):
-        return ChatterLimit(+tau, count, +error, np.int8(status))
+    with digits_at(digits) as mp:
+        end, off = (for_user(+mp.convert(number)) for number in (tau, error))
+        return ChatterLimit(end, count, off, np.int8(status))

@@ -18,9 +18,10 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.certified import Certified, as_certified, from_ends
 from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, sign_of
+from singimpact.algebra.precision import balls_at
 from singimpact.contact.next_zero import ContactZero
-from singimpact.flights.flow.balls import LinearFlow
-from singimpact.flights.launch import States
+from singimpact.flights.balls import LinearFlow
+from singimpact.flights.states import States
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory.formulas import curve_at
@@ -60,11 +61,9 @@ def enclosable(osc: Oscillator) -> bool:
 
 def _with_more_bits(attempt: Callable[[LinearFlow], Found | None], osc: Oscillator, digits: int) -> Found | None:
     """attempt(flow) at growing precision, until it decides."""
-    import flint
-
     bits = ceil(digits * 3.33) + ORBITS.spare
     while bits <= ORBITS.bits * (digits + 32):
-        with flint.ctx.workprec(bits):
+        with balls_at(bits):
             found = attempt(LinearFlow(osc, bits))
         if found is not None:
             return found

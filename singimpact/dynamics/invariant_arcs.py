@@ -16,8 +16,8 @@ import numpy as np
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import tangency_points
-from singimpact.flights.hits import first_hit
-from singimpact.flights.inverse import backwards, inverse_map
+from singimpact.flights.impact_map import first_hit
+from singimpact.flights.inverse_map import backwards, inverse_map
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -166,7 +166,7 @@ def _foot(model: Oscillator, tau: Any, at: str | None) -> float:
 
 def model_step(model: Oscillator, points: Array) -> Array:
     """The impact map on points (tau, v), shape (n, 2); nan where there is no next impact."""
-    from singimpact.flights.hits import impact_map
+    from singimpact.flights.impact_map import impact_map
 
     found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
     step = impact_map(model, points[known, 0], points[known, 1], tolerance=SETTINGS.tolerance)

@@ -18,7 +18,7 @@ from singimpact.dynamics.attractors import CHATTER, OTHER
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.rest import release
-from singimpact.flights.grids import after
+from singimpact.flights.orbits import iterate
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
@@ -132,7 +132,7 @@ def chaotic(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
     second = [first[0] + SETTINGS.apart * period, first[1] * (1 + SETTINGS.apart)]
     alive = np.ones(tau.size, dtype=bool)
     for row in growth:
-        ends = [after(model, each[0][alive], each[1][alive], SETTINGS.block) for each in (first, second)]
+        ends = [iterate(model, each[0][alive], each[1][alive], SETTINGS.block) for each in (first, second)]
         away = np.stack([(ends[1].tau - ends[0].tau) / period, (ends[1].v - ends[0].v) / fast])
         away[0] -= np.rint(away[0])
         with np.errstate(all="ignore"):

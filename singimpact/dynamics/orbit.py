@@ -9,8 +9,8 @@ import numpy as np
 
 from singimpact.dynamics.chatter import summed
 from singimpact.dynamics.rest import release
-from singimpact.flights.hits import impact_map
-from singimpact.flights.launch import States
+from singimpact.flights.impact_map import impact_map
+from singimpact.flights.states import States
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status

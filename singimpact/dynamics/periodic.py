@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, as_mpf
-from singimpact.flights.hits import checked_digits, derivative, impact_map
-from singimpact.flights.tangent import precise, rebound_slope
+from singimpact.algebra.precision import digits_at, for_user
+from singimpact.flights.derivative import derivative, precise, rebound_slope
+from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -177,17 +178,15 @@ def _settled(osc: Oscillator, rough: PeriodicOrbit, n: int, k: int) -> PeriodicO
 
 def _precise(osc: Oscillator, rough: PeriodicOrbit, n: int, k: int, digits: int) -> PeriodicOrbit:
     """The orbit and its multipliers in many digits."""
-    import mpmath
-
     times, speeds, miss = _corrected(osc, rough, _inverse(osc, rough), n, k, digits)
-    with mpmath.workdps(digits + 15):
-        multipliers = _multipliers(osc, times, speeds)
-        span = k * as_mpf(osc.period, mpmath.mp) if osc.period is not None else mpmath.nan
-        closes = miss < mpmath.mpf(10) ** (-digits - 3) * span
-    with mpmath.workdps(digits):
+    with digits_at(digits + 15) as mp:
+        multipliers = _multipliers(osc, times, speeds, mp)
+        span = k * as_mpf(osc.period, mp) if osc.period is not None else mp.nan
+        closes = miss < mp.mpf(10) ** (-digits - 3) * span
+    with digits_at(digits):
         fields = (times[:-1], speeds[:-1], multipliers)
-        one, two, three = (np.array([+value for value in part], dtype=object) for part in fields)
-        return PeriodicOrbit(one, two, three, +miss, np.int8(0 if closes else Status.unresolved))
+        one, two, three = (np.array([for_user(+value) for value in part], dtype=object) for part in fields)
+        return PeriodicOrbit(one, two, three, for_user(+miss), np.int8(0 if closes else Status.unresolved))
 
 
 def _inverse(osc: Oscillator, rough: PeriodicOrbit) -> Array:
@@ -204,14 +203,12 @@ def _corrected(
     osc: Oscillator, rough: PeriodicOrbit, inverse: Array, n: int, k: int, digits: int
 ) -> tuple[list[Any], list[Any], Any]:
     """Times and velocities in many digits, and by how much they miss; the inverse gives twelve digits a round."""
-    import mpmath
-
-    with mpmath.workdps(digits + 15):
-        span = k * as_mpf(osc.period, mpmath.mp) if osc.period is not None else mpmath.nan
-        tau, v = mpmath.mpf(float(rough.tau[0])), mpmath.mpf(float(rough.v[0]))
-        small, miss = mpmath.mpf(10) ** (-digits - 3), mpmath.inf
+    with digits_at(digits + 15) as mp:
+        span = k * as_mpf(osc.period, mp) if osc.period is not None else mp.nan
+        tau, v = mp.mpf(float(rough.tau[0])), mp.mpf(float(rough.v[0]))
+        small, miss = mp.mpf(10) ** (-digits - 3), mp.inf
         for _ in range(5 + digits // 5):
-            times, speeds = _flown(osc, tau, v, n)
+            times, speeds = _flown(osc, tau, v, n, mp)
             gap = (times[-1] - tau - span, speeds[-1] - v)
             miss = max(abs(gap[0]), abs(gap[1]))
             tau -= inverse[0, 0] * gap[0] + inverse[0, 1] * gap[1]
@@ -221,33 +218,30 @@ def _corrected(
     return times, speeds, miss
 
 
-def _flown(osc: Oscillator, tau: Any, v: Any, n: int) -> tuple[list[Any], list[Any]]:
-    import mpmath
-
+def _flown(osc: Oscillator, tau: Any, v: Any, n: int, mp: Any) -> tuple[list[Any], list[Any]]:
     times, speeds = [tau], [v]
     for _ in range(n):
-        step = impact_map(osc, times[-1], speeds[-1], digits=mpmath.mp.dps - 4)
-        times.append(step.tau)
-        speeds.append(step.v)
+        step = impact_map(osc, times[-1], speeds[-1], digits=mp.dps - 4)
+        times.append(mp.convert(step.tau))
+        speeds.append(mp.convert(step.v))
     return times, speeds
 
 
-def _multipliers(osc: Oscillator, times: list[Any], speeds: list[Any]) -> list[Any]:
+def _multipliers(osc: Oscillator, times: list[Any], speeds: list[Any], mp: Any) -> list[Any]:
     """Roots of x^2 - trace x + determinant of the derivatives' product."""
-    import mpmath
-
     from singimpact.algebra.rings import Multiprecision
 
-    total = mpmath.eye(2)
+    total = mp.eye(2)
     for i in range(len(times) - 1):
-        step = impact_map(osc, times[i], speeds[i], digits=mpmath.mp.dps - 4)
-        answer = precise(osc, times[i], speeds[i], step.flight_time, step.velocity)
-        slope = rebound_slope(osc, step.velocity, Multiprecision(mpmath.mp))
+        step = impact_map(osc, times[i], speeds[i], digits=mp.dps - 4)
+        time, velocity = mp.convert(step.flight_time), mp.convert(step.velocity)
+        answer = precise(osc, times[i], speeds[i], time, velocity, mp)
+        slope = rebound_slope(osc, velocity, Multiprecision(mp))
         rows = [
             [1 + answer.time_by_tau, answer.time_by_v],
             [slope * answer.velocity_by_tau, slope * answer.velocity_by_v],
         ]
-        total = mpmath.matrix(rows) * total
+        total = mp.matrix(rows) * total
     trace, determinant = total[0, 0] + total[1, 1], total[0, 0] * total[1, 1] - total[0, 1] * total[1, 0]
-    root = mpmath.sqrt(mpmath.mpc(trace * trace / 4 - determinant))
+    root = mp.sqrt(mp.mpc(trace * trace / 4 - determinant))
     return [trace / 2 + root, trace / 2 - root]

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import number, subtract
+from singimpact.algebra.expressions import Number, number, subtract
 from singimpact.algebra.numbers import as_float
-from singimpact.codegen.interpreted import in_floats
-from singimpact.flights.first_root import first_root
-from singimpact.flights.flow.taylor import constants
-from singimpact.flights.kernel import taylor_kernel
-from singimpact.flights.launch import at_rest, exact_number, workspace
+from singimpact.flights.bind import over_floats
+from singimpact.flights.in_digits import workspace
+from singimpact.flights.kernels.roots import first_root
 from singimpact.flights.limits import LIMITS
+from singimpact.flights.model_numbers import constants_of, recurrence_of
+from singimpact.flights.states import at_rest
 from singimpact.oscillator.acceleration import resting_force
 from singimpact.oscillator.model import Oscillator
 
@@ -62,7 +63,7 @@ def _lifted(osc: Oscillator, tau: float) -> float:
     candidate, gap = tau, float(np.spacing(abs(tau)))
     candidate -= 2 * gap
     for _ in range(80):
-        if at_rest(osc, exact_number(candidate))[0] > 0:
+        if at_rest(osc, Number(Fraction(candidate)))[0] > 0:
             return candidate
         candidate += gap
         gap = gap if candidate < tau + 4 * gap else 2 * gap
@@ -73,20 +74,21 @@ def _lifted(osc: Oscillator, tau: float) -> float:
 def _resting_model(osc: Oscillator) -> tuple[dict[str, Any], list[float], int]:
     """x'' = -a_c(t) as a recurrence; its coefficients give those of -a_c."""
     model = Oscillator(number(0), subtract(resting_force(osc), osc.forcing()), 0, 1)
-    kernel = taylor_kernel(model)
-    return in_floats(kernel.text), [as_float(tree) for tree in constants(model)], kernel.rows
+    flow = recurrence_of(model)
+    numbers = [as_float(tree) for tree in constants_of(model, linear=False)]
+    return over_floats(flow.source), numbers, flow.rows
 
 
 def _pressure(osc: Oscillator, tau: float, longest: float) -> tuple[list[float], float]:
     """Taylor coefficients of -a_c at tau, and a step on which what they leave out is proved to be below rounding."""
     space, p, rows = _resting_model(osc)
-    X, W = workspace(0.0, ORDER + 2, rows, 0)
-    space["coefficients"]([tau], 0.0, 0.0, 0.0, 0.0, ORDER + 2, p, X, W)
-    series = [X[k + 2] * (k + 1) * (k + 2) for k in range(ORDER + 1)]
+    work = workspace(0.0, ORDER + 2, rows)
+    space["coefficients"]([tau], 0.0, 0.0, 0.0, 0.0, ORDER + 2, p, work)
+    series = [work.X[k + 2] * (k + 1) * (k + 2) for k in range(ORDER + 1)]
     width = R = _width(series, longest)
     R *= 4
     while width > EPSILON * abs(tau):
-        bound, _suspect = space["disc"](X, W, ORDER + 2, R, p)
+        bound, _suspect = space["disc"](work.X, work.W, ORDER + 2, R, p)
         q = width / R
         # Cauchy's bound of the coefficients beyond ORDER, summed
         if q < 0.9 and bound * q ** (ORDER + 1) / (1 - q) < 8 * EPSILON * max(map(abs, series[:4])):

@@ -12,10 +12,12 @@ from singimpact.algebra.balls import as_rational
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
+from singimpact.algebra.precision import digits_at, for_user
 from singimpact.contact.next_zero import ContactZero, next_zero
 from singimpact.dynamics import enclosed
-from singimpact.flights.hits import checked_digits, derivative, impact_map
-from singimpact.flights.sequences import sequence
+from singimpact.flights.derivative import derivative
+from singimpact.flights.impact_map import checked_digits, impact_map
+from singimpact.flights.orbits import orbit_segment
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
 from singimpact.oscillator.model import Oscillator
@@ -108,14 +110,13 @@ def _without(status: Status) -> Threshold:
 
 def _enclosed(osc: Oscillator, place: Expression, rough: Threshold, end: ContactZero, digits: int) -> Threshold | None:
     """The threshold in balls, where the model allows it."""
-    import mpmath
-
     found = enclosed.threshold(osc, place, rough.v, end, digits) if enclosed.enclosable(osc) else None
     if found is None:
         return None
-    with mpmath.workdps(digits):
-        error = found.radius + abs(found.value) * mpmath.mpf(10) ** -digits
-        return Threshold(+found.value, error, np.int8(Status.complete), found)
+    with digits_at(digits) as mp:
+        value, radius = mp.convert(found.value), mp.convert(found.radius)
+        error = radius + abs(value) * mp.mpf(10) ** -digits
+        return Threshold(for_user(+value), for_user(error), np.int8(Status.complete), found)
 
 
 class _Side(Enum):
@@ -170,7 +171,7 @@ def _side(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> _S
     lost = 1 - as_float(osc.slope_at_rest())
     block, remaining = SEARCH.block, impacts
     while remaining > 0:
-        found = sequence(osc, tau, v, block)
+        found = orbit_segment(osc, tau, v, block)
         if np.any(found.tau >= end):
             return _Side.above
         with np.errstate(divide="ignore"):
@@ -195,51 +196,43 @@ def _side(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> _S
 
 def _refined(osc: Oscillator, place: Any, rough: Threshold, end: ContactZero, digits: int) -> Threshold:
     """Gamma repels: the more impacts are flown, the less it matters how well its end is known."""
-    import mpmath
-
-    with mpmath.workdps(digits + 20):
-        tau, v = as_mpf(place, mpmath.mp), mpmath.mpf(float(rough.v))
-        goal = _Gamma(osc, end)
-        small, change = mpmath.mpf(10) ** (-digits - 1), mpmath.inf
+    with digits_at(digits + 20) as mp:
+        tau, v = as_mpf(place, mp), mp.mpf(float(rough.v))
+        goal = _Gamma(osc, end, mp)
+        small, change = mp.mpf(10) ** (-digits - 1), mp.inf
         for count in range(SEARCH.first, SEARCH.rounds, SEARCH.more):
             miss, slope = goal.miss(tau, v, count)
             last, change = change, abs(miss / slope)
             v -= miss / slope
-            if not 0 < v < mpmath.inf:  # the slope of `miss` is below the range of doubles
+            if not 0 < v < mp.inf:  # the slope of `miss` is below the range of doubles
                 return _without(Status.unresolved)
-            if max(change, last * change / v) < small * v and last < mpmath.mpf(10) ** (-digits // 2) * v:
+            if max(change, last * change / v) < small * v and last < mp.mpf(10) ** (-digits // 2) * v:
                 break
-    with mpmath.workdps(digits):
-        return Threshold(+v, 2 * change + small * v, np.int8(Status.complete))
+    with digits_at(digits):
+        return Threshold(for_user(+v), for_user(2 * change + small * v), np.int8(Status.complete))
 
 
 class _Gamma:
-    """The end of gamma, v = sigma^(j+1) (first + second sigma) + ..., at the working precision."""
+    """The end of gamma, v = sigma^(j+1) (first + second sigma) + ..., at the precision of an mpmath context."""
 
-    def __init__(self, osc: Oscillator, end: ContactZero) -> None:
-        import mpmath
-
-        self.osc, self.power = osc, end.order + 1
-        bits = mpmath.mp.prec + 32
+    def __init__(self, osc: Oscillator, end: ContactZero, mp: Any) -> None:
+        self.osc, self.power, self.mp = osc, end.order + 1, mp
+        bits = mp.prec + 32
         first, second, _ = enclosed.end_of_gamma(osc, end, bits)
-        self.tau, self.first, self.second = (_middle(ball) for ball in (end.moved(bits), first, second))
+        self.tau, self.first, self.second = (_middle(ball, mp) for ball in (end.moved(bits), first, second))
 
     def miss(self, tau: Any, v: Any, count: int) -> tuple[Any, Any]:
         """v - gamma after `count` impacts, and its derivative by the first v."""
-        import mpmath
-
         column = np.array([0.0, 1.0])
         for _ in range(count):
             column = derivative(self.osc, float(tau), float(v)).matrix @ column
-            step = impact_map(self.osc, tau, v, digits=mpmath.mp.dps - 5)
-            tau, v = step.tau, step.v
+            step = impact_map(self.osc, tau, v, digits=self.mp.dps - 5)
+            tau, v = self.mp.convert(step.tau), self.mp.convert(step.v)
         sigma, n = tau - self.tau, self.power
         along = sigma ** (n - 1) * (n * self.first + (n + 1) * self.second * sigma)
         return v - sigma**n * (self.first + self.second * sigma), float(column[1]) - float(along) * float(column[0])
 
 
-def _middle(ball: Any) -> Any:
-    import mpmath
-
+def _middle(ball: Any, mp: Any) -> Any:
     value = as_rational(ball)
-    return mpmath.mpf(value.numerator) / value.denominator
+    return mp.mpf(value.numerator) / value.denominator

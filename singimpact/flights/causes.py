@@ -10,7 +10,7 @@ import numpy as np
 from singimpact.algebra.expressions import Call, Expression, Number, Power, evaluate, substitute
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
-from singimpact.flights.flow.taylor import recurrence_of
+from singimpact.flights.model_numbers import recurrence_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status
 

@@ -24,7 +24,7 @@ def counted() -> Iterator[Count]:
 
     Examples
     --------
-    >>> from singimpact.flights.hits import impact_map
+    >>> from singimpact.flights.impact_map import impact_map
     >>> from singimpact.oscillator.model import Oscillator
     >>> with counted() as count:
     ...     _ = impact_map(Oscillator("0", "-2", 0, 1), [0, 1], 1)

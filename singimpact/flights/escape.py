@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, sign_of
-from singimpact.flights.kernel import turn
+from singimpact.flights.model_numbers import turn
 from singimpact.flights.phase import reduced
 from singimpact.oscillator.linear import LinearForm, at_rest
 from singimpact.oscillator.model import Oscillator

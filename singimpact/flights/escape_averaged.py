@@ -40,7 +40,7 @@ def stays_up(osc: Oscillator, v: Array, horizon: float) -> Array:
     >>> stays_up(Oscillator("sin(x)", "cos(t)", 0, 1), np.array([10.0, 100.0]), 6000.0).tolist()
     [False, True]
     """
-    bounds = _bounds(osc)
+    bounds = bounds_of(osc)
     if bounds is None:
         return np.zeros(v.shape, dtype=bool)
     with np.errstate(all="ignore"):
@@ -50,7 +50,7 @@ def stays_up(osc: Oscillator, v: Array, horizon: float) -> Array:
 
 
 @lru_cache(maxsize=256)
-def _bounds(osc: Oscillator) -> Bounds | None:
+def bounds_of(osc: Oscillator) -> Bounds | None:
     """The bounds of a model whose f and g are sums of sines and cosines; None for any other."""
     force, forcing = _waves(osc.force(), "x"), _waves(osc.forcing(), "t")
     if force is None or forcing is None or sign_of(add(forcing[0], negate(force[0]))) < 0:

@@ -21,6 +21,7 @@ import numpy as np
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Name, add, evaluate, multiply, number, substitute
 from singimpact.algebra.numbers import as_float
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.escape_polynomial import extremes_of_forcing
 from singimpact.oscillator.model import Oscillator
@@ -56,12 +57,12 @@ def kept_up(osc: Oscillator, v: Array) -> Array:
     >>> kept_up(Oscillator("x + x**3/10 + 1000*xdot", "cos(t)", -1, 1), np.array([0.0, 1.0])).tolist()
     [False, True]
     """
-    fastest = _fastest_kept(osc)
+    fastest = fastest_kept(osc)
     return np.asarray((v > 0) & (v <= fastest))
 
 
 @lru_cache(maxsize=256)
-def _fastest_kept(osc: Oscillator) -> float:
+def fastest_kept(osc: Oscillator) -> float:
     """The largest launch velocity between proved barriers; 0 without any."""
     extremes = extremes_of_forcing(osc)
     if extremes is None:
@@ -115,7 +116,8 @@ def _proved(osc: Oscillator, extremes: tuple[Any, Any], height: float, flat: flo
         first, second = (balls.evaluate(tree, {"z": piece}) for tree in (lower, upper))
         return bool(extremes[0] + first > 0) and bool(extremes[1] + second < 0)
 
-    return _on_pieces(holds, balls, height)
+    with balls_at(SEARCH.bits):
+        return _on_pieces(holds, balls, height)
 
 
 def _on_pieces(holds: Callable[[Any], bool], balls: Balls, height: float) -> bool:

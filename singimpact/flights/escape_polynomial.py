@@ -18,6 +18,7 @@ import numpy as np
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression, Name, Number, Power, Product, Sum, names_in
 from singimpact.algebra.jets import JetSpace
+from singimpact.algebra.precision import balls_at
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
@@ -89,9 +90,10 @@ def _rises(osc: Oscillator, degree: int, least: Any, z: float, u: float) -> bool
     space = JetSpace(("x", "xdot"), max(degree, 1), balls)
     smaller = Fraction(1) - Fraction(PROOF.part)
     x, xdot = space.generators()
-    x = x + space.constant(balls.evaluate(osc.clearance, {}) + balls.rational(Fraction(z) * smaller))
-    xdot = xdot + space.constant(balls.rational(Fraction(u) * smaller))
-    terms = dict(space.evaluate(osc.force(), {"x": x, "xdot": xdot}).terms)
+    with balls_at(balls.bits):
+        x = x + space.constant(balls.evaluate(osc.clearance, {}) + balls.rational(Fraction(z) * smaller))
+        xdot = xdot + space.constant(balls.rational(Fraction(u) * smaller))
+        terms = dict(space.evaluate(osc.force(), {"x": x, "xdot": xdot}).terms)
     constant = terms.pop((0, 0), balls.rational(Fraction(0)))
     return bool(constant < least and all(value <= 0 for value in terms.values()))
 
@@ -106,8 +108,10 @@ def extremes_of_forcing(osc: Oscillator) -> tuple[Any, Any] | None:
         return None
     else:
         period = balls.evaluate(osc.period, {})
-        ends = [period * piece / PROOF.pieces for piece in range(PROOF.pieces + 1)]
-        found = [balls.evaluate(forcing, {"t": low.union(high)}) for low, high in pairwise(ends)]
+        with balls_at(balls.bits):
+            ends = [period * piece / PROOF.pieces for piece in range(PROOF.pieces + 1)]
+            found = [balls.evaluate(forcing, {"t": low.union(high)}) for low, high in pairwise(ends)]
     if not all(value.is_finite() for value in found):
         return None
-    return min(value.lower() for value in found), max(value.upper() for value in found)
+    with balls_at(balls.bits):
+        return min(value.lower() for value in found), max(value.upper() for value in found)

@@ -39,6 +39,8 @@ class Limits:
     traced : steps kept for the errors of a flight; longer flights, one of 10^4, are flown again with more room.
     judging : tolerance of the steps that carry errors and conditions along.
     margin : times the estimate of the error of a Taylor flow: of 720 hits the true error was at most 1.3 times it.
+    interpreted_linear, interpreted_taylor : seconds of a flight whose kernels are interpreted.
+    patience : seconds of interpreted iterations after which this process compiles them itself.
     guard : digits beyond those asked for; half of the digits go in a square root at a graze, so agreement of two
         runs is what is trusted, not this number.
     """
@@ -48,7 +50,7 @@ class Limits:
     horizon_radians: float = 2e5
     longest_radians: float = 1e7
     safety: float = 8.0
-    likely: float = 16.0
+    likely: float = 4.0
     rough: tuple[float, float] = (1e-14, 1e-13)
     likely_steps: float = 1.0
     likely_phase: float = 1 / 64
@@ -65,6 +67,9 @@ class Limits:
     judging: float = 1e-12
     margin: float = 2.5
     guard: int = 15
+    interpreted_linear: float = 8e-5
+    interpreted_taylor: float = 3e-3
+    patience: float = 3.0
 
 
 LIMITS = Limits()

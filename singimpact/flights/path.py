@@ -9,13 +9,14 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, float_array
 from singimpact.flights import counted
-from singimpact.flights.flow.closed_arrays import places
-from singimpact.flights.in_doubles import EPSILON, doubles
-from singimpact.flights.kernel import kernel_of, ready
-from singimpact.flights.launch import States, launches
-from singimpact.flights.limits import LIMITS, degree_for
+from singimpact.flights.closed_arrays import places
+from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.model_numbers import forcing_phases, numbers_of
+from singimpact.flights.states import States
+from singimpact.flights.undecided import near
 from singimpact.inputs import InputError
 from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 
 
@@ -70,26 +71,12 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any
     [array([[2., 1.]]), array([[-1.,  2.]])]
     """
     counted.add(len(times))
-    kernel = kernel_of(osc)
-    if kernel.form is not None:
+    if linear_form(osc) is not None:
         counts = [at.size for at in times]
-        launch = np.repeat(launches(osc, kernel, tau), counts, axis=0)
-        speed, push = np.repeat(v, counts), np.repeat(acceleration(osc, tau), counts)
-        both = places(launch, speed, push, np.concatenate([*times, np.zeros(0)]), doubles(kernel))
+        launch = np.repeat(forcing_phases(osc, tau), counts, axis=0)
+        speed, forces = np.repeat(v, counts), np.repeat(acceleration(osc, tau), counts)
+        both = places(launch, speed, forces, np.concatenate([*times, np.zeros(0)]), numbers_of(osc)[0])
         return np.split(both, np.cumsum(counts))[:-1]
-    return _stepped(osc, tau, v, times)
-
-
-def _stepped(
-    osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any, Any]]
-) -> list[np.ndarray[Any, Any]]:  # fmt: skip
-    """`many_paths` in Taylor steps."""
-    kernel, order = kernel_of(osc), degree_for(EPSILON)
-    follow = ready(kernel, "follow", len(times))
-    numbers, X, W = doubles(kernel), np.zeros(order + 2), np.zeros((kernel.rows, order + 2))
-    found = []
-    for launch, speed, at in zip(launches(osc, kernel, tau), v.tolist(), times, strict=True):
-        out = np.full((at.size, 2), np.nan)
-        follow(launch, speed, at, order, LIMITS.safety * EPSILON, numbers, X, W, out)
-        found.append(out)
-    return found
+    model = compiled_model(osc)
+    starts = near(osc, model, np.asarray(tau, dtype=float))
+    return [model.follow(start, speed, at) for start, speed, at in zip(starts.tolist(), v.tolist(), times, strict=True)]

@@ -10,9 +10,9 @@ from typing import Any
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.univariate import precision_of
-from singimpact.flights.flow.balls import linear_flow
-from singimpact.flights.launch import States
+from singimpact.flights.balls import linear_flow
 from singimpact.flights.limits import LIMITS
+from singimpact.flights.states import States
 from singimpact.oscillator.model import Oscillator
 
 

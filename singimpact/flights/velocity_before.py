@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.expressions import Expression, number
+from singimpact.algebra.numbers import as_float, as_mpf
+from singimpact.algebra.precision import digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
-from singimpact.flights.tangent import rebound_slope
+from singimpact.flights.derivative import rebound_slope
 from singimpact.oscillator.model import Oscillator
 
 DOUBLINGS = 64
@@ -66,20 +69,18 @@ def speed_before(osc: Oscillator, v: Array) -> Array:
 
 def _decided(osc: Oscillator, v: Array, speed: Array) -> Array:
     """Where rho is nearly flat its rounding decides the speed, or whether there is one: asked with more digits."""
-    import mpmath
-
     _, slope = _rebound(osc, speed)
     with np.errstate(all="ignore"):
         flat = (speed > 0) & ~(np.spacing(v) < FLAT * np.spacing(speed) * slope)
     for index in np.argwhere(flat).tolist():
-        sharper = sharpened(osc, mpmath.mpf(float(v[tuple(index)])), float(speed[tuple(index)]), DIGITS)
+        sharper = sharpened(osc, number(Fraction(float(v[tuple(index)]))), float(speed[tuple(index)]), DIGITS)
         speed[tuple(index)] = np.nan if sharper is None else float(sharper)
     return speed
 
 
 def _rebound(osc: Oscillator, speed: Array) -> tuple[Array, Array]:
     """rho(-U), and its slope along U."""
-    from singimpact.flights.hits import rebound
+    from singimpact.flights.impact_map import rebound
 
     with np.errstate(all="ignore"):
         return rebound(osc, -speed), -np.asarray(rebound_slope(osc, -speed), dtype=float)
@@ -94,26 +95,24 @@ def _still_below(value: Array, slope: Array, v: Array) -> Array:
     return np.asarray((value < v) & (slope > 0) & np.isfinite(slope))
 
 
-def sharpened(osc: Oscillator, v: Any, speed: float, digits: int) -> Any:
+def sharpened(osc: Oscillator, v: Expression, speed: float, digits: int) -> Any:
     """U to `digits` digits by Newton's method from a double; None where it does not settle.
 
     Parameters
     ----------
-    v : a number of mpmath, to more digits than asked for. speed : U as a double.
+    v : an exact number. speed : U as a double.
     """
-    import mpmath
+    from singimpact.flights import in_digits
 
-    from singimpact.flights import manydigits
-
-    with mpmath.workdps(2 * digits + SPARE):
-        place, ring = mpmath.mpf(-speed), Multiprecision(mpmath.mp)
-        small = mpmath.mpf(10) ** (-digits - 5)
+    with digits_at(2 * digits + SPARE) as mp:
+        place, after, ring = mp.mpf(-speed), as_mpf(v, mp), Multiprecision(mp)
+        small = mp.mpf(10) ** (-digits - 5)
         for _ in range(4 * digits + STEPS):
             slope = rebound_slope(osc, place, ring)
             if not slope < 0:
                 return None
-            change = (manydigits.rebound(osc, place) - v) / slope
+            change = (in_digits.rebound(osc, place, mp) - after) / slope
             place -= change
             if abs(change) <= small * abs(place):
-                return -place
+                return for_user(-place)
     return None

@@ -13,6 +13,7 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number, substitute
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.taylor import NotSmooth
 from singimpact.oscillator.model import Oscillator
@@ -107,10 +108,8 @@ def around(osc: Oscillator, start: Any, order: int, balls: Balls) -> Any:
     >>> around(Oscillator("x", "sin(t)", 0, 1), balls.interval(Fraction(0), Fraction(1)), 1, balls).contains(1)
     True
     """
-    import flint
-
     force = balls.evaluate(resting_force(osc), {})
-    with flint.ctx.workprec(balls.bits):
+    with balls_at(balls.bits):
         if not order:
             return balls.evaluate(_forcing_tree(osc)[0], {"t": start}) - force
         space = JetSpace(("s",), order, balls)

@@ -15,9 +15,9 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import TangencyPoint, tangency_points
-from singimpact.flights.hits import first_hit
-from singimpact.flights.inverse import backwards
-from singimpact.flights.launch import fastest_rate
+from singimpact.flights.impact_map import first_hit
+from singimpact.flights.inverse_map import backwards
+from singimpact.flights.model_numbers import fastest_rate
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status

@@ -10,6 +10,7 @@ from typing import Any
 
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.certified import Certified, as_certified
+from singimpact.algebra.precision import digits_at, for_user
 from singimpact.algebra.univariate import precision_of
 from singimpact.inputs import InputError, refuse
 
@@ -61,11 +62,9 @@ def all_digits(found: Mapping[int, Any], digits: int) -> dict[int, Any]:
 
 def as_digits(ball: Any, digits: int) -> Any:
     """A ball as an mpmath number with this many digits; zero when it holds zero, for then it is far below them."""
-    import mpmath
-
-    with mpmath.workdps(digits + 3):
+    with digits_at(digits + 3) as mp:
         value = Fraction(0) if ball.contains(0) else as_rational(ball)
-        return mpmath.mpf(value.numerator) / value.denominator
+        return for_user(mp.mpf(value.numerator) / value.denominator)
 
 
 def as_double(ball: Any) -> float:

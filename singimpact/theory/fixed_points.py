@@ -16,6 +16,7 @@ from singimpact.algebra.balls import BITS_A_DIGIT, Balls
 from singimpact.algebra.certified import Certified as Certified
 from singimpact.algebra.certified import as_certified
 from singimpact.algebra.numbers import as_fraction, constant
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.roots import real_roots
 from singimpact.contact.contact import contact_order
 from singimpact.inputs import InputError, refuse
@@ -238,11 +239,9 @@ def _least_positive(coefficients: list[Fraction], balls: Balls) -> Any:
 
 def _certified(enclosures: Any, digits: int) -> dict[str, Certified]:
     """Balls at growing precision until each is narrow enough."""
-    import flint
-
     bits = int(digits * BITS_A_DIGIT) + GUARD_BITS
     while True:
-        with flint.ctx.workprec(bits):
+        with balls_at(bits):
             found = enclosures(Balls(bits))
         results = {name: as_certified(ball, digits) for name, ball in found.items()}
         if all(result is not None for result in results.values()):

@@ -9,12 +9,12 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from math import factorial
 from typing import Any
 
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import tree_of
+from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import SYMBOLIC, to_sympy
 from singimpact.algebra.symbols import SymbolRing
 from singimpact.contact.contact import Contact, acceleration_jet, derivative_name, force_jet
@@ -54,7 +54,7 @@ class LetteredModel:
             if TAKEN.fullmatch(name):
                 raise refuse("keep", name, "a parameter whose name is no letter of the series: give it another name")
 
-    @cached_property
+    @kept_property
     def _tau(self) -> Any:
         return None if self.tau is None else to_sympy(tree_of(self.tau, self.keep, "tau"))
 

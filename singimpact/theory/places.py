@@ -10,6 +10,7 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float, as_fraction, compare, constant
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES, EXACT, Doubles
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet
@@ -200,9 +201,7 @@ def multiplier(j: int, r: Expression, bits: int | None = None) -> Any:
         raise refuse("restitution", r, "a number r < 1 here: at r = 1 no curve is invariant and attracting")
     if bits is None:
         return _rational_multiplier(j, as_fraction(r))
-    import flint
-
-    with flint.ctx.workprec(bits):
+    with balls_at(bits):
         return _multiplier_ball(j, evaluate(r, {}, Balls(bits)), bits)
 
 

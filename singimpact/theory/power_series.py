@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from math import inf
 from typing import Any
 
 from singimpact.algebra.certified import Certified
+from singimpact.algebra.precision import kept_property
 from singimpact.inputs import InputError, refuse
 
 
@@ -79,7 +79,7 @@ class PowerSeries:
             total = total * value + known.get(power, 0)
         return total
 
-    @cached_property
+    @kept_property
     def _numbers(self) -> Mapping[int, Any]:
         return self.coefficients if self.numbers is None else self.numbers()
 

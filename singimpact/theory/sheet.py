@@ -13,10 +13,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any
 
 from singimpact.algebra.jets import Jet, JetSpace
+from singimpact.algebra.precision import kept_property
 from singimpact.contact.contact import Contact
 from singimpact.theory.involution import after_iota
 
@@ -35,7 +36,7 @@ class Sheet:
     order: int
     v: Jet
 
-    @cached_property
+    @kept_property
     def xdot(self) -> Jet:
         """Impact velocity of the same flight: v_c after the involution [e:phi]."""
         return after_iota(self.v)

@@ -7,7 +7,7 @@ import pytest
 
 BANNED = {"series", "limit", "simplify", "solve", "integrate"}
 OTHERS = {"np", "numpy", "scipy", "flint"}
-LONGEST, LONGEST_FUNCTION = 600, 60
+LONGEST, MOST_PARAMETERS, MOST_BRANCHES = 600, 8, 24
 IMPORTLIB_HOMES = ("__init__.py", "cli/")
 NAMELESS = {"utils.py", "helpers.py", "core.py", "common.py", "misc.py"}
 
@@ -92,16 +92,34 @@ def test_no_file_is_too_long(clone):
     assert long == {}
 
 
-def lengths(text):
-    """Lines of each function."""
-    return {node.name: node.end_lineno - node.lineno + 1 for node in ast.walk(ast.parse(text))
-            if isinstance(node, ast.FunctionDef)}  # fmt: skip
+def test_no_function_asks_a_reader_to_hold_too_much(clone):
+    """At most 8 parameters, and a bounded number of branches; click hands options to callbacks, one a parameter."""
+    burdens = {(path, name): found for path, text in sources(clone).items() for name, found in burden(text).items()}
+    assert {where for where, (many, _) in burdens.items() if many > MOST_PARAMETERS} == set()
+    assert {where for where, (_, branches) in burdens.items() if branches > MOST_BRANCHES} == set()
+    assert burden("def f(a, b, c, d, e, f, g, *, h, i):\n    pass\n")["f"][0] == 9
+    assert burden("def f(x):\n" + "    if x: x += 1\n" * 30)["f"][1] > MOST_BRANCHES
 
 
-def test_no_function_is_too_long(clone):
-    found = {(path, name): count for path, text in sources(clone).items() for name, count in lengths(text).items()}
-    assert {where: count for where, count in found.items() if count > LONGEST_FUNCTION} == {}
-    assert lengths("def f(x):\n" + "    x += 1\n" * 70)["f"] > LONGEST_FUNCTION
+def burden(text):
+    """Parameters and branches of every function that is no click callback."""
+    nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)]
+    return {node.name: (parameters(node), branches(node)) for node in nodes if not called_back(node)}
+
+
+def parameters(node):
+    given = node.args.posonlyargs + node.args.args + node.args.kwonlyargs
+    return len(given) - (bool(given) and given[0].arg in ("self", "cls"))
+
+
+def branches(node):
+    kinds = (ast.If, ast.For, ast.While, ast.IfExp, ast.ExceptHandler, ast.With, ast.comprehension, ast.BoolOp,
+             ast.match_case)  # fmt: skip
+    return 1 + sum(isinstance(part, kinds) for part in ast.walk(node))
+
+
+def called_back(node):
+    return any("click" in ast.unparse(each) or "command" in ast.unparse(each) for each in node.decorator_list)
 
 
 def test_every_room_says_what_lives_there(clone):

@@ -10,9 +10,10 @@ import pytest
 
 from singimpact.algebra.parsing import parse
 from singimpact.codegen import radii
-from singimpact.codegen.kernels import FUNCTIONS, plain
+from singimpact.codegen.over_lists import FUNCTIONS
 from singimpact.codegen.recurrence import recurrence
-from singimpact.flights.kernel import RADII, source
+from singimpact.flights.bind import over_floats
+from singimpact.flights.kernels.state import Work
 
 CIRCLE = np.exp(2j * np.pi * np.arange(64) / 64)
 
@@ -100,8 +101,7 @@ FORCES = [
 def test_the_bound_of_a_model_holds(force) -> None:
     """|F(s) - F(0)| on circles, with F = g - f along the Taylor polynomial, from f and g as they are defined."""
     made = recurrence(parse(force, ["x", "xdot"]), parse("cos(2*t) + exp(3*(cos(t) - 1))", ["t"]))
-    text = "\n\n".join(["from math import inf, nan", made.source, *(source(part) for part in RADII)])
-    space = plain(text, {name: getattr(math, name) for name in FUNCTIONS})
+    space = over_floats(made.source)
     from singimpact.algebra.numbers import as_float
 
     rng, order, tightest = np.random.default_rng(4), 16, 0.0
@@ -109,7 +109,7 @@ def test_the_bound_of_a_model_holds(force) -> None:
         c, tau, u = (float(rng.uniform(-1, 1)) for _ in range(3))
         p = [c, *(as_float(tree) for tree in made.constants)]
         X, W = [0.0] * (order + 2), [[0.0] * (order + 2) for _ in range(made.rows)]
-        space["coefficients"]([tau], 0.0, 0.0, u, 0.0, order, p, X, W)
+        space["coefficients"]([tau], 0.0, 0.0, u, 0.0, order, p, Work(X, W, []))
         R = float(10 ** rng.uniform(-2, 0))
         bound, suspect = space["disc"](X, W, order, R, p)
         assert (bound < math.inf) == (suspect == 0)
@@ -131,11 +131,11 @@ def test_the_bound_of_a_model_holds(force) -> None:
 
 def test_logistic_and_softplus_do_not_overflow() -> None:
     made = recurrence(parse("1/(1 + exp(900*x)) + log(1 + exp(900*x))", ["x"]), parse("0*t", ["t"]))
-    space = plain(made.source, {name: getattr(math, name) for name in FUNCTIONS})
+    space = over_floats(made.source)
     from singimpact.algebra.numbers import as_float
 
     for x, pull in ((1.0, 900.0), (-1.0, 1.0)):
         X, W = [0.0] * 10, [[0.0] * 10 for _ in range(made.rows)]
-        space["coefficients"]([0.0], 0.0, 0.0, 0.0, 0.0, 8, [x, *map(as_float, made.constants)], X, W)
+        space["coefficients"]([0.0], 0.0, 0.0, 0.0, 0.0, 8, [x, *map(as_float, made.constants)], Work(X, W, []))
         assert -2 * X[2] == pytest.approx(pull, rel=1e-14)
         assert all(math.isfinite(value) for value in X)

@@ -10,6 +10,7 @@ from singimpact.dynamics.attractors import CHATTER, OTHER, SETTINGS, caught, new
 from singimpact.dynamics.basins import basins
 from singimpact.dynamics.bifurcation import bifurcation
 from singimpact.dynamics.long_run import Future, chaotic, settled
+from singimpact.flights.orbits import iterate
 from singimpact.inputs import InputError
 from singimpact.scenes.basins import draw_basins, draw_bifurcation, draw_first_chatter
 from singimpact.status import Status
@@ -143,12 +144,11 @@ def test_refusals(ask, told):
 
 def to_the_end(model, size, v):
     """Classes of a grid by flying every state as long as the slowest chatter takes, without a look in between."""
-    from singimpact.flights.grids import after
     from singimpact.oscillator.acceleration import acceleration
 
     found = basins(model, v=(0, v), size=size)
     tau, speed = (part.ravel() for part in np.meshgrid(found.tau, found.v))
-    ends = after(model, tau, speed, 90)
+    ends = iterate(model, tau, speed, 90)
     first = (ends.v < 1e-7 * v) & (acceleration(model, ends.tau) < 0)
     codes = np.zeros(tau.size, dtype=int)
     flying = np.flatnonzero(~first & (ends.status == 0) & (ends.v > 0))
@@ -167,16 +167,15 @@ def test_orbits_decided_early_are_those_decided_late(force, forcing, r):
 
 
 def test_an_attractor_catches_only_what_comes_in():
-    from singimpact.flights.grids import after
 
     model = si.ImpactOscillator("x", "cos(2*t)", "0.3", "1/2")
-    ends = after(model, np.array([0.3]), np.array([1.5]), 60)
+    ends = iterate(model, np.array([0.3]), np.array([1.5]), 60)
     (attractor,) = new_attractors(model, ends.tau, ends.v, 2.0)
     assert attractor.code == 1001
     assert SETTINGS.close <= attractor.catch <= SETTINGS.catch
     place = attractor.tau[0] + 0.99 * attractor.catch * np.pi * np.array([1, -1, 0])
     speed = attractor.v[0] + 0.99 * attractor.catch * 2.0 * np.array([1, -1, 0])
     assert (caught([attractor], model, place, speed, 2.0) == 0).all()
-    home = after(model, place, speed, 200)
+    home = iterate(model, place, speed, 200)
     assert np.abs(home.v - attractor.v[0]).max() < 1e-9
     assert (caught([attractor], model, place + 0.5, speed, 2.0) == -1).all()

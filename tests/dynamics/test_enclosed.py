@@ -10,8 +10,8 @@ from singimpact.algebra.certified import Certified
 from singimpact.bench.problems import values
 from singimpact.dynamics import chatter, enclosed
 from singimpact.dynamics.threshold import threshold
-from singimpact.flights.flow.balls import LinearFlow
-from singimpact.flights.launch import States
+from singimpact.flights.balls import LinearFlow
+from singimpact.flights.states import States
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.inputs import InputError
 from singimpact.status import Status

@@ -7,7 +7,7 @@ import pytest
 import singimpact as si
 from singimpact.dynamics.attractors import CHATTER, OTHER
 from singimpact.dynamics.chatter import ENDING, _Flown
-from singimpact.flights.launch import States
+from singimpact.flights.states import States
 
 EPSILON = 2.0**-52
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from singimpact.codegen.kernels import plain
-from singimpact.flights.flow.closed_arrays import places
-from singimpact.flights.in_doubles import doubles
-from singimpact.flights.kernel import kernel_of
-from singimpact.flights.launch import launches
+from singimpact.algebra.numbers import as_float
+from singimpact.flights.bind import over_floats
+from singimpact.flights.closed_arrays import places
+from singimpact.flights.model_numbers import forcing_phases, linear_numbers, numbers_of
 from singimpact.flights.path import path
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -26,30 +25,25 @@ MODELS = {
 
 @pytest.mark.parametrize("name", MODELS)
 def test_as_the_kernel_has_it(name):
-    import cmath
-    import math
-
     model = Oscillator(*MODELS[name], "0.3", "1/2")
-    kernel, rng = kernel_of(model), np.random.default_rng(2)
-    p = doubles(kernel)
+    rng = np.random.default_rng(2)
+    p = numbers_of(model)[0]
     tau, v, t = rng.uniform(0, 6, 80), rng.uniform(0, 1, 80), 10 ** rng.uniform(-5, 1, 80)
-    launch = launches(model, kernel, tau)
-    space = plain(kernel.text, {name: getattr(math, name) for name in ("sin", "cos", "exp")})
-    space["complex_sqrt"] = cmath.sqrt
+    launch = forcing_phases(model, tau)
+    space, numbers = over_floats(), linear_numbers(model, as_float)
     found = places(launch, v, acceleration(model, tau), t, p)
     for row, start, speed, time in zip(found, launch, v, t, strict=True):
-        z, u, _ = space["restart"](start.tolist(), float(speed), float(time), 0.0, 0.0, 0.0, 2.0**-52, p.tolist())
+        z, u, _ = space["restart"](start.tolist(), float(speed), float(time), 0.0, 0.0, 0.0, 2.0**-52, numbers)
         assert abs(row[0] - z) <= 2e-14 * min(time, 1) * (1 + time)
         assert abs(row[1] - u) <= 2e-14 * (1 + time)
 
 
 def test_there_and_back():
     model = Oscillator("x + 0.3*xdot", "cos(14*t/5)", "0.3", "1/2")
-    kernel = kernel_of(model)
     tau, v, t = np.array([0.4]), np.array([0.7]), np.array([1.3])
     h = 1e-4
-    launch, push = launches(model, kernel, tau), acceleration(model, tau)
-    before, here, after = (places(launch, v, push, t + s, doubles(kernel))[0] for s in (-h, 0, h))
+    launch, push = forcing_phases(model, tau), acceleration(model, tau)
+    before, here, after = (places(launch, v, push, t + s, numbers_of(model)[0])[0] for s in (-h, 0, h))
     bend = (after[1] - before[1]) / (2 * h)
     pull = np.cos(2.8 * 1.7) - (here[0] + 0.3) - 0.3 * here[1]
     assert bend == pytest.approx(pull, abs=1e-6)

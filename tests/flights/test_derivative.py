@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from singimpact.flights.hits import derivative
+from singimpact.flights.derivative import derivative
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Status
 

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from singimpact.bench.problems import states
-from singimpact.flights.grids import after
-from singimpact.flights.hits import impact_map
-from singimpact.flights.sequences import sequence
+from singimpact.flights.impact_map import impact_map
+from singimpact.flights.orbits import iterate, orbit_segment
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
 UNCOMPILED = """
@@ -33,7 +32,7 @@ MODELS = [linear("2.8", "-0.3", "0.8"), linear("1.3", "0.1", "0.6", damping="0.3
 @pytest.mark.parametrize("model", MODELS)
 def test_lanes_and_chains_follow_the_map(model: ImpactOscillator) -> None:
     tau, v = (part.ravel() for part in np.meshgrid(np.linspace(0, 3, 9), np.geomspace(1e-6, 2, 7)))
-    ends, step = after(model, tau, v, 1), model.impact_map(tau, v)
+    ends, step = iterate(model, tau, v, 1), model.impact_map(tau, v)
     hit = step.status == 0
     assert np.array_equal(ends.status == 0, hit)
     # one flight from near the tangency comes back at a graze: its v' keeps half of the digits of the launch
@@ -42,7 +41,7 @@ def test_lanes_and_chains_follow_the_map(model: ImpactOscillator) -> None:
     assert ends.tau[hit] == pytest.approx(step.tau[hit], rel=1e-12)
     assert ends.v[hit] == pytest.approx(step.v[hit], rel=1e-9)
     for index in np.flatnonzero(hit)[::13]:
-        found = sequence(model, tau[index], v[index], 1)
+        found = orbit_segment(model, tau[index], v[index], 1)
         assert found.tau[0] == pytest.approx(step.tau[index], rel=1e-14)
 
 

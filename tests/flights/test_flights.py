@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from witness import integrate
 
-from singimpact.flights.flow.witness import integrate
-from singimpact.flights.hits import first_hit
+from singimpact.flights.impact_map import first_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear, universal
 from singimpact.inputs import InputError
 from singimpact.status import Status
@@ -228,9 +228,9 @@ def test_tolerance_makes_a_shorter_kernel_that_is_as_good_as_it_says() -> None:
 def test_what_is_left_open_shows_how_near_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     from dataclasses import replace
 
-    from singimpact.flights import hits
+    from singimpact.flights import undecided
 
-    monkeypatch.setattr(hits, "LIMITS", replace(hits.LIMITS, settled=0))
+    monkeypatch.setattr(undecided, "LIMITS", replace(undecided.LIMITS, settled=0))
     step = ImpactOscillator("0", "6*t - 12", 0, "0.5").impact_map(0, [9.0, 1.0])
     assert step.status.tolist() == [Status.unresolved, Status.hit]
     assert np.isnan([step.flight_time[0], step.velocity[0], step.tau[0], step.v[0]]).all()

@@ -6,7 +6,7 @@ import pytest
 
 import singimpact as si
 from singimpact.flights.escape import never_returns
-from singimpact.flights.first_root import first_root
+from singimpact.flights.kernels.roots import first_root
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from witness import integrate
 
 import singimpact as si
-from singimpact.flights import kernel
-from singimpact.flights.flow.witness import integrate
+from singimpact.flights import compiled_model, model_numbers
 from singimpact.status import Cause, Status
 
 LAYERS = [  # f, g, tau, v, flight time by a Runge-Kutta method with steps of 0.002
@@ -51,7 +51,7 @@ def test_the_usual_step_rule_jumps_over_them() -> None:
         off = [abs(si.ImpactOscillator(f, g, 0, "1/2").first_hit(tau, v).flight_time - time) > 1e-5
                for f, g, tau, v, time in LAYERS]  # fmt: skip
     assert sum(off) >= 4
-    assert kernel.STEPS[-2].__module__ == "singimpact.flights.flow.taylor"
+    assert compiled_model.recurrence_of is model_numbers.recurrence_of
 
 
 def test_the_derivative_is_that_of_the_flight() -> None:

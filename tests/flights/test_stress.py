@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from singimpact.flights.hits import derivative
+from singimpact.flights.derivative import derivative
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Status
 

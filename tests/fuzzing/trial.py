@@ -79,9 +79,10 @@ class Trial:
     def __init__(self) -> None:
         self.place = Path(tempfile.mkdtemp(prefix="fuzz-"))
         self.watch = Watch()
-        from singimpact.codegen import interpreted
+        from singimpact.flights.bind import Emitted
+        from singimpact.flights.machine import machine_of
 
-        patience, interpreted.PATIENCE = interpreted.PATIENCE, interpreted.Patience(0, 0)  # compile what all share
+        machine_of(Emitted()).compile_here("linear_entry")  # what all linear models share
         for kind, given in USUAL.items():
             self._run(kind, given, True)
         for name in (
@@ -93,7 +94,6 @@ class Trial:
             "cite",
         ):  # what they import is no input's
             self._run("command", [name, *USUAL_OPTIONS.get(name, USUAL["command"][1:-2])], True)
-        interpreted.PATIENCE = patience
         used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_AS, (used + BOUNDS.memory, used + BOUNDS.memory))
         signal.signal(signal.SIGPROF, _too_long)

@@ -16,7 +16,7 @@ import numpy as np
 from singimpact.algebra.rings import EXACT
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import lambdified
-from singimpact.codegen.kernels import plain
+from singimpact.codegen.over_lists import plain
 from singimpact.contact.contact import Contact
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.theory.formulas import v_c_on_arrays

@@ -13,7 +13,6 @@ import numpy as np
 
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import contours
-from singimpact.codegen.interpreted import forget
 from singimpact.impact_oscillator import linear
 from singimpact.paper.figures import FIGURES, figure
 
@@ -33,7 +32,6 @@ def cases(effort: Effort) -> Iterator[Case]:
         made = [Method("singimpact", "first time", partial(_whole, number), first=True)]
         if not effort.quick:
             made.append(Method("singimpact, again", "numbers kept", partial(_whole, number)))
-        forget()  # the kernels that this process has compiled
         yield Case(f"figure {number}", made)
 
 

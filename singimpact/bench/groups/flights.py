@@ -11,13 +11,8 @@ import numpy as np
 from singimpact.bench.measuring import EPSILON, Case, Effort, Method, with_peers
 from singimpact.bench.peers import many_digits, runge_kutta, taylor_events
 from singimpact.bench.problems import FAMILIES, REGIMES, Problem, states
-from singimpact.codegen.kernels import compiled
-from singimpact.flights.in_doubles import doubles
-from singimpact.flights.kernel import kernel_of
-from singimpact.flights.launch import States, launches
-from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.tables import STRIDES, table_of
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.flights.compiled_model import Allowance, allowed
+from singimpact.flights.states import States
 
 TOLERANCES = (1e-6, 1e-9, 1e-12)
 WIDE = 10  # states of an array; some flights take 15 ms each, for doubles cannot tell their digits
@@ -85,21 +80,15 @@ def _looped(problems: list[Problem], copies: int, tolerance: float) -> Callable[
 def _loop(problem: Problem, copies: int, tolerance: float) -> Callable[[], float]:
     """The compiled loop over equal states, as an orbit or a grid runs it: what a flight itself costs."""
     osc = problem.model()
-    kernel, given = kernel_of(osc), States.read(np.full(copies, problem.tau), problem.v)
-    p, order = doubles(kernel), degree_for(tolerance)
-    start = (launches(osc, kernel, given.tau), given.v.copy(), np.ones(copies, dtype=np.int64),
-             acceleration(osc, given.tau))  # fmt: skip
-    work = np.zeros(order + 2), np.zeros((kernel.rows, order + 2)), np.zeros(order + 2)
-    status, numbers = np.empty(copies, dtype=np.int8), np.empty((copies, 4))
-    space, table = compiled(kernel.text, kernel.names), table_of(kernel, p)
-    tail: tuple[Any, ...] = (order, 1000.0, LIMITS.longest, LIMITS.safety * tolerance, p)
-    loop = space["run"]
-    if table is not None:
-        loop, tail = space["stride_all"], (STRIDES.order, *tail[:2], *tail[3:], table.step, table.rows, table.bound)
+    allowance = Allowance(1000.0, max(tolerance, EPSILON))
+    model = allowed(osc, allowance)
+    model.machine.compile_here(model.main)
+    given = States.read(np.full(copies, problem.tau), problem.v)
+    tau, v = given.tau, given.v.copy()
 
     def run() -> float:
-        loop(*start, *tail, *work, status, numbers)
-        return float(numbers[0, 0]) if status[0] == 0 else float("nan")
+        codes, rows = model.hits(tau, v)
+        return float(rows[0, 0]) if codes[0] == 0 else float("nan")
 
     return run
 

@@ -11,7 +11,7 @@ import numpy as np
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import taylor_events
 from singimpact.bench.problems import Problem
-from singimpact.flights.grids import after
+from singimpact.flights.orbits import iterate
 from singimpact.impact_oscillator import linear
 
 START = Problem("linear", "generic", 2.8, 0.0, 0.8, 0.0, 0.0, "0", "0")
@@ -26,7 +26,7 @@ def cases(effort: Effort) -> Iterator[Case]:
     tau, v = (part.ravel() for part in np.meshgrid(np.linspace(0, 2.2, side), np.linspace(0.05, 2, side)))
     chosen = np.linspace(0, tau.size - 1, FEW).astype(int)
     own = [
-        Method("kernel, lanes", f"{tau.size} states, {impacts} impacts", lambda: [after(osc, tau, v, impacts)],
+        Method("kernel, lanes", f"{tau.size} states, {impacts} impacts", lambda: [iterate(osc, tau, v, impacts)],
                problems=tau.size * impacts),
         Method("singimpact, an array", f"{tau.size} states, {FEW_MAPS} impacts", lambda: _mapped(osc, tau, v),
                problems=tau.size * FEW_MAPS),

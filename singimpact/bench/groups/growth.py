@@ -20,7 +20,7 @@ from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import many_digits, runge_kutta, taylor_events
 from singimpact.bench.problems import Problem
 from singimpact.contact.contact import Contact
-from singimpact.flights.sequences import sequence
+from singimpact.flights.orbits import orbit_segment
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.theory.fixed_points import tangency
 from singimpact.theory.invariant_curve import invariant_curve
@@ -130,7 +130,7 @@ def _impacts(effort: Effort) -> Case:
         lambda: _line("scipy DOP853, 1e-9", few[:3], partial(_chain, runge_kutta.stepper("linear", 1e-9))),
         lambda: _line("heyoka, 1e-9", sizes[:3], partial(_chain, taylor_events.stepper("linear", 1e-9))),
     )
-    return _grown("impacts of an orbit", "kernel", sizes, lambda n: sequence(endless, 0.0, 1.0, n), methods,
+    return _grown("impacts of an orbit", "kernel", sizes, lambda n: orbit_segment(endless, 0.0, 1.0, n), methods,
                   skipped=skipped)  # fmt: skip
 
 

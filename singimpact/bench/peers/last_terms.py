@@ -7,11 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
+from singimpact.codegen.recurrence import Recurrence
+from singimpact.oscillator.model import Oscillator
 
-def step_size(X: Any, W: Any, z: Any, n: int, longest: Any, ulp: Any, p: Any, pace: Any) -> Any:  # noqa: ARG001
-    """The step on which the last two terms are below ulp/8 times the first ones, at most `longest`."""
+RULE = """
+def step_size_of_discs(X, W, z, n, longest, ulp, p, pace):
     h = longest
     for _ in range(2):
         size = abs(z) + h * (abs(X[1]) + h * (abs(X[2]) + h * abs(X[3])))
@@ -25,25 +28,35 @@ def step_size(X: Any, W: Any, z: Any, n: int, longest: Any, ulp: Any, p: Any, pa
                 if not fit >= h:
                     h = fit
     return h, 17 / 16, pace
+"""
+"""The step on which the last two terms are below ulp/8 times the first ones, at most `longest`."""
 
 
 @contextmanager
 def last_terms() -> Iterator[None]:
     """A block in which flights in Taylor steps take this rule."""
-    from singimpact.flights import kernel
+    from singimpact.flights import compiled_model, in_digits, model_numbers
 
-    usual = kernel.STEPS
-    kernel.STEPS = tuple(step_size if part.__name__ == "step_size" else part for part in usual)  # type: ignore[assignment]
+    usual = model_numbers.recurrence_of
+
+    def ruled(osc: Oscillator) -> Recurrence:
+        flow = usual(osc)
+        return replace(flow, source=f"{flow.source}\n{RULE}")
+
+    rooms: tuple[Any, ...] = (compiled_model, in_digits)
+    for room in rooms:
+        room.recurrence_of = ruled
     _forget()
     try:
         yield
     finally:
-        kernel.STEPS = usual
+        for room in rooms:
+            room.recurrence_of = usual
         _forget()
 
 
 def _forget() -> None:
-    from singimpact.flights import kernel
+    from singimpact.flights import compiled_model
 
-    for cached in (kernel.taylor_kernel, kernel.kernel_of):
-        cached.cache_clear()
+    compiled_model.compiled_model.cache_clear()
+    compiled_model.allowed.cache_clear()

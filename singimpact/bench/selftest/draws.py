@@ -13,7 +13,7 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.bench.selftest.rows import Tally
-from singimpact.flights.carriers import Step
+from singimpact.flights.results import Step
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.oscillator.acceleration import acceleration
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.precision import balls_at, digits_at
 from singimpact.bench.selftest.draws import Flown
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth import enclosed_flight, graded_steps, plain_steps
@@ -172,9 +173,7 @@ def _relative(found: float, true: Any) -> float:
     if hasattr(true, "mid"):
         import flint
 
-        with flint.ctx.workprec(256):
+        with balls_at(256):
             return float(abs(flint.arb(float(found)) / true - 1).mid())
-    import mpmath
-
-    with mpmath.workdps(2 * TRUTHS.wanted):
-        return float(abs(mpmath.mpf(float(found)) / true - 1))
+    with digits_at(2 * TRUTHS.wanted) as mp:
+        return float(abs(mp.mpf(float(found)) / mp.convert(true) - 1))

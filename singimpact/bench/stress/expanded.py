@@ -10,7 +10,7 @@ from typing import Any
 from singimpact import theory
 from singimpact.algebra.rings import EXACT
 from singimpact.bench.stress.judging import DIGITS, Function, Trial, moved, number, powers
-from singimpact.codegen.kernels import plain
+from singimpact.codegen.over_lists import plain
 from singimpact.contact.contact import Contact
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.theory.frozen import sheet_functions

@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.precision import balls_at
 from singimpact.bench.stress import layered
 from singimpact.bench.stress.judging import STEP, Function, Sweep, Trial
 from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch, both
 from singimpact.bench.truth.first_hit import first_hit
-from singimpact.flights.grids import after
+from singimpact.flights.orbits import iterate
 from singimpact.status import Status
 
 SQUARED = 1e-140  # the height of a flight is of the size of v squared, and below 1e-300 doubles lose digits
@@ -68,10 +69,8 @@ def _status(found: Any, right: int) -> tuple[int, int]:
 
 
 def _swept(place: str, judge: Callable[[Launch], Trial | None], points: int) -> Iterator[Trial]:
-    import flint
-
     for launch in both(place, points):
-        with flint.ctx.workprec(launch.bits):
+        with balls_at(launch.bits):
             trial = judge(launch)
         if trial is not None:
             yield trial
@@ -185,7 +184,7 @@ def _orbit(launch: Launch) -> Trial | None:
 
 
 def _lanes(launch: Launch) -> Trial | None:
-    ends = after(launch.model, launch.tau, launch.v, IMPACTS)
+    ends = iterate(launch.model, launch.tau, launch.v, IMPACTS)
     return None if ends.status != 0 else _chained(launch, ends.tau, ends.v)
 
 

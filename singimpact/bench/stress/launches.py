@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from math import acos, pi
 from typing import Any
 
+from singimpact.algebra.precision import balls_at
 from singimpact.bench.stress.judging import powers
 from singimpact.bench.truth.first_hit import first_hit
 from singimpact.bench.truth.motions import Cubic, Linear
@@ -135,11 +136,9 @@ def _swan(family: str, points: int) -> Iterator[Launch]:
 
 def _grazing(family: str, points: int) -> Iterator[Launch]:
     """A flight run backwards from a touch, moved off it."""
-    import flint
-
     for touch in (0.1, 1.0):
         at = Launch(family, clearance=-0.4, tau=touch)
-        with flint.ctx.workprec(BITS):
+        with balls_at(BITS):
             motion = at.motion(-touch, 0.0, -1)
             found = first_hit(motion, 0.0, 60.0) if motion.at(0)[2] > 1e-3 else None
         if found is None:

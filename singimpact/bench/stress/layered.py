@@ -5,11 +5,12 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
+from singimpact.algebra.precision import balls_at
 from singimpact.bench.stress.judging import STEP
 from singimpact.bench.stress.launches import SteepLaunch
 from singimpact.bench.truth import enclosed_flight
 from singimpact.bench.truth.enclosed_flight import EnclosureSettings
-from singimpact.flights.inverse import backwards
+from singimpact.flights.inverse_map import backwards
 
 # differences over 10^-STEP, and differences of these, keep 10 digits
 EXACT = EnclosureSettings(accuracy=1e-60, bits=240)
@@ -54,6 +55,6 @@ def _flown(launch: SteepLaunch, tau: Pair, v: Pair, sign: int) -> Pair:
 
     model = launch.model if sign > 0 else backwards(launch.model)
     state = [flint.arb(mantissa) * flint.arb(2) ** exponent for mantissa, exponent in (tau, v)]
-    with flint.ctx.workprec(launch.bits):
+    with balls_at(launch.bits):
         found = enclosed_flight.first_hit(model, state[0], state[1], launch.horizon, EXACT)
     return found.flight_time, found.velocity

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.bench.truth.programs import Program
 from singimpact.bench.truth.sign_pieces import Refused, first_root
 from singimpact.oscillator.model import Oscillator
@@ -108,15 +109,9 @@ def first_hit(osc: Oscillator, tau: Any, v: Any, horizon: float, settings: Enclo
 
 @contextmanager
 def _precision(bits: int) -> Iterator[None]:
-    """flint at `bits`, with series of any length: by itself it cuts each after ten terms without a word."""
-    import flint
-
-    length, flint.ctx.cap = flint.ctx.cap, 10**6
-    try:
-        with flint.ctx.workprec(bits):
-            yield
-    finally:
-        flint.ctx.cap = length
+    """flint at `bits`, with series of any length."""
+    with series_of_any_length(), balls_at(bits):
+        yield
 
 
 def _bits_over(worst: Any, settings: EnclosureSettings) -> int:
@@ -234,11 +229,11 @@ def _widest_disc(
     equation: Equation, t: Any, X: list[Any], radius: Any, bits: int, size: float
 ) -> tuple[tuple[Any, Any], Any]:
     """(M, step length) on the disc that allows the longest step, and its radius."""
-    from flint import arb, ctx
+    from flint import arb
 
     degree, best, R = len(X) - 1, None, float(radius.mid())
     target = 2.0**-bits * min(size, 1.0) * degree
-    with ctx.workprec(64):
+    with balls_at(64):
         sums = _sums(X)
         for _ in range(120):
             M = _defect(equation, t, X, sums, arb(R))
@@ -278,10 +273,10 @@ def _defect(equation: Equation, t: Any, X: list[Any], sums: tuple[Any, Any, Any]
 
 def _bounded(equation: Equation, X: list[Any], start: tuple[Any, Any], M: Any, R: Any, length: Any, bits: int) -> Step:
     """The step of at most a length on which the bounds p and q are shown to hold."""
-    from flint import arb, arb_mat, ctx
+    from flint import arb, arb_mat
 
     slack, degree = arb(2) ** (-bits // 2), len(X) - 1
-    with ctx.workprec(64):
+    with balls_at(64):
         sums = _sums(X)
         for _ in range(60):
             values = {

@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
+from singimpact.algebra.precision import bits_of_balls
+
 
 def first_hit(motion: Any, v: float, horizon: float) -> tuple[Any, Any] | None:
     """Time and velocity of the first hit; None when there is none before the horizon.
@@ -19,9 +21,9 @@ def first_hit(motion: Any, v: float, horizon: float) -> tuple[Any, Any] | None:
 
     Examples
     --------
-    >>> import flint
+    >>> from singimpact.algebra.precision import balls_at
     >>> from singimpact.bench.truth.motions import Linear
-    >>> with flint.ctx.workprec(256):
+    >>> with balls_at(256):
     ...     print(first_hit(Linear(2.0, 0.0, 1.0, 0.5), 0.5, 100.0)[0].str(20, radius=False))
     1.1115158754205710871
     """
@@ -67,7 +69,7 @@ def _root(motion: Any, low: float, high: float) -> tuple[Any, Any]:
         middle = (low + high) / 2
         low, high = (middle, high) if motion.at(middle)[0] > 0 else (low, middle)
     t = flint.arb((low + high) / 2)
-    small = flint.arb(2) ** (-flint.ctx.prec + 40)
+    small = flint.arb(2) ** (-bits_of_balls() + 40)
     for _ in range(60):
         z, u, _ = motion.at(t)
         change = (z / u).mid()

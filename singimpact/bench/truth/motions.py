@@ -68,8 +68,8 @@ class Cubic:
 
     Examples
     --------
-    >>> import flint
-    >>> with flint.ctx.workprec(256):
+    >>> from singimpact.algebra.precision import balls_at
+    >>> with balls_at(256):
     ...     print(Cubic(2.0, 0.0, 0.0, 1.0).at(1)[0].str(20, radius=False))
     1.0860656485255256926
     """

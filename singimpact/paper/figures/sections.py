@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from singimpact.flights.hits import first_hit
+from singimpact.flights.impact_map import first_hit
 from singimpact.impact_oscillator import linear
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture

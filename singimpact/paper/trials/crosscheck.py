@@ -17,6 +17,7 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.jets import Jet
+from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES, EXACT, Multiprecision
 from singimpact.contact.contact import Contact, acceleration_jet, contact_order, derivative_name, force_jet
 from singimpact.contact.points import tangency_points
@@ -95,19 +96,17 @@ def first_omitted(place: Setting, order: int, quantity: str, search: int = 4) ->
     ------
     ArithmeticError : a part is not zero exactly, yet no ball of 256 bits excludes zero.
     """
-    import flint
-
     generic = generic_sheet(place.j, order + search)
     jet = generic.v if quantity == "v_c" else generic.xdot
     zeros = exact_zeros(place, generic)
     balls = Balls(BITS)
-    with flint.ctx.workprec(BITS):
+    with balls_at(BITS):
         values = _ball_values(place, generic, balls)
     for degree in range(order + 1, order + search + 1):
         part = _without(_on_ray(jet, degree, generic), generic.contact.ring, zeros)
         if part == 0:
             continue
-        with flint.ctx.workprec(BITS):
+        with balls_at(BITS):
             ball = _evaluated(part, generic.contact.ring.names, values)
             if not ball.contains(0):
                 return degree

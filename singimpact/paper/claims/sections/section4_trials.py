@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import mpmath
 import numpy as np
 import sympy
+from mpmath import nstr
 from scipy.optimize import minimize_scalar
 
+from singimpact.algebra.precision import digits_at
 from singimpact.paper.claims.claim import Trial, Trials, compared
 from singimpact.paper.claims.next_sigma import next_sigma
 from singimpact.paper.claims.sections.section2_trials import rest_at_tangency, second_component
@@ -152,34 +153,35 @@ def _cubic(printed: int, corrected: int) -> list[Trial]:
     return found
 
 
-def _numbers(r: str) -> dict[str, Any]:
-    """m1, m2, m3, m_minus, m_plus as mpmath numbers, and r."""
+def _numbers(r: str, mp: Any) -> dict[str, Any]:
+    """m1, m2, m3, m_minus, m_plus in an mpmath context, and r."""
     points = fixed_points.tangency(r, DIGITS)
     names = ("m1", "m2", "m3", "m_minus", "m_plus")
-    return {name: getattr(points, name).value for name in names} | {
-        "r": mpmath.mpf(r.split("/")[0]) / int(r.split("/")[1])
+    return {name: mp.convert(getattr(points, name).value) for name in names} | {
+        "r": mp.mpf(r.split("/")[0]) / int(r.split("/")[1])
     }
 
 
 def _at(expression: Any, m: Any, r: Any) -> Any:
-    """A polynomial in m and r at mpmath numbers."""
-    return sympy.lambdify((fold.m, sympy.Symbol("r")), expression, "mpmath")(m, r)
+    """A polynomial in m and r at numbers of an mpmath context; sympy's own text has its rationals in mpmath.mp."""
+    spaces = [{"mpf": r.context.mpf}, "mpmath"]
+    return sympy.lambdify((fold.m, sympy.Symbol("r")), expression, spaces)(m, r)
 
 
 def _image(m: Any, r: Any) -> Any:
     """sqrt(Q_r(1, m))/(m - 1/2), the ray that follows m under h'."""
-    return mpmath.sqrt(_at(fold.Q_at_one(), m, r)) / (m - mpmath.mpf(1) / 2)
+    return r.context.sqrt(_at(fold.Q_at_one(), m, r)) / (m - r.context.mpf(1) / 2)
 
 
 def _over_rates(trial: Callable[[str, dict[str, Any]], Trial]) -> Trials:
     def trials(_printed: Any, _corrected: Any) -> list[Trial]:
-        with mpmath.workdps(DIGITS):
-            return [trial(f"fixed points, r = {r}", _numbers(r)) for r in RATES]
+        with digits_at(DIGITS) as mp:
+            return [trial(f"fixed points, r = {r}", _numbers(r, mp)) for r in RATES]
 
     return trials
 
 
-SMALL = mpmath.mpf(10) ** -30
+SMALL = 1e-30
 
 
 def _closed_end(name: str, at: dict[str, Any]) -> Trial:
@@ -188,7 +190,7 @@ def _closed_end(name: str, at: dict[str, Any]) -> Trial:
     inside = (
         _at(fold.Q_at_one(), at["m_plus"] + 1, at["r"]) > 0 and _at(fold.Q_at_one(), at["m_minus"] - 1, at["r"]) > 0
     )
-    told = ", ".join(mpmath.nstr(value, 3) for value in values)
+    told = ", ".join(nstr(value, 3) for value in values)
     return Trial(name, "Q_r(1, m) at m_-, m_+", told, "> 0", "0", not zero, zero and inside)
 
 
@@ -196,26 +198,27 @@ def _converse(name: str, at: dict[str, Any]) -> Trial:
     kept = all(abs(_image(at[n], at["r"]) - at[n]) < SMALL for n in ("m1", "m3"))
     image = _image(at["m2"], at["r"])
     holds = abs(image - at["m2"]) < SMALL
-    told = f"{mpmath.nstr(image, 12)}; m1 and m3 return"
-    return Trial(name, "image of m2", told, f"m2 = {mpmath.nstr(at['m2'], 12)}", "nothing is said of m2", holds, kept)
+    told = f"{nstr(image, 12)}; m1 and m3 return"
+    return Trial(name, "image of m2", told, f"m2 = {nstr(at['m2'], 12)}", "nothing is said of m2", holds, kept)
 
 
 def _trivial(name: str, at: dict[str, Any]) -> Trial:
-    half = mpmath.mpf(3) / 2
+    half = at["r"].context.mpf(3) / 2
     value = _at(fold.fixed_point_equation(), half, at["r"])
     zero = abs(value) < SMALL
-    return Trial(name, "Q_r(1,m) - m^2(m-1/2)^2 at m = 3/2", mpmath.nstr(value, 3), "not 0", "0", not zero, zero)
+    return Trial(name, "Q_r(1,m) - m^2(m-1/2)^2 at m = 3/2", nstr(value, 3), "not 0", "0", not zero, zero)
 
 
 def _third_form(name: str, at: dict[str, Any]) -> Trial:
     """dm'/dm by differences, at m = 3/2 and at m3."""
-    rate, step = at["r"], mpmath.mpf(10) ** -12
-    slope = {m: (_image(m + step, rate) - _image(m - step, rate)) / (2 * step) for m in (mpmath.mpf(3) / 2, at["m3"])}
+    rate, mp = at["r"], at["r"].context
+    step = mp.mpf(10) ** -12
+    slope = {m: (_image(m + step, rate) - _image(m - step, rate)) / (2 * step) for m in (mp.mpf(3) / 2, at["m3"])}
     (extra, own), (_, m3) = slope.values(), slope
-    formula = [_at(fold.N_r_at_fixed_points(), m, rate) for m in (mpmath.mpf(3) / 2, m3)]
-    told = f"{mpmath.nstr(extra, 12)} at 3/2, {mpmath.nstr(own, 12)} at m3"
-    says = [mpmath.nstr(value, 12) for value in formula]
-    near = [abs(a - b) < mpmath.mpf(10) ** -15 for a, b in zip((extra, own), formula, strict=True)]
+    formula = [_at(fold.N_r_at_fixed_points(), m, rate) for m in (mp.mpf(3) / 2, m3)]
+    told = f"{nstr(extra, 12)} at 3/2, {nstr(own, 12)} at m3"
+    says = [nstr(value, 12) for value in formula]
+    near = [abs(a - b) < 1e-15 for a, b in zip((extra, own), formula, strict=True)]
     return Trial(name, "dm'/dm", told, f"{says[0]} at 3/2", f"{says[1]} at m3, nothing of 3/2", near[0], near[1])
 
 

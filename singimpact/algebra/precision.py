@@ -1,0 +1,144 @@
+"""The one place that sets a precision: of flint's balls, and of the mpmath numbers that the package computes with.
+
+flint has one precision for the whole process: it is changed under a lock, which is held until it is put back. mpmath
+numbers are computed in a context of the package's own; `mpmath.mp` is the user's, its precision is neither read nor
+changed.
+
+- A number with digits goes back to the user by `for_user`; a number of the user comes in by `context.convert`.
+  Both round nothing. Arithmetic between the two kinds is done at the precision of the left one: convert first.
+- Nothing waits for another thread under the lock, and no generator yields under it.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Callable
+from threading import RLock
+from types import TracebackType
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+_LOCK = RLock()
+if hasattr(os, "register_at_fork"):
+    # a child forked in the middle of a computation would find the lock taken for ever, and its precision changed
+    os.register_at_fork(before=_LOCK.acquire, after_in_parent=_LOCK.release, after_in_child=_LOCK.release)
+
+
+class Precision:
+    """The lock, and a precision that is put back with it."""
+
+    __slots__ = ("before", "context", "name", "value")
+
+    def __init__(self, context: Any, name: str, value: int) -> None:
+        self.context, self.name, self.value = context, name, value
+
+    def __enter__(self) -> Any:
+        _LOCK.acquire()
+        try:
+            self.before = self.context.prec
+            setattr(self.context, self.name, self.value)
+        except BaseException:
+            _LOCK.release()
+            raise
+        return self.context
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self.context.prec = self.before
+        finally:
+            _LOCK.release()
+
+
+def balls_at(bits: int) -> Precision:
+    """The lock, with flint's balls at so many bits.
+
+    Examples
+    --------
+    >>> import flint
+    >>> with balls_at(100):
+    ...     (flint.arb(1) / 3).rel_accuracy_bits() > 90
+    True
+    """
+    import flint
+
+    return Precision(flint.ctx, "prec", bits)
+
+
+def bits_of_balls() -> int:
+    """The bits that balls have now."""
+    import flint
+
+    return int(flint.ctx.prec)
+
+
+def digits_at(digits: int) -> Precision:
+    """The lock, with the package's mpmath context at so many decimal digits; `as` names the context.
+
+    Examples
+    --------
+    >>> with digits_at(30) as mp:
+    ...     print(+mp.pi)
+    3.14159265358979323846264338328
+    """
+    return Precision(_own_context(), "dps", digits)
+
+
+def bits_at(bits: int) -> Precision:
+    """As `digits_at`, with a precision in bits."""
+    return Precision(_own_context(), "prec", bits)
+
+
+class series_of_any_length:
+    """The lock, with flint's power series uncut: by itself flint cuts each after ten terms and does not say so."""
+
+    __slots__ = ("before",)
+
+    def __enter__(self) -> None:
+        import flint
+
+        _LOCK.acquire()
+        self.before, flint.ctx.cap = flint.ctx.cap, 10**6
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        import flint
+
+        flint.ctx.cap = self.before
+        _LOCK.release()
+
+
+def for_user(value: Any) -> Any:
+    """The same number in `mpmath.mp`, with all its bits."""
+    import mpmath
+
+    if hasattr(value, "_mpc_"):
+        return mpmath.mp.make_mpc(value._mpc_)
+    return mpmath.mp.make_mpf(value._mpf_)
+
+
+def _own_context() -> Any:
+    with _LOCK:
+        return _made_context()
+
+
+@functools.cache
+def _made_context() -> Any:
+    from mpmath.ctx_mp import MPContext
+
+    return MPContext()
+
+
+class kept_property(functools.cached_property[T]):
+    """A `cached_property` for values that are computed in balls.
+
+    Python 3.11 gives each cached property a lock of its own: a thread that holds it and waits for balls, and one that
+    holds the balls and waits for the property, would wait for ever. Under the package's own lock they cannot.
+    """
+
+    def __init__(self, function: Callable[[Any], T]) -> None:
+        super().__init__(function)
+        self.lock = _LOCK

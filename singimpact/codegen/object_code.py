@@ -1,0 +1,90 @@
+"""Machine code kept as object files: emitted once by LLVM, loaded in milliseconds without the compiler.
+
+A file is named by a digest of all its sources, of llvmlite and of the processor, and its bytes are verified against
+their own digest before they are mapped.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+NEVER_CALLED = ("NRT_", "Py", "_Py", "numba_")
+"""Names that compiled code would call to raise an exception: it raises none, so they end the process instead."""
+
+
+def emitted(text: str, entry: str) -> bytes:
+    """The object code of a module of LLVM whose one function to be called, an `entry`, is named by numba.
+
+    All other functions become internal, so that LLVM inlines them and drops arguments that nothing reads.
+    """
+    import llvmlite.binding as llvm
+
+    machine = _machine()
+    module = llvm.parse_assembly(text)
+    module.verify()
+    for function in module.functions:
+        if function.is_declaration:
+            continue
+        if function.name.startswith("cfunc.") and entry in function.name:
+            function.name = entry
+        else:
+            function.linkage = "internal"
+    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+    builder.getModulePassManager().run(module, builder)
+    return bytes(machine.emit_object(module))
+
+
+@lru_cache(maxsize=1)
+def _machine() -> Any:
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    target = llvm.Target.from_triple(llvm.get_process_triple())
+    return target.create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=3, reloc="pic",
+        codemodel="default",
+    )  # fmt: skip
+
+
+def processor() -> str:
+    """What object code depends on beside its sources."""
+    import llvmlite
+    import llvmlite.binding as llvm
+
+    return f"{llvmlite.__version__} {llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}"
+
+
+_LOADED: list[Any] = []  # engines own the code: they live as long as the process
+
+
+def loaded(code: bytes, entry: str, addresses: int) -> tuple[Callable[..., int], Callable[..., int]]:
+    """The function `entry` of object code, of so many addresses: without the interpreter's lock, and with it."""
+    import llvmlite.binding as llvm
+
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
+    held = llvm.ObjectFileRef.from_data(code)
+    _end_instead(code)
+    engine.add_object_file(held)
+    engine.finalize_object()
+    _LOADED.append((engine, held))
+    address = engine.get_function_address(entry)
+    takes = [ctypes.c_void_p] * addresses
+    free = ctypes.CFUNCTYPE(ctypes.c_int64, *takes)(address)
+    holding = ctypes.PYFUNCTYPE(ctypes.c_int64, *takes)(address)
+    return free, holding
+
+
+def _end_instead(code: bytes) -> None:
+    import re
+
+    import llvmlite.binding as llvm
+
+    ends = ctypes.cast(ctypes.CDLL(None).abort, ctypes.c_void_p).value
+    for name in set(re.findall(rb"[A-Za-z_][A-Za-z0-9_]+", code)):
+        text = name.decode()
+        if text.startswith(NEVER_CALLED):
+            llvm.add_symbol(text, ends)

@@ -1,0 +1,204 @@
+"""The kernels bound to numbers: compiled for doubles, or as they stand over lists of floats, mpf or balls.
+
+The kernels are ordinary modules.  Binding puts their functions into one namespace, where the four functions of a flow
+(coefficients, step size, restart, singular part), its bounds and the rebound law are those of the model at hand; only
+these, the recurrence of f and g and an expression for rho, are emitted as text.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import math
+import types
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from singimpact.codegen import radii
+from singimpact.codegen.over_lists import FUNCTIONS, nested
+from singimpact.flights.kernels import (
+    batch,
+    batch_isolate,
+    batch_refine,
+    double_double,
+    entries,
+    hits,
+    lanes,
+    layout,
+    linear,
+    orbits,
+    refine,
+    roots,
+    state,
+    steps,
+    tables,
+    tabulated,
+    taylor,
+    variational,
+    waves,
+)
+
+MODULES = (radii, state, lanes, double_double, waves, roots, linear, steps, taylor, tables, tabulated, variational,
+           refine, hits, orbits, batch_isolate, batch_refine, batch, layout, entries)  # fmt: skip
+UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+ADDRESSES = 8
+"""Arguments of an entry: sizes, model, scratch, tau, v, w, out, status."""
+
+
+@dataclass(frozen=True)
+class Emitted:
+    """The text that a model adds to the kernels.
+
+    Parameters
+    ----------
+    flow : of the recurrence of f and g, with its bounds; empty for a linear model. rows : of its work.
+    rho : of `rebound(velocity, w)`; empty for a constant restitution.
+    """
+
+    flow: str = ""
+    rows: int = 0
+    rho: str = ""
+
+    @property
+    def entries(self) -> tuple[str, str]:
+        """The entries that fly such models, in the order in which they are compiled."""
+        return ("taylor_entry", "judge_entry") if self.flow else ("linear_entry", "batch_entry")
+
+
+def _own(module: types.ModuleType) -> dict[str, Callable[..., Any]]:
+    return {name: part for name, part in vars(module).items()
+            if isinstance(part, types.FunctionType) and part.__module__ == module.__name__}  # fmt: skip
+
+
+def constants() -> dict[str, Any]:
+    """Named tuples and numbers of the kernel modules; one name has one meaning in all of them."""
+    from cmath import sqrt as complex_sqrt
+
+    found: dict[str, Any] = {"complex_sqrt": complex_sqrt, "inf": math.inf, "nan": math.nan, "Any": Any}
+    for module in MODULES:
+        for name, part in vars(module).items():
+            if name.isupper() or (isinstance(part, type) and issubclass(part, tuple)):
+                assert found.setdefault(name, part) is part or found[name] == part, name
+    return found
+
+
+def sources() -> list[bytes]:
+    """The bytes of every file that a compiled entry is made from."""
+    from pathlib import Path
+
+    return [Path(str(module.__file__)).read_bytes() for module in MODULES]
+
+
+@lru_cache(maxsize=64)
+def over_lists(flow: str, rho: str = "", exact_restart: bool = True) -> Callable[[Any], dict[str, Any]]:
+    """A function that gives the namespace of the kernels over lists, for a table of functions of one number.
+
+    Parameters
+    ----------
+    flow, rho : see `Emitted`. exact_restart : a linear flow restarts from its closed form, which is for doubles only.
+
+    Examples
+    --------
+    >>> space = over_lists("")({name: getattr(math, name) for name in FUNCTIONS})
+    >>> space["first_root"]([2.0, -2.0], 1, 3.0, 0.0, 1e-16)[:2]
+    (1, 1.0)
+    """
+    codes = [_nested_code(module) for module in MODULES]
+    emitted = [compile(nested(ast.parse(text)), "<emitted>", "exec") for text in (flow, rho) if text]
+
+    def space(functions: dict[str, Any]) -> dict[str, Any]:
+        made: dict[str, Any] = {**constants(), **functions}
+        for code in codes:
+            exec(code, made)
+        for code in emitted:
+            exec(code, made)
+        if flow or not exact_restart:
+            made["restart"] = made["state_kept"]
+        if flow:
+            made |= {name: made[f"{name}_of_discs"] for name in ("step_size", "singular_part")}
+        return made
+
+    return space
+
+
+@lru_cache(maxsize=1)
+def floats_of() -> dict[str, Any]:
+    """Functions of Python's floats that return inf and nan where compiled ones do, and raise nothing."""
+    found = {name: getattr(math, name) for name in FUNCTIONS}
+    found["exp"] = lambda x: math.exp(x) if not x > 709.78 else math.inf
+    found["log"] = lambda x: math.log(x) if x > 0 else math.nan
+    return found
+
+
+@lru_cache(maxsize=64)
+def over_floats(flow: str = "", rho: str = "") -> dict[str, Any]:
+    """The kernels on Python's floats and lists of lists, never compiled."""
+    return over_lists(flow, rho)(floats_of())
+
+
+@lru_cache(maxsize=64)
+def _nested_code(module: types.ModuleType) -> Any:
+    """The functions of a kernel module, with a[i][j] for a[i, j]: lists of lists are faster than arrays here."""
+    tree = ast.parse(inspect.getsource(module))
+    tree.body = [part for part in tree.body if isinstance(part, ast.FunctionDef)]
+    return compile(nested(tree), str(module.__file__), "exec")
+
+
+class Compiler:
+    """numba's view of the kernels of a model; its inner functions are compiled once for all entries."""
+
+    def __init__(self, emitted: Emitted) -> None:
+        import numba
+
+        module = types.ModuleType("singimpact_kernels")
+        self.space = vars(module)
+        self.space |= {**{name: getattr(math, name) for name in FUNCTIONS}, **constants(), **_of_addresses()}
+        # without wrappers for Python, compiling takes a third less
+        inner: Any = numba.njit(error_model="numpy", **UNWRAPPED)
+        for name, part in _chosen(emitted).items():
+            bound = types.FunctionType(part.__code__, self.space, name)
+            self.space[name] = bound if name.endswith("_entry") else inner(bound)
+
+    def text(self, entry: str) -> str:
+        """An entry as text of LLVM; it takes seconds."""
+        import numba
+        from numba import types as kinds
+
+        address = kinds.CPointer(kinds.float64)
+        takes = kinds.int64(kinds.CPointer(kinds.int64), *[address] * (ADDRESSES - 2), kinds.CPointer(kinds.int8))
+        text: str = numba.cfunc(takes, error_model="numpy")(self.space[entry]).inspect_llvm()
+        return text
+
+
+def _chosen(emitted: Emitted) -> dict[str, Any]:
+    """The functions of all kernels by name, those of the model in their places."""
+    own = {name: part for each in MODULES for name, part in _own(each).items() if name != "block"}
+    for text in (emitted.flow, emitted.rho):
+        made: dict[str, Any] = {}
+        exec(compile(text, "<emitted>", "exec"), made)
+        own |= {name: part for name, part in made.items() if isinstance(part, types.FunctionType)}
+    if emitted.flow:
+        own |= {"restart": own["state_kept"]}
+        own |= {name: own[f"{name}_of_discs"] for name in ("step_size", "singular_part")}
+    return own
+
+
+def _of_addresses() -> dict[str, Any]:
+    """`layout.block` over an address."""
+    import numba
+    from numba.extending import intrinsic
+
+    @intrinsic
+    def moved(_typing: Any, address: Any, count: Any) -> Any:
+        def emit(_context: Any, builder: Any, _signature: Any, given: Any) -> Any:
+            return builder.gep(given[0], [given[1]])
+
+        return address(address, count), emit
+
+    def block(flat: Any, at: Any, shape: Any) -> Any:
+        return numba.carray(moved(flat, at), shape)  # type: ignore[call-arg]
+
+    bound: Any = numba.njit(**UNWRAPPED)(block)
+    return {"block": bound}

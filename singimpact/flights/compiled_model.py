@@ -1,0 +1,420 @@
+"""`CompiledModel`: all that the flights of a model need, prepared once, and the one place that calls a kernel."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, lru_cache
+from math import frexp, ldexp
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.expressions import names_in, substitute
+from singimpact.algebra.numbers import as_float
+from singimpact.codegen.scalar import scalar
+from singimpact.flights import counted
+from singimpact.flights.bind import Emitted
+from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
+from singimpact.flights.kernels import entries, layout
+from singimpact.flights.kernels.hits import UNIT
+from singimpact.flights.kernels.lanes import LANES
+from singimpact.flights.limits import LIMITS, degree_for
+from singimpact.flights.machine import Machine, compilable, machine_of
+from singimpact.flights.model_numbers import (
+    fastest,
+    has_table,
+    horizon_of,
+    numbers_of,
+    phases_of,
+    recurrence_of,
+    turn_of,
+)
+from singimpact.inputs import InputError
+from singimpact.oscillator.linear import linear_form
+from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.rebound import rho_of
+
+Array = np.ndarray[Any, Any]
+EPSILON = UNIT
+
+
+@dataclass(frozen=True)
+class TableSettings:
+    """How the tables of a linear model are laid out."""
+
+    # step times the fastest rate: longer steps are fewer, need more terms and leave a larger remainder
+    reach: float = 0.6
+    # the same for batches: measured best at 1.0, for one flight at a time at 0.6
+    batch_reach: float = 1.0
+    # degree of a Taylor step: 0.6^17/17! and 1/19! leave less than 1e-17 of the terms at its far end
+    order: int = 16
+    # rows of a table; after so many steps the closed form begins again
+    rows: int = 200
+    # the rate where nothing has one: x'' is constant then, and a step of any length is exact
+    slowest: float = 2.0**-10
+    # bits of the step, so that the time of a row is exact
+    bits: int = 24
+    # states of one call into compiled code, which hears no interruption: 0.05 s
+    block: int = 65_536
+    # the same when flights are interpreted
+    interpreted: int = 64
+
+
+TABLES = TableSettings()
+
+
+@dataclass(frozen=True)
+class Allowance:
+    """When a flight is given up, and how accurate it is. `None` in every field: the defaults."""
+
+    horizon: float
+    epsilon: float = EPSILON
+    steps: int = LIMITS.steps
+
+
+@lru_cache(maxsize=256)
+def compiled_model(osc: Oscillator) -> CompiledModel:
+    """The compiled model of an oscillator with the default horizon, accuracy and number of steps."""
+    return CompiledModel(osc, Allowance(horizon_of(osc, None)))
+
+
+@lru_cache(maxsize=64)
+def allowed(osc: Oscillator, allowance: Allowance) -> CompiledModel:
+    """The compiled model of an oscillator under other rules."""
+    return CompiledModel(osc, allowance)
+
+
+class CompiledModel:
+    """A model's numbers, tables and scratch in flat arrays, and the compiled entries that work on them.
+
+    States are doubles here, v > 0; results are codes of the kernels, see `kernels.entries`, and rows of numbers.
+    """
+
+    def __init__(self, osc: Oscillator, allowance: Allowance) -> None:
+        self.osc, self.allowance = osc, allowance
+        self.form = linear_form(osc)
+        self.linear = has_table(osc)
+        text, trees = scalar(rho_of(osc.restitution), "v", "rebound")
+        self.constant_restitution = not names_in(osc.restitution)
+        if self.constant_restitution:
+            text, trees = "", (osc.restitution,)
+        self.rho = np.zeros(8)
+        self.rho[: len(trees)] = [as_float(substitute(tree, osc.parameters)) for tree in trees]
+        flow = None if self.linear else recurrence_of(osc)
+        source, rows = ("", 0) if flow is None else (flow.source, flow.rows)
+        self.machine: Machine = machine_of(Emitted(source, rows))
+        # only orbits call rho: the first hits of all linear models have one machine
+        self.orbits: Machine = machine_of(Emitted(source, rows, text))
+        self.main, self.second = self.machine.emitted.entries
+        self.sizes, self.flat = self._laid_out()
+        self.r = float(self.rho[0]) if self.constant_restitution else np.nan
+        self.price = LIMITS.interpreted_linear if self.linear else LIMITS.interpreted_taylor
+        # launch times beyond are reduced by exact arithmetic first
+        self.nearest = 2.0**25 * as_float(osc.period) if osc.period is not None else np.inf
+        self._prepared: set[str] = set()
+        self._quick: Callable[[float, float], Any] | None = None
+        self._interpreter: Interpreter | None = None
+
+    # ---- preparation
+
+    def _laid_out(self) -> tuple[Array, Array]:
+        allowance, osc = self.allowance, self.osc
+        order = degree_for(EPSILON if self.linear else allowance.epsilon)
+        short = TABLES.order if self.linear else degree_for(LIMITS.judging)
+        coarse = 10 * allowance.epsilon if allowance.epsilon > EPSILON else 0.0
+        rules = (allowance.horizon, LIMITS.longest if self.linear else allowance.steps, order, short,
+                 LIMITS.safety * (EPSILON if self.linear else allowance.epsilon), LIMITS.likely,
+                 max(LIMITS.rough[0], coarse), max(LIMITS.rough[1], coarse))  # fmt: skip
+        numbers, rest = numbers_of(osc)
+        room = max(order, degree_for(LIMITS.judging)) + 2 + LIMITS.derivatives_at_rest
+        sizes = np.zeros(7, dtype=np.int64)
+        if self.linear:
+            assert self.form is not None
+            waves = len(self.form.harmonics)
+            sizes[[layout.WAVES, layout.ROWS, layout.ROOM]] = waves, TABLES.rows, max(room, 2 * waves + 2)
+            flat = np.zeros(layout.linear_length(sizes))
+            scalars = layout.SCALARS
+            flat[scalars : scalars + 4], flat[scalars + 4 : scalars + 8] = numbers[1:5], rest[1:5]
+            rate = fastest(osc) or TABLES.slowest
+            flat[scalars + 8], flat[scalars + 9] = _step(TABLES.reach, rate), _step(TABLES.batch_reach, rate)
+            model = layout.linear_model(flat, sizes)
+            phases = phases_of(osc)
+            for part, values, phase in ((model.numbers, numbers, phases[0]), (model.rest, rest, phases[1])):
+                for j in range(waves):
+                    rate, cosine, sine = values[5 + 3 * j : 8 + 3 * j]
+                    part.waves[j] = rate, phase[j], cosine, sine
+            turn = flat.size - 3
+            flat[turn:] = _batch_turn(osc)
+        else:
+            constants = numbers.size
+            sizes[[layout.ROWS, layout.ROOM, layout.CONSTANTS]] = self.machine.emitted.rows, room, constants
+            flat = np.zeros(layout.SCALARS + constants)
+            flat[layout.SCALARS :] = numbers
+        flat[:8] = rules
+        flat[layout.TURN : layout.TURN + 5] = turn_of(osc)
+        return sizes, flat
+
+    def _entry(self, name: str, machine: Machine | None = None) -> Callable[..., int] | None:
+        """A compiled entry, with the tables that it needs filled."""
+        found = (machine or self.machine).entry(name)
+        return None if found is None else self._ready(name, found[0])
+
+    def _here(self, name: str, machine: Machine | None = None) -> Callable[..., int]:
+        """An entry compiled now, for work that Python's numbers refuse, or that takes too long."""
+        if not compilable():
+            raise InputError("the flight leaves the range of Python's numbers: install numba, which compiles flights")
+        return self._ready(name, (machine or self.machine).compile_here(name)[0])
+
+    def _ready(self, name: str, entry: Callable[..., int]) -> Callable[..., int]:
+        if self.linear and name not in self._prepared:
+            kind = entries.PREPARE_BATCH if name == "batch_entry" else entries.PREPARE
+            self._call(entry, self._new_scratch(), kind)
+            self._prepared.add(name)
+        return entry
+
+    def _call(
+        self, entry: Callable[..., int], scratch: Array, kind: int, count: int = 0, impacts: int = 0,
+        given: tuple[Array, ...] = (), out: Array | None = None, status: Array | None = None,
+    ) -> int:  # fmt: skip
+        sizes = self.sizes.copy()
+        sizes[layout.KIND], sizes[layout.COUNT], sizes[layout.IMPACTS] = kind, count, impacts
+        arrays = (sizes, self.flat, scratch, *given, *[_NONE] * (3 - len(given)), _NONE if out is None else out,
+                  _CODES if status is None else status)  # fmt: skip
+        return entry(*(part.ctypes.data for part in arrays))
+
+    def _compiled(self, name: str, seconds: float, machine: Machine | None = None) -> Callable[..., int] | None:
+        """An entry for work that takes so long when it is interpreted; None: interpret it."""
+        machine = machine or self.machine
+        found = self._entry(name, machine)
+        if found is None:
+            machine.interpreted(seconds)
+            found = self._entry(name, machine)
+        return found
+
+    @cached_property
+    def sometimes_kept(self) -> bool:
+        """Whether some launches of a Taylor flow are proved not to return before they are flown."""
+        from singimpact.flights.escape_averaged import bounds_of
+        from singimpact.flights.escape_barrier import fastest_kept
+
+        return not self.linear and (bounds_of(self.osc) is not None or fastest_kept(self.osc) > 0)
+
+    @property
+    def interpreter(self) -> Interpreter:
+        """The model over lists of floats."""
+        if self._interpreter is None:
+            self._interpreter = Interpreter(self.orbits.emitted, self.flat, self.sizes)
+        return self._interpreter
+
+    def _new_scratch(self, trace: int = 0) -> Array:
+        return np.zeros(layout.scratch_length(self.sizes) + 4 * trace)
+
+    # ---- work
+
+    def hits(self, tau: Array, v: Array, pushes: Array | None = None) -> tuple[Array, Array]:
+        """Codes and columns of hits, shape (10, n), of many states.
+
+        Parameters
+        ----------
+        pushes : a_c at the launches of a Taylor flow, nan where it is not known.
+        """
+        counted.add(tau.size)
+        status, out = np.empty(tau.size, np.int8), np.empty((10, tau.size))
+        if not self.linear:
+            out[4:] = np.nan
+        given = tau, v, np.full(tau.size, np.nan) if pushes is None else pushes
+        begin, scratch = 0, None
+        while begin < tau.size:
+            entry = self._compiled(self.main, self.price * min(TABLES.interpreted, tau.size - begin))
+            end = min(begin + (TABLES.block if entry else TABLES.interpreted), tau.size)
+            if entry is None:
+                self._interpreted_hits(given, (out, status), slice(begin, end))
+            else:
+                scratch = self._new_scratch() if scratch is None else scratch
+                self._compiled_hits(entry, scratch, given, (out, status), slice(begin, end))
+            begin = end
+        return status, out
+
+    def _compiled_hits(self, entry: Any, scratch: Array, given: Any, found: Any, part: slice) -> None:
+        out, status = found
+        whole = part.start == 0 and part.stop == status.size
+        rows = out if whole else out[:, part].copy()
+        self._call(entry, scratch, entries.HITS, rows.shape[1], given=tuple(each[part] for each in given), out=rows,
+                   status=status[part])  # fmt: skip
+        if not whole:
+            out[:, part] = rows
+
+    def _interpreted_hits(self, given: Any, found: Any, part: slice) -> None:
+        out, status = found
+        rows = np.empty((10, part.stop - part.start))
+        try:
+            self.interpreter.hits(tuple(each[part] for each in given), rows, status[part])
+            out[:, part] = rows
+        except LEFT_OPEN:
+            if rows.shape[1] == 1:
+                self._compiled_hits(self._here(self.main), self._new_scratch(), given, found, part)
+                return
+            for index in range(part.start, part.stop):
+                self._interpreted_hits(given, found, slice(index, index + 1))
+
+    def quick(self) -> Callable[[float, float], Any]:
+        """A function (tau, v) -> (code, list of the columns of a hit) of two floats, v > 0, with the least overhead."""
+        if self._quick is None:
+            found = self.machine.entry(self.main)
+            if found is None:
+                return self._one
+            self._ready(self.main, found[0])
+            self._quick = self._bound(found[1])
+        return self._quick
+
+    def _one(self, tau: float, v: float) -> tuple[int, list[float]]:
+        status, out = self.hits(np.array([tau]), np.array([v]))
+        return int(status[0]), out[:, 0].tolist()
+
+    def _bound(self, entry: Callable[..., int]) -> Callable[[float, float], Any]:
+        """`quick` over scratch of its own, under the interpreter's lock, so that threads do not meet in it."""
+        sizes, scratch = self.sizes.copy(), self._new_scratch()
+        sizes[layout.KIND], sizes[layout.COUNT] = entries.HITS, 1
+        state, out, status = (ctypes.c_double * 3)(0, 0, np.nan), (ctypes.c_double * 10)(), (ctypes.c_int8 * 1)()
+        at = ctypes.addressof(state)
+        addresses = [ctypes.c_void_p(address) for address in (
+            *(part.ctypes.data for part in (sizes, self.flat, scratch)), at, at + 8, at + 16, ctypes.addressof(out),
+            ctypes.addressof(status))]  # fmt: skip
+        count = counted.add
+
+        def quick(tau: float, v: float, kept: Any = (sizes, scratch)) -> Any:  # noqa: ARG001
+            count(1)
+            state[0], state[1] = tau, v
+            entry(*addresses)
+            return status[0], out[:]
+
+        return quick
+
+    def releases(self, tau: Array, removed: Array) -> tuple[Array, Array]:
+        """Codes and flight time, velocity, depth and bound, shape (10, n), of masses released at rest."""
+        counted.add(tau.size)
+        status, out, orders = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan), removed.astype(float)
+        name = "linear_entry" if self.linear else "judge_entry"
+        entry = self._compiled(name, self.price * tau.size)
+        if entry is None:
+            try:
+                self.interpreter.releases(tau, orders, out, status)
+                return status, out
+            except LEFT_OPEN:
+                entry = self._here(name)
+        self._call(entry, self._new_scratch(), entries.RELEASES, tau.size, given=(tau, tau, orders), out=out,
+                   status=status)  # fmt: skip
+        return status, out
+
+    def segment(self, tau: float, v: float, count: int, slow: float = 0.0) -> tuple[Array, int]:
+        """Rows of the impacts of one orbit, see `kernels.orbits`, and the code of the flight that ended it."""
+        out, status = np.empty((count, 7)), np.zeros(1, np.int8)
+        entry = self._compiled(self.main, self.price * count, self.orbits)
+        if entry is None:
+            try:
+                flown, code = self.interpreter.segment(tau, v, slow, self.rho, out)
+                counted.add(flown)
+                return out[:flown], code
+            except LEFT_OPEN:
+                entry = self._here(self.main, self.orbits)
+        given = np.array([tau]), np.array([v]), np.concatenate([[slow], self.rho])
+        flown = self._call(entry, self._new_scratch(), entries.SEGMENT, count, given=given, out=out, status=status)
+        counted.add(flown)
+        return out[:flown], int(status[0])
+
+    def iterate(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array]:
+        """The last states of orbits of so many impacts, and the code of the flight that ended an orbit before."""
+        size = -(-tau.size // LANES) * LANES if self.linear else tau.size
+        times, speeds = np.resize(tau, size), np.resize(v, size)
+        status = np.where(speeds > 0, 0, entries.AT_REST).astype(np.int8)
+        status[tau.size :] = entries.AT_REST
+        name = "batch_entry" if self.linear else self.main
+        entry, scratch, begin = self._compiled(name, 0.0, self.orbits), self._new_scratch(), 0
+        while begin < size:
+            if entry is None and self.orbits.spent > LIMITS.patience and compilable():
+                entry = self._here(name, self.orbits)
+            block = LANES if entry is None else max(LANES, TABLES.block // max(impacts, 1) // LANES * LANES)
+            part = slice(begin, begin + block)
+            codes = status[part]
+            if entry is None:
+                entry = self._compiled(name, self.price * codes.size * impacts, self.orbits)
+            if entry is None:
+                self.interpreter.iterate(times[part], speeds[part], impacts, self.rho, codes)
+            else:
+                given = times[part], speeds[part], self.rho
+                self._call(entry, scratch, entries.ITERATE, codes.size, impacts, given, status=codes)
+            begin += block
+        return times[: tau.size], speeds[: tau.size], status[: tau.size]
+
+    def variations(self, tau: Array, v: Array, times: Array) -> Array:
+        """dx/dv, dx'/dv, dx/dtau, dx'/dtau at given flight times, shape (n, 4)."""
+        out = np.empty((tau.size, 4))
+        name = "linear_entry" if self.linear else "judge_entry"
+        entry = self._compiled(name, self.price * tau.size)
+        if entry is None:
+            try:
+                self.interpreter.variations(tau, v, times, out)
+                return out
+            except LEFT_OPEN:
+                entry = self._here(name)
+        self._call(entry, self._new_scratch(), entries.VARIATIONS, tau.size, given=(tau, v, times), out=out)
+        return out
+
+    def follow(self, tau: float, v: float, times: Array) -> Array:
+        """x - c and x' at times that run away from 0 in one direction, shape (n, 2); for Taylor flows."""
+        out = np.full((times.size, 2), np.nan)
+        entry = self._compiled("judge_entry", self.price)
+        if entry is None:
+            try:
+                self.interpreter.follow(tau, v, times, out)
+                return out
+            except LEFT_OPEN:
+                entry = self._here("judge_entry")
+        given = np.array([tau]), np.array([v]), times
+        self._call(entry, self._new_scratch(), entries.FOLLOW, times.size, given=given, out=out)
+        return out
+
+    def judged(self, tau: Array, v: Array, removed: Array) -> Array:
+        """Columns of hits of a Taylor flow with conditions and errors, and its steps, shape (11, n)."""
+        orders = removed.astype(float)
+        out = self._judged(tau, v, orders, LIMITS.traced)
+        for index in np.flatnonzero(np.isnan(out[0])).tolist():
+            one = slice(index, index + 1)
+            out[:, one] = self._judged(tau[one], v[one], orders[one], self.allowance.steps + 1)
+        return out
+
+    def _judged(self, tau: Array, v: Array, removed: Array, room: int) -> Array:
+        out = np.empty((11, tau.size))
+        entry = self._compiled("judge_entry", self.price * tau.size)
+        if entry is None:
+            try:
+                self.interpreter.judged(tau, v, removed, out, room)
+                return out
+            except LEFT_OPEN:
+                entry = self._here("judge_entry")
+        self._call(entry, self._new_scratch(room), entries.JUDGE, tau.size, room, (tau, v, removed), out)
+        return out
+
+
+_NONE = np.zeros(16)
+_CODES = np.zeros(1, np.int8)
+
+
+def _step(reach: float, rate: float) -> float:
+    """reach/rate with few bits, so that multiples of it are exact."""
+    fraction, exponent = frexp(reach / rate)
+    return ldexp(int(ldexp(fraction, TABLES.bits)), exponent - TABLES.bits)
+
+
+def _batch_turn(osc: Oscillator) -> tuple[float, float, float]:
+    """The period in two parts, the first of 33 bits, and its inverse; zeros without a period."""
+    if osc.period is None:
+        return 0.0, 0.0, 0.0
+    exact = as_rational(Balls(256).evaluate(osc.period, {}))
+    fraction, exponent = frexp(float(exact))
+    high = ldexp(int(ldexp(fraction, 33)), exponent - 33)
+    return high, float(exact - Fraction(high)), 1 / float(exact)

@@ -1,0 +1,182 @@
+"""First hit F and impact map G, in doubles or in many digits, for one state or for arrays.
+
+A pair of floats takes the short way: one call of the compiled entry.  All else is read once, flown in blocks, and the
+few flights that end in no plain hit are decided one by one (`undecided`).
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import evaluate, names_in
+from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.rings import DOUBLES
+from singimpact.flights import in_digits, undecided
+from singimpact.flights.compiled_model import EPSILON, Allowance, allowed, compiled_model
+from singimpact.flights.limits import LIMITS
+from singimpact.flights.model_numbers import horizon_of
+from singimpact.flights.results import SCALAR_STATUS, Flight, Step
+from singimpact.flights.states import States
+from singimpact.inputs import refuse
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status, status_array
+
+Array = np.ndarray[Any, Any]
+NONE = np.int8(0)
+NO_NOTES: dict[int, str] = {}
+
+
+def first_hit(
+    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
+    steps: int | None = None,
+) -> Flight:  # fmt: skip
+    """The first hit of the obstacle by the flight from (tau, v).
+
+    Parameters
+    ----------
+    osc : the model.
+    tau : launch times, any finite numbers. v : launch velocities >= 0; they broadcast.
+    digits : decimal digits; the result then holds mpmath numbers.
+    tolerance : relative error allowed in a step of a Taylor flow, and, times ten, of a hit before it is refined.
+    horizon : time after which a flight is given up; 1000 periods of g if not given, or 2e5 radians of the fastest
+        motion where those come first. At most 1e7 radians.
+    steps : Taylor steps after which a flight of a model without a closed form is given up, 16000 if not given.
+
+    Returns
+    -------
+    Flight : arrays of the broadcast shape, scalars for scalars.
+
+    Examples
+    --------
+    >>> hit = first_hit(Oscillator("0", "-2", 0, 1), 0, [0, 1, 3])
+    >>> hit.flight_time.tolist(), hit.velocity.tolist(), hit.status.tolist()
+    ([0.0, 1.0, 3.0], [0.0, -1.0, -3.0], [2, 0, 0])
+    """
+    if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None:
+        fields = _quickly(osc, tau, v)
+        if fields is not None:
+            later = fields.pop("later")
+            return Flight.made(later, **fields)
+    states = States.of(osc, tau, v, digits)
+    return _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps))
+
+
+def impact_map(
+    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
+    steps: int | None = None,
+) -> Step:  # fmt: skip
+    """The impact map G(tau, v) = (tau + T, -r x'(T)); parameters as in `first_hit`.
+
+    Notes
+    -----
+    At `no_return` and `escaped` tau is inf and v nan; at `unresolved` both are nan; at `sticks` and `graze` v is 0; at
+    `no_rebound` v is nan.
+
+    Examples
+    --------
+    >>> step = impact_map(Oscillator("0", "-2", 0, "1/2"), 1.0, 3.0)
+    >>> step.tau, step.v, step.status
+    (4.0, 1.5, np.int8(0))
+    """
+    if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None:
+        fields = _quickly(osc, tau, v)
+        if fields is not None:
+            model = compiled_model(osc)
+            if model.constant_restitution:
+                later = fields.pop("later")
+                return Step.made(later, tau=tau + fields["flight_time"], v=-model.r * fields["velocity"], **fields)
+    states = States.of(osc, tau, v, digits)
+    hit = _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps))
+    if digits is not None:
+        return in_digits.step(osc, states, hit, digits)
+    return landed(osc, states, hit)
+
+
+def landed(osc: Oscillator, states: States, hit: Flight) -> Step:
+    """The states just after first hits."""
+    tau = states.tau.reshape(states.shape) + hit.flight_time
+    bounce = rebound(osc, np.asarray(hit.velocity))
+    fields = {name: value for name, value in vars(hit).items() if name != "_later"}
+    if not names_in(osc.restitution):
+        return Step.made(vars(hit).get("_later"), **fields, tau=tau[()], v=bounce[()])
+    dead = (np.asarray(hit.status) == Status.hit) & np.isnan(bounce)
+    fields["status"] = status_array(np.where(dead, np.int8(Status.no_rebound), hit.status).astype(np.int8))[()]
+    return Step.made(vars(hit).get("_later"), **fields, tau=tau[()], v=bounce[()])
+
+
+def _quickly(osc: Oscillator, tau: float, v: float) -> dict[str, Any] | None:
+    """The fields of a plain hit of two floats; None for all that needs a closer look."""
+    model = compiled_model(osc)
+    if not (0 < v < inf and -model.nearest < tau < model.nearest) or model.sometimes_kept:
+        return None
+    code, hit = model.quick()(tau, v)
+    if code != 0:
+        return None
+    fields = {"flight_time": hit[0], "velocity": hit[1], "status": SCALAR_STATUS[0], "depth": np.nan, "bound": np.nan,
+              "cause": NONE, "notes": NO_NOTES}  # fmt: skip
+    if not model.linear:
+        return fields | {"later": undecided.Judge(model, np.array([tau]), np.array([v]), ())}
+    fields["condition"], fields["velocity_condition"], fields["time_error"], fields["velocity_error"] = hit[2:6]
+    fields["later"] = None
+    return fields
+
+
+def _flights(osc: Oscillator, states: States, digits: int | None, allowance: Allowance | None) -> Flight:
+    if digits is not None:
+        allowance = allowance or compiled_model(osc).allowance
+        return shaped(in_digits.flights(osc, states, checked_digits(digits), allowance), states.shape)
+    model = compiled_model(osc) if allowance is None else allowed(osc, allowance)
+    return shaped(undecided.flights(osc, model, states), states.shape)
+
+
+def _allowance(osc: Oscillator, tolerance: Any, horizon: Any, steps: Any) -> Allowance | None:
+    """What is asked for; None for the defaults."""
+    if tolerance is horizon is steps is None:
+        return None
+    return Allowance(horizon_of(osc, horizon), _tolerance(tolerance), checked_steps(steps))
+
+
+def rebound(osc: Oscillator, velocity: Array) -> Array:
+    """rho(velocity) for velocities <= 0; nan where it is not positive for a velocity that is not 0."""
+    if not names_in(osc.restitution):
+        return np.abs(as_float(osc.restitution) * velocity)
+    with np.errstate(all="ignore"):
+        bounce = np.asarray(evaluate(osc.rho(), {"v": velocity}, DOUBLES), dtype=float)
+    return np.where(velocity == 0, 0.0, np.where((bounce > 0) & np.isfinite(bounce), bounce, np.nan))
+
+
+def checked_digits(digits: Any) -> int:
+    """Digits as an int between 1 and 2000."""
+    if isinstance(digits, bool) or not isinstance(digits, int | np.integer) or not 1 <= digits <= 2000:
+        raise refuse("digits", digits, "a whole number from 1 to 2000")
+    return int(digits)
+
+
+def _tolerance(tolerance: Any) -> float:
+    if tolerance is None:
+        return EPSILON
+    value = as_float(constant("tolerance", tolerance))
+    if not EPSILON <= value <= 1e-3:
+        raise refuse("tolerance", tolerance, "a number from 2.3e-16 to 1e-3, or digits= for more than doubles hold")
+    return value
+
+
+def checked_steps(steps: Any) -> int:
+    """The steps of a flight, between 1 and ten million."""
+    if steps is None:
+        return LIMITS.steps
+    if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or not 1 <= steps <= 10_000_000:
+        raise refuse("steps", steps, "a whole number from 1 to 10000000")
+    return int(steps)
+
+
+def shaped(flight: Flight, shape: tuple[int, ...]) -> Flight:
+    """The flat fields in a shape, or as scalars."""
+    later = vars(flight).get("_later")
+    fields = {name: value if name == "notes" else np.asarray(value).reshape(shape)[()]
+              for name, value in vars(flight).items() if name != "_later"}  # fmt: skip
+    fields["status"] = status_array(fields["status"])
+    return type(flight).made(None if later is None else undecided.Shaped(later, shape), **fields)

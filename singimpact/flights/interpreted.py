@@ -1,0 +1,111 @@
+"""The work of compiled entries on Python's floats and lists: the same operations, until the compiled ones are there.
+
+No table in double-double is filled here: a hit that is to be refined is left to balls.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from singimpact.flights.bind import Emitted, over_floats
+from singimpact.flights.kernels import layout
+
+LEFT_OPEN = (ZeroDivisionError, OverflowError, ValueError, TypeError)
+"""What Python raises where doubles have an answer: 1/0, exp(1000), log(-1), a comparison of (-1)**0.5."""
+
+Array = np.ndarray[Any, Any]
+
+
+def listed(part: Any) -> Any:
+    """Named tuples of arrays as named tuples of lists."""
+    if isinstance(part, np.ndarray):
+        return part.tolist()
+    if isinstance(part, tuple):
+        values = [listed(each) for each in part]
+        return type(part)(*values) if hasattr(part, "_fields") else tuple(values)
+    return part.item() if isinstance(part, np.generic) else part
+
+
+class Interpreter:
+    """One model over lists."""
+
+    def __init__(self, emitted: Emitted, flat: Array, sizes: Array) -> None:
+        self.space = over_floats(emitted.flow, emitted.rho)
+        self.sizes, self.linear = sizes, not emitted.flow
+        views = layout.linear_model(flat, sizes) if self.linear else layout.taylor_model(flat, sizes)
+        self.model = listed(views)
+        if self.linear:
+            self.model = self.model._replace(fine=[])
+            self.space["tabulate"](self.model.numbers, self.model.table)
+            self.space["bounds"](self.model.numbers, self.model.table)
+
+    def work(self) -> Any:
+        """New scratch."""
+        flat = np.zeros(layout.scratch_length(self.sizes))
+        return listed(layout.scratch_of(flat, self.sizes)), listed(layout.columns_of(flat, self.sizes))
+
+    def hits(self, given: tuple[Array, ...], out: Array, status: Array) -> None:
+        """`linear_hits` or `taylor_hits`; given : tau, v, and a_c at the launches of a Taylor flow."""
+        if self.linear:
+            self._rows("linear_hits", given[:2], out, status)
+        else:
+            self._rows("taylor_hits", given, out, status)
+
+    def releases(self, tau: Array, removed: Array, out: Array, status: Array) -> None:
+        """`linear_releases` or `taylor_releases`."""
+        self._rows("linear_releases" if self.linear else "taylor_releases", (tau, removed), out, status)
+
+    def _rows(self, name: str, given: tuple[Array, ...], out: Array, status: Array) -> None:
+        work, _ = self.work()
+        rows, codes = np.full(out.shape, np.nan).tolist(), [0] * status.size
+        self.space[name](*(part.tolist() for part in given), self.model, work, rows, codes)
+        out[...], status[...] = rows, codes
+
+    def segment(self, tau: float, v: float, slow: float, w: Array, out: Array) -> tuple[int, int]:
+        """`orbit_segment` or `taylor_segment`."""
+        work, _ = self.work()
+        rows = out.tolist()
+        name = "orbit_segment" if self.linear else "taylor_segment"
+        flown, code = self.space[name](tau, v, slow, w.tolist(), self.model, work, rows)
+        out[...] = rows
+        return flown, code
+
+    def iterate(self, tau: Array, v: Array, impacts: int, w: Array, status: Array) -> None:
+        """Orbits one after the other: tau, v become the last states."""
+        work, _ = self.work()
+        name = "orbit_segment" if self.linear else "taylor_segment"
+        for i in np.flatnonzero(status == 0).tolist():
+            rows = [[0.0] * 7 for _ in range(impacts)]
+            flown, code = self.space[name](float(tau[i]), float(v[i]), 0.0, w.tolist(), self.model, work, rows)
+            status[i] = code
+            if flown:
+                tau[i], v[i] = tau[i] + rows[flown - 1][0], rows[flown - 1][1]
+
+    def variations(self, tau: Array, v: Array, times: Array, out: Array) -> None:
+        """`linear_variations` or `taylor_variations`."""
+        work, columns = self.work()
+        rows = out.tolist()
+        given = (tau.tolist(), v.tolist(), times.tolist(), self.model, work)
+        if self.linear:
+            self.space["linear_variations"](*given, rows)
+        else:
+            self.space["taylor_variations"](*given, columns, rows)
+        out[...] = rows
+
+    def follow(self, tau: float, v: float, times: Array, out: Array) -> None:
+        """`follow` of a Taylor flow."""
+        work, _ = self.work()
+        t, t_low = self.space["reduced_twice"](tau, self.model.turn)
+        work.launch[0] = t + t_low
+        rows = out.tolist()
+        self.space["follow"](work.launch, v, times.tolist(), self.model.numbers, self.model.rules, work.flight, rows)
+        out[...] = rows
+
+    def judged(self, tau: Array, v: Array, removed: Array, out: Array, room: int) -> None:
+        """`judged_hits`."""
+        work, columns = self.work()
+        trace, rows = [[0.0] * 4 for _ in range(room)], out.tolist()
+        self.space["judged_hits"](tau.tolist(), v.tolist(), removed.tolist(), self.model, work, columns, trace, rows)
+        out[...] = rows

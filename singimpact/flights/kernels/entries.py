@@ -1,0 +1,237 @@
+"""What Python calls: one function for linear models and one for Taylor flows, over addresses.
+
+`sizes[KIND]` is the kind of work. Two entries are what most sessions need; the other two are compiled after them.
+"""
+
+from __future__ import annotations
+
+from math import nan
+from typing import Any
+
+from singimpact.flights.kernels.batch import fly_batches
+from singimpact.flights.kernels.hits import (
+    carried_errors,
+    launch_acceleration,
+    linear_hit,
+    raised,
+    released,
+    taylor_hit,
+)
+from singimpact.flights.kernels.layout import (
+    COUNT,
+    IMPACTS,
+    KIND,
+    batch_model,
+    block,
+    columns_of,
+    linear_model,
+    scratch_length,
+    scratch_of,
+    taylor_model,
+)
+from singimpact.flights.kernels.linear import response
+from singimpact.flights.kernels.orbits import iterate_taylor, orbit_segment, taylor_segment
+from singimpact.flights.kernels.refine import fill_fine
+from singimpact.flights.kernels.tables import bounds, expansions, tabulate
+from singimpact.flights.kernels.taylor import follow, taylor_flight
+from singimpact.flights.kernels.variational import derivatives_at, judge
+from singimpact.flights.kernels.waves import reduced_twice, wall_acceleration
+
+PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES = range(9)
+"""Kinds of work: fill the tables of a model, of its batches; first hits of many states; impacts of one orbit; the last
+states of many orbits; derivatives of x and x' at given times; x and x' along one flight; errors and conditions of hits
+of a Taylor flow; flights from rest."""
+AT_REST = 40
+"""The code of a state with v = 0 among `HITS`: it is not flown."""
+
+
+def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
+    """PREPARE, HITS, SEGMENT, RELEASES or VARIATIONS of a linear model.
+
+    Parameters
+    ----------
+    sizes : see `layout`. flat, scratch : of the model. tau, v : states. w : times; the duration below which chatter
+        ends an orbit, then constants of rho; orders of roots removed at rest. out : results. status : codes.
+
+    Returns
+    -------
+    int : how many codes are not 0; of SEGMENT the impacts flown.
+    """
+    count, kind = sizes[COUNT], sizes[KIND]
+    model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
+    if kind == SEGMENT:
+        flown, code = orbit_segment(tau[0], v[0], w[0], block(w, 1, (8,)), model, work, block(out, 0, (count, 7)))
+        status[0] = code
+        return int(flown)
+    if kind == PREPARE:
+        tabulate(model.numbers, model.table)
+        bounds(model.numbers, model.table)
+        fill_fine(model.numbers, model.rest, model.table.step, model.fine, work.twice)
+        return 0
+    states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
+    if kind == HITS:
+        return linear_hits(states, speeds, model, work, block(out, 0, (10, count)), codes)
+    if kind == RELEASES:
+        return linear_releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
+    return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
+
+
+def batch_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:  # noqa: ARG001
+    """PREPARE_BATCH or ITERATE of a linear model; tau, v become the last states. w : constants of rho."""
+    count = sizes[COUNT]
+    model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
+    batch = batch_model(flat, scratch, sizes, work)
+    if sizes[KIND] == PREPARE_BATCH:
+        # states that a batch hands over are flown through the other table
+        tabulate(model.numbers, model.table)
+        bounds(model.numbers, model.table)
+        tabulate(model.numbers, batch.table)
+        bounds(model.numbers, batch.table)
+        expansions(model.numbers, batch.series)
+        return 0
+    fly_batches(block(tau, 0, (count,)), block(v, 0, (count,)), sizes[IMPACTS], block(w, 0, (8,)), model, batch,
+                block(status, 0, (count,)))  # fmt: skip
+    return 0
+
+
+def linear_hits(tau: Any, v: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+    """`linear_hit` of every state; how many codes are not 0 is returned."""
+    others = 0
+    for i in range(len(tau)):
+        code = AT_REST
+        if v[i] > 0:
+            t, t_low = reduced_twice(tau[i], model.turn)
+            code, _a = linear_hit(t, t_low, v[i], 0.0, model, work)
+        status[i] = code
+        others += 1 if code != 0 else 0
+        for k in range(10):
+            out[k, i] = work.hit[k]
+    return others
+
+
+def linear_variations(tau: Any, v: Any, times: Any, model: Any, work: Any, out: Any) -> int:
+    """dx/dv, dx'/dv, dx/dtau, dx'/dtau at given times."""
+    for i in range(len(tau)):
+        t, t_low = reduced_twice(tau[i], model.turn)
+        wall_acceleration(t, t_low, model.numbers, model.rest, work.launch)
+        by_v, by_v_dot, by_tau, by_tau_dot, _size, _speed = response(work.launch, v[i], times[i], model.numbers)
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = by_v, by_v_dot, by_tau, by_tau_dot
+    return 0
+
+
+def linear_releases(tau: Any, removed: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+    """First hits of masses released at rest; t = 0 is a root of x - c `removed` times."""
+    others = 0
+    for i in range(len(tau)):
+        t, t_low = reduced_twice(tau[i], model.turn)
+        a = wall_acceleration(t, t_low, model.numbers, model.rest, work.launch)
+        code, out[0, i], out[1, i], out[2, i], out[3, i] = released(int(removed[i]), a, model, work)
+        status[i] = code
+        others += 1 if code != 0 else 0
+    return others
+
+
+def taylor_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
+    """HITS, SEGMENT or ITERATE of a model flown in Taylor steps; as `linear_entry` and `batch_entry`."""
+    count, kind = sizes[COUNT], sizes[KIND]
+    model, work = taylor_model(flat, sizes), scratch_of(scratch, sizes)
+    if kind == SEGMENT:
+        flown, code = taylor_segment(tau[0], v[0], w[0], block(w, 1, (8,)), model, work, block(out, 0, (count, 7)))
+        status[0] = code
+        return int(flown)
+    states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
+    if kind == ITERATE:
+        iterate_taylor(states, speeds, sizes[IMPACTS], block(w, 0, (8,)), model, work, codes)
+        return 0
+    return taylor_hits(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
+
+
+def judge_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
+    """FOLLOW, RELEASES, VARIATIONS or JUDGE of a model flown in Taylor steps.
+
+    Parameters
+    ----------
+    w : times; orders of the roots removed at a launch. sizes : IMPACTS are the rows of a trace, behind all scratch.
+    """
+    count, kind = sizes[COUNT], sizes[KIND]
+    model, work = taylor_model(flat, sizes), scratch_of(scratch, sizes)
+    states, speeds, given = block(tau, 0, (count,)), block(v, 0, (count,)), block(w, 0, (count,))
+    if kind == FOLLOW:
+        t, t_low = reduced_twice(tau[0], model.turn)
+        work.launch[0] = t + t_low
+        follow(work.launch, v[0], given, model.numbers, model.rules, work.flight, block(out, 0, (count, 2)))
+        return 0
+    if kind == RELEASES:
+        codes = block(status, 0, (count,))
+        return taylor_releases(states, given, model, work, block(out, 0, (10, count)), codes)
+    columns = columns_of(scratch, sizes)
+    if kind == VARIATIONS:
+        return taylor_variations(states, speeds, given, model, work, columns, block(out, 0, (count, 4)))
+    trace = block(scratch, scratch_length(sizes), (sizes[IMPACTS], 4))
+    return judged_hits(states, speeds, given, model, work, columns, trace, block(out, 0, (11, count)))
+
+
+def taylor_hits(tau: Any, v: Any, known: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+    """`taylor_hit` of every state; how many codes are not 0 is returned."""
+    others = 0
+    for i in range(len(tau)):
+        code = AT_REST
+        if v[i] > 0:
+            t, t_low = reduced_twice(tau[i], model.turn)
+            code, _a = taylor_hit(t + t_low, v[i], 0.0, known[i], model, work)
+        status[i] = code
+        others += 1 if code != 0 else 0
+        for k in range(4):
+            out[k, i] = work.hit[k]
+    return others
+
+
+def taylor_releases(tau: Any, removed: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+    """First hits of masses released at rest; t = 0 is a root of x - c `removed` times."""
+    others = 0
+    for i in range(len(tau)):
+        t, t_low = reduced_twice(tau[i], model.turn)
+        work.launch[0] = t + t_low
+        code, out[0, i], out[1, i], out[2, i], out[3, i] = released(int(removed[i]), nan, model, work)
+        status[i] = code
+        others += 1 if code != 0 else 0
+    return others
+
+
+def taylor_variations(tau: Any, v: Any, times: Any, model: Any, work: Any, columns: Any, out: Any) -> int:
+    """dx/dv, dx'/dv, dx/dtau, dx'/dtau at given times; nan where a flight does not get there."""
+    for i in range(len(tau)):
+        t, t_low = reduced_twice(tau[i], model.turn)
+        work.launch[0] = t + t_low
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3], reached = derivatives_at(
+            work.launch, v[i], times[i], model.numbers, model.rules, work.flight, columns
+        )
+        if not reached:
+            out[i, 0] = out[i, 1] = out[i, 2] = out[i, 3] = nan
+    return 0
+
+
+def judged_hits(tau: Any, v: Any, removed: Any, model: Any, work: Any, columns: Any, trace: Any, out: Any) -> int:
+    """Hits with their condition numbers, errors and derivatives: columns of `state` and the number of Taylor steps.
+
+    A flight of more steps than the trace has rows gets nan.
+    """
+    for i in range(len(tau)):
+        t, t_low = reduced_twice(tau[i], model.turn)
+        work.launch[0], trace[0, 3] = t + t_low, 0.0
+        a = nan
+        if v[i] > 0:
+            a, _error = launch_acceleration(model, work)
+        rules = raised(model.rules, int(removed[i]) - 1)
+        code, time, u, _depth, _bound = taylor_flight(
+            work.launch, v[i], int(removed[i]), a, model.numbers, rules, work.flight, trace
+        )
+        for k in range(11):
+            out[k, i] = nan
+        if code == 0 and trace[0, 3] > 0:
+            judge(work.launch, trace, model.numbers, rules, work.flight, columns, work.hit)
+            row = work.flight.q
+            carried_errors(work.launch[0], v[i], time, u, work.hit, row)
+            for k in range(11):
+                out[k, i] = row[k]
+    return 0

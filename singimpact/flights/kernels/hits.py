@@ -1,0 +1,150 @@
+"""One flight with its condition numbers and errors: what `entries` and `orbits` repeat.
+
+A hit is a row of numbers, columns FLIGHT_TIME and following of `state`.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+from singimpact.flights.kernels.double_double import sum_twice
+from singimpact.flights.kernels.linear import coefficients, response
+from singimpact.flights.kernels.refine import refine_hit
+from singimpact.flights.kernels.state import (
+    CONDITION,
+    FLIGHT_TIME,
+    TIME_BY_TAU,
+    TIME_BY_V,
+    TIME_ERROR,
+    VELOCITY,
+    VELOCITY_BY_TAU,
+    VELOCITY_BY_V,
+    VELOCITY_CONDITION,
+    VELOCITY_ERROR,
+    Rules,
+)
+from singimpact.flights.kernels.tabulated import tabulated_flight
+from singimpact.flights.kernels.taylor import taylor_flight
+from singimpact.flights.kernels.variational import rounding
+from singimpact.flights.kernels.waves import wall_acceleration
+
+UNIT = 2.0**-52
+NOT_REFINED, PRESSED, CANCELS = 30, 31, 32
+"""Codes beside those of `taylor_flight`: balls must place the hit; the chatter left is short enough to be summed; a_c
+is needed to more digits than its sum has."""
+
+
+def linear_hit(t: float, t_low: float, v: float, slow: float, model: Any, work: Any) -> Any:
+    """(code, a_c at the launch) of the flight of a linear model launched at t + t_low; a hit fills work.hit.
+
+    Parameters
+    ----------
+    slow : the code is PRESSED where 2 v/|a_c| is shorter than this; 0 for never.
+    """
+    p, hit, launch = model.numbers, work.hit, work.launch
+    a = wall_acceleration(t, t_low, p, model.rest, launch)
+    if slow > 0 and a < 0 and 2 * v < -a * slow:
+        return PRESSED, a
+    code, time, u, depth, bound = tabulated_flight(launch, v, a, model, work.flight)
+    hit[FLIGHT_TIME], hit[VELOCITY], hit[CONDITION], hit[VELOCITY_CONDITION] = time, u, depth, bound
+    if code != 0:
+        return code, a
+    by_v, by_v_dot, by_tau, by_tau_dot, size, speed = response(launch, v, time, p)
+    at, at_low = sum_twice(t, t_low, time, 0.0)
+    e = wall_acceleration(at, at_low, p, model.rest, work.flight.q) - p.damping * u
+    conditioned(t, v, e, (by_v, by_v_dot, by_tau, by_tau_dot), hit)
+    # rounding errors of the sums behind x and x' at the hit; phases lose digits in time
+    likely = model.rules.likely * UNIT * (1 + p.fastest * time / 64)
+    late = likely * size / abs(u)
+    off = likely * speed + abs(e) * late
+    hit[TIME_ERROR], hit[VELOCITY_ERROR] = late / time, off / abs(u)
+    rough = (hit[TIME_ERROR] > max(model.rules.rough_time, 10 * hit[CONDITION] * UNIT)
+             or hit[VELOCITY_ERROR] > max(model.rules.rough_velocity, 10 * hit[VELOCITY_CONDITION] * UNIT))  # fmt: skip
+    # a flight that is pressed back at once is a short series in t that loses nothing
+    if rough and (time > model.table.step or a >= 0):
+        code = NOT_REFINED
+    if code == NOT_REFINED and len(model.fine) > 0:
+        hit[FLIGHT_TIME], hit[VELOCITY], near = refine_hit(t, t_low, v, time, model, work.twice)
+        hit[TIME_ERROR], hit[VELOCITY_ERROR] = min(hit[TIME_ERROR], 3 * UNIT), min(hit[VELOCITY_ERROR], 63 * UNIT)
+        code = 0
+        if not near:
+            hit[FLIGHT_TIME], hit[VELOCITY] = time, u
+            code = NOT_REFINED
+    hit[TIME_ERROR] += UNIT
+    hit[VELOCITY_ERROR] += UNIT
+    return code, a
+
+
+def conditioned(t: float, v: float, e: float, variation: Any, hit: Any) -> None:
+    """Derivatives of flight time and velocity at a hit, and condition numbers 1 + (|d_tau| |tau| + |d_v| v)/|value|.
+
+    Parameters
+    ----------
+    t, v : of the launch, t reduced by the period. e : x'' at the hit.
+    variation : dx/dv, dx'/dv, dx/dtau, dx'/dtau at fixed flight time.
+    """
+    by_v, by_v_dot, by_tau, by_tau_dot = variation
+    time, u = hit[FLIGHT_TIME], hit[VELOCITY]
+    hit[TIME_BY_TAU], hit[TIME_BY_V] = -by_tau / u, -by_v / u
+    hit[VELOCITY_BY_TAU] = by_tau_dot + e * hit[TIME_BY_TAU]
+    hit[VELOCITY_BY_V] = by_v_dot + e * hit[TIME_BY_V]
+    reach = max(abs(t), time)
+    hit[CONDITION] = 1 + (abs(hit[TIME_BY_TAU]) * reach + abs(hit[TIME_BY_V]) * v) / time
+    hit[VELOCITY_CONDITION] = 1 + (abs(hit[VELOCITY_BY_TAU]) * reach + abs(hit[VELOCITY_BY_V]) * v) / abs(u)
+
+
+def launch_acceleration(model: Any, work: Any) -> Any:
+    """a_c at the launch of a Taylor flow, from its recurrence, and the rounding error of its sum."""
+    order = model.rules.order
+    # a literal 2 is a type of its own: every function that takes it would be compiled twice
+    coefficients(work.launch, 0.0, 0.0, 0.0, 0.0, order - order + 2, model.numbers, work.flight)
+    return 2 * work.flight.X[2], rounding(work.flight.X, work.flight.W, UNIT, model.numbers)
+
+
+def taylor_hit(t: float, v: float, slow: float, known: float, model: Any, work: Any) -> Any:
+    """(code, a_c at the launch) of a flight in Taylor steps from a launch at t, as `linear_hit` without conditions.
+
+    Parameters
+    ----------
+    known : a_c at the launch to all its digits; nan: from the recurrence, and the code is CANCELS where that loses five
+        bits; inf: from the recurrence.
+    """
+    hit, launch = work.hit, work.launch
+    launch[0] = t
+    a = known
+    if not abs(known) < inf:
+        a, error = launch_acceleration(model, work)
+        if known != known and 32 * UNIT * abs(a) < error:
+            return CANCELS, a
+    if slow > 0 and a < 0 and 2 * v < -a * slow:
+        return PRESSED, a
+    code, time, u, depth, bound = taylor_flight(
+        launch, v, 1, a, model.numbers, model.rules, work.flight, work.flight.W[:0]
+    )
+    hit[FLIGHT_TIME], hit[VELOCITY], hit[CONDITION], hit[VELOCITY_CONDITION] = time, u, depth, bound
+    return code, a
+
+
+def released(removed: int, a: float, model: Any, work: Any) -> Any:
+    """`taylor_flight` of a mass released at rest, by steps of one degree more for each root that is removed."""
+    rules = raised(model.rules, removed - 1)
+    return taylor_flight(work.launch, 0.0, removed, a, model.numbers, rules, work.flight, work.flight.W[:0])
+
+
+def raised(rules: Any, degrees: int) -> Any:
+    """Rules with steps of a higher degree."""
+    return Rules(rules.horizon, rules.budget, rules.order + degrees, rules.short, rules.ulp, rules.likely,
+                 rules.rough_time, rules.rough_velocity)  # fmt: skip
+
+
+def carried_errors(t: float, v: float, time: float, u: float, judged: Any, row: Any) -> None:
+    """A hit with conditions and errors from what `variational.judge` returns; entry 10 counts the Taylor steps."""
+    zz, zu, uu, e, steps = judged[4], judged[5], judged[6], judged[7], judged[8]
+    row[FLIGHT_TIME], row[VELOCITY] = time, u
+    conditioned(t, v, e, (judged[0], judged[1], judged[2], judged[3]), row)
+    turn = e / u
+    late = (zz / (u * u) + steps * (time * UNIT / 2) * (time * UNIT / 2)) ** 0.5
+    off = max(uu - 2 * turn * zu + turn * turn * zz, 0.0) ** 0.5
+    row[TIME_ERROR], row[VELOCITY_ERROR] = late / time, off / abs(u)
+    row[10] = steps

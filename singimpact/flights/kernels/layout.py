@@ -1,0 +1,128 @@
+"""Where the numbers of a model and the scratch of its flights lie in two flat arrays of doubles.
+
+Compiled entries get two addresses and build the named tuples over them; Python fills the same arrays through the same
+functions.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from singimpact.flights.kernels.lanes import BATCH_ORDER, LANE_ROWS, LANES
+from singimpact.flights.kernels.refine import LEVEL
+from singimpact.flights.kernels.state import Batch, Columns, Flying, Linear, Model, Rules, Table, TaylorModel, Work
+
+KIND, COUNT, WAVES, ROWS, ROOM, CONSTANTS, IMPACTS = range(7)
+"""Entries of `sizes`: the kind of work; states, impacts or times; waves; rows of the tables and of the work of a
+flight; room for Taylor coefficients; constants of a recurrence; impacts of an iteration."""
+TURN, SCALARS = 8, 13
+"""Where the period and the scalars of a model begin; the eight rules come first."""
+TERMS = 24
+"""Entries of 1/k! in a table."""
+
+
+def block(flat: Any, at: int, shape: Any) -> Any:
+    """The part of a flat array from `at`, in a shape; `flights.bind` puts pointer arithmetic in its place."""
+    size = 1
+    for length in shape:
+        size *= length
+    return flat[at : at + size].reshape(shape)
+
+
+def rules_of(flat: Any) -> Any:
+    """The first eight numbers of a model."""
+    return Rules(flat[0], int(flat[1]), int(flat[2]), int(flat[3]), flat[4], flat[5], flat[6], flat[7])
+
+
+def numbers_of(flat: Any, scalars: int, at: int, waves: int) -> Any:
+    """`state.Linear`: four scalars, and rows of the waves."""
+    return Linear(flat[scalars], flat[scalars + 1], flat[scalars + 2], flat[scalars + 3], block(flat, at, (waves, 4)))
+
+
+def table_of(flat: Any, at: int, step: float, waves: int, rows: int) -> Any:
+    """`state.Table` from `at`."""
+    turns = at + 8 * rows
+    bounds = turns + 8 * rows * waves
+    return Table(step, block(flat, at, (rows, 8)), block(flat, turns, (rows, waves, 8)), block(flat, bounds, (3,)),
+                 block(flat, bounds + 3, (3,)), block(flat, bounds + 6, (TERMS,)))  # fmt: skip
+
+
+def table_length(waves: int, rows: int) -> int:
+    """Doubles of a table."""
+    return 8 * rows * (1 + waves) + 6 + TERMS
+
+
+def linear_model(flat: Any, sizes: Any) -> Any:
+    """`state.Model` over a flat array: rules, turn, scalars, waves, table, flow in double-double, table of batches."""
+    waves, rows = sizes[WAVES], sizes[ROWS]
+    n, at = 3 + 2 * waves, SCALARS + 10
+    numbers, rest = numbers_of(flat, SCALARS, at, waves), numbers_of(flat, SCALARS + 4, at + 4 * waves, waves)
+    at += 8 * waves
+    table = table_of(flat, at, flat[SCALARS + 8], waves, rows)
+    fine = block(flat, at + table_length(waves, rows), (2 * LEVEL, n, n, 2))
+    return Model(numbers, rest, table, rules_of(flat), block(flat, TURN, (5,)), fine)
+
+
+def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any) -> Any:
+    """`state.Batch` behind the model and the scratch of one flight."""
+    waves, rows = sizes[WAVES], sizes[ROWS]
+    n = 3 + 2 * waves
+    at = SCALARS + 10 + 8 * waves + table_length(waves, rows) + 4 * LEVEL * n * n
+    table = table_of(flat, at, flat[SCALARS + 9], waves, rows)
+    at += table_length(waves, rows)
+    series, turn = block(flat, at, (BATCH_ORDER + 1, n)), block(flat, at + (BATCH_ORDER + 1) * n, (3,))
+    free = flight_length(sizes)
+    lane, wave = (
+        block(scratch, free, (LANE_ROWS * LANES,)),
+        block(scratch, free + LANE_ROWS * LANES, (2 * waves, LANES)),
+    )
+    free += (LANE_ROWS + 2 * waves) * LANES
+    local, X = (
+        block(scratch, free, (2 * waves, LANES)),
+        block(scratch, free + 2 * waves * LANES, (BATCH_ORDER + 1, LANES)),
+    )
+    return Batch(table, series, turn, lane, wave, local, X, work)
+
+
+def linear_length(sizes: Any) -> int:
+    """Doubles of a linear model."""
+    waves, rows = int(sizes[WAVES]), int(sizes[ROWS])
+    n = 3 + 2 * waves
+    both = 2 * table_length(waves, rows)
+    return SCALARS + 10 + 8 * waves + both + 4 * LEVEL * n * n + (BATCH_ORDER + 1) * n + 3
+
+
+def taylor_model(flat: Any, sizes: Any) -> Any:
+    """`state.TaylorModel` over a flat array: rules, turn, constants."""
+    return TaylorModel(block(flat, SCALARS, (sizes[CONSTANTS],)), rules_of(flat), block(flat, TURN, (5,)))
+
+
+def rows_of_work(sizes: Any) -> int:
+    """Rows of W: two a wave at a launch and two at a step, or those of a recurrence."""
+    return int(max(4 * sizes[WAVES], sizes[ROWS] if sizes[CONSTANTS] > 0 else 1))
+
+
+def scratch_of(flat: Any, sizes: Any) -> Any:
+    """`state.Flying` over a flat array."""
+    room, n, rows = sizes[ROOM], 3 + 2 * sizes[WAVES], rows_of_work(sizes)
+    X, q, launch = block(flat, 0, (room,)), block(flat, room, (room,)), block(flat, 2 * room, (room,))
+    hit, twice = block(flat, 3 * room, (10,)), block(flat, 3 * room + 10, (4, n, 2))
+    W = block(flat, 3 * room + 10 + 8 * n, (rows, room))
+    return Flying(Work(X, W, q), launch, hit, twice)
+
+
+def columns_of(flat: Any, sizes: Any) -> Any:
+    """`state.Columns` behind the scratch of one flight."""
+    room, at = sizes[ROOM], flight_length(sizes)
+    return Columns(block(flat, at, (room,)), block(flat, at + room, (room,)), block(flat, at + 2 * room, (room,)))
+
+
+def flight_length(sizes: Any) -> int:
+    """Doubles of the scratch of one flight."""
+    return int(3 * sizes[ROOM] + 10 + 8 * (3 + 2 * sizes[WAVES]) + rows_of_work(sizes) * sizes[ROOM])
+
+
+def scratch_length(sizes: Any) -> int:
+    """Doubles of all scratch: of one flight, and of a batch or of columns."""
+    batch = (LANE_ROWS + 4 * int(sizes[WAVES]) + BATCH_ORDER + 1) * LANES
+    return flight_length(sizes) + max(batch, 3 * int(sizes[ROOM]))

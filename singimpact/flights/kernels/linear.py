@@ -1,0 +1,129 @@
+"""Linear models: coefficients by a short recurrence, restarts from a well-conditioned closed form.
+
+    x - c = v D[a, b](t) + Re sum_j (A_j - i B_j) e^{i theta_j} D[a, b, i w_j](t)
+
+with a, b the roots of s^2 + d s + k and D the divided differences of s -> e^{s t}: nothing divides by k - w^2, so
+resonance, critical damping and k = 0 are ordinary points.  launch = cos theta_j, sin theta_j of every wave.
+"""
+
+from __future__ import annotations
+
+from cmath import sqrt as complex_sqrt
+from math import cos, exp, sin
+from typing import Any
+
+from singimpact.flights.kernels.double_double import product_twice
+from singimpact.flights.kernels.state import COSINE, RATE, SINE
+
+
+def coefficients(launch: Any, time: Any, z: Any, u: Any, shift: Any, n: int, p: Any, work: Any) -> None:
+    """Taylor coefficients of x - c (X[0] is not read); W takes those of cosine and sine of every wave."""
+    X, W, count = work.X, work.W, len(p.waves)
+    for j in range(count):
+        rate = p.waves[j, RATE]
+        turn_c, turn_s = cos(rate * time), sin(rate * time)
+        W[2 * j, 0] = launch[2 * j] * turn_c - launch[2 * j + 1] * turn_s
+        W[2 * j + 1, 0] = launch[2 * j + 1] * turn_c + launch[2 * j] * turn_s
+        for k in range(n - 2):
+            W[2 * j, k + 1] = -rate * W[2 * j + 1, k] / (k + 1)
+            W[2 * j + 1, k + 1] = rate * W[2 * j, k] / (k + 1)
+    X[0], X[1] = z, u
+    for k in range(n - 1):
+        total = p.steady if k == 0 else 0 * z
+        for j in range(count):
+            total += p.waves[j, COSINE] * W[2 * j, k] + p.waves[j, SINE] * W[2 * j + 1, k]
+        total -= p.damping * (k + 1) * X[k + 1] + p.stiffness * X[k]
+        X[k + 2] = total / ((k + 1) * (k + 2))
+        if k == 0:
+            X[2] += shift
+
+
+def step_size(X: Any, W: Any, z: Any, n: int, longest: Any, ulp: Any, p: Any, pace: Any) -> Any:  # noqa: ARG001
+    """3/2 of the fastest rate: order 24 leaves 1.5^24/24! < 3e-20 of the terms; also 17/16 of it."""
+    return 3 / (2 * p.fastest) if p.fastest > 0 else longest * 1e6, 17 / 16, pace
+
+
+def singular_part(X: Any, W: Any, n: int, h: Any, p: Any) -> Any:  # noqa: ARG001
+    """The forces of a linear model are entire."""
+    return 0
+
+
+def turning(a: complex, t: float) -> complex:
+    """e^{a t}; the rounding of the angle would be that of t, times the amplitude: 1e-14 after 100 turns."""
+    angle, rest = product_twice(a.imag, 0.0, t, 0.0)
+    size, c, s = exp(a.real * t), cos(angle), sin(angle)
+    return complex(size * (c - rest * s), size * (s + rest * c))
+
+
+def pair(a: complex, b: complex, t: float) -> complex:
+    """D[a, b](t) = (e^{a t} - e^{b t})/(a - b)."""
+    # numpy's complex scalars divide in another way than Python's and the compiler's
+    a, b, t = complex(a), complex(b), float(t)
+    y = (a - b) * t / 2
+    if abs(y) < 0.1:
+        y2 = y * y
+        ratio = 1 + y2 / 6 * (1 + y2 / 20 * (1 + y2 / 42 * (1 + y2 / 72 * (1 + y2 / 110))))
+        return turning(b, t) * turning(y, 1.0) * t * ratio
+    return (turning(a, t) - turning(b, t)) / (a - b)
+
+
+def triple(a: complex, b: complex, c: complex, t: float) -> complex:
+    """D[a, b, c](t), from the two points that are farthest apart, or from the series when all are close."""
+    a, b, c, t = complex(a), complex(b), complex(c), float(t)
+    ab, bc, ca = abs(a - b), abs(b - c), abs(c - a)
+    if ab >= bc and ab >= ca:
+        b, c = c, b
+    elif bc >= ca:
+        a, b = b, a
+    if abs((a - c) * t) > 0.5:
+        return (pair(a, b, t) - pair(b, c, t)) / (a - c)
+    mean = (a + b + c) / 3
+    a, b, c = (a - mean) * t, (b - mean) * t, (c - mean) * t
+    h1, h2, h3, total, factorial = 1.0 + 0j, 1.0 + 0j, 1.0 + 0j, 0.5 + 0j, 2.0
+    for m in range(1, 14):
+        h1 = h1 * a
+        h2 = h1 + b * h2
+        h3 = h2 + c * h3
+        factorial *= m + 2
+        total += h3 / factorial
+    return total * t * t * turning(mean, t)
+
+
+def restart(launch: Any, v: float, time: float, z: float, u: float, noise: float, ulp: float, p: Any) -> Any:  # noqa: ARG001
+    """x - c and x' at `time` from the launch, whatever the steps before have lost; and how well they are known."""
+    root = complex_sqrt(complex(p.damping * p.damping / 4 - p.stiffness))
+    a, b = -p.damping / 2 + root, -p.damping / 2 - root
+    free = pair(a, b, time)
+    slope = turning(a, time) + b * free
+    forced = p.steady * triple(a, b, 0j, time)
+    z, u = v * free.real + forced.real, v * slope.real + p.steady * free.real
+    size = abs(v * free) + abs(forced)
+    for j in range(len(p.waves)):
+        rate = 1j * p.waves[j, RATE]
+        wave = complex(p.waves[j, COSINE], -p.waves[j, SINE]) * complex(launch[2 * j], launch[2 * j + 1])
+        forced = wave * triple(a, b, rate, time)
+        moved = wave * free + rate * forced
+        z, u, size = z + forced.real, u + moved.real, size + abs(forced) + abs(wave) * abs(free) / p.fastest
+    return z, u, ulp * size * (1 + p.fastest * time)
+
+
+def response(launch: Any, v: float, time: float, p: Any) -> Any:
+    """dx/dv, dx'/dv, dx/dtau, dx'/dtau at `time` after the launch, and the sizes of the terms in x - c and x'."""
+    root = complex_sqrt(complex(p.damping * p.damping / 4 - p.stiffness))
+    a, b = -p.damping / 2 + root, -p.damping / 2 - root
+    free = pair(a, b, time)
+    slope = turning(a, time) + b * free
+    by_tau, by_tau_dot = 0.0, 0.0
+    # divided differences are differences of terms that large, however small they come out
+    gap = abs(a - b)
+    reach = time if gap * time < 2 else 2 / gap
+    strength = abs(p.steady)
+    for j in range(len(p.waves)):
+        rate = 1j * p.waves[j, RATE]
+        wave = rate * complex(p.waves[j, COSINE], -p.waves[j, SINE]) * complex(launch[2 * j], launch[2 * j + 1])
+        forced = wave * triple(a, b, rate, time)
+        moved = wave * free + rate * forced
+        by_tau, by_tau_dot = by_tau + forced.real, by_tau_dot + moved.real
+        strength += abs(p.waves[j, COSINE]) + abs(p.waves[j, SINE])
+    size = (v + strength * reach) * reach
+    return free.real, slope.real, by_tau, by_tau_dot, size, v + strength * reach

@@ -1,0 +1,91 @@
+"""Impact after impact in one loop: the launch is made from the phase, the rebound from rho."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+from singimpact.flights.kernels.double_double import sum_twice
+from singimpact.flights.kernels.hits import NOT_REFINED, linear_hit, taylor_hit
+from singimpact.flights.kernels.state import CONDITION, FLIGHT_TIME, TIME_ERROR, VELOCITY
+from singimpact.flights.kernels.waves import reduced_twice
+
+
+def rebound(velocity: float, w: Any) -> float:
+    """rho(velocity) of a constant restitution w[0]; `flights.bind` puts an emitted rho in its place."""
+    return float(abs(w[0] * velocity))
+
+
+def orbit_segment(tau: float, v: float, slow: float, w: Any, model: Any, work: Any, out: Any) -> Any:
+    """(impacts flown, code of the last flight) of an orbit of a linear model, at most one a row of `out`.
+
+    Parameters
+    ----------
+    tau, v : the state. w : constants of rho. out : row i becomes the time since the start, v, flight time, velocity,
+        a_c at the launch, kappa and the error of the flight time of impact i.
+    slow : the orbit ends, with code PRESSED, where the chatter left would be shorter than this if a_c stayed as it is.
+    """
+    since, lost = 0.0, 0.0
+    for i in range(len(out)):
+        at, at_low = sum_twice(tau, 0.0, since, -lost)
+        t, t_low = reduced_twice(at, model.turn)
+        t, t_low = sum_twice(t, t_low, at_low, 0.0)
+        code, a = linear_hit(t, t_low, v, slow, model, work)
+        # a hit that is not refined here, for want of a table, is within a few roundings more
+        code = 0 if code == NOT_REFINED else code
+        if code != 0:
+            return i, code
+        since, lost = later(since, lost, work.hit[FLIGHT_TIME])
+        v = rebound(work.hit[VELOCITY], w)
+        record(out[i], since, v, a, work.hit)
+        if not v > 0:
+            return i + 1, 8
+    return len(out), 0
+
+
+def taylor_segment(tau: float, v: float, slow: float, w: Any, model: Any, work: Any, out: Any) -> Any:
+    """`orbit_segment` of a model flown in Taylor steps."""
+    since, lost = 0.0, 0.0
+    for i in range(len(out)):
+        at, at_low = sum_twice(tau, 0.0, since, -lost)
+        t, t_low = reduced_twice(at, model.turn)
+        code, a = taylor_hit(t + (t_low + at_low), v, slow, inf, model, work)
+        if code != 0:
+            return i, code
+        since, lost = later(since, lost, work.hit[FLIGHT_TIME])
+        v = rebound(work.hit[VELOCITY], w)
+        record(out[i], since, v, a, work.hit)
+        if not v > 0:
+            return i + 1, 8
+    return len(out), 0
+
+
+def iterate_taylor(tau: Any, v: Any, count: int, w: Any, model: Any, work: Any, status: Any) -> None:
+    """`count` impacts from every state; tau, v become the last states, status what ended an orbit before, else 0."""
+    for i in range(len(tau)):
+        since, lost = 0.0, 0.0
+        for _ in range(count):
+            if status[i] != 0:
+                break
+            at, at_low = sum_twice(tau[i], 0.0, since, -lost)
+            t, t_low = reduced_twice(at, model.turn)
+            status[i], _a = taylor_hit(t + (t_low + at_low), v[i], 0.0, inf, model, work)
+            if status[i] == 0:
+                since, lost = later(since, lost, work.hit[FLIGHT_TIME])
+                v[i] = rebound(work.hit[VELOCITY], w)
+                if not v[i] > 0:
+                    status[i] = 8
+        tau[i] += since - lost
+
+
+def later(since: float, lost: float, time: float) -> Any:
+    """since + time, and what the sum has lost: a thousand impacts would lose a thousand roundings of tau."""
+    part = time - lost
+    total = since + part
+    return total, (total - since) - part
+
+
+def record(row: Any, since: float, v: float, a: float, hit: Any) -> None:
+    """One impact of an orbit as a row."""
+    row[0], row[1], row[2], row[3], row[4] = since, v, hit[FLIGHT_TIME], hit[VELOCITY], a
+    row[5], row[6] = hit[CONDITION], hit[TIME_ERROR]

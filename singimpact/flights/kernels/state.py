@@ -1,0 +1,159 @@
+"""The named tuples that kernels take, and the columns of their tables.
+
+In compiled code the fields are doubles and arrays; on numbers of mpmath and balls the arrays are lists.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+X_BY_X, X_BY_V, X_STEADY, V_BY_X, V_BY_V, V_STEADY, SIZE_X, SIZE_STEADY = range(8)
+"""Columns of `Table.rows`: x - c and x' by their values at the start and by the constant force; sizes for rounding."""
+
+X_COS, X_SIN, V_COS, V_SIN, A_COS, A_SIN, TURN_COS, TURN_SIN = range(8)
+"""Columns of `Table.waves`: x - c, x' and x'' (without the terms of x and x') by cosine and sine of a wave at the
+launch; cosine and sine of the angle that the wave turns."""
+
+
+RATE, PHASE, COSINE, SINE = range(4)
+"""Columns of `Linear.waves`."""
+
+
+class Linear(NamedTuple):
+    """x'' + damping x' + stiffness x = steady + sum_j COSINE cos(RATE t + PHASE) + SINE sin(RATE t + PHASE), x from c.
+
+    fastest : the largest rate of waves and free motion. waves : (waves, 4), columns RATE and following. A second such
+    tuple holds the parts of these numbers below their doubles.
+    """
+
+    damping: Any
+    stiffness: Any
+    steady: Any
+    fastest: Any
+    waves: Any
+
+
+class Table(NamedTuple):
+    """The closed form of a linear model at the times m step.
+
+    rows : (times, 8), columns X_BY_X and following. waves : (times, waves, 8), columns X_COS and following.
+    fourth, sixth : |x''''| <= fourth[0] |x - c| + fourth[1] |x'| + fourth[2] over one step, and so for the sixth
+    derivative. taylor : 1/k!.
+    """
+
+    step: Any
+    rows: Any
+    waves: Any
+    fourth: Any
+    sixth: Any
+    taylor: Any
+
+
+class Rules(NamedTuple):
+    """When a flight is given up, and the degree and rounding of its steps.
+
+    horizon : time. budget : Taylor steps. order : degree of a Taylor step. short : degree of the shorter steps through
+    a table, and of the steps of `variational.judge`. ulp : rounding error allowed for, relative to the size of the
+    terms. likely : the same, as it usually is, in roundings. rough_time, rough_velocity : relative errors of a hit
+    below these are never refined.
+    """
+
+    horizon: Any
+    budget: Any
+    order: Any
+    short: Any
+    ulp: Any
+    likely: Any
+    rough_time: Any
+    rough_velocity: Any
+
+
+class Work(NamedTuple):
+    """Scratch of one flight: Taylor coefficients of x - c; of every wave or row of a recurrence; a polynomial."""
+
+    X: Any
+    W: Any
+    q: Any
+
+
+class Columns(NamedTuple):
+    """Taylor coefficients of solutions of the variational equation: from (1, 0), from (0, 1), and driven by g'."""
+
+    A: Any
+    B: Any
+    Z: Any
+
+
+class Model(NamedTuple):
+    """A linear model as its flights need it.
+
+    rest : the parts of `numbers` below their doubles. turn : the period, then its parts of 26 bits; zeros without one.
+    fine : the flow over steps of the table in double-double, see `refine`; empty where hits are refined in balls.
+    """
+
+    numbers: Linear
+    rest: Linear
+    table: Table
+    rules: Rules
+    turn: Any
+    fine: Any
+
+
+class TaylorModel(NamedTuple):
+    """A model without a closed form. numbers : the constants of its recurrence. turn : as in `Model`."""
+
+    numbers: Any
+    rules: Rules
+    turn: Any
+
+
+class Interval(NamedTuple):
+    """One step of a table: x - c, x' and x'' at both ends, and how well x - c is known there.
+
+    time : of its start, since the launch. m : its row. room : x - c above this is certainly positive on the step.
+    """
+
+    time: Any
+    m: Any
+    z: Any
+    u: Any
+    e: Any
+    z1: Any
+    u1: Any
+    e1: Any
+    noise: Any
+    noise1: Any
+    room: Any
+
+
+FLIGHT_TIME, VELOCITY, CONDITION, VELOCITY_CONDITION, TIME_ERROR, VELOCITY_ERROR = range(6)
+TIME_BY_TAU, TIME_BY_V, VELOCITY_BY_TAU, VELOCITY_BY_V = range(6, 10)
+"""Columns of a hit. Where a flight ends in no hit, CONDITION and VELOCITY_CONDITION are depth and bound."""
+
+
+class Flying(NamedTuple):
+    """Scratch of an orbit: of one flight; the launch; the last hit; four states in double-double."""
+
+    flight: Work
+    launch: Any
+    hit: Any
+    twice: Any
+
+
+class Batch(NamedTuple):
+    """A linear model as `batch` flies it, and scratch of a batch.
+
+    table : longer steps than those of one flight. series : how a Taylor coefficient at the start of a step follows from
+    x - c, x', 1 and cosine and sine of the waves there. turn : the period in two parts, the first of 33 bits, and its
+    inverse. lane : see `lanes`. wave, local : waves at the launches and at the steps of the hits. X : Taylor
+    coefficients. work : scratch of one flight.
+    """
+
+    table: Table
+    series: Any
+    turn: Any
+    lane: Any
+    wave: Any
+    local: Any
+    X: Any
+    work: Flying

@@ -1,0 +1,141 @@
+"""One flight as a chain of Taylor steps: plain arithmetic for doubles and mpf alike.
+
+The first step works on (x - c)/t^removed, where the trivial root t = 0 is gone: full relative accuracy at v = 1e-300.
+`coefficients`, `step_size`, `singular_part` and `restart` are those of linear models here; `flights.bind` puts the
+emitted recurrence of another model in their place.
+
+Statuses of `taylor_flight` are those of `status.Status`, and without a hit it gives the state some time before the
+horizon, for `flights.no_return`: time, x', x - c, its bound.  21 : the steps are spent; 22 : no step next to a
+singularity, with the part of f and g that is singular in place of the bound; 23 : out of the range of numbers.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from singimpact.flights.kernels.linear import coefficients, restart, singular_part, step_size
+from singimpact.flights.kernels.roots import first_root
+
+
+def taylor_flight(
+    launch: Any, v: Any, removed: int, acceleration: Any, p: Any, rules: Any, work: Any, trace: Any
+) -> Any:  # fmt: skip
+    """(status, flight time, velocity, depth, bound) of the flight from x = c with velocity v.
+
+    Parameters
+    ----------
+    launch : cosine and sine of every wave, or the time of the launch. v : velocity >= 0.
+    removed : how often t = 0 is a root of x - c: 1 for v > 0, more for a mass that lifts off at rest.
+    acceleration : a_c at the launch when it is known better than the flow computes it, else nan.
+    p : numbers of the model. rules : `state.Rules`. work : `state.Work`.
+    trace : where its rows suffice, row i becomes time, x - c, x' at the start of step i and x'' there by the polynomial
+        of the step before; the row of the hit ends it, and entry [0, 3] counts the steps.
+    """
+    X, W, q, order, ulp, horizon = work.X, work.W, work.q, rules.order, rules.ulp, rules.horizon
+    zero = 0 * v
+    time, z, u, noise, shift, z_lost, u_lost = zero, zero, v, zero, zero, zero, zero
+    if acceleration == acceleration:
+        coefficients(launch, time, z, zero, zero, order - order + 2, p, work)  # a literal 2 is compiled for itself
+        shift = acceleration / 2 - X[2]
+    longest, pace, bend = p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0), zero
+    for count in range(rules.budget):
+        coefficients(launch, time, z, u, shift, order, p, work)
+        note(trace, count, time, z, u, bend)
+        h, overlap, pace = step_size(X, W, z, order, longest, ulp, p, pace)
+        if not abs(u) < 1e150 or not abs(z) < 1e150:
+            return 23, time, u, z, noise
+        # a step that time cannot tell from none
+        if not h > ulp * time:
+            return 22, time, u, z, zero + singular_part(X, W, order, max(h, ulp * (time + ulp)), p)
+        if h > 2 * (horizon - time):
+            h = 2 * (horizon - time)
+        q[0] = z
+        for k in range(0 if removed else 1, order + 1 - removed):
+            q[k] = X[k + removed]
+        # a little past the step, so that a root on its end is not lost between two steps
+        code, s, slope, depth, bound = first_root(q, order - removed, h * overlap, noise, ulp)
+        if code > 0:
+            raised = 1 + zero
+            for _k in range(removed):
+                raised *= s
+            if code == 2:
+                return 5, time + s, slope * raised, depth * raised, bound * raised
+            if time + s > horizon:
+                return 3, time, u, z, noise
+            if count + 1 < len(trace):
+                note(trace, count + 1, time + s, zero, slope * raised, curvature(X, order, s))
+                trace[0, 3] = zero + count + 1
+            return 0, time + s, slope * raised, zero, zero
+        if time + h >= horizon:
+            return 3, time, u, z, noise
+        bend = curvature(X, order, h) if count + 1 < len(trace) else zero
+        z, z_lost, u, u_lost, size = moved(X, z, z_lost, u, u_lost, order, h)
+        time += h
+        z, u, noise = restart(launch, v, time, z, u, noise + ulp * size, ulp, p)
+        longest, shift, removed = 2 * h, zero, 0
+    return 21, time, u, z, noise
+
+
+def note(trace: Any, row: int, time: Any, z: Any, u: Any, bend: Any) -> None:
+    """A row of the trace, if it has that many."""
+    if row < len(trace):
+        trace[row, 0], trace[row, 1], trace[row, 2], trace[row, 3] = time, z, u, bend
+
+
+def advanced(X: Any, z: Any, order: int, h: Any) -> Any:
+    """x - c and x' at the end of a step, with the size of the terms summed."""
+    value, slope, size = X[order], 0 * h, abs(X[order])
+    for k in range(order - 1, -1, -1):
+        part = X[k] if k > 0 else z
+        slope = slope * h + value
+        value = value * h + part
+        size = size * h + abs(part)
+    return value, slope, size
+
+
+def moved(X: Any, z: Any, z_lost: Any, u: Any, u_lost: Any, n: int, h: Any) -> Any:
+    """x - c and x' at the end of a step, each with what its sum has lost, and the size of the terms summed."""
+    rise, turn, size = X[n], n * X[n], abs(X[n])
+    for k in range(n - 1, 0, -1):
+        rise = rise * h + X[k]
+        size = size * h + abs(X[k])
+        if k > 1:
+            turn = turn * h + k * X[k]
+    part = rise * h - z_lost
+    total = z + part
+    z_lost = (total - z) - part
+    change = turn * h - u_lost
+    speed = u + change
+    u_lost = (speed - u) - change
+    return total, z_lost, speed, u_lost, size * h + abs(z)
+
+
+def curvature(X: Any, n: int, s: Any) -> Any:
+    """x'' of the polynomial."""
+    value = 0 * s
+    for k in range(n, 1, -1):
+        value = value * s + k * (k - 1) * X[k]
+    return value
+
+
+def follow(launch: Any, v: Any, times: Any, p: Any, rules: Any, work: Any, out: Any) -> None:
+    """x - c and x' at `times`, which run away from 0 in one direction; the obstacle is not felt."""
+    X, W, order, ulp = work.X, work.W, rules.order, rules.ulp
+    zero = 0 * v
+    time, z, u = zero, zero, v
+    longest, pace = p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0)
+    i = 0
+    while i < len(times):
+        coefficients(launch, time, z, u, zero, order, p, work)
+        h, _overlap, pace = step_size(X, W, z, order, longest, ulp, p, pace)
+        if not h > 0 or not abs(u) < 1e150 or not abs(z) < 1e150:
+            break
+        forward = times[len(times) - 1] >= 0
+        while i < len(times) and abs(times[i] - time) <= h:
+            out[i, 0], out[i, 1], _size = advanced(X, z, order, times[i] - time)
+            i += 1
+        longest = 2 * h
+        h = h if forward else -h
+        z, u, _size = advanced(X, z, order, h)
+        time += h
+        z, u, _noise = restart(launch, v, time, z, u, zero, ulp, p)

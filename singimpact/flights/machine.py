@@ -1,0 +1,180 @@
+"""Compiled entries of a model's kernels: from memory, from the cache, or from a process that compiles them meanwhile.
+
+Until they are there, flights are interpreted.  Compiling takes seconds, so one process of low priority does it, once a
+cache; nothing waits for it.
+"""
+
+from __future__ import annotations
+
+import atexit
+import hashlib
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from singimpact import cache
+from singimpact.flights import bind
+from singimpact.flights.bind import Emitted
+from singimpact.inputs import InputError
+from singimpact.store import cache_folder, folder, write_text
+
+
+@dataclass(frozen=True)
+class CompilingSettings:
+    """When models are compiled."""
+
+    # seconds of interpreted flights after which a model of its own f and g is compiled: most sessions fly fewer
+    wait: float = 0.25
+    # seconds between two looks at the cache while a process compiles
+    look: float = 0.2
+    # seconds after which a process that compiles is taken for dead
+    dead: float = 300.0
+
+
+SETTINGS = CompilingSettings()
+FOLDER = "kernels"
+Entry = tuple[Callable[..., int], Callable[..., int]]
+
+
+@lru_cache(maxsize=256)
+def machine_of(emitted: Emitted) -> Machine:
+    """The machine of a text, one in a process."""
+    return Machine(emitted)
+
+
+class Machine:
+    """The entries of the kernels of models that share a text."""
+
+    def __init__(self, emitted: Emitted) -> None:
+        self.emitted = emitted
+        self.spent = 0.0  # seconds of flights that were interpreted
+        self._entries: dict[str, Entry] = {}
+        self._lock = Lock()
+        self._looked: dict[str, float] = {}
+        self._asked, self._tried = False, -1e9
+
+    def entry(self, name: str) -> Entry | None:
+        """An entry, if it is compiled: without the interpreter's lock, and with it."""
+        found = self._entries.get(name)
+        if found is not None or not compilable():
+            return found
+        now = time.monotonic()
+        if now - self._looked.get(name, -1e9) < SETTINGS.look:
+            return None
+        self._looked[name] = now
+        code = cache.recall(self.place(name))
+        return None if code is None else self._load(name, code)
+
+    def interpreted(self, seconds: float) -> None:
+        """Count flights that were interpreted; after a while a process compiles the text."""
+        self.spent += seconds
+        if self._asked or not compilable() or (self.emitted.flow and self.spent < SETTINGS.wait):
+            return
+        now = time.monotonic()
+        if now - self._tried > SETTINGS.look:
+            self._tried = now
+            self._asked = self._compile_elsewhere()
+
+    def compile_here(self, name: str) -> Entry:
+        """Compile an entry in this process, which waits for it."""
+        from singimpact.codegen import object_code
+
+        found = self.entry(name)
+        if found is None:
+            code = object_code.emitted(bind.Compiler(self.emitted).text(name), name)
+            cache.keep(self.place(name), code)
+            found = self._load(name, code)
+        return found
+
+    def _load(self, name: str, code: bytes) -> Entry:
+        from singimpact.codegen import object_code
+
+        with self._lock:
+            if name not in self._entries:
+                self._entries[name] = object_code.loaded(code, name, bind.ADDRESSES)
+        return self._entries[name]
+
+    def place(self, name: str) -> Path:
+        """The file of an entry's object code."""
+        return cache_folder() / FOLDER / f"{self.digest()}.{name}.o"
+
+    def digest(self) -> str:
+        """Of everything that object code depends on."""
+        from singimpact.codegen.object_code import processor
+
+        digest = hashlib.sha256()
+        for part in (*bind.sources(), self.emitted.flow.encode(), self.emitted.rho.encode(), processor().encode()):
+            digest.update(hashlib.sha256(part).digest())
+        return digest.hexdigest()[:32]
+
+    def _compile_elsewhere(self) -> bool:
+        """Start a process of low priority that compiles, unless one is at work for this cache; whether it was asked."""
+        request = cache_folder() / FOLDER / f"{self.digest()}.asked"
+        try:
+            folder(request.parent)
+            if any(time.time() - each.stat().st_mtime < SETTINGS.dead for each in request.parent.glob("*.asked")):
+                return request.exists()
+            write_text(request, "\0".join([self.emitted.flow, str(self.emitted.rows), self.emitted.rho]))
+            command = [sys.executable, "-m", "singimpact.flights.machine", str(request)]
+            _outliving(command)
+        except (InputError, OSError) as error:
+            cache.not_kept(error)
+        return True
+
+
+_STARTED: list[Any] = []
+
+
+def _outliving(command: list[str]) -> None:
+    """Start a process that goes on when this one ends."""
+    _STARTED.append(subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        start_new_session=True, cwd=Path(__file__).parents[2],
+        env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder())},
+    ))  # fmt: skip
+    if len(_STARTED) == 1:
+        atexit.register(_left_alone)
+
+
+def _left_alone() -> None:
+    for process in _STARTED:
+        if process.poll() is None:
+            process.returncode = 0  # else Python warns that it is still running
+
+
+@lru_cache(maxsize=1)
+def compilable() -> bool:
+    """Whether object code can be loaded, and is wanted."""
+    try:
+        import llvmlite  # noqa: F401
+    except ImportError:
+        return False
+    return os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
+
+
+def compile_asked(request: Path) -> None:
+    """What the other process does: compile both entries of a text and keep them."""
+    if hasattr(os, "nice"):
+        os.nice(10)
+    flow, rows, rho = request.read_text(encoding="utf-8").split("\0")
+    machine = Machine(Emitted(flow, int(rows), rho))
+    from singimpact.codegen import object_code
+
+    try:
+        compiler = bind.Compiler(machine.emitted)
+        for name in machine.emitted.entries:
+            if cache.recall(machine.place(name)) is None:
+                cache.keep(machine.place(name), object_code.emitted(compiler.text(name), name))
+    finally:
+        request.unlink(missing_ok=True)
+
+
+if __name__ == "__main__":
+    compile_asked(Path(sys.argv[1]))

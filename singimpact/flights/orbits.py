@@ -1,0 +1,98 @@
+"""Impacts in a row: of one orbit with every impact, and of many orbits with their last states."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.flights.causes import decoded
+from singimpact.flights.compiled_model import EPSILON, Allowance, allowed, compiled_model
+from singimpact.flights.kernels.entries import AT_REST
+from singimpact.flights.kernels.hits import PRESSED
+from singimpact.flights.phase import reduced
+from singimpact.flights.states import States
+from singimpact.flights.undecided import near
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """Impacts after a state.
+
+    Parameters
+    ----------
+    tau, v : states just after each impact. flight_time, velocity : of the flights that ended there.
+    acceleration : a_c at the launch of each flight. condition, error : of the flight times, nan where not computed.
+    status : of the flight that was not flown or did not end in an impact; 0 when all were flown or the chatter left is
+        short.
+    cause : why that flight is unresolved, see `singimpact.status.Cause`.
+    """
+
+    tau: Array
+    v: Array
+    flight_time: Array
+    velocity: Array
+    acceleration: Array
+    condition: Array
+    error: Array
+    status: int
+    cause: int
+
+
+def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, slow: float = 0.0) -> Segment:
+    """Fly at most `count` impacts from a state with v > 0; stop where the chatter left is shorter than `slow`.
+
+    Examples
+    --------
+    >>> found = orbit_segment(Oscillator("0", "-2", 0, "1/2"), 0.0, 1.0, 3)
+    >>> found.tau.tolist(), found.v.tolist(), found.status
+    ([1.0, 1.5, 1.75], [0.5, 0.25, 0.125], 0)
+    """
+    model = compiled_model(osc)
+    start = tau if osc.period is None or abs(tau) < model.nearest else float(reduced(np.array([tau]), osc.period)[0])
+    rows, code = model.segment(start, v, count, slow)
+    ended, cause = (int(part[0]) for part in decoded(np.array([0 if code == PRESSED else code])))
+    since, speed, time, velocity, acceleration, condition, error = rows.T
+    return Segment(tau + since, speed, time, velocity, acceleration, condition, error, ended, cause)
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The states after the last impact flown, and 0, or the status of the flight that ended an orbit before."""
+
+    tau: Any
+    v: Any
+    status: Any
+
+
+def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = EPSILON) -> Ends:
+    """G^impacts of states; an orbit that meets no further impact stays where it is.
+
+    Parameters
+    ----------
+    osc : the model. tau, v : states that broadcast. impacts : flown.
+    tolerance : relative error of a Taylor step; closed forms keep to roundings.
+
+    Examples
+    --------
+    >>> ends = iterate(Oscillator("0", "-2", 0, "1/2"), [0, 1], 1, 3)
+    >>> ends.tau.tolist(), ends.v.tolist()
+    ([1.75, 2.75], [0.125, 0.125])
+    """
+    states = States.read(tau, v)
+    model = compiled_model(osc)
+    if tolerance > EPSILON and not model.linear:
+        model = allowed(osc, Allowance(model.allowance.horizon, tolerance))
+    start = near(osc, model, states.tau)
+    times, speeds, codes = model.iterate(start, states.v, impacts)
+    if tolerance > EPSILON and (left := codes == Status.unresolved).any():
+        # a graze that a coarse flight does not decide: one more impact, accurately
+        times[left], speeds[left], codes[left] = compiled_model(osc).iterate(times[left], speeds[left], 1)
+    codes = np.where(codes == AT_REST, np.int8(Status.sticks), codes)
+    parts = times + (states.tau - start), speeds, decoded(codes)[0]
+    return Ends(*(part.reshape(states.shape)[()] for part in parts))

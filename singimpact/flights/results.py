@@ -1,0 +1,126 @@
+"""What a flight ends in: frozen carriers of arrays, scalars when the state was scalar."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Self
+
+import numpy as np
+
+from singimpact.notebook import table
+from singimpact.status import Cause, Status, status_array
+
+LATER = ("condition", "velocity_condition", "time_error", "velocity_error")
+"""Fields that may be computed when they are first read: of a Taylor flow they take longer than the flight."""
+SCALAR_STATUS = tuple(np.int8(code) for code in range(len(Status)))
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """First hits.
+
+    Parameters
+    ----------
+    flight_time : time from launch to the hit; inf when there is none, nan beside `unresolved`.
+    velocity : x' at the hit, <= 0; nan when there is no hit.
+    status : int8, see `singimpact.status.Status`.
+    depth : nan, or beside `unresolved` and `graze` the least x - c near the graze.
+    bound : rounding bound of `depth`.
+    condition : relative condition number kappa of the flight time; nan when there is no hit.
+    velocity_condition : the same of the velocity.
+    time_error, velocity_error : estimates of the relative errors of the flight time and of the velocity; nan when there
+        is no hit.
+    cause : int8, see `singimpact.status.Cause`: why a flight is `unresolved`.
+    notes : for unresolved flights, by their index in the flat arrays: where the flight came to.
+
+    Notes
+    -----
+    The errors are rounding errors and cut-offs of every step, carried to the hit by the variational equation as if they
+    were independent, with a margin: an estimate, no bound.  Of models without a closed form, they and the condition
+    numbers are computed when they are first read.
+    """
+
+    flight_time: Any
+    velocity: Any
+    status: Any
+    depth: Any
+    bound: Any
+    condition: Any
+    velocity_condition: Any
+    time_error: Any
+    velocity_error: Any
+    cause: Any
+    notes: Mapping[int, str]
+
+    @classmethod
+    def made(cls, later: Callable[[], dict[str, Any]] | None = None, **values: Any) -> Self:
+        """A result from its fields; `later` gives those of `LATER` that are not among them."""
+        found = object.__new__(cls)
+        found.__dict__.update(values)
+        if later is not None:
+            found.__dict__["_later"] = later
+        return found
+
+    def __getattr__(self, name: str) -> Any:
+        later = self.__dict__.get("_later") if name in LATER else None
+        if later is None:
+            raise AttributeError(f"{type(self).__name__} has no {name}")
+        self.__dict__.update(later())
+        del self.__dict__["_later"]
+        return self.__dict__[name]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self.values()
+
+    def values(self) -> dict[str, Any]:
+        """All fields by name."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
+
+    @property
+    def error(self) -> Any:
+        """The larger of the two relative errors: nothing in the result is less well known than this."""
+        return np.maximum(self.time_error, self.velocity_error)
+
+    @property
+    def sentence(self) -> Any:
+        """What became of each flight, and what to type next: a text, or an array of texts of the shape of `status`."""
+        flat = zip(np.ravel(self.status).tolist(), np.ravel(self.cause).tolist(), strict=True)
+        texts = np.array([_sentence(*each, self.notes.get(at)) for at, each in enumerate(flat)] + [None], dtype=object)
+        return texts[:-1].reshape(np.shape(self.status))[()]
+
+    def _repr_html_(self) -> str:
+        names = [name for name in ("flight_time", "velocity", "tau", "v") if hasattr(self, name)]
+        columns = [np.ravel(getattr(self, name)) for name in names]
+        words = [Status(value).name for value in np.ravel(self.status).tolist()]
+        rows = [[*map(_shown, numbers), word] for *numbers, word in zip(*columns, words, strict=True)]
+        return table([*names, "status"], rows, f"{type(self).__name__} of {len(rows)}")
+
+
+@dataclass(frozen=True, eq=False)
+class Step(Flight):
+    """A hit and the state just after it; `tau` and `v` are the next ones."""
+
+    tau: Any
+    v: Any
+
+
+@dataclass(frozen=True)
+class Derivative:
+    """D G of the impact map: `matrix` of shape (..., 2, 2) and the `status` of the flight."""
+
+    matrix: Any
+    status: Any
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "status", status_array(self.status))
+
+
+def _sentence(status: int, cause: int, note: str | None) -> str:
+    if status != Status.unresolved or not cause:
+        return Status(status).sentence
+    return Cause(cause).sentence if note is None else f"{note}; {Cause(cause).sentence}"
+
+
+def _shown(number: Any) -> str:
+    return f"{number:.12g}" if isinstance(number, float) else str(number)

@@ -1,0 +1,268 @@
+"""First hits of arrays of states, and the few that end in no plain hit: at rest, near a graze, escaped, given up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.flights import in_digits
+from singimpact.flights.causes import decoded, explained
+from singimpact.flights.compiled_model import EPSILON, CompiledModel
+from singimpact.flights.derivative import response, usual_errors
+from singimpact.flights.escape import never_returns
+from singimpact.flights.escape_averaged import stays_up
+from singimpact.flights.escape_barrier import kept_up
+from singimpact.flights.escape_polynomial import never_turns
+from singimpact.flights.kernels.hits import CANCELS, NOT_REFINED
+from singimpact.flights.limits import LIMITS
+from singimpact.flights.phase import reduced
+from singimpact.flights.polish import polished
+from singimpact.flights.results import Flight
+from singimpact.flights.states import States
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Cause, Status
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Fates:
+    """Flights as they are decided, one column a state.
+
+    Parameters
+    ----------
+    status, cause : int8. rows : columns of hits, see `kernels.state`; of a flight without a hit the first four are
+        time, velocity (or x'), depth (or x - c) and bound.
+    """
+
+    status: Array
+    cause: Array
+    rows: Array
+
+    @property
+    def numbers(self) -> Array:
+        """The first four columns, one row a state."""
+        return self.rows[:4].T
+
+    @property
+    def lost(self) -> Array:
+        """Flights that came to no graze but to the end of the range of numbers, of the functions in f and g, or of the
+        steps.
+        """
+        return np.asarray(self.cause > Cause.near_graze)
+
+
+class Judge:
+    """Conditions and errors of the hits of a Taylor flow, when they are read."""
+
+    def __init__(self, model: CompiledModel, tau: Array, v: Array, shape: tuple[int, ...] | None = None) -> None:
+        self.model, self.tau, self.v, self.shape = model, tau, v, shape
+        self.removed = np.ones(tau.size)
+        self.hits = np.ones(tau.size, dtype=bool)
+
+    def __call__(self) -> dict[str, Any]:
+        rows = np.full((4, self.tau.size), np.nan)
+        chosen = np.flatnonzero(self.hits)
+        judged = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])
+        rows[:, chosen] = judged[2:6]
+        rows[2:] = LIMITS.margin * rows[2:] + EPSILON
+        values = dict(zip(("condition", "velocity_condition", "time_error", "velocity_error"), rows, strict=True))
+        if self.shape is None:
+            return values
+        return {name: value.reshape(self.shape)[()] for name, value in values.items()}
+
+    def steps(self) -> Array:
+        """Taylor steps of each hit, nan elsewhere."""
+        found, chosen = np.full(self.tau.size, np.nan), np.flatnonzero(self.hits)
+        found[chosen] = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])[10]
+        return found
+
+
+class Shaped:
+    """What another gives, in a shape."""
+
+    def __init__(self, later: Any, shape: tuple[int, ...]) -> None:
+        self.later, self.shape = later, shape
+
+    def __call__(self) -> dict[str, Any]:
+        return {name: np.asarray(value).reshape(self.shape)[()] for name, value in self.later().items()}
+
+
+def flights(osc: Oscillator, model: CompiledModel, states: States) -> Flight:
+    """First hits in doubles, flat."""
+    return flights_and_rows(osc, model, states)[0]
+
+
+def flights_and_rows(osc: Oscillator, model: CompiledModel, states: States) -> tuple[Flight, Array]:
+    """First hits in doubles, flat; and the columns of `kernels.state`, nan where they are not known."""
+    if model.linear:
+        codes, rows = model.hits(near(osc, model, states.tau), states.v)
+        if not codes.any():
+            return plain(codes, rows), rows
+        fates, judge = decided(osc, model, states, codes, rows), None
+    else:
+        fates, judge = flown(osc, model, states)
+    # first: a flight that left the range of doubles would be followed again in many digits
+    escapes(osc, model, states, fates)
+    settled = _settled(osc, model, states, fates)
+    if settled.size:
+        escapes(osc, model, states, fates)
+    if judge is not None:
+        judge.hits = fates.status == Status.hit
+    return result(osc, states, fates, judge, settled), fates.rows
+
+
+def flown(osc: Oscillator, model: CompiledModel, states: States) -> tuple[Fates, Judge]:
+    """Flights of a Taylor flow, and what judges them."""
+    tau = near(osc, model, states.tau)
+    codes, rows = model.hits(tau, states.v)
+    open_ones = np.flatnonzero(codes == CANCELS)
+    if open_ones.size:  # a_c at the launch has lost digits: flown with the exact one
+        pushes = acceleration(osc, states.tau[open_ones])
+        codes[open_ones], rows[:, open_ones] = model.hits(tau[open_ones], states.v[open_ones], pushes)
+    fates = decided(osc, model, states, codes, rows)
+    _decided_at_launch(osc, model, states, fates)
+    judge = Judge(model, tau, states.v)
+    for index, rest in states.rest.items():
+        judge.removed[index] = rest.order + 2
+    judge.hits = fates.status == Status.hit
+    return fates, judge
+
+
+def decided(osc: Oscillator, model: CompiledModel, states: States, codes: Array, rows: Array) -> Fates:
+    """Flights with those from rest flown, and those that double-double arithmetic did not place refined."""
+    lifted = [index for index, rest in states.rest.items() if rest.sign > 0]
+    if lifted:
+        removed = np.array([states.rest[index].order + 2 for index in lifted])
+        codes[lifted], rows[:, lifted] = model.releases(near(osc, model, states.tau[lifted]), removed)
+    fates = Fates(*decoded(codes), rows)
+    for index, rest in states.rest.items():
+        if rest.sign <= 0:
+            fates.status[index] = Status.sticks
+    _refined(osc, model, states, codes, fates)
+    return fates
+
+
+def near(osc: Oscillator, model: CompiledModel, tau: Array) -> Array:
+    """Launch times within the reach of the reduction in kernels; farther ones are reduced exactly."""
+    if osc.period is None or not tau.size or max(tau.max(), -tau.min()) < model.nearest:
+        return tau
+    return np.where(np.abs(tau) < model.nearest, tau, reduced(tau, osc.period))
+
+
+def plain(codes: Array, rows: Array) -> Flight:
+    """Hits and nothing else."""
+    nothing = np.full(codes.size, np.nan)
+    return Flight.made(flight_time=rows[0], velocity=rows[1], status=codes, depth=nothing, bound=nothing.copy(),
+                       condition=rows[2], velocity_condition=rows[3], time_error=rows[4], velocity_error=rows[5],
+                       cause=np.zeros(codes.size, np.int8), notes={})  # fmt: skip
+
+
+def _decided_at_launch(osc: Oscillator, model: CompiledModel, states: States, fates: Fates) -> None:
+    """Flights that are proved not to return."""
+    moving = states.v > 0
+    up = moving & kept_up(osc, states.v)
+    fates.status[up], fates.cause[up] = Status.escaped, Cause.decided
+    stays = moving & stays_up(osc, states.v, model.allowance.horizon)
+    fates.status[stays], fates.cause[stays] = Status.no_return, Cause.decided
+
+
+def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array, fates: Fates) -> None:
+    """Hits that double-double arithmetic does not place: in balls, and what balls do not confirm in many digits.
+
+    At near resonances all flights come back together: the state hardly matters, but the sums still cancel.
+    """
+    left = LIMITS.settled
+    for index in np.flatnonzero(codes == NOT_REFINED).tolist():
+        fates.status[index] = Status.hit
+        found = polished(osc, states, index, float(fates.rows[0, index]))
+        if found is None and left:
+            left -= 1
+            settled = in_digits.settle(osc, states, index, model.allowance.horizon)
+            found = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
+        if found is not None:
+            fates.rows[:2, index] = found
+            fates.rows[4:6, index] = np.minimum(fates.rows[4:6, index], (4 * EPSILON, 64 * EPSILON))
+
+
+def escapes(osc: Oscillator, model: CompiledModel, states: States, fates: Fates) -> None:
+    """Flights that have not returned become `escaped` where they are proved never to return."""
+    # a flight that left the range of doubles, or spent its steps, was followed without impact too
+    numbers = fates.numbers
+    singular = (fates.cause == Cause.domain_left) & (numbers[:, 3] > 0)
+    gone = np.flatnonzero(((fates.status == Status.no_return) | (fates.lost & ~singular)) & (numbers[:, 0] > 0))
+    if gone.size:
+        time, speed, place, _ = numbers[gone].T
+        proved = (never_turns(osc, place, speed) if model.form is None
+                  else never_returns(osc, model.form, states.tau[gone], time, place, speed))  # fmt: skip
+        fates.status[gone[proved]], fates.cause[gone[proved]] = Status.escaped, Cause.decided
+
+
+def _settled(osc: Oscillator, model: CompiledModel, states: States, fates: Fates) -> Array:
+    """Flights that doubles leave open near a graze, flown in many digits: the state is exact, so the answer exists."""
+    open_ones = np.flatnonzero(fates.cause == Cause.near_graze)[: LIMITS.settled]
+    for index in open_ones:
+        settled = in_digits.settle(osc, states, int(index), model.allowance.horizon)
+        if settled is not None:
+            fates.status[index], fates.rows[:4, index] = settled
+            fates.rows[4:, index] = np.nan
+            fates.cause[index] = Cause.decided
+    return open_ones
+
+
+def result(osc: Oscillator, states: States, fates: Fates, judge: Judge | None, settled: Array) -> Flight:
+    """The carrier, with nan and inf where the status says so."""
+    status, rows = fates.status, fates.rows
+    notes = notes_of(osc, states, fates)
+    hit, graze = status == Status.hit, status == Status.graze
+    time, velocity = rows[0].copy(), rows[1].copy()
+    unknown, gone = status == Status.unresolved, (status == Status.no_return) | (status == Status.escaped)
+    time[gone], velocity[gone | unknown], time[unknown] = np.inf, np.nan, np.nan
+    rests = status == Status.sticks
+    velocity[graze | rests], time[rests] = 0.0, 0.0
+    known = (unknown & ~fates.lost) | graze
+    depth, bound = np.where(known, rows[2], np.nan), np.where(known, rows[3], np.nan)
+    fields = {"flight_time": time, "velocity": velocity, "status": status, "depth": depth, "bound": bound,
+              "cause": fates.cause, "notes": notes}  # fmt: skip
+    if judge is not None:
+        return Flight.made(judge, **fields)
+    judged = np.where(hit, rows[2:6], np.nan)
+    # hits that the compiled entry did not fly from v > 0
+    others = np.zeros(status.size, dtype=bool)
+    others[[*states.rest, *settled.tolist()]] = True
+    if (others & hit).any():
+        late = conditions(osc, states, others & hit, time, velocity)
+        late[2:, settled] = EPSILON
+        judged = np.where(others & hit, late, judged)
+    names = ("condition", "velocity_condition", "time_error", "velocity_error")
+    return Flight.made(**fields, **dict(zip(names, judged, strict=True)))
+
+
+def conditions(osc: Oscillator, states: States, chosen: Array, time: Array, velocity: Array) -> Array:
+    """Condition numbers and errors of some hits from the variational equation, shape (4, n), nan elsewhere."""
+    found, at = np.full((4, time.size), np.nan), np.flatnonzero(chosen)
+    if at.size:
+        given = osc, states.tau[at], states.v[at], time[at], velocity[at]
+        tau = states.tau[at] if osc.period is None else reduced(states.tau[at], osc.period)
+        kappas = response(*given).conditions(tau, states.v[at], time[at], velocity[at])
+        found[:, at] = [*kappas, *(part + EPSILON for part in usual_errors(*given))]
+    return found
+
+
+def notes_of(osc: Oscillator, states: States, fates: Fates) -> dict[int, str]:
+    """A note for each flight that is lost; causes are told apart."""
+    notes = {}
+    for index in np.flatnonzero(fates.lost).tolist():
+        tau = float(states.tau[index])
+
+        def way(times: Array, at: int = index) -> Any:
+            from singimpact.flights.path import path
+
+            return path(osc, states.tau[at], states.v[at], times)
+
+        found = explained(osc, tau, fates.numbers[index], Cause(int(fates.cause[index])), way)
+        fates.cause[index], notes[index] = found
+    return notes

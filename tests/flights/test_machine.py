@@ -1,0 +1,183 @@
+"""Compiled entries: kept as object code, the same numbers as interpreted ones, never needed to get an answer."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import singimpact as si
+from singimpact import store
+from singimpact.codegen import object_code
+from singimpact.flights import machine
+from singimpact.flights.bind import MODULES, Emitted, constants
+from singimpact.flights.compiled_model import Allowance, CompiledModel, compiled_model
+from singimpact.flights.kernels import entries
+
+MODELS = {
+    "linear": si.linear("2.8", 0, "0.8"),
+    "two waves, damped": si.ImpactOscillator("x + xdot/5", "cos(2*t) + sin(3*t)/9", "0.3", "0.6"),
+    "constant": si.ImpactOscillator("0", "-2", 0, "0.9"),
+    "duffing": si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6"),
+}
+
+
+@pytest.fixture(scope="module")
+def compiled():
+    """Models whose entries are compiled in this process."""
+    for model in MODELS.values():
+        flown = compiled_model(model)
+        for name in (flown.main, flown.second):
+            flown.machine.compile_here(name)
+    return MODELS
+
+
+def interpreted(model):
+    """A compiled model that finds no entry."""
+    flown = CompiledModel(model, Allowance(compiled_model(model).allowance.horizon))
+    flown.machine = flown.orbits = Never(flown.machine.emitted)
+    return flown
+
+
+class Never(machine.Machine):
+    def entry(self, name):  # noqa: ARG002
+        return None
+
+    def interpreted(self, seconds):
+        pass
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_interpreted_and_compiled_flights_agree(name, compiled):
+    model, rng = compiled[name], np.random.default_rng(5)
+    tau, v = rng.uniform(0, 3, 60), 10 ** rng.uniform(-6, 0.3, 60)
+    fast, slow = compiled_model(model), interpreted(model)
+    codes, rows = fast.hits(tau, v)
+    plain_codes, plain_rows = slow.hits(tau, v)
+    assert np.array_equal(codes == 0, np.isin(plain_codes, (0, 30)))
+    assert np.allclose(rows[:2], plain_rows[:2], rtol=1e-12, equal_nan=True)
+    assert np.allclose(fast.variations(tau, v, rows[0]), slow.variations(tau, v, rows[0]), rtol=1e-9, atol=1e-12)
+    ends, slow_ends = fast.iterate(tau[:8], v[:8], 2), slow.iterate(tau[:8], v[:8], 2)
+    assert np.array_equal(ends[2], slow_ends[2])
+    assert np.allclose(ends[0], slow_ends[0], rtol=1e-9)
+    out, code = fast.segment(float(tau[0]), float(v[0]), 5)
+    plain_out, plain_code = slow.segment(float(tau[0]), float(v[0]), 5)
+    assert code == plain_code
+    assert np.allclose(out[:, :5], plain_out[:, :5], rtol=1e-9)
+    if not fast.linear:
+        ones = np.ones(tau.size)
+        assert np.allclose(fast.judged(tau, v, ones)[:4], slow.judged(tau, v, ones)[:4], rtol=1e-9)
+        times = np.linspace(0.1, 2, 5)
+        assert np.allclose(fast.follow(0.3, 0.5, times), slow.follow(0.3, 0.5, times), rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_one_state_is_an_array_of_one(name, compiled):
+    model, rng = compiled[name], np.random.default_rng(6)
+    tau, v = rng.uniform(-5, 5, 40), 10 ** rng.uniform(-6, 0.3, 40)
+    many = model.impact_map(tau, v)
+    for index, (at, speed) in enumerate(zip(tau.tolist(), v.tolist(), strict=True)):
+        one = model.impact_map(at, speed)
+        assert (one.tau, one.v, one.status) == (many.tau[index], many.v[index], many.status[index])
+        assert one.condition == pytest.approx(many.condition[index], rel=1e-14)
+        assert one.error == pytest.approx(many.error[index], rel=1e-12)
+
+
+@pytest.mark.usefixtures("compiled")
+def test_linear_models_share_their_machine():
+    assert compiled_model(si.linear(2, 0, 1)).machine is compiled_model(MODELS["linear"]).machine
+    assert compiled_model(si.linear(2, 0, "-0.8*v + v**2/10")).machine is compiled_model(MODELS["linear"]).machine
+    assert compiled_model(MODELS["duffing"]).machine is not compiled_model(MODELS["linear"]).machine
+
+
+def test_a_name_means_one_thing_in_all_kernels():
+    found = {}
+    for module in MODULES:
+        for name, part in vars(module).items():
+            if callable(part) and getattr(part, "__module__", "") == module.__name__:
+                assert found.setdefault(name, part) is part, name
+    assert constants()["LANES"] == 64
+
+
+@pytest.mark.usefixtures("compiled")
+def test_object_code_calls_nothing_but_mathematics():
+    """Whatever else it names stands on paths of exceptions, which compiled entries do not raise."""
+    import re
+
+    for model in ("linear", "duffing"):
+        flown = compiled_model(MODELS[model])
+        for name in (flown.main, flown.second):
+            code = machine.cache.recall(flown.machine.place(name))
+            names = {each.decode() for each in re.findall(rb"[A-Za-z_][A-Za-z0-9_]{2,}", code)}
+            outside = {each for each in names if each.startswith(object_code.NEVER_CALLED) and each != "Python"}
+            assert outside <= NEVER_RAISED, outside - NEVER_RAISED
+
+
+NEVER_RAISED = {
+    "NRT_Free", "NRT_MemInfo_call_dtor", "PyBytes_FromStringAndSize", "PyErr_Clear", "PyErr_SetString",
+    "PyErr_WriteUnraisable", "PyExc_RuntimeError", "PyUnicode_FromString", "Py_DecRef", "Py_IncRef", "numba_do_raise",
+    "numba_gil_ensure", "numba_gil_release", "numba_runtime_build_excinfo_struct", "numba_unpickle",
+}  # fmt: skip
+FLY = """
+import sys, time, numpy as np, singimpact as si
+from singimpact.flights.compiled_model import compiled_model
+osc = si.linear("2.8", 0, "0.8")
+first = osc.impact_map(0.9, 0.005)
+rng = np.random.default_rng(0)
+end = time.monotonic() + float(sys.argv[1])
+while True:
+    step = osc.impact_map(rng.uniform(0, 3, 50), rng.uniform(0.1, 2, 50))
+    there = compiled_model(osc).machine.entry("linear_entry") is not None
+    if there or time.monotonic() > end:
+        break
+print(first.tau, there, "numba" in sys.modules)
+"""
+
+
+def flown(place, seconds, **around):
+    environment = {**os.environ, "SINGIMPACT_CACHE": str(place), **around}
+    command = [sys.executable, "-c", FLY, str(seconds)]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.split()
+
+
+@pytest.mark.slow
+def test_a_second_process_runs_what_a_third_compiled_meanwhile(tmp_path):
+    first = flown(tmp_path, 240)
+    assert first[1:] == ["True", "False"]  # never numba in a process that flies
+    begun = time.monotonic()
+    assert flown(tmp_path, 240) == first
+    assert time.monotonic() - begun < 20
+
+
+@pytest.mark.parametrize("around", [{"NUMBA_DISABLE_JIT": "1"}, {"SINGIMPACT_CACHE": "off"}])
+def test_without_compiled_entries_flights_are_interpreted(around, tmp_path):
+    answer = flown(tmp_path, 0, **around)
+    assert float(answer[0]) == pytest.approx(float(MODELS["linear"].impact_map(0.9, 0.005).tau), rel=1e-14)
+    assert answer[2] == "False"
+
+
+def test_cache_off_is_a_passing_folder(monkeypatch):
+    monkeypatch.setenv("SINGIMPACT_CACHE", "off")
+    assert store.cache_folder() == store.passing_folder()
+
+
+@pytest.mark.usefixtures("compiled")
+def test_damaged_object_code_is_named_and_not_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
+    other = machine.Machine(Emitted())
+    code = b"no machine code"
+    machine.cache.keep(other.place("linear_entry"), code)
+    place = other.place("linear_entry")
+    place.write_bytes(place.read_bytes()[:-1] + b"E")
+    assert other.entry("linear_entry") is None
+    assert str(place) in capsys.readouterr().err
+
+
+def test_the_kinds_of_work_are_told_apart():
+    kinds = (entries.PREPARE, entries.PREPARE_BATCH, entries.HITS, entries.SEGMENT, entries.ITERATE,
+             entries.VARIATIONS, entries.FOLLOW, entries.JUDGE, entries.RELEASES)  # fmt: skip
+    assert len(set(kinds)) == len(kinds)
