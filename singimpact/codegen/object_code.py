@@ -7,12 +7,13 @@ their own digest before they are mapped.
 from __future__ import annotations
 
 import ctypes
+import re
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
-NEVER_CALLED = ("NRT_", "Py", "_Py", "numba_")
-"""Names that compiled code would call to raise an exception: it raises none, so they end the process instead."""
+NEVER_CALLED = r"(NRT_|Py|_Py|numba_)"
+"""How names begin that compiled code would call to raise an exception: it raises none, so they end the process."""
 
 
 def emitted(text: str, entry: str) -> bytes:
@@ -23,7 +24,7 @@ def emitted(text: str, entry: str) -> bytes:
     import llvmlite.binding as llvm
 
     machine = _machine()
-    module = llvm.parse_assembly(text)
+    module = llvm.parse_assembly(_closed(text))
     module.verify()
     for function in module.functions:
         if function.is_declaration:
@@ -35,6 +36,19 @@ def emitted(text: str, entry: str) -> bytes:
     builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
     builder.getModulePassManager().run(module, builder)
     return bytes(machine.emit_object(module))
+
+
+def _closed(text: str) -> str:
+    """A module that calls nothing of Python or numba: what is declared for exceptions ends the process.
+
+    The names are defined inside the module: given to the loader they would replace those of other code in the process.
+    """
+    defined = re.sub(rf"(?m)^declare (.*@{NEVER_CALLED}[^\n]*)$", r"define internal \1 {\n  call void @abort()\n"
+                     r"  unreachable\n}", text)  # fmt: skip
+    defined = re.sub(
+        rf"(?m)^(@{NEVER_CALLED}\w*) = external (.*)global (\S+).*$", r"\1 = internal global \4 0", defined
+    )
+    return defined if "declare void @abort()" in defined else f"{defined}\ndeclare void @abort()\n"
 
 
 @lru_cache(maxsize=1)
@@ -67,7 +81,6 @@ def loaded(code: bytes, entry: str, addresses: int) -> tuple[Callable[..., int],
 
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
     held = llvm.ObjectFileRef.from_data(code)
-    _end_instead(code)
     engine.add_object_file(held)
     engine.finalize_object()
     _LOADED.append((engine, held))
@@ -76,15 +89,3 @@ def loaded(code: bytes, entry: str, addresses: int) -> tuple[Callable[..., int],
     free = ctypes.CFUNCTYPE(ctypes.c_int64, *takes)(address)
     holding = ctypes.PYFUNCTYPE(ctypes.c_int64, *takes)(address)
     return free, holding
-
-
-def _end_instead(code: bytes) -> None:
-    import re
-
-    import llvmlite.binding as llvm
-
-    ends = ctypes.cast(ctypes.CDLL(None).abort, ctypes.c_void_p).value
-    for name in set(re.findall(rb"[A-Za-z_][A-Za-z0-9_]+", code)):
-        text = name.decode()
-        if text.startswith(NEVER_CALLED):
-            llvm.add_symbol(text, ends)

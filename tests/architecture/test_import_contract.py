@@ -28,9 +28,9 @@ PLANTED = {
         "Theory and all below it work with generated/ emptied",
     ),
     "flows": (
-        "flights/flow/planted_one.py",
-        "from singimpact.flights.flow import planted_two",
-        "The flows are witnesses of each other",
+        "flights/balls.py",
+        "from singimpact.flights.kernels import roots",
+        "Balls and kernels are witnesses of each other",
     ),
     "routes": (
         "paper/routes/implicit.py",
@@ -58,7 +58,6 @@ PLANTED = {
         "An import points downwards only",
     ),
 }
-NEEDED = ["flights/flow/planted_two.py"]
 
 
 def contracts(folder):
