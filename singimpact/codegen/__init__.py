@@ -1,7 +1,7 @@
 """Source from mathematics: a vector field to the text of its Taylor recurrence, a series to a function, text to code.
 
-`recurrence` (x'' = g - f to a recurrence), `disc` and `radii` (bounds of it on complex discs), `scalar` (one expression),
-`formulas` and `rational_series` (polynomials and series), `over_lists` (text over any numbers), `object_code` (machine
-code, emitted and loaded).
+`recurrence` (x'' = g - f to a recurrence), `disc` and `radii` (bounds of it on complex discs), `scalar` (an
+expression), `formulas` and `rational_series` (polynomials and series), `over_lists` (text over any numbers),
+`object_code` (machine code, emitted and loaded).
 Not here: the expressions themselves (`algebra`), what a kernel is for (`flights`), frozen formulas (`generated`).
 """

@@ -88,7 +88,10 @@ def sources() -> list[bytes]:
     """The bytes of every file that a compiled entry is made from."""
     from pathlib import Path
 
-    return [Path(str(module.__file__)).read_bytes() for module in MODULES]
+    from singimpact.codegen import object_code
+
+    here = [Path(str(module.__file__)) for module in (*MODULES, object_code)]
+    return [path.read_bytes() for path in (*here, Path(__file__))]
 
 
 @lru_cache(maxsize=64)
