@@ -7,7 +7,7 @@ numerators and denominators stay factors: near lambda = 1, where they vanish, no
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -47,6 +47,7 @@ class RationalSeries:
     Attributes
     ----------
     value : power of the unit that the sum is multiplied by. argument : that the variable is divided by.
+    apart : the terms are returned, lowest first, in place of their sum.
     """
 
     variable: str
@@ -55,6 +56,7 @@ class RationalSeries:
     unit: Unit
     value: int = 0
     argument: int = 0
+    apart: bool = False
 
 
 def rational_series_source(name: str, series: RationalSeries, says: str) -> str:
@@ -90,9 +92,13 @@ def rational_series_source(name: str, series: RationalSeries, says: str) -> str:
     if any(ONE in re.split(r"\W", text) for text in shown.values()):
         lines.append(f"    {ONE} = {unit.leading}**0")
     lines += [f"    c_{n} = {text}" for n, text in shown.items()]
-    result = horner(series.variable, {n: f"c_{n}" for n in shown})
+    result = _terms(series.variable, shown) if series.apart else horner(series.variable, {n: f"c_{n}" for n in shown})
     scale = f"{power_text(length, series.value)} * " if series.value else ""
     return "\n".join([*lines, f"    return {scale}{result}"]) + "\n"
+
+
+def _terms(variable: str, powers: Iterable[int]) -> str:
+    return "(" + ", ".join(f"{power_text(variable, n)} * c_{n}" for n in powers) + ")"
 
 
 def _measured(jet: str, weight: int, unit: str) -> str:

@@ -12,14 +12,11 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.cases import sweep
 from singimpact.dynamics.orbit import orbit
-from singimpact.flights.orbits import orbit_segment
 from singimpact.inputs import refuse, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
-SLOW = 1e-4  # of a period: what is left of a chatter that the compiled loop leaves to the orbit
-BLOCK = 128  # impacts of a call
 
 
 @dataclass(frozen=True)
@@ -85,19 +82,7 @@ def settled(
 
 
 def _events(model: Oscillator, tau: Any, v: Any, impacts: int) -> Iterator[tuple[float, float, float]]:
-    """Impacts from the compiled loop; it stops where chatter is slow, and the orbit sums that up."""
-    assert model.period is not None
-    slow, flown = SLOW * as_float(model.period), 0
-    while flown < impacts:
-        last = orbit(model, tau, v, 1)
-        shown = np.isin(last.kind[1:], ("impact", "graze", "complete"))
-        yield from zip(last.tau[1:][shown], last.v[1:][shown], 1.0 * (last.kind[1:][shown] == "complete"), strict=True)
-        if last.tau.size == 1:
-            return
-        tau, v, flown = float(last.tau[-1]), float(last.v[-1]), flown + 1
-        if v > 0 and flown < impacts:
-            found = orbit_segment(model, tau, v, min(BLOCK, impacts - flown), slow)
-            yield from zip(found.tau, found.v, np.zeros(found.tau.size), strict=True)
-            flown += found.tau.size
-            if found.tau.size:
-                tau, v = float(found.tau[-1]), float(found.v[-1])
+    """Impacts, grazes and ends of chatter (1 in the last column) of an orbit."""
+    found = orbit(model, tau, v, impacts)
+    shown = np.isin(found.kind, ("impact", "graze", "complete"))
+    yield from zip(found.tau[shown], found.v[shown], 1.0 * (found.kind[shown] == "complete"), strict=True)

@@ -9,15 +9,16 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.certified import Certified
+from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float, as_mpf, compare
 from singimpact.algebra.precision import bits_at, digits_at, for_user
-from singimpact.algebra.rings import DOUBLES, Multiprecision
+from singimpact.algebra.rings import Multiprecision
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.completion import completion
+from singimpact.dynamics.remaining import remaining
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
-from singimpact.flights.kernels import layout
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
 from singimpact.inputs import InputError, whole
@@ -40,7 +41,7 @@ class Ending:
     trust : the error is called so many times the last term and the rounding of every impact carried to the end.
     """
 
-    order: int = 5
+    order: int = 4
     many: int = 8
     near: float = 1 / 64
     impacts: int = 1_000_000
@@ -135,45 +136,11 @@ def _covering(found: Certified) -> Any:
 
 def summed(osc: Oscillator, tau: float, v: float, resolution: float) -> float | None:
     """The time that is left of a complete chatter, when its error is below `resolution`; None: fly on."""
-    if _quick(osc, tau, v) is None:
+    a = acceleration(osc, np.array([tau]))
+    if not a[0] < 0 or compare(osc.slope_at_rest(), 1) == 0:
         return None
-    left, error = _rest(osc, tau, v, ENDING.order)
-    return left if error <= resolution else None
-
-
-def _slow(osc: Oscillator, tau: float) -> float:
-    """A rest of chatter shorter than this leaves a_c nearly as it is."""
-    place = np.array([tau])
-    a, slope = float(acceleration(osc, place)[0]), float(acceleration(osc, place, 1)[0])
-    rate = abs(slope / a) if a else np.inf
-    total = rate + _pace(osc)
-    return ENDING.near / total if total > 0 else np.inf
-
-
-def _pace(osc: Oscillator) -> float:
-    """How fast the model moves: the largest rate of a linear one, else the forcing's frequency, or 1."""
-    model = compiled_model(osc)
-    if model.linear:
-        return float(layout.linear_model(model.flat, model.sizes).numbers.fastest)
-    return 1.0 if osc.period is None else 2 * np.pi / as_float(osc.period)
-
-
-def _quick(osc: Oscillator, tau: float, v: float) -> float | None:
-    """The first term of what is left, where it is short enough for the completion map."""
-    if compare(osc.slope_at_rest(), 1) == 0:
-        return None
-    a = float(acceleration(osc, np.array([tau]))[0])
-    if not a < 0:
-        return None
-    left = -2 * v / a / (1 - as_float(osc.slope_at_rest()))
-    return left if left < _slow(osc, tau) else None
-
-
-def _rest(osc: Oscillator, tau: float, v: float, order: int) -> tuple[float, float]:
-    """What is left of a chatter from (tau, v), and the last term of its series."""
-    time = float(impact_map(osc, tau, v).flight_time)
-    terms = [float(c) * time ** (n + 1) for n, c in enumerate(completion(osc, tau, order, DOUBLES))]
-    return sum(reversed(terms)), float(_last(terms))
+    left, error = remaining(osc, np.array([tau]), np.array([v]), a)
+    return float(left[0]) if error[0] <= resolution else None
 
 
 def _last(terms: list[Any]) -> Any:
@@ -187,27 +154,27 @@ class _Flown:
     def __init__(self, osc: Oscillator, states: States, most: int) -> None:
         self.osc, self.states, self.most = osc, states, most
         self.times, self.speeds, self.cause = [float(states.tau[0])], [float(states.v[0])], Cause.decided
+        self.slopes: list[list[float]] = []
+        self._known: list[Any] | None = None
 
     def limit(self) -> ChatterLimit:
-        lost = 1 - as_float(self.osc.slope_at_rest())
-        status = self._first()
+        lasting = compare(self.osc.slope_at_rest(), 1) != 0
+        status, short, count = self._first(), False, 256
         while status == Status.hit:
             tau, v = self.times[-1], self.speeds[-1]
-            a = float(acceleration(self.osc, np.array([tau]))[0])
-            if a >= 0 and len(self.times) > 1:
+            a = acceleration(self.osc, np.array([tau]))
+            if a[0] >= 0 and len(self.times) > 1:
                 return self._ended(tau, 0.0, Status.lifts_off)
-            if lost > 0 and _quick(self.osc, tau, v) is not None:
-                left, error = _rest(self.osc, tau, v, ENDING.order)
+            if short:
+                left, error = (float(part[0]) for part in remaining(self.osc, np.array([tau]), np.array([v]), a))
                 if error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290:
                     return self._ended(tau + left, error, Status.complete)
                 if not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
                     status, self.cause = Status.unresolved, Cause.overflow
                     continue
-                wanted = self._more(error, tau), 0.0
-            else:
-                wanted = 256, min(_slow(self.osc, tau) * lost, 1e300) if a < 0 else 0.0
+                count = self._more(error, tau)
             if self._left() > 0:
-                status = self._fly(*wanted)
+                status, short = self._fly(count, 0.0 if short or not lasting else ENDING.near, short)
             else:
                 status, self.cause = Status.unresolved, Cause.impacts_exhausted
         return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status), cause=np.int8(self.cause))
@@ -233,19 +200,20 @@ class _Flown:
         self.cause = Cause(int(step.cause))
         return Status(int(step.status))
 
-    def _fly(self, count: int, slow: float) -> Status:
-        """Fly on; where the acceleration changes sign the sequence is cut just after the first impact there."""
-        found = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), slow)
+    def _fly(self, count: int, near: float, short: bool) -> tuple[Status, bool]:
+        """Fly on; where the acceleration changes sign the sequence is cut just after the first impact there.
+
+        The status, and whether the chatter left is short.
+        """
+        found = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), near)
         kept = self._kept(found)
         self.times += found.tau[:kept].tolist()
         self.speeds += found.v[:kept].tolist()
-        if not kept and found.status == 0:
-            # slow enough by the kernel's own acceleration: one more, so that no loop waits for agreement
-            return self._fly(1, 0.0)
+        self.slopes += found.slopes.T[:kept].tolist()
         if kept != found.tau.size:
-            return Status.hit
+            return Status.hit, False
         self.cause = Cause(found.cause)
-        return Status(found.status)
+        return Status(found.status), found.short or (short and near == 0.0)
 
     def _kept(self, found: Segment) -> int:
         lifted = np.flatnonzero(found.acceleration[1:] >= 0)
@@ -257,20 +225,32 @@ class _Flown:
 
     def rounding(self, end: float, status: Status) -> float:
         """The rounding of every impact, carried to the end by D G."""
-        times, speeds = np.array(self.times), np.array(self.speeds)
-        row = np.array([1.0, 0.0])
+        first, times, speeds = self.times[0], self.times, self.speeds
+        by_tau, by_v = 1.0, 0.0
         if status == Status.complete:
-            a = float(acceleration(self.osc, times[-1:])[0])
-            row[1] = -2 / a / (1 - as_float(self.osc.slope_at_rest()))
-        size = EPSILON * np.stack([np.abs(times) + np.abs(times - times[0]), 4 * speeds])
-        total = float(np.abs(row) @ size[:, -1])
-        if times.size > 1:
-            for matrix, local in zip(
-                derivative(self.osc, times[:-1], speeds[:-1]).matrix[::-1], size.T[-2::-1], strict=True
-            ):
-                row = row @ matrix
-                total += float(np.abs(row) @ local)
-        return ENDING.trust * (total + EPSILON * abs(end))
+            a = float(acceleration(self.osc, np.array(times[-1:]))[0])
+            by_v = -2 / a / (1 - as_float(self.osc.slope_at_rest()))
+        total = 0.0
+        for index in range(len(times) - 1, -1, -1):
+            total += abs(by_tau) * (abs(times[index]) + abs(times[index] - first)) + 4 * abs(by_v) * speeds[index]
+            if index:
+                (a, b), (c, d) = self._matrices[index - 1]
+                by_tau, by_v = by_tau * a + by_v * c, by_tau * b + by_v * d
+        return ENDING.trust * EPSILON * (total + abs(end))
+
+    @property
+    def _matrices(self) -> list[Any]:
+        """D G of every impact."""
+        if self._known is None:
+            self._known = self._derivatives()
+        return self._known
+
+    def _derivatives(self) -> list[Any]:
+        constant = not names_in(self.osc.restitution)
+        if constant and compiled_model(self.osc).linear and len(self.slopes) == len(self.times) - 1:
+            r = as_float(self.osc.restitution)
+            return [((1 + a, b), (-r * c, -r * d)) for a, b, c, d in self.slopes]
+        return derivative(self.osc, np.array(self.times[:-1]), np.array(self.speeds[:-1])).matrix.tolist()  # type: ignore[no-any-return]
 
 
 def _precise(osc: Oscillator, states: States, found: ChatterLimit, digits: int) -> ChatterLimit:

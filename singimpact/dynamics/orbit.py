@@ -2,20 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from singimpact.dynamics.chatter import summed
+from singimpact.dynamics.chatter import ENDING, summed
 from singimpact.dynamics.rest import release
 from singimpact.flights.impact_map import impact_map
+from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.states import States
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
 EPSILON = 2.0**-52
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class OrbitSettings:
+    """How an orbit is flown."""
+
+    # impacts of one call into compiled code
+    block: int = 4096
+    # impacts flown at most before the sum of a short chatter is tried again
+    more: int = 64
+
+
+SETTINGS = OrbitSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,19 +53,6 @@ class Orbit:
     v: np.ndarray[Any, Any]
     kind: np.ndarray[Any, Any]
     phases: list[tuple[str, float, float]]
-
-
-@dataclass
-class _Record:
-    events: list[tuple[float, float, str]]
-    phases: list[tuple[str, float, float]] = field(default_factory=list)
-
-    def go(self, phase: str, tau: float, v: float, kind: str) -> None:
-        self.phases.append((phase, self.events[-1][0], tau))
-        self.events.append((tau, v, kind))
-
-    def end(self, phase: str, tau: float) -> None:
-        self.phases.append((phase, self.events[-1][0], tau))
 
 
 def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None) -> Orbit:
@@ -74,44 +77,93 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     states = States.read(tau, v)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
-    record = _Record([(float(states.tau[0]), float(states.v[0]), "start")])
-    given: tuple[Any, Any] | None = (tau, v)
-    for _ in range(whole("impacts", impacts, 0, 10**7)):
-        if not _advance(osc, record, given, horizon):
-            break
-        given = None
-    times, velocities, kinds = zip(*record.events, strict=True)
-    return Orbit(osc, np.array(times), np.array(velocities), np.array(kinds), record.phases)
+    run = _Run(osc, states, horizon)
+    most = whole("impacts", impacts, 0, 10**7)
+    while run.flown < most and not run.over:
+        run.advance(most - run.flown)
+    times, velocities = np.concatenate(run.times), np.concatenate(run.velocities)
+    return Orbit(osc, times, velocities, np.concatenate(run.kinds), run.phases)
 
 
-def _advance(osc: Oscillator, record: _Record, given: tuple[Any, Any] | None, horizon: Any) -> bool:
-    """One flight with the rest or the end of chatter before it; False: the orbit ends here."""
-    tau, v, _ = record.events[-1]
-    if v > 0:
-        begun = record.events[0][0]
-        left = summed(osc, tau, v, EPSILON * max(abs(tau), tau - begun))
-        if left is not None:
-            record.go("chatter", tau + left, 0.0, "complete")
-            return _rested(osc, record)
-    step = impact_map(osc, *(given or (tau, v)), horizon=horizon)
-    match step.status:
-        case Status.hit | Status.graze:
-            record.go("flight", float(step.tau), float(step.v), Status(int(step.status)).name.replace("hit", "impact"))
-            return True
-        case Status.sticks:
-            return _rested(osc, record)
-        case Status.no_return | Status.escaped:
-            record.end("no_return", np.inf)
-        case _:
-            record.end("unresolved", np.nan)
-    return False
+class _Run:
+    """An orbit that is being flown: its events in blocks, its phases."""
 
+    def __init__(self, osc: Oscillator, states: States, horizon: Any) -> None:
+        self.osc, self.horizon, self.given = osc, horizon, states.given(0)
+        self.tau, self.v = float(states.tau[0]), float(states.v[0])
+        self.begun, self.flown, self.over = self.tau, 0, False
+        self.times, self.velocities = [np.array([self.tau])], [np.array([self.v])]
+        self.kinds: list[Array] = [np.array(["start"], dtype="U8")]
+        self.phases: list[tuple[str, float, float]] = []
+        # whether the chatter left is short, and how many impacts are flown before its sum is tried again
+        self.short, self.more = False, 1
 
-def _rested(osc: Oscillator, record: _Record) -> bool:
-    tau = record.events[-1][0]
-    lifted = release(osc, tau)
-    if not np.isfinite(lifted):
-        record.end("sticking" if np.isinf(lifted) else "unresolved", lifted)
-        return False
-    record.go("sticking", lifted, 0.0, "release")
-    return True
+    def advance(self, most: int) -> None:
+        """At least one flight, or the end of a chatter."""
+        if self.v > 0 and self.horizon is None:
+            if self.short and self._summed():
+                return
+            count = min(most, self.more if self.short else SETTINGS.block)
+            found = orbit_segment(self.osc, self.tau, self.v, count, 0.0 if self.short else ENDING.near)
+            self._impacts(found.tau, found.v)
+            self.more = min(2 * self.more, SETTINGS.more) if self.short else self.more
+            self.short = found.short
+            if not found.status:
+                return
+            if self.flown == most:
+                return
+        self._mapped()
+
+    def _impacts(self, times: Array, velocities: Array) -> None:
+        starts = [self.tau, *times.tolist()]
+        self.phases += [("flight", begin, end) for begin, end in pairwise(starts)]
+        if times.size:
+            self._event(times, velocities, "impact")
+            self.flown += times.size
+
+    def _event(self, times: Array, velocities: Array, kind: str) -> None:
+        self.times.append(times)
+        self.velocities.append(velocities)
+        self.kinds.append(np.full(times.size, kind, dtype="U8"))
+        self.tau, self.v = float(times[-1]), float(velocities[-1])
+
+    def _go(self, phase: str, tau: float, v: float, kind: str) -> None:
+        self.phases.append((phase, self.tau, tau))
+        self._event(np.array([tau]), np.array([v]), kind)
+
+    def _end(self, phase: str, tau: float) -> None:
+        self.phases.append((phase, self.tau, tau))
+        self.over = True
+
+    def _summed(self) -> bool:
+        """Whether the chatter left is summed up, which counts as one flight."""
+        left = summed(self.osc, self.tau, self.v, EPSILON * max(abs(self.tau), self.tau - self.begun))
+        if left is None:
+            return False
+        self._go("chatter", self.tau + left, 0.0, "complete")
+        self.flown, self.short, self.more = self.flown + 1, False, 1
+        self._rest()
+        return True
+
+    def _mapped(self) -> None:
+        """One flight by the impact map, which says what became of it."""
+        given = self.given if len(self.times) == 1 else (self.tau, self.v)
+        step = impact_map(self.osc, *given, horizon=self.horizon)
+        self.flown, self.short = self.flown + 1, False
+        match step.status:
+            case Status.hit | Status.graze:
+                kind = Status(int(step.status)).name.replace("hit", "impact")
+                self._go("flight", float(step.tau), float(step.v), kind)
+            case Status.sticks:
+                self._rest()
+            case Status.no_return | Status.escaped:
+                self._end("no_return", np.inf)
+            case _:
+                self._end("unresolved", np.nan)
+
+    def _rest(self) -> None:
+        lifted = release(self.osc, self.tau)
+        if np.isfinite(lifted):
+            self._go("sticking", lifted, 0.0, "release")
+        else:
+            self._end("sticking" if np.isinf(lifted) else "unresolved", lifted)

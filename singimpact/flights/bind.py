@@ -136,6 +136,14 @@ def floats_of() -> dict[str, Any]:
 
 
 @lru_cache(maxsize=64)
+def over_mpmath(context: Any, flow: str = "", exact_restart: bool = True) -> dict[str, Any]:
+    """The kernels over numbers of an mpmath context, at whatever precision it has."""
+    return over_lists(flow, "", exact_restart)(
+        {name: getattr(context, {"log": "ln"}.get(name, name)) for name in FUNCTIONS}
+    )
+
+
+@lru_cache(maxsize=64)
 def over_floats(flow: str = "", rho: str = "") -> dict[str, Any]:
     """The kernels on Python's floats and lists of lists, never compiled."""
     return over_lists(flow, rho)(floats_of())

@@ -128,7 +128,8 @@ class CompiledModel:
         coarse = 10 * allowance.epsilon if allowance.epsilon > EPSILON else 0.0
         rules = (allowance.horizon, LIMITS.longest if self.linear else allowance.steps, order, short,
                  LIMITS.safety * (EPSILON if self.linear else allowance.epsilon), LIMITS.likely,
-                 max(LIMITS.rough[0], coarse), max(LIMITS.rough[1], coarse))  # fmt: skip
+                 max(LIMITS.rough[0], coarse), max(LIMITS.rough[1], coarse), self._pace(),
+                 1 - as_float(osc.slope_at_rest()))  # fmt: skip
         numbers, rest = numbers_of(osc)
         room = max(order, degree_for(LIMITS.judging)) + 2 + LIMITS.derivatives_at_rest
         sizes = np.zeros(7, dtype=np.int64)
@@ -154,9 +155,15 @@ class CompiledModel:
             sizes[[layout.ROWS, layout.ROOM, layout.CONSTANTS]] = self.machine.emitted.rows, room, constants
             flat = np.zeros(layout.SCALARS + constants)
             flat[layout.SCALARS :] = numbers
-        flat[:8] = rules
+        flat[:10] = rules
         flat[layout.TURN : layout.TURN + 5] = turn_of(osc)
         return sizes, flat
+
+    def _pace(self) -> float:
+        """How fast the model moves: the largest rate of a linear one, else the forcing's frequency, or 1."""
+        if self.linear:
+            return float(numbers_of(self.osc)[0][4])
+        return 1.0 if self.osc.period is None else 2 * np.pi / as_float(self.osc.period)
 
     def _entry(self, name: str, machine: Machine | None = None) -> Callable[..., int] | None:
         """A compiled entry, with the tables that it needs filled."""
@@ -310,18 +317,18 @@ class CompiledModel:
                    status=status)  # fmt: skip
         return status, out
 
-    def segment(self, tau: float, v: float, count: int, slow: float = 0.0) -> tuple[Array, int]:
+    def segment(self, tau: float, v: float, count: int, near: float = 0.0) -> tuple[Array, int]:
         """Rows of the impacts of one orbit, see `kernels.orbits`, and the code of the flight that ended it."""
-        out, status = np.empty((count, 7)), np.zeros(1, np.int8)
+        out, status = np.empty((count, 11)), np.zeros(1, np.int8)
         entry = self._compiled(self.main, self.price * count, self.orbits)
         if entry is None:
             try:
-                flown, code = self.interpreter.segment(tau, v, slow, self.rho, out)
+                flown, code = self.interpreter.segment(tau, v, near, self.rho, out)
                 counted.add(flown)
                 return out[:flown], code
             except LEFT_OPEN:
                 entry = self._here(self.main, self.orbits)
-        given = np.array([tau]), np.array([v]), np.concatenate([[slow], self.rho])
+        given = np.array([tau]), np.array([v]), np.concatenate([[near], self.rho])
         flown = self._call(entry, self._new_scratch(), entries.SEGMENT, count, given=given, out=out, status=status)
         counted.add(flown)
         return out[:flown], int(status[0])

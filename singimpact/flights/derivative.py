@@ -20,8 +20,7 @@ from singimpact.algebra.derivatives import derivative as differentiated
 from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.rings import DOUBLES, Multiprecision
-from singimpact.codegen.over_lists import FUNCTIONS
-from singimpact.flights.bind import over_lists
+from singimpact.flights.bind import over_mpmath
 from singimpact.flights.compiled_model import EPSILON, Allowance, allowed, compiled_model
 from singimpact.flights.kernels.state import TIME_BY_TAU, VELOCITY_BY_V, Columns, Rules, Work
 from singimpact.flights.limits import LIMITS, degree_for
@@ -195,12 +194,12 @@ def _cancelled(osc: Oscillator, at: float, velocity: float) -> float:
 def precise(osc: Oscillator, tau: Any, v: Any, time: Any, velocity: Any, mp: Any) -> Response:
     """The response of one flight at the precision of an mpmath context; by Taylor steps for every model."""
     flow = recurrence_of(osc)
-    space = over_lists(flow.source)({name: getattr(mp, {"log": "ln"}.get(name, name)) for name in FUNCTIONS})
+    space = over_mpmath(mp, flow.source)
     order = degree_for(float(mp.eps)) if mp.prec < 1000 else int(mp.prec / 2.15)
     p = [as_mpf(tree, mp) for tree in constants_of(osc, linear=False)]
     rows = [[mp.mpf(0)] * (order + 2) for _ in range(flow.rows + 5)]
     work, columns = Work(rows[0], rows[5:], rows[1]), Columns(*rows[2:5])
-    rules = Rules(mp.inf, LIMITS.steps, order, order, 8 * mp.eps, 0, 0, 0)
+    rules = Rules(mp.inf, LIMITS.steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0)
     *parts, _ = space["derivatives_at"]([tau], v, time, p, rules, work, columns)
     ring = Multiprecision(mp)
     values = {"x": as_mpf(osc.clearance, mp), "xdot": velocity}

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from math import ceil, inf, nan
 from typing import Any
 
@@ -21,7 +22,7 @@ from singimpact.algebra.precision import balls_at, bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
 from singimpact.codegen.over_lists import FUNCTIONS
 from singimpact.flights.balls import linear_flow
-from singimpact.flights.bind import over_lists
+from singimpact.flights.bind import over_lists, over_mpmath
 from singimpact.flights.causes import decoded
 from singimpact.flights.closing import common_period, touches_again
 from singimpact.flights.compiled_model import Allowance, allowed
@@ -269,11 +270,10 @@ def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float
 def _march(
     osc: Oscillator, states: States, index: int, v: Any, removed: int, limits: tuple[float, int], mp: Any
 ) -> Outcome:  # fmt: skip
-    functions = {name: getattr(mp, _MPMATH.get(name, name)) for name in FUNCTIONS}
-    space = over_lists(_flow(osc), exact_restart=False)(functions)
+    space = over_mpmath(mp, _flow(osc), exact_restart=False)
     order = degree_for(float(mp.eps)) if mp.prec < 1000 else int(mp.prec / 2.15)
     order += removed - 1
-    rules = Rules(mp.mpf(limits[0]), limits[1], order, order, 8 * mp.eps, 0, 0, 0)
+    rules = Rules(mp.mpf(limits[0]), limits[1], order, order, 8 * mp.eps, 0, 0, 0, 0, 0)
     if linear_form(osc) is None:
         space["coefficients"] = _in_balls(osc, mp.prec + 32, mp)
         p: Any = [as_mpf(tree, mp) for tree in constants_of(osc)]
@@ -284,9 +284,6 @@ def _march(
         forcing_phases(osc, states, index, mp), v, removed, mp.nan, p, rules, workspace(mp.mpf(0), order, rows), []
     )
     return int(code), (numbers[0], numbers[1], numbers[2], numbers[3])
-
-
-_MPMATH = {"log": "ln"}
 
 
 def _flow(osc: Oscillator) -> str:
@@ -325,9 +322,13 @@ class _InBalls:
             row[0] = _centre(filled[0], self.mp)
 
 
+@lru_cache(maxsize=64)
+def _over_balls(flow: str) -> dict[str, Any]:
+    return over_lists(flow)({name: lambda x, name=name: getattr(x, name)() for name in FUNCTIONS})
+
+
 def _in_balls(osc: Oscillator, bits: int, mp: Any) -> _InBalls:
-    balls = Balls(bits)
-    space = over_lists(_flow(osc))({name: lambda x, name=name: getattr(x, name)() for name in FUNCTIONS})
+    balls, space = Balls(bits), _over_balls(_flow(osc))
     numbers = [balls.evaluate(tree, {}) for tree in constants_of(osc)]
     return _InBalls(space["coefficients"], numbers, recurrence_of(osc).rows, balls, mp)
 

@@ -63,12 +63,12 @@ class Interpreter:
         self.space[name](*(part.tolist() for part in given), self.model, work, rows, codes)
         out[...], status[...] = rows, codes
 
-    def segment(self, tau: float, v: float, slow: float, w: Array, out: Array) -> tuple[int, int]:
+    def segment(self, tau: float, v: float, near: float, w: Array, out: Array) -> tuple[int, int]:
         """`orbit_segment` or `taylor_segment`."""
         work, _ = self.work()
         rows = out.tolist()
         name = "orbit_segment" if self.linear else "taylor_segment"
-        flown, code = self.space[name](tau, v, slow, w.tolist(), self.model, work, rows)
+        flown, code = self.space[name](tau, v, near, w.tolist(), self.model, work, rows)
         out[...] = rows
         return flown, code
 
@@ -77,7 +77,7 @@ class Interpreter:
         work, _ = self.work()
         name = "orbit_segment" if self.linear else "taylor_segment"
         for i in np.flatnonzero(status == 0).tolist():
-            rows = [[0.0] * 7 for _ in range(impacts)]
+            rows = [[0.0] * 11 for _ in range(impacts)]
             flown, code = self.space[name](float(tau[i]), float(v[i]), 0.0, w.tolist(), self.model, work, rows)
             status[i] = code
             if flown:

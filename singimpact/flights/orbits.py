@@ -27,10 +27,11 @@ class Segment:
     Parameters
     ----------
     tau, v : states just after each impact. flight_time, velocity : of the flights that ended there.
-    acceleration : a_c at the launch of each flight. condition, error : of the flight times, nan where not computed.
+    acceleration : a_c at the launch of each flight. condition, error : of the flight times; of linear models.
+    slopes : of flight time and velocity by tau and by v, shape (4, n); of linear models.
     status : of the flight that was not flown or did not end in an impact; 0 when all were flown or the chatter left is
         short.
-    cause : why that flight is unresolved, see `singimpact.status.Cause`.
+    cause : why that flight is unresolved, see `singimpact.status.Cause`. short : whether the chatter left is short.
     """
 
     tau: Array
@@ -40,12 +41,18 @@ class Segment:
     acceleration: Array
     condition: Array
     error: Array
+    slopes: Array
     status: int
     cause: int
+    short: bool
 
 
-def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, slow: float = 0.0) -> Segment:
-    """Fly at most `count` impacts from a state with v > 0; stop where the chatter left is shorter than `slow`.
+def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, near_end: float = 0.0) -> Segment:
+    """Fly at most `count` impacts from a state with v > 0; stop where the chatter left is short.
+
+    Parameters
+    ----------
+    near_end : the part of the time on which a_c changes that the chatter left is below; 0 for never.
 
     Examples
     --------
@@ -55,10 +62,11 @@ def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, slow: float
     """
     model = compiled_model(osc)
     start = tau if osc.period is None or abs(tau) < model.nearest else float(reduced(np.array([tau]), osc.period)[0])
-    rows, code = model.segment(start, v, count, slow)
+    rows, code = model.segment(start, v, count, near_end)
     ended, cause = (int(part[0]) for part in decoded(np.array([0 if code == PRESSED else code])))
-    since, speed, time, velocity, acceleration, condition, error = rows.T
-    return Segment(tau + since, speed, time, velocity, acceleration, condition, error, ended, cause)
+    since, speed, time, velocity, acceleration, condition, error = rows.T[:7]
+    return Segment(tau + since, speed, time, velocity, acceleration, condition, error, rows.T[7:], ended, cause,
+                   code == PRESSED)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -239,6 +239,53 @@ def chatter_limit(v: Any, lambda_: Any, a: Any, a_d1: Any, a_d2: Any, a_d3: Any,
     return (v * (c_1 + v * (c_2 + v * (c_3 + v * c_4))))
 
 
+def chatter_terms(v: Any, lambda_: Any, a: Any, a_d1: Any, a_d2: Any, a_d3: Any, f_01: Any, f_02: Any, f_03: Any, f_10: Any, f_11: Any, rho_2: Any, rho_3: Any, rho_4: Any) -> Any:
+    """The terms of tau_inf - tau to v^4; lambda is the restitution r."""
+    q_1 = lambda_
+    q_2 = (1 - lambda_)
+    q_3 = (1 + lambda_ * lambda_ * lambda_ * 5)
+    q_4 = (1 + lambda_ * lambda_)
+    q_5 = (1 + lambda_)
+    q_6 = (1 + lambda_ * (1 + lambda_))
+    q_7 = (1 + lambda_ * (1 + lambda_ * (3 + lambda_ * (5 + lambda_ * 5))))
+    q_8 = (1 + lambda_ * 2)
+    q_9 = (1 + lambda_ * (2 + lambda_ * 2))
+    q_10 = (1 + lambda_ * (3 + lambda_))
+    q_11 = (1 + lambda_ * (4 + lambda_ * lambda_ * (4 + lambda_)))
+    q_12 = (1 + lambda_ * (12 + lambda_ * lambda_ * 5))
+    q_13 = (2 + lambda_ * lambda_)
+    q_14 = (2 + lambda_ * (1 + lambda_))
+    q_15 = (2 + lambda_ * (3 + lambda_ * 2))
+    q_16 = (2 + lambda_ * (5 + lambda_ * 5))
+    q_17 = (2 + lambda_ * (6 + lambda_ * 3))
+    q_18 = (3 + lambda_ * (-2 + lambda_ * 3))
+    q_19 = (3 + lambda_ * (1 + lambda_ * (1 + lambda_)))
+    q_20 = (4 + lambda_ * (-1 + lambda_ * 4))
+    q_21 = (5 + lambda_ * (6 + lambda_ * 5))
+    q_22 = (5 + lambda_ * (10 + lambda_ * (8 + lambda_ * (10 + lambda_ * 5))))
+    q_23 = (5 + lambda_ * (13 + lambda_ * (6 + lambda_ * (13 + lambda_ * 5))))
+    q_24 = (5 + lambda_ * (16 + lambda_ * (4 + lambda_ * (16 + lambda_ * 5))))
+    q_25 = (6 + lambda_ * (6 + lambda_ * 5))
+    q_26 = (11 + lambda_ * (-11 + lambda_ * (30 + lambda_ * (-11 + lambda_ * 11))))
+    q_27 = (13 + lambda_ * (2 + lambda_ * (30 + lambda_ * (2 + lambda_ * 13))))
+    a_d1 = a_d1 / a
+    a_d2 = a_d2 / a
+    a_d3 = a_d3 / a
+    f_02 = f_02 * a
+    f_03 = f_03 * a**2
+    f_11 = f_11 * a
+    rho_2 = rho_2 * a
+    rho_3 = rho_3 * a**2
+    rho_4 = rho_4 * a**3
+    v = v / a
+    one = a**0
+    c_1 = -2 * one / q_2
+    c_2 = -4 * a_d1 / (3 * q_2**2) - 2 * f_01 / (3 * q_2**2) - 2 * rho_2 / (q_5 * q_2**2)
+    c_3 = -8 * q_15 * a_d1**2 / (9 * q_6 * q_2**3) - 2 * q_21 * a_d1 * f_01 / (9 * q_6 * q_2**3) - 4 * q_9 * a_d1 * rho_2 / (3 * q_5 * q_6 * q_2**3) + 2 * q_5**2 * a_d2 / (3 * q_6 * q_2**3) - 4 * q_4 * f_01**2 / (9 * q_6 * q_2**3) - 4 * q_14 * f_01 * rho_2 / (3 * q_5 * q_6 * q_2**3) - f_02 / (3 * q_2 * q_6) + 2 * f_10 / (3 * q_2 * q_6) - 4 * q_1 * rho_2**2 / (q_5 * q_6 * q_2**3) + 2 * rho_3 / (q_6 * q_2**2)
+    c_4 = -16 * q_23 * a_d1**3 / (27 * q_4 * q_6 * q_2**4) - 4 * q_22 * a_d1**2 * f_01 / (9 * q_4 * q_6 * q_2**4) - 8 * q_8 * a_d1**2 * rho_2 / (3 * q_6 * q_2**4) + 4 * q_24 * a_d1 * a_d2 / (9 * q_4 * q_6 * q_2**4) - 4 * q_27 * a_d1 * f_01**2 / (45 * q_4 * q_6 * q_2**4) - 2 * q_25 * a_d1 * f_01 * rho_2 / (3 * q_5 * q_6 * q_2**4) - 2 * q_20 * a_d1 * f_02 / (15 * q_4 * q_6 * q_2**2) + 8 * q_18 * a_d1 * f_10 / (15 * q_4 * q_6 * q_2**2) - 4 * q_7 * a_d1 * rho_2**2 / (3 * q_4 * q_6 * q_5**2 * q_2**4) + 8 * q_1 * a_d1 * rho_3 / (3 * q_5 * q_4 * q_2**3) + 8 * q_10 * q_20 * a_d2 * f_01 / (45 * q_4 * q_6 * q_2**4) + 2 * q_17 * a_d2 * rho_2 / (3 * q_5 * q_6 * q_2**4) - 4 * q_11 * a_d3 / (15 * q_4 * q_6 * q_2**4) - 4 * q_26 * f_01**3 / (135 * q_4 * q_6 * q_2**4) - 4 * q_13 * f_01**2 * rho_2 / (3 * q_5 * q_6 * q_2**4) - 2 * q_18 * f_01 * f_02 / (15 * q_4 * q_6 * q_2**2) + 4 * q_18 * f_01 * f_10 / (15 * q_4 * q_6 * q_2**2) - 2 * q_12 * f_01 * rho_2**2 / (3 * q_5 * q_4 * q_6 * q_2**4) + 4 * q_19 * f_01 * rho_3 / (3 * q_5 * q_4 * q_6 * q_2**3) - q_1**2 * f_02 * rho_2 / (q_5 * q_4 * q_6 * q_2**2) - f_03 / (15 * q_4 * q_2**2) + 2 * q_1**2 * f_10 * rho_2 / (q_5 * q_4 * q_6 * q_2**2) + 2 * f_11 / (15 * q_4 * q_2**2) - 2 * q_3 * rho_2**3 / (q_4 * q_6 * q_5**2 * q_2**4) + 2 * q_1 * q_16 * rho_2 * rho_3 / (q_4 * q_6 * q_5**2 * q_2**3) - 2 * rho_4 / (q_5 * q_4 * q_2**2)
+    return (v * c_1, v**2 * c_2, v**3 * c_3, v**4 * c_4)
+
+
 def outline_tangency(sigma: Any, a_d1: Any, a_d2: Any, a_d3: Any, a_d4: Any, a_d5: Any, f_01: Any, f_02: Any, f_10: Any, f_11: Any) -> Any:
     """v on the outline of p at a tangency, to sigma^6."""
     a_d2 = a_d2 / a_d1

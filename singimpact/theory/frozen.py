@@ -73,6 +73,7 @@ def curve_functions(order: int | None = None) -> list[str]:
         *(_curve(name, j, _to(order, top, HIGHEST), "graph") for name, (j, top) in CURVED.items()),
         *(_curve(name, j, _to(order, top, HIGHEST - j), "motion") for name, (j, top) in MOVED.items()),
         _completion(_to(order, COMPLETED, HIGHEST_COMPLETION)),
+        _completion(_to(order, COMPLETED, HIGHEST_COMPLETION), apart=True),
         _outline(_to(order, OUTLINED, HIGHEST)),
     ]
 
@@ -91,11 +92,13 @@ def _curve(name: str, j: int, top: int, part: str) -> str:
     return rational_series_source(name, series, says)
 
 
-def _completion(top: int) -> str:
+def _completion(top: int, apart: bool = False) -> str:
     found = symbolic_completion(top)
     coefficients = {n: _factored(value.terms) for n, value in found.coefficients.items()}
-    series = RationalSeries("v", found.names, coefficients, _unit(0, found.names), argument=1)
-    return rational_series_source("chatter_limit", series, f"tau_inf - tau to v^{top}; lambda is the restitution r.")
+    series = RationalSeries("v", found.names, coefficients, _unit(0, found.names), argument=1, apart=apart)
+    name, what = ("chatter_terms", "The terms of") if apart else ("chatter_limit", "")
+    says = f"{what} tau_inf - tau to v^{top}; lambda is the restitution r.".strip()
+    return rational_series_source(name, series, says)
 
 
 def _outline(top: int) -> str:

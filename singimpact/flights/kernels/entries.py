@@ -50,8 +50,8 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
 
     Parameters
     ----------
-    sizes : see `layout`. flat, scratch : of the model. tau, v : states. w : times; the duration below which chatter
-        ends an orbit, then constants of rho; orders of roots removed at rest. out : results. status : codes.
+    sizes : see `layout`. flat, scratch : of the model. tau, v : states. w : times; the part of a time below which
+        chatter ends an orbit, then constants of rho; orders of roots removed at rest. out : results. status : codes.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     count, kind = sizes[COUNT], sizes[KIND]
     model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
     if kind == SEGMENT:
-        flown, code = orbit_segment(tau[0], v[0], w[0], block(w, 1, (8,)), model, work, block(out, 0, (count, 7)))
+        flown, code = orbit_segment(tau[0], v[0], w[0], block(w, 1, (8,)), model, work, block(out, 0, (count, 11)))
         status[0] = code
         return int(flown)
     if kind == PREPARE:
@@ -136,7 +136,7 @@ def taylor_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     count, kind = sizes[COUNT], sizes[KIND]
     model, work = taylor_model(flat, sizes), scratch_of(scratch, sizes)
     if kind == SEGMENT:
-        flown, code = taylor_segment(tau[0], v[0], w[0], block(w, 1, (8,)), model, work, block(out, 0, (count, 7)))
+        flown, code = taylor_segment(tau[0], v[0], w[0], block(w, 1, (8,)), model, work, block(out, 0, (count, 11)))
         status[0] = code
         return int(flown)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))

@@ -13,7 +13,10 @@ from singimpact.flights.kernels.linear import coefficients, response
 from singimpact.flights.kernels.refine import refine_hit
 from singimpact.flights.kernels.state import (
     CONDITION,
+    COSINE,
     FLIGHT_TIME,
+    RATE,
+    SINE,
     TIME_BY_TAU,
     TIME_BY_V,
     TIME_ERROR,
@@ -35,16 +38,17 @@ NOT_REFINED, PRESSED, CANCELS = 30, 31, 32
 is needed to more digits than its sum has."""
 
 
-def linear_hit(t: float, t_low: float, v: float, slow: float, model: Any, work: Any) -> Any:
+def linear_hit(t: float, t_low: float, v: float, near: float, model: Any, work: Any) -> Any:
     """(code, a_c at the launch) of the flight of a linear model launched at t + t_low; a hit fills work.hit.
 
     Parameters
     ----------
-    slow : the code is PRESSED where 2 v/|a_c| is shorter than this; 0 for never.
+    near : the code is PRESSED where the chatter left is shorter than this part of the time on which a_c changes; 0 for
+        never.
     """
     p, hit, launch = model.numbers, work.hit, work.launch
     a = wall_acceleration(t, t_low, p, model.rest, launch)
-    if slow > 0 and a < 0 and 2 * v < -a * slow:
+    if near > 0 and a < 0 and ends_soon(v, a, slope_of(p, launch), near, model.rules):
         return PRESSED, a
     code, time, u, depth, bound = tabulated_flight(launch, v, a, model, work.flight)
     hit[FLIGHT_TIME], hit[VELOCITY], hit[CONDITION], hit[VELOCITY_CONDITION] = time, u, depth, bound
@@ -76,6 +80,19 @@ def linear_hit(t: float, t_low: float, v: float, slow: float, model: Any, work: 
     return code, a
 
 
+def ends_soon(v: float, a: float, slope: float, near: float, rules: Any) -> bool:
+    """Whether the chatter left, 2 v/(|a_c| (1 - r)), is below a part of the time on which a_c changes."""
+    return bool(2 * v * (abs(slope) - a * rules.pace) < near * a * a * rules.lost)
+
+
+def slope_of(p: Any, launch: Any) -> float:
+    """The derivative of a_c at a launch."""
+    slope = 0.0
+    for j in range(len(p.waves)):
+        slope += p.waves[j, RATE] * (p.waves[j, SINE] * launch[2 * j] - p.waves[j, COSINE] * launch[2 * j + 1])
+    return slope
+
+
 def conditioned(t: float, v: float, e: float, variation: Any, hit: Any) -> None:
     """Derivatives of flight time and velocity at a hit, and condition numbers 1 + (|d_tau| |tau| + |d_v| v)/|value|.
 
@@ -97,12 +114,12 @@ def conditioned(t: float, v: float, e: float, variation: Any, hit: Any) -> None:
 def launch_acceleration(model: Any, work: Any) -> Any:
     """a_c at the launch of a Taylor flow, from its recurrence, and the rounding error of its sum."""
     order = model.rules.order
-    # a literal 2 is a type of its own: every function that takes it would be compiled twice
-    coefficients(work.launch, 0.0, 0.0, 0.0, 0.0, order - order + 2, model.numbers, work.flight)
+    # a literal 3 is a type of its own: every function that takes it would be compiled twice
+    coefficients(work.launch, 0.0, 0.0, 0.0, 0.0, order - order + 3, model.numbers, work.flight)
     return 2 * work.flight.X[2], rounding(work.flight.X, work.flight.W, UNIT, model.numbers)
 
 
-def taylor_hit(t: float, v: float, slow: float, known: float, model: Any, work: Any) -> Any:
+def taylor_hit(t: float, v: float, near: float, known: float, model: Any, work: Any) -> Any:
     """(code, a_c at the launch) of a flight in Taylor steps from a launch at t, as `linear_hit` without conditions.
 
     Parameters
@@ -117,7 +134,7 @@ def taylor_hit(t: float, v: float, slow: float, known: float, model: Any, work: 
         a, error = launch_acceleration(model, work)
         if known != known and 32 * UNIT * abs(a) < error:
             return CANCELS, a
-    if slow > 0 and a < 0 and 2 * v < -a * slow:
+    if near > 0 and a < 0 and ends_soon(v, a, 6 * work.flight.X[3], near, model.rules):
         return PRESSED, a
     code, time, u, depth, bound = taylor_flight(
         launch, v, 1, a, model.numbers, model.rules, work.flight, work.flight.W[:0]
@@ -135,7 +152,7 @@ def released(removed: int, a: float, model: Any, work: Any) -> Any:
 def raised(rules: Any, degrees: int) -> Any:
     """Rules with steps of a higher degree."""
     return Rules(rules.horizon, rules.budget, rules.order + degrees, rules.short, rules.ulp, rules.likely,
-                 rules.rough_time, rules.rough_velocity)  # fmt: skip
+                 rules.rough_time, rules.rough_velocity, rules.pace, rules.lost)  # fmt: skip
 
 
 def carried_errors(t: float, v: float, time: float, u: float, judged: Any, row: Any) -> None:

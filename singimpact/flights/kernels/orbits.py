@@ -7,7 +7,16 @@ from typing import Any
 
 from singimpact.flights.kernels.double_double import sum_twice
 from singimpact.flights.kernels.hits import NOT_REFINED, linear_hit, taylor_hit
-from singimpact.flights.kernels.state import CONDITION, FLIGHT_TIME, TIME_ERROR, VELOCITY
+from singimpact.flights.kernels.state import (
+    CONDITION,
+    FLIGHT_TIME,
+    TIME_BY_TAU,
+    TIME_BY_V,
+    TIME_ERROR,
+    VELOCITY,
+    VELOCITY_BY_TAU,
+    VELOCITY_BY_V,
+)
 from singimpact.flights.kernels.waves import reduced_twice
 
 
@@ -16,21 +25,22 @@ def rebound(velocity: float, w: Any) -> float:
     return float(abs(w[0] * velocity))
 
 
-def orbit_segment(tau: float, v: float, slow: float, w: Any, model: Any, work: Any, out: Any) -> Any:
+def orbit_segment(tau: float, v: float, near: float, w: Any, model: Any, work: Any, out: Any) -> Any:
     """(impacts flown, code of the last flight) of an orbit of a linear model, at most one a row of `out`.
 
     Parameters
     ----------
     tau, v : the state. w : constants of rho. out : row i becomes the time since the start, v, flight time, velocity,
-        a_c at the launch, kappa and the error of the flight time of impact i.
-    slow : the orbit ends, with code PRESSED, where the chatter left would be shorter than this if a_c stayed as it is.
+        a_c at the launch, kappa and the error of the flight time, and the derivatives of the flight time and of the
+        velocity by tau and v of impact i.
+    near : the orbit ends, with code PRESSED, where the chatter left is short, see `hits.linear_hit`.
     """
     since, lost = 0.0, 0.0
     for i in range(len(out)):
         at, at_low = sum_twice(tau, 0.0, since, -lost)
         t, t_low = reduced_twice(at, model.turn)
         t, t_low = sum_twice(t, t_low, at_low, 0.0)
-        code, a = linear_hit(t, t_low, v, slow, model, work)
+        code, a = linear_hit(t, t_low, v, near, model, work)
         # a hit that is not refined here, for want of a table, is within a few roundings more
         code = 0 if code == NOT_REFINED else code
         if code != 0:
@@ -43,13 +53,13 @@ def orbit_segment(tau: float, v: float, slow: float, w: Any, model: Any, work: A
     return len(out), 0
 
 
-def taylor_segment(tau: float, v: float, slow: float, w: Any, model: Any, work: Any, out: Any) -> Any:
+def taylor_segment(tau: float, v: float, near: float, w: Any, model: Any, work: Any, out: Any) -> Any:
     """`orbit_segment` of a model flown in Taylor steps."""
     since, lost = 0.0, 0.0
     for i in range(len(out)):
         at, at_low = sum_twice(tau, 0.0, since, -lost)
         t, t_low = reduced_twice(at, model.turn)
-        code, a = taylor_hit(t + (t_low + at_low), v, slow, inf, model, work)
+        code, a = taylor_hit(t + (t_low + at_low), v, near, inf, model, work)
         if code != 0:
             return i, code
         since, lost = later(since, lost, work.hit[FLIGHT_TIME])
@@ -89,3 +99,4 @@ def record(row: Any, since: float, v: float, a: float, hit: Any) -> None:
     """One impact of an orbit as a row."""
     row[0], row[1], row[2], row[3], row[4] = since, v, hit[FLIGHT_TIME], hit[VELOCITY], a
     row[5], row[6] = hit[CONDITION], hit[TIME_ERROR]
+    row[7], row[8], row[9], row[10] = hit[TIME_BY_TAU], hit[TIME_BY_V], hit[VELOCITY_BY_TAU], hit[VELOCITY_BY_V]

@@ -55,7 +55,7 @@ class Rules(NamedTuple):
     horizon : time. budget : Taylor steps. order : degree of a Taylor step. short : degree of the shorter steps through
     a table, and of the steps of `variational.judge`. ulp : rounding error allowed for, relative to the size of the
     terms. likely : the same, as it usually is, in roundings. rough_time, rough_velocity : relative errors of a hit
-    below these are never refined.
+    below these are never refined. pace : the rate at which the model moves. lost : 1 - r, r of a slow impact.
     """
 
     horizon: Any
@@ -66,6 +66,8 @@ class Rules(NamedTuple):
     likely: Any
     rough_time: Any
     rough_velocity: Any
+    pace: Any
+    lost: Any
 
 
 class Work(NamedTuple):

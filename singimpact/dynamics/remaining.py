@@ -1,0 +1,67 @@
+"""The chatter left at a state with a short rest, summed up: the terms of tau_inf - tau in powers of v, in doubles.
+
+The terms are frozen from the theory (`generated.curves.chatter_terms`); the jets that a model fixes are computed once.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import factorial
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.expressions import Expression, evaluate, number, substitute
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import DOUBLES
+from singimpact.contact.contact import Contact
+from singimpact.generated.curves import chatter_terms
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+ORDER = 4
+
+
+def remaining(osc: Oscillator, tau: Array, v: Array, a: Array | None = None) -> tuple[Array, Array]:
+    """The time left of a chatter from states with a_c < 0, and the size of the last term of its series.
+
+    Parameters
+    ----------
+    osc : the model, r < 1. tau, v : states. a : a_c there, when it is known.
+
+    Examples
+    --------
+    >>> osc = Oscillator("0", "-2", 0, "1/2")
+    >>> [part.tolist() for part in remaining(osc, np.array([0.0]), np.array([1.0]))]
+    [[2.0], [0.0]]
+    """
+    forces, rebounds, slopes = _jets(osc)
+    push = acceleration(osc, tau) if a is None else a
+    with np.errstate(all="ignore"):
+        jets = {f"a_d{n}": evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau for n, tree in enumerate(slopes, 1)}
+        terms = chatter_terms(v=v, lambda_=as_float(osc.slope_at_rest()), a=push, **jets, **forces, **rebounds)
+        last = np.abs(terms[-1])
+        # a coefficient may happen to be small: the term before lets expect this one
+        likely = np.abs(terms[-2]) * np.abs(terms[-2] / terms[0]) ** (1 / (ORDER - 2))
+    return sum(reversed(terms)), np.maximum(last, likely)
+
+
+@lru_cache(maxsize=256)
+def _jets(osc: Oscillator) -> tuple[dict[str, float], dict[str, float], tuple[Expression, ...]]:
+    """Derivatives of f at (c, 0), coefficients of rho, and the first derivatives of g as trees."""
+    at = Contact.of(osc, 0.0, 0, ORDER, DOUBLES).f
+    names = {(0, 1): "f_01", (0, 2): "f_02", (0, 3): "f_03", (1, 0): "f_10", (1, 1): "f_11"}
+    forces = {name: float(at.get(key, 0.0)) * factorial(key[0]) * factorial(key[1]) for key, name in names.items()}
+    rebounds, slope = {}, osc.rho()
+    for n in range(1, ORDER + 1):
+        slope = derivative(slope, "v")
+        if n > 1:
+            rebounds[f"rho_{n}"] = as_float(substitute(slope, {"v": number(0)})) / factorial(n)
+    trees = []
+    forcing = osc.forcing()
+    for _ in range(ORDER - 1):
+        forcing = derivative(forcing, "t")
+        trees.append(forcing)
+    return forces, rebounds, tuple(trees)
