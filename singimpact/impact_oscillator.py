@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, as_fraction, compare, constant, float_array
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.files import read_fields, to_toml
 from singimpact.oscillator.model import Oscillator
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from singimpact.dynamics.orbit import Orbit
     from singimpact.dynamics.periodic import PeriodicOrbit
     from singimpact.dynamics.threshold import Threshold
+    from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.path import Path
     from singimpact.flights.results import Derivative, Flight, Step
 
@@ -93,6 +94,28 @@ class ImpactOscillator(Oscillator):
             raise refuse("order", order, "a whole number from 0 to 60")
         times = float_array("tau", tau)
         return acceleration(self, np.atleast_1d(times).ravel(), order).reshape(times.shape)[()]
+
+    def iterate(self, tau: Any, v: Any, impacts: int = 100, *, keep: bool = False) -> Iterates:
+        """G again and again for arrays of states.
+
+        Parameters
+        ----------
+        tau, v : states that broadcast. impacts : flown from each. keep : all states, with a first axis of impacts + 1.
+
+        Returns
+        -------
+        tau, v, status : the last states (an orbit that meets no further impact stays where it is), and 0 or the status
+            of the flight that ended an orbit before.
+
+        Examples
+        --------
+        >>> ends = linear("2.8", 0, "0.8").iterate([0.1, 0.2], 0.5, 1000)
+        >>> ends.tau.shape, ends.status.tolist()
+        ((2,), [0, 0])
+        """
+        from singimpact.flights.orbits import iterates
+
+        return iterates(self, tau, v, whole("impacts", impacts, 0, 10**7), keep)
 
     def derivative(self, tau: Any, v: Any, *, horizon: Any = None) -> Derivative:
         """D G at states, from the variational equation: see `singimpact.flights.impact_map.derivative`."""

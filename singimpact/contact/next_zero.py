@@ -60,6 +60,11 @@ class ZeroSettings:
 SETTINGS = ZeroSettings()
 
 
+@lru_cache(maxsize=1024)
+def _ball(function: Expression, zero: Zero, order: int, bits: int) -> Any:
+    return refined(function, "t", zero, bits, order=order - 1)
+
+
 @dataclass(frozen=True)
 class ContactZero:
     """A zero of a_c of known contact order, moved by whole periods.
@@ -79,7 +84,7 @@ class ContactZero:
 
     def ball(self, bits: int = 128) -> Any:
         """A ball that contains the zero within the first period."""
-        return refined(self.function, "t", self.zero, bits, order=self.order - 1)
+        return _ball(self.function, self.zero, self.order, bits)
 
     def moved(self, bits: int = 128) -> Any:
         """A ball that contains the zero itself."""

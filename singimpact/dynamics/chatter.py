@@ -15,13 +15,14 @@ from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.completion import completion
+from singimpact.dynamics.gathered import gathered
 from singimpact.dynamics.remaining import remaining
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
-from singimpact.inputs import InputError, whole
+from singimpact.inputs import whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status
@@ -67,14 +68,14 @@ class ChatterLimit:
     """
 
     tau: Any
-    impacts: int
+    impacts: Any
     error: Any
     status: Any
-    certified: Certified | None = None
+    certified: Any = None
     cause: Any = 0
 
     @property
-    def sentence(self) -> str:
+    def sentence(self) -> Any:
         """What became of the sequence, and what to type next.
 
         Examples
@@ -83,6 +84,10 @@ class ChatterLimit:
         >>> print(end.sentence.partition(":")[0])
         the impacts neither accumulate nor lift off within the number given
         """
+        if np.ndim(self.status):
+            pairs = zip(np.ravel(self.status).tolist(), np.ravel(self.cause).tolist(), strict=True)
+            texts = [(Cause(cause) if cause else Status(status)).sentence for status, cause in pairs]
+            return np.array(texts, dtype=object).reshape(np.shape(self.status))
         return (Cause(int(self.cause)) if self.cause else Status(int(self.status))).sentence
 
 
@@ -93,7 +98,8 @@ def chatter_limit(
 
     Parameters
     ----------
-    osc : the model. tau, v : one state, v >= 0. digits : decimal digits of tau, which is then an mpmath number.
+    osc : the model. tau, v : states, v >= 0; they broadcast, and the fields have their shape.
+    digits : decimal digits of tau, which is then an mpmath number.
     impacts : flown at most before the status is `unresolved`; a number bounds the time that an unknown state can take.
 
     Notes
@@ -109,7 +115,9 @@ def chatter_limit(
     """
     states = States.of(osc, tau, v, digits if isinstance(digits, int) else 15)
     if states.shape:
-        raise InputError(f"tau and v have shape {states.shape}: chatter starts from one state, give two numbers")
+        each = [chatter_limit(osc, *states.given(index), digits=digits, impacts=impacts)
+                for index in range(states.v.size)]  # fmt: skip
+        return gathered(ChatterLimit, each, states.shape)  # type: ignore[no-any-return]
     flown = _Flown(osc, states, whole("impacts", impacts, 1, 10**7))
     found = flown.limit()
     if digits is None or found.status not in (Status.complete, Status.lifts_off):

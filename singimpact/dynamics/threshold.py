@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import as_rational
-from singimpact.algebra.certified import Certified
 from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.contact.next_zero import ContactZero, next_zero
 from singimpact.dynamics import enclosed
+from singimpact.dynamics.gathered import gathered
+from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.orbits import orbit_segment
@@ -69,7 +70,7 @@ class Threshold:
     v: Any
     error: Any
     status: Any
-    certified: Certified | None = None
+    certified: Any = None
 
 
 def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = SEARCH.impacts) -> Threshold:
@@ -79,7 +80,8 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
 
     Parameters
     ----------
-    osc : the model, r < 1. tau : a phase with a_c(tau) < 0. digits : decimal digits; v is then an mpmath number.
+    osc : the model, r < 1. tau : a phase with a_c(tau) < 0, or an array of them: the fields then have its shape.
+    digits : decimal digits; v is then an mpmath number.
     impacts : flown at most from one velocity; where they do not tell the sides apart the status is `unresolved`.
 
     Examples
@@ -88,6 +90,9 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     >>> print(f"{found.v:.13f}")
     0.1008699912693
     """
+    if isinstance(tau, list | tuple | np.ndarray) and np.ndim(tau):
+        each = [threshold(osc, one, digits=digits, impacts=impacts) for one in np.asarray(tau).ravel().tolist()]
+        return gathered(Threshold, each, np.shape(tau))  # type: ignore[no-any-return]
     place, most = constant("tau", tau), whole("impacts", impacts, 1, 10**7)
     if sign_of_acceleration(osc, place) >= 0:
         raise InputError(f"tau = {tau} is not accepted: give a phase at which a_c presses, a_c(tau) < 0")
@@ -138,6 +143,7 @@ def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> T
         low, high = high, 2 * high
         if side != _Side.below or high > 1e12:
             return _without(Status.unresolved)
+    low, high = _bracket(osc, tau, low, high, end, impacts)
     while high - low > SEARCH.narrow * high:
         middle = (low + high) / 2
         side = _side(osc, tau, middle, end, impacts)
@@ -153,6 +159,16 @@ def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> T
     if not error < SEARCH.widest * v:
         return _without(Status.unresolved)
     return Threshold(np.float64(v), np.float64(error), np.int8(Status.complete))
+
+
+def _bracket(osc: Oscillator, tau: float, low: float, high: float, end: float, impacts: int) -> tuple[float, float]:
+    """Velocities on both sides of gamma, as near as the compiled loop of a linear model decides them."""
+    model = compiled_model(osc)
+    if abs(tau) >= model.nearest:
+        return low, high
+    settings = SEARCH.short, SEARCH.narrow, float(impacts)
+    found = model.brackets(np.array([tau]), np.array([[low, high, end - tau]]), settings)
+    return (low, high) if found is None else (float(found[0][0, 0]), float(found[0][0, 1]))
 
 
 def _edge(osc: Oscillator, tau: float, decided: float, near: float, end: float, impacts: int) -> float:

@@ -168,19 +168,20 @@ class LinearFlow:
         """y and dy/dt on (0, reach] as polynomials whose last coefficients contain what is cut."""
         import flint
 
-        z = [self.number(Fraction(0)), v]
+        zero, one = self.number(Fraction(0)), self.number(Fraction(1))
+        z = [zero, v]
         waves = [(rate, _pair(rate * tau + phase, cosine, sine)) for rate, phase, cosine, sine in self.waves]
-        scale = [self.number(Fraction(1)) for _ in waves]  # rate^n/n!
-        growth = (reach * max(abs(self.d).upper() + abs(self.k).upper(), self.number(Fraction(1)))).exp()
+        scale = [one for _ in waves]  # rate^n/n!
+        growth = (reach * max(abs(self.d).upper() + abs(self.k).upper(), one)).exp()
         target = self._small(v, tau, reach)
         for n in range(10_000):
-            forced = self.rest if n == 0 else self.number(Fraction(0))
+            forced = self.rest if n == 0 else zero
             for size, (_, pair) in zip(scale, waves, strict=True):
                 forced += size * (pair[n % 2] * (-1 if n % 4 in (2, 3) else 1))
             z.append((forced - self.d * (n + 1) * z[n + 1] - self.k * z[n]) / ((n + 1) * (n + 2)))
             scale = [size * rate / (n + 1) for size, (rate, _) in zip(scale, waves, strict=True)]
             if n + 2 < removed:
-                z[n + 2] = self.number(Fraction(0))  # known exactly, where a ball only contains it
+                z[n + 2] = zero  # known exactly, where a ball only contains it
             if n < removed:
                 continue
             left = max(abs(z[n + 1]).upper(), (n + 2) * abs(z[n + 2]).upper())
@@ -189,7 +190,7 @@ class LinearFlow:
             if bound * reach ** (n + 1) < target:
                 break
         order = n + 1
-        tail = self.number(Fraction(0)).union(bound).union(-bound)
+        tail = zero.union(bound).union(-bound)
         kept = z[removed:order]
         y = flint.arb_poly([*kept, tail])
         slope = flint.arb_poly([*(value * m for m, value in enumerate(kept) if m), tail * (order + removed)])

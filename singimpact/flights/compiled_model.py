@@ -357,6 +357,24 @@ class CompiledModel:
             begin += block
         return times[: tau.size], speeds[: tau.size], status[: tau.size]
 
+    def brackets(self, tau: Array, given: Array, settings: tuple[float, float, float]) -> tuple[Array, Array] | None:
+        """Brackets of gamma, shape (n, 2), and codes; None where no compiled entry of a linear model is there.
+
+        Parameters
+        ----------
+        given : velocities below and above gamma, and times to its end, shape (n, 3). settings : see
+            `kernels.orbits.bracket_gamma`.
+        """
+        entry = self._compiled(self.main, 0.05 * tau.size, self.orbits) if self.linear else None
+        if entry is None:
+            return None
+        out, status = np.empty((tau.size, 2)), np.empty(tau.size, np.int8)
+        numbers = np.concatenate([self.rho, settings])
+        rows = np.ascontiguousarray(given, dtype=float)
+        self._call(entry, self._new_scratch(), entries.BRACKET, tau.size, given=(tau, rows, numbers), out=out,
+                   status=status)  # fmt: skip
+        return out, status
+
     def variations(self, tau: Array, v: Array, times: Array) -> Array:
         """dx/dv, dx'/dv, dx/dtau, dx'/dtau at given flight times, shape (n, 4)."""
         out = np.empty((tau.size, 4))

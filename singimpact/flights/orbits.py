@@ -15,7 +15,7 @@ from singimpact.flights.phase import reduced
 from singimpact.flights.states import States
 from singimpact.flights.undecided import near
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Status
+from singimpact.status import Status, status_array
 
 Array = np.ndarray[Any, Any]
 
@@ -104,3 +104,18 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
     codes = np.where(codes == AT_REST, np.int8(Status.sticks), codes)
     parts = times + (states.tau - start), speeds, decoded(codes)[0]
     return Ends(*(part.reshape(states.shape)[()] for part in parts))
+
+
+def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool) -> Ends:
+    """`iterate`, with the states after every impact along a first axis when they are kept."""
+    if not keep:
+        found = iterate(osc, tau, v, impacts)
+        return Ends(found.tau, found.v, status_array(found.status))
+    states = States.read(tau, v)
+    rows = [Ends(states.tau.reshape(states.shape), states.v.reshape(states.shape), np.zeros(states.shape, np.int8))]
+    for _ in range(impacts):
+        last = rows[-1]
+        found = iterate(osc, last.tau, last.v, 1)
+        rows.append(Ends(found.tau, found.v, np.where(last.status != 0, last.status, found.status)))
+    times, speeds = np.stack([row.tau for row in rows]), np.stack([row.v for row in rows])
+    return Ends(times, speeds, status_array(rows[-1].status))

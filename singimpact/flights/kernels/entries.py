@@ -30,17 +30,17 @@ from singimpact.flights.kernels.layout import (
     taylor_model,
 )
 from singimpact.flights.kernels.linear import response
-from singimpact.flights.kernels.orbits import iterate_taylor, orbit_segment, taylor_segment
+from singimpact.flights.kernels.orbits import bracket_gamma, iterate_taylor, orbit_segment, taylor_segment
 from singimpact.flights.kernels.refine import fill_fine
 from singimpact.flights.kernels.tables import bounds, expansions, tabulate
 from singimpact.flights.kernels.taylor import follow, taylor_flight
 from singimpact.flights.kernels.variational import derivatives_at, judge
 from singimpact.flights.kernels.waves import reduced_twice, wall_acceleration
 
-PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES = range(9)
+PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET = range(10)
 """Kinds of work: fill the tables of a model, of its batches; first hits of many states; impacts of one orbit; the last
 states of many orbits; derivatives of x and x' at given times; x and x' along one flight; errors and conditions of hits
-of a Taylor flow; flights from rest."""
+of a Taylor flow; flights from rest; brackets of gamma."""
 AT_REST = 40
 """The code of a state with v = 0 among `HITS`: it is not flown."""
 
@@ -71,6 +71,9 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
     if kind == HITS:
         return linear_hits(states, speeds, model, work, block(out, 0, (10, count)), codes)
+    if kind == BRACKET:
+        return linear_brackets(states, block(v, 0, (count, 3)), block(w, 0, (11,)), model, work,
+                               block(out, 0, (count, 2)), codes)  # fmt: skip
     if kind == RELEASES:
         return linear_releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
     return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
@@ -106,6 +109,15 @@ def linear_hits(tau: Any, v: Any, model: Any, work: Any, out: Any, status: Any) 
         others += 1 if code != 0 else 0
         for k in range(10):
             out[k, i] = work.hit[k]
+    return others
+
+
+def linear_brackets(tau: Any, given: Any, w: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+    """`bracket_gamma` of many phases; given : a velocity below gamma, one above it, and the time to its end."""
+    others = 0
+    for i in range(len(tau)):
+        out[i, 0], out[i, 1], status[i] = bracket_gamma(tau[i], given[i, 0], given[i, 1], given[i, 2], w, model, work)
+        others += 1 if status[i] != 0 else 0
     return others
 
 

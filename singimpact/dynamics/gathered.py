@@ -1,0 +1,24 @@
+"""Results of many states as one result whose fields are arrays."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from singimpact.status import status_array
+
+
+def gathered(kind: Any, results: list[Any], shape: tuple[int, ...]) -> Any:
+    """One result whose fields are arrays of a shape; statuses and causes are int8."""
+    found = {}
+    for each in fields(kind):
+        values = [getattr(one, each.name) for one in results]
+        if each.name in ("status", "cause"):
+            found[each.name] = np.array(values, dtype=np.int8).reshape(shape)
+        else:
+            plain = all(isinstance(value, int | float) for value in values)
+            found[each.name] = np.array(values, dtype=None if plain else object).reshape(shape)
+    found["status"] = status_array(found["status"])
+    return kind(**found)
