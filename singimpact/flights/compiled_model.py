@@ -111,6 +111,8 @@ class CompiledModel:
         self.orbits: Machine = machine_of(Emitted(source, rows, text))
         self.main, self.second = self.machine.emitted.entries
         self.sizes, self.flat = self._laid_out()
+        self._sizes, self._flat_address = self.sizes.tolist(), _address(self.flat)
+        self._room = layout.scratch_length(self.sizes)
         self.r = float(self.rho[0]) if self.constant_restitution else np.nan
         self.price = LIMITS.interpreted_linear if self.linear else LIMITS.interpreted_taylor
         # launch times beyond are reduced by exact arithmetic first
@@ -187,11 +189,11 @@ class CompiledModel:
         self, entry: Callable[..., int], scratch: Array, kind: int, count: int = 0, impacts: int = 0,
         given: tuple[Array, ...] = (), out: Array | None = None, status: Array | None = None,
     ) -> int:  # fmt: skip
-        sizes = self.sizes.copy()
+        sizes = _SIZES(*self._sizes)
         sizes[layout.KIND], sizes[layout.COUNT], sizes[layout.IMPACTS] = kind, count, impacts
-        arrays = (sizes, self.flat, scratch, *given, *[_NONE] * (3 - len(given)), _NONE if out is None else out,
-                  _CODES if status is None else status)  # fmt: skip
-        return entry(*(part.ctypes.data for part in arrays))
+        addresses = [_address(part) for part in given] + [_NOWHERE] * (3 - len(given))
+        addresses += [_NOWHERE if part is None else _address(part) for part in (out, status)]
+        return entry(sizes, self._flat_address, _address(scratch), *addresses)
 
     def _compiled(self, name: str, seconds: float, machine: Machine | None = None) -> Callable[..., int] | None:
         """An entry for work that takes so long when it is interpreted; None: interpret it."""
@@ -218,7 +220,7 @@ class CompiledModel:
         return self._interpreter
 
     def _new_scratch(self, trace: int = 0) -> Array:
-        return np.zeros(layout.scratch_length(self.sizes) + 4 * trace)
+        return np.zeros(self._room + 4 * trace)
 
     # ---- work
 
@@ -231,9 +233,11 @@ class CompiledModel:
         """
         counted.add(tau.size)
         status, out = np.empty(tau.size, np.int8), np.empty((10, tau.size))
-        if not self.linear:
+        if self.linear:
+            given: tuple[Array, ...] = (tau, v)
+        else:
             out[4:] = np.nan
-        given = tau, v, np.full(tau.size, np.nan) if pushes is None else pushes
+            given = tau, v, np.full(tau.size, np.nan) if pushes is None else pushes
         begin, scratch = 0, None
         while begin < tau.size:
             entry = self._compiled(self.main, self.price * min(TABLES.interpreted, tau.size - begin))
@@ -248,12 +252,13 @@ class CompiledModel:
 
     def _compiled_hits(self, entry: Any, scratch: Array, given: Any, found: Any, part: slice) -> None:
         out, status = found
-        whole = part.start == 0 and part.stop == status.size
-        rows = out if whole else out[:, part].copy()
+        if part.start == 0 and part.stop == status.size:
+            self._call(entry, scratch, entries.HITS, status.size, given=given, out=out, status=status)
+            return
+        rows = out[:, part].copy()
         self._call(entry, scratch, entries.HITS, rows.shape[1], given=tuple(each[part] for each in given), out=rows,
                    status=status[part])  # fmt: skip
-        if not whole:
-            out[:, part] = rows
+        out[:, part] = rows
 
     def _interpreted_hits(self, given: Any, found: Any, part: slice) -> None:
         out, status = found
@@ -425,8 +430,16 @@ class CompiledModel:
         return out
 
 
+_SIZES = ctypes.c_int64 * 7
+
+
+def _address(array: Array) -> int:
+    """Where the numbers of a contiguous array lie; `array.ctypes` takes four times as long."""
+    return int(array.__array_interface__["data"][0])
+
+
 _NONE = np.zeros(16)
-_CODES = np.zeros(1, np.int8)
+_NOWHERE = _address(_NONE)
 
 
 def _step(reach: float, rate: float) -> float:

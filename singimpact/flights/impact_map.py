@@ -98,13 +98,14 @@ def impact_map(
 def landed(osc: Oscillator, states: States, hit: Flight) -> Step:
     """The states just after first hits."""
     tau = states.tau.reshape(states.shape) + hit.flight_time
-    bounce = rebound(osc, np.asarray(hit.velocity))
     fields = {name: value for name, value in vars(hit).items() if name != "_later"}
-    if not names_in(osc.restitution):
-        return Step.made(vars(hit).get("_later"), **fields, tau=tau[()], v=bounce[()])
+    later, model = vars(hit).get("_later"), compiled_model(osc)
+    if model.constant_restitution:
+        return Step.made(later, **fields, tau=tau[()], v=np.abs(model.r * hit.velocity)[()])
+    bounce = rebound(osc, np.asarray(hit.velocity))
     dead = (np.asarray(hit.status) == Status.hit) & np.isnan(bounce)
     fields["status"] = status_array(np.where(dead, np.int8(Status.no_rebound), hit.status).astype(np.int8))[()]
-    return Step.made(vars(hit).get("_later"), **fields, tau=tau[()], v=bounce[()])
+    return Step.made(later, **fields, tau=tau[()], v=bounce[()])
 
 
 def _quickly(osc: Oscillator, tau: float, v: float) -> dict[str, Any] | None:
@@ -118,7 +119,7 @@ def _quickly(osc: Oscillator, tau: float, v: float) -> dict[str, Any] | None:
     fields = {"flight_time": hit[0], "velocity": hit[1], "status": SCALAR_STATUS[0], "depth": np.nan, "bound": np.nan,
               "cause": NONE, "notes": NO_NOTES}  # fmt: skip
     if not model.linear:
-        return fields | {"later": undecided.Judge(model, np.array([tau]), np.array([v]), ())}
+        return fields | {"later": undecided.Judge(model, tau, v, ())}
     fields["condition"], fields["velocity_condition"], fields["time_error"], fields["velocity_error"] = hit[2:6]
     fields["later"] = None
     return fields
@@ -176,6 +177,9 @@ def checked_steps(steps: Any) -> int:
 def shaped(flight: Flight, shape: tuple[int, ...]) -> Flight:
     """The flat fields in a shape, or as scalars."""
     later = vars(flight).get("_later")
+    if len(shape) == 1:
+        flight.__dict__["status"] = status_array(flight.status)
+        return flight
     fields = {name: value if name == "notes" else np.asarray(value).reshape(shape)[()]
               for name, value in vars(flight).items() if name != "_later"}  # fmt: skip
     fields["status"] = status_array(fields["status"])

@@ -41,9 +41,9 @@ class States:
     def of(osc: Oscillator, tau: Any, v: Any, digits: int | None = None) -> States:
         """`read`, and what a model does with a mass at rest: next to a zero of a_c, a double is that zero."""
         states = States.read(tau, v)
-        resting = np.flatnonzero(states.v == 0)
-        if not resting.size:
+        if states.v.all():
             return states
+        resting = np.flatnonzero(states.v == 0)
         rest = {}
         for index in resting.tolist():
             moving = sign_of(states.exact_v(index)) > 0  # less than the smallest double
@@ -55,6 +55,8 @@ class States:
     @staticmethod
     def read(tau: Any, v: Any) -> States:
         """Check and broadcast a caller's tau and v."""
+        if _plain(tau) and _plain(v) and tau.shape == v.shape and (v >= 0).all():  # arrays of doubles as they stand
+            return States(tau.ravel(), v.ravel(), tau.shape, (tau.ravel(), v.ravel()))
         raw = _raw("tau", tau), _raw("v", v)
         try:
             written = np.broadcast_arrays(*raw)
@@ -67,7 +69,7 @@ class States:
             np.broadcast_to(float_array(name, part), shape).ravel()
             for name, part in zip(("tau", "v"), raw, strict=True)
         )
-        if np.any(speeds < 0):
+        if speeds.size and speeds.min() < 0:
             raise refuse("v", float(speeds[speeds < 0][0]), "velocities >= 0, just after an impact")
         return States(times, speeds, shape, (written[0].ravel(), written[1].ravel()))
 
@@ -84,6 +86,10 @@ class States:
     def exact_v(self, index: int) -> Expression:
         """v as it was written."""
         return constant("v", self.written[1][index])
+
+
+def _plain(values: Any) -> bool:
+    return type(values) is np.ndarray and values.dtype == np.float64 and bool(np.isfinite(values).all())
 
 
 def _zero_beside(osc: Oscillator, written: Any, digits: int | None) -> Zero | None:

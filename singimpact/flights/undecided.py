@@ -58,12 +58,16 @@ class Fates:
 class Judge:
     """Conditions and errors of the hits of a Taylor flow, when they are read."""
 
-    def __init__(self, model: CompiledModel, tau: Array, v: Array, shape: tuple[int, ...] | None = None) -> None:
+    def __init__(self, model: CompiledModel, tau: Any, v: Any, shape: tuple[int, ...] | None = None) -> None:
         self.model, self.tau, self.v, self.shape = model, tau, v, shape
-        self.removed = np.ones(tau.size)
-        self.hits = np.ones(tau.size, dtype=bool)
+        if shape is None:
+            self.removed = np.ones(tau.size)
+            self.hits = np.ones(tau.size, dtype=bool)
 
     def __call__(self) -> dict[str, Any]:
+        if self.shape is not None:  # one state, as numbers
+            self.tau, self.v = np.array([self.tau]), np.array([self.v])
+            self.removed, self.hits = np.ones(1), np.ones(1, dtype=bool)
         rows = np.full((4, self.tau.size), np.nan)
         chosen = np.flatnonzero(self.hits)
         judged = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])

@@ -125,14 +125,15 @@ def taylor_hit(t: float, v: float, near: float, known: float, model: Any, work: 
     Parameters
     ----------
     known : a_c at the launch to all its digits; nan: from the recurrence, and the code is CANCELS where that loses five
-        bits; inf: from the recurrence.
+        bits that matter; inf: from the recurrence.
     """
     hit, launch = work.hit, work.launch
     launch[0] = t
     a = known
     if not abs(known) < inf:
         a, error = launch_acceleration(model, work)
-        if known != known and 32 * UNIT * abs(a) < error:
+        # a_c decides the flight where v is small beside the size of its terms over the rate at which they change
+        if known != known and 32 * UNIT * abs(a) < error and 4 * UNIT * v * model.rules.pace < error:
             return CANCELS, a
     if near > 0 and a < 0 and ends_soon(v, a, 6 * work.flight.X[3], near, model.rules):
         return PRESSED, a
