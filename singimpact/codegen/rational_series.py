@@ -92,13 +92,14 @@ def rational_series_source(name: str, series: RationalSeries, says: str) -> str:
     if any(ONE in re.split(r"\W", text) for text in shown.values()):
         lines.append(f"    {ONE} = {unit.leading}**0")
     lines += [f"    c_{n} = {text}" for n, text in shown.items()]
-    result = _terms(series.variable, shown) if series.apart else horner(series.variable, {n: f"c_{n}" for n in shown})
+    return "\n".join([*lines, f"    return {_returned(series, shown, length)}"]) + "\n"
+
+
+def _returned(series: RationalSeries, powers: Iterable[int], length: str) -> str:
+    if series.apart:
+        return "(" + ", ".join(f"{power_text(series.variable, n)} * c_{n}" for n in powers) + ")"
     scale = f"{power_text(length, series.value)} * " if series.value else ""
-    return "\n".join([*lines, f"    return {scale}{result}"]) + "\n"
-
-
-def _terms(variable: str, powers: Iterable[int]) -> str:
-    return "(" + ", ".join(f"{power_text(variable, n)} * c_{n}" for n in powers) + ")"
+    return scale + horner(series.variable, {n: f"c_{n}" for n in powers})
 
 
 def _measured(jet: str, weight: int, unit: str) -> str:

@@ -69,7 +69,8 @@ class Machine:
         if now - self._looked.get(name, -1e9) < SETTINGS.look:
             return None
         self._looked[name] = now
-        code = cache.recall(self.place(name))
+        place = self.place(name)
+        code = cache.recall(place) if place.is_file() else None
         return None if code is None else self._load(name, code)
 
     def interpreted(self, seconds: float) -> None:

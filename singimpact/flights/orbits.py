@@ -63,6 +63,8 @@ def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, near_end: f
     model = compiled_model(osc)
     start = tau if osc.period is None or abs(tau) < model.nearest else float(reduced(np.array([tau]), osc.period)[0])
     rows, code = model.segment(start, v, count, near_end)
+    if code == Status.no_rebound:  # the last impact leaves no velocity
+        rows = rows[:-1]
     ended, cause = (int(part[0]) for part in decoded(np.array([0 if code == PRESSED else code])))
     since, speed, time, velocity, acceleration, condition, error = rows.T[:7]
     return Segment(tau + since, speed, time, velocity, acceleration, condition, error, rows.T[7:], ended, cause,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any, Self
 
 import numpy as np
@@ -50,8 +50,11 @@ class Flight:
     velocity_condition: Any
     time_error: Any
     velocity_error: Any
-    cause: Any
-    notes: Mapping[int, str]
+    cause: Any = field(default=0, kw_only=True)
+    notes: Mapping[int, str] = field(default_factory=dict, kw_only=True)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "status", status_array(self.status))
 
     @classmethod
     def made(cls, later: Callable[[], dict[str, Any]] | None = None, **values: Any) -> Self:

@@ -83,8 +83,19 @@ def test_bad_input() -> None:
         threshold(linear("2.8", 0, "0.5"), 0)
     with pytest.raises(InputError, match="restitution"):
         threshold(linear("2.8", 0, 1), "pi/2.8")
-    with pytest.raises(InputError, match="one state"):
-        chatter_limit(linear("2.8", 0, "0.5"), [0, 1], 1)
+
+
+def test_arrays_of_states_and_phases() -> None:
+    """One result whose fields have the shape of the states."""
+    osc, tau = linear("2.8", 0, "0.5"), np.array([[0.9, 1.0], [1.1, 0.2]])
+    found = chatter_limit(osc, tau, 0.005)
+    each = [chatter_limit(osc, one, 0.005) for one in tau.ravel().tolist()]
+    assert found.tau.shape == found.status.shape == (2, 2)
+    assert found.tau.ravel().tolist() == [one.tau for one in each]
+    assert found.sentence.shape == (2, 2)
+    phases = threshold(osc, [0.9, 1.2])
+    assert phases.v.tolist() == [threshold(osc, phase).v for phase in (0.9, 1.2)]
+    assert phases.status.tolist() == [Status.complete] * 2
 
 
 def test_a_threshold_near_restitution_one_is_right_or_unresolved() -> None:

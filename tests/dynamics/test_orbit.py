@@ -56,7 +56,9 @@ def test_impacts_are_those_of_the_map() -> None:
     orbit = osc.orbit(0.3, 0.4, impacts=5)
     for index in range(5):
         step = osc.impact_map(orbit.tau[index], orbit.v[index])
-        assert (step.tau, step.v) == (orbit.tau[index + 1], orbit.v[index + 1])
+        # the orbit keeps what the double of tau leaves out
+        assert step.tau == pytest.approx(orbit.tau[index + 1], rel=1e-14)
+        assert step.v == pytest.approx(orbit.v[index + 1], rel=1e-13)
 
 
 def test_release() -> None:

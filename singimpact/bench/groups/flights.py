@@ -11,7 +11,7 @@ import numpy as np
 from singimpact.bench.measuring import EPSILON, Case, Effort, Method, with_peers
 from singimpact.bench.peers import many_digits, runge_kutta, taylor_events
 from singimpact.bench.problems import FAMILIES, REGIMES, Problem, states
-from singimpact.flights.compiled_model import Allowance, allowed
+from singimpact.flights.compiled_model import Allowance, allowed, codes_and_columns
 from singimpact.flights.states import States
 
 TOLERANCES = (1e-6, 1e-9, 1e-12)
@@ -87,7 +87,7 @@ def _loop(problem: Problem, copies: int, tolerance: float) -> Callable[[], float
     tau, v = given.tau, given.v.copy()
 
     def run() -> float:
-        codes, rows = model.hits(tau, v)
+        codes, rows = codes_and_columns(model, tau, v)
         return float(rows[0, 0]) if codes[0] == 0 else float("nan")
 
     return run

@@ -15,7 +15,6 @@ from singimpact.bench.stress import layered
 from singimpact.bench.stress.judging import STEP, Function, Sweep, Trial
 from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch, both
 from singimpact.bench.truth.first_hit import first_hit
-from singimpact.flights.orbits import iterate
 from singimpact.status import Status
 
 SQUARED = 1e-140  # the height of a flight is of the size of v squared, and below 1e-300 doubles lose digits
@@ -183,8 +182,8 @@ def _orbit(launch: Launch) -> Trial | None:
     return _chained(launch, found.tau[-1], found.v[-1])
 
 
-def _lanes(launch: Launch) -> Trial | None:
-    ends = iterate(launch.model, launch.tau, launch.v, IMPACTS)
+def _iterate(launch: Launch) -> Trial | None:
+    ends = launch.model.iterate(launch.tau, launch.v, IMPACTS)
     return None if ends.status != 0 else _chained(launch, ends.tau, ends.v)
 
 
@@ -219,5 +218,5 @@ FUNCTIONS = (
     Function("derivative", _sweeps(_derivative), BALLS + ", differences", ""),
     Function("inverse_map", _sweeps(_inverse), BALLS + ", backwards", ""),
     Function("orbit", _sweeps(_orbit), BALLS + ", chained", ""),
-    Function("lanes", _sweeps(_lanes), BALLS + ", chained", ""),
+    Function("iterate", _sweeps(_iterate), BALLS + ", chained", ""),
 )

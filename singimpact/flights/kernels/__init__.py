@@ -3,7 +3,8 @@
 `state` (the named tuples that travel), `double_double`, `waves` (forcing phases and a_c at a launch), `roots` (the
 first root of a polynomial), `linear` (closed form), `tables` (that closed form at multiples of a step), `tabulated` (a
 flight through a table), `taylor` (a flight in Taylor steps), `steps` (how long a Taylor step may be), `variational` (a
-flight with its derivatives), `refine` (a hit placed in double-double), `orbits` (impact after impact), `batch`,
-`batch_isolate`, `batch_refine` (many orbits in lock-step), `entries` (what Python calls).
+flight with its derivatives), `refine` (a hit placed in double-double), `hits` (a flight with its conditions),
+`orbits` (impact after impact), `batch`, `batch_isolate`, `batch_refine` over `lanes` (many orbits in lock-step),
+`layout` (where the numbers lie), `entries` (what Python calls).
 Not here: anything that knows expressions, states as they are written, or statuses in words: the files of `flights`.
 """
