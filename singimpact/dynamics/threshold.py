@@ -218,6 +218,8 @@ def _refined(osc: Oscillator, place: Any, rough: Threshold, end: ContactZero, di
         small, change = mp.mpf(10) ** (-digits - 1), mp.inf
         for count in range(SEARCH.first, SEARCH.rounds, SEARCH.more):
             miss, slope = goal.miss(tau, v, count)
+            if not slope:  # below the range of doubles
+                return _without(Status.unresolved)
             last, change = change, abs(miss / slope)
             v -= miss / slope
             if not 0 < v < mp.inf:  # the slope of `miss` is below the range of doubles
