@@ -44,3 +44,15 @@ def pytest_collection_modifyitems(config, items):
 def clone():
     """The folder that holds pyproject.toml."""
     return Path(__file__).parent
+
+
+@pytest.fixture(scope="session", autouse=True)
+def few_compilers():
+    """Models are compiled after seconds of flights, not after a quarter: of hundreds each is flown a little."""
+    from dataclasses import replace
+
+    from singimpact.flights import machine
+
+    usual, machine.SETTINGS = machine.SETTINGS, replace(machine.SETTINGS, wait=4.0)
+    yield
+    machine.SETTINGS = usual
