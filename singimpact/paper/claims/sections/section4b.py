@@ -119,6 +119,10 @@ def _range(stated: Any) -> Check:
     )
 
 
+SLACK = (1 - r) / 3
+"""By how much the bounds of p~ and q~ leave their limits, relative to these."""
+
+
 def _bound_p(stated: Any) -> Check:
     """p~ > stated for 0 <= sigma <= delta, k < 0: the leading part of p~ - stated at sigma = 0 and just after."""
     launch, _ = on_ray()
@@ -149,7 +153,13 @@ def _bound_q(stated: Any) -> Check:
     gap = sympy.cancel((stated / sigma**2 - landed) / -k)
     point = {k: -1, ell: 1, r: sympy.Rational(1, 2)}
     return every(
-        [(f"(bound - q~)/(-k sigma^2) -> {sympy.factor(gap)}, positive for l > 0, 0 < r < 1", _positive_for_all(gap))],
+        [
+            (
+                f"(bound - q~)/(-k sigma^2) -> {sympy.factor(gap)}, positive for l > 0, 0 < r < 1",
+                _positive_for_all(gap),
+            ),
+            ("with the slack (1 - r)/3 of the limit, as below p~", is_zero(stated / sigma**2 / landed - 1 - SLACK)),
+        ],
         witness=lambda: {
             "k": "-1",
             "l": "1",
@@ -172,6 +182,7 @@ def _ratio(stated: Any) -> Check:
         [
             ("q~/p~ -> r M", is_zero(limit - r * M)),
             ("which is below the bound for l > 0, 0 < r < 1", _positive_for_all(stated - limit)),
+            ("the quotient of the bounds of q~ and p~", is_zero(stated / limit - (1 + SLACK) / (1 - SLACK))),
         ],
         witness=lambda: {
             "l": "1",
@@ -389,7 +400,11 @@ CLAIMS = (
             _Q / (1 + ell) ** 2 * (1 + 2 * r) * THIRD * sigma**2,
         ),
         _bound_q,
-        (_Q / (1 + ell) ** 2 * sigma**2, _Q / (1 + ell) ** 2 * (2 + r) * THIRD * sigma**2),
+        (
+            _Q / (1 + ell) ** 2 * sigma**2,
+            _Q / (1 + ell) ** 2 * (2 + r) * THIRD * sigma**2,
+            _Q / (1 + ell) ** 2 * (5 - r) * THIRD * sigma**2,
+        ),
         ("s4b-rays",),
         lambda: Statement(
             r"\tilde q(\sigma)<-rk(3\ell+2\ell^2)(1+\ell)^{-2}\tfrac13(4-r)\,\sigma^2",
@@ -401,7 +416,7 @@ CLAIMS = (
         "the bound on q~/p~ that follows; with (1+2r) it fails, with (4-r) it holds",
         Statement(r"\tilde q/\tilde p<Mr(1+2r)(2+r)^{-1}", M * r * (1 + 2 * r) / (2 + r)),
         _ratio,
-        (M * r, M * r * r),
+        (M * r, M * r * r, M * r * (9 - r) / (2 + r)),
         ("s4b-p-bound", "s4b-q-bound", "s4b-M"),
         lambda: Statement(r"\tilde q/\tilde p<Mr(4-r)(2+r)^{-1}", M * r * (4 - r) / (2 + r)),
     ),
