@@ -6,8 +6,9 @@ import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from math import frexp, ldexp
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import names_in, substitute
 from singimpact.algebra.numbers import as_float
+from singimpact.algebra.precision import kept_property
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import counted
 from singimpact.flights.bind import Emitted
@@ -69,7 +71,7 @@ TABLES = TableSettings()
 
 @dataclass(frozen=True)
 class Allowance:
-    """When a flight is given up, and how accurate it is. `None` in every field: the defaults."""
+    """When a flight is given up, and how accurate it is."""
 
     horizon: float
     epsilon: float = EPSILON
@@ -79,7 +81,7 @@ class Allowance:
 @lru_cache(maxsize=256)
 def compiled_model(osc: Oscillator) -> CompiledModel:
     """The compiled model of an oscillator with the default horizon, accuracy and number of steps."""
-    return CompiledModel(osc, Allowance(horizon_of(osc, None)))
+    return allowed(osc, Allowance(horizon_of(osc, None)))
 
 
 @lru_cache(maxsize=64)
@@ -102,8 +104,7 @@ class CompiledModel:
         self.constant_restitution = not names_in(osc.restitution)
         if self.constant_restitution:
             text, trees = "", (osc.restitution,)
-        self.rho = np.zeros(8)
-        self.rho[: len(trees)] = [as_float(substitute(tree, osc.parameters)) for tree in trees]
+        self.rho = np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
         flow = None if self.linear else recurrence_of(osc)
         source, rows = ("", 0) if flow is None else (flow.source, flow.rows)
         self.machine: Machine = machine_of(Emitted(source, rows))
@@ -134,7 +135,8 @@ class CompiledModel:
                  1 - as_float(osc.slope_at_rest()))  # fmt: skip
         numbers, rest = numbers_of(osc)
         room = max(order, degree_for(LIMITS.judging)) + 2 + LIMITS.derivatives_at_rest
-        sizes = np.zeros(7, dtype=np.int64)
+        sizes = np.zeros(8, dtype=np.int64)
+        sizes[layout.RHO] = self.rho.size
         if self.linear:
             assert self.form is not None
             waves = len(self.form.harmonics)
@@ -181,19 +183,26 @@ class CompiledModel:
     def _ready(self, name: str, entry: Callable[..., int]) -> Callable[..., int]:
         if self.linear and name not in self._prepared:
             kind = entries.PREPARE_BATCH if name == "batch_entry" else entries.PREPARE
-            self._call(entry, self._new_scratch(), kind)
+            # in a copy, for other threads fly through the tables meanwhile, or fill others
+            before = self.flat.copy()
+            filled = before.copy()
+            self._call(entry, self._new_scratch(), (kind, 0, 0), flat=filled)
+            changed = filled != before
+            self.flat[changed] = filled[changed]
             self._prepared.add(name)
         return entry
 
     def _call(
-        self, entry: Callable[..., int], scratch: Array, kind: int, count: int = 0, impacts: int = 0,
-        given: tuple[Array, ...] = (), out: Array | None = None, status: Array | None = None,
+        self, entry: Callable[..., int], scratch: Array, job: tuple[int, int, int], given: tuple[Array, ...] = (),
+        out: Array | None = None, status: Array | None = None, flat: Array | None = None,
     ) -> int:  # fmt: skip
+        """One call of an entry; job : its kind, the states, and impacts or rows of a trace."""
         sizes = _SIZES(*self._sizes)
-        sizes[layout.KIND], sizes[layout.COUNT], sizes[layout.IMPACTS] = kind, count, impacts
+        sizes[layout.KIND], sizes[layout.COUNT], sizes[layout.IMPACTS] = job
         addresses = [_address(part) for part in given] + [_NOWHERE] * (3 - len(given))
         addresses += [_NOWHERE if part is None else _address(part) for part in (out, status)]
-        return entry(sizes, self._flat_address, _address(scratch), *addresses)
+        model = self._flat_address if flat is None else _address(flat)
+        return entry(sizes, model, _address(scratch), *addresses)
 
     def _compiled(self, name: str, seconds: float, machine: Machine | None = None) -> Callable[..., int] | None:
         """An entry for work that takes so long when it is interpreted; None: interpret it."""
@@ -204,7 +213,7 @@ class CompiledModel:
             found = self._entry(name, machine)
         return found
 
-    @cached_property
+    @kept_property
     def sometimes_kept(self) -> bool:
         """Whether some launches of a Taylor flow are proved not to return before they are flown."""
         from singimpact.flights.escape_averaged import bounds_of
@@ -253,11 +262,11 @@ class CompiledModel:
     def _compiled_hits(self, entry: Any, scratch: Array, given: Any, found: Any, part: slice) -> None:
         out, status = found
         if part.start == 0 and part.stop == status.size:
-            self._call(entry, scratch, entries.HITS, status.size, given=given, out=out, status=status)
+            self._call(entry, scratch, (entries.HITS, status.size, 0), given, out, status)
             return
         rows = out[:, part].copy()
-        self._call(entry, scratch, entries.HITS, rows.shape[1], given=tuple(each[part] for each in given), out=rows,
-                   status=status[part])  # fmt: skip
+        blocks = tuple(each[part] for each in given)
+        self._call(entry, scratch, (entries.HITS, rows.shape[1], 0), blocks, rows, status[part])
         out[:, part] = rows
 
     def _interpreted_hits(self, given: Any, found: Any, part: slice) -> None:
@@ -288,7 +297,7 @@ class CompiledModel:
         return int(status[0]), out[:, 0].tolist()
 
     def _bound(self, entry: Callable[..., int]) -> Callable[[float, float], Any]:
-        """`quick` over scratch of its own, under the interpreter's lock, so that threads do not meet in it."""
+        """`quick` over scratch of its own; a thread that finds another one in it goes the longer way."""
         sizes, scratch = self.sizes.copy(), self._new_scratch()
         sizes[layout.KIND], sizes[layout.COUNT] = entries.HITS, 1
         state, out, status = (ctypes.c_double * 3)(0, 0, np.nan), (ctypes.c_double * 10)(), (ctypes.c_int8 * 1)()
@@ -296,13 +305,18 @@ class CompiledModel:
         addresses = [ctypes.c_void_p(address) for address in (
             *(part.ctypes.data for part in (sizes, self.flat, scratch)), at, at + 8, at + 16, ctypes.addressof(out),
             ctypes.addressof(status))]  # fmt: skip
-        count = counted.add
+        count, alone = counted.add, Lock()
 
         def quick(tau: float, v: float, kept: Any = (sizes, scratch)) -> Any:  # noqa: ARG001
-            count(1)
-            state[0], state[1] = tau, v
-            entry(*addresses)
-            return status[0], out[:]
+            if not alone.acquire(blocking=False):
+                return self._one(tau, v)
+            try:
+                count(1)
+                state[0], state[1] = tau, v
+                entry(*addresses)
+                return status[0], out[:]
+            finally:
+                alone.release()
 
         return quick
 
@@ -318,8 +332,7 @@ class CompiledModel:
                 return status, out
             except LEFT_OPEN:
                 entry = self._here(name)
-        self._call(entry, self._new_scratch(), entries.RELEASES, tau.size, given=(tau, tau, orders), out=out,
-                   status=status)  # fmt: skip
+        self._call(entry, self._new_scratch(), (entries.RELEASES, tau.size, 0), (tau, tau, orders), out, status)
         return status, out
 
     def segment(self, tau: float, v: float, count: int, near: float = 0.0) -> tuple[Array, int]:
@@ -334,7 +347,7 @@ class CompiledModel:
             except LEFT_OPEN:
                 entry = self._here(self.main, self.orbits)
         given = np.array([tau]), np.array([v]), np.concatenate([[near], self.rho])
-        flown = self._call(entry, self._new_scratch(), entries.SEGMENT, count, given=given, out=out, status=status)
+        flown = self._call(entry, self._new_scratch(), (entries.SEGMENT, count, 0), given, out, status)
         counted.add(flown)
         return out[:flown], int(status[0])
 
@@ -358,7 +371,7 @@ class CompiledModel:
                 self.interpreter.iterate(times[part], speeds[part], impacts, self.rho, codes)
             else:
                 given = times[part], speeds[part], self.rho
-                self._call(entry, scratch, entries.ITERATE, codes.size, impacts, given, status=codes)
+                self._call(entry, scratch, (entries.ITERATE, codes.size, impacts), given, status=codes)
             begin += block
         return times[: tau.size], speeds[: tau.size], status[: tau.size]
 
@@ -374,10 +387,9 @@ class CompiledModel:
         if entry is None:
             return None
         out, status = np.empty((tau.size, 2)), np.empty(tau.size, np.int8)
-        numbers = np.concatenate([self.rho, settings])
+        numbers = np.concatenate([settings, self.rho])
         rows = np.ascontiguousarray(given, dtype=float)
-        self._call(entry, self._new_scratch(), entries.BRACKET, tau.size, given=(tau, rows, numbers), out=out,
-                   status=status)  # fmt: skip
+        self._call(entry, self._new_scratch(), (entries.BRACKET, tau.size, 0), (tau, rows, numbers), out, status)
         return out, status
 
     def variations(self, tau: Array, v: Array, times: Array) -> Array:
@@ -391,7 +403,7 @@ class CompiledModel:
                 return out
             except LEFT_OPEN:
                 entry = self._here(name)
-        self._call(entry, self._new_scratch(), entries.VARIATIONS, tau.size, given=(tau, v, times), out=out)
+        self._call(entry, self._new_scratch(), (entries.VARIATIONS, tau.size, 0), (tau, v, times), out)
         return out
 
     def follow(self, tau: float, v: float, times: Array) -> Array:
@@ -405,7 +417,7 @@ class CompiledModel:
             except LEFT_OPEN:
                 entry = self._here("judge_entry")
         given = np.array([tau]), np.array([v]), times
-        self._call(entry, self._new_scratch(), entries.FOLLOW, times.size, given=given, out=out)
+        self._call(entry, self._new_scratch(), (entries.FOLLOW, times.size, 0), given, out)
         return out
 
     def judged(self, tau: Array, v: Array, removed: Array) -> Array:
@@ -426,7 +438,7 @@ class CompiledModel:
                 return out
             except LEFT_OPEN:
                 entry = self._here("judge_entry")
-        self._call(entry, self._new_scratch(room), entries.JUDGE, tau.size, room, (tau, v, removed), out)
+        self._call(entry, self._new_scratch(room), (entries.JUDGE, tau.size, room), (tau, v, removed), out)
         return out
 
 
@@ -435,7 +447,7 @@ def codes_and_columns(model: CompiledModel, tau: Array, v: Array) -> tuple[Array
     return model.hits(tau, v)
 
 
-_SIZES = ctypes.c_int64 * 7
+_SIZES = ctypes.c_int64 * 8
 
 
 def _address(array: Array) -> int:

@@ -15,7 +15,7 @@ from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights import in_digits, undecided
-from singimpact.flights.compiled_model import EPSILON, Allowance, allowed, compiled_model
+from singimpact.flights.compiled_model import EPSILON, Allowance, CompiledModel, allowed, compiled_model
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.model_numbers import horizon_of
 from singimpact.flights.results import SCALAR_STATUS, Flight, Step
@@ -56,7 +56,7 @@ def first_hit(
     ([0.0, 1.0, 3.0], [0.0, -1.0, -3.0], [2, 0, 0])
     """
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None:
-        fields = _quickly(osc, tau, v)
+        fields = _quickly(compiled_model(osc), tau, v)
         if fields is not None:
             later = fields.pop("later")
             return Flight.made(later, **fields)
@@ -82,12 +82,11 @@ def impact_map(
     (4.0, 1.5, np.int8(0))
     """
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None:
-        fields = _quickly(osc, tau, v)
+        model = compiled_model(osc)
+        fields = _quickly(model, tau, v) if model.constant_restitution else None
         if fields is not None:
-            model = compiled_model(osc)
-            if model.constant_restitution:
-                later = fields.pop("later")
-                return Step.made(later, tau=tau + fields["flight_time"], v=-model.r * fields["velocity"], **fields)
+            later = fields.pop("later")
+            return Step.made(later, tau=tau + fields["flight_time"], v=-model.r * fields["velocity"], **fields)
     states = States.of(osc, tau, v, digits)
     hit = _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps))
     if digits is not None:
@@ -108,9 +107,8 @@ def landed(osc: Oscillator, states: States, hit: Flight) -> Step:
     return Step.made(later, **fields, tau=tau[()], v=bounce[()])
 
 
-def _quickly(osc: Oscillator, tau: float, v: float) -> dict[str, Any] | None:
+def _quickly(model: CompiledModel, tau: float, v: float) -> dict[str, Any] | None:
     """The fields of a plain hit of two floats; None for all that needs a closer look."""
-    model = compiled_model(osc)
     if not (0 < v < inf and -model.nearest < tau < model.nearest) or model.sometimes_kept:
         return None
     code, hit = model.quick()(tau, v)

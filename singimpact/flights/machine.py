@@ -14,7 +14,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -104,20 +104,19 @@ class Machine:
 
     def place(self, name: str) -> Path:
         """The file of an entry's object code."""
-        return cache_folder() / FOLDER / f"{self.digest()}.{name}.o"
+        return cache_folder() / FOLDER / f"{self.digest}.{name}.o"
 
+    @cached_property
     def digest(self) -> str:
         """Of everything that object code depends on."""
-        from singimpact.codegen.object_code import processor
-
-        digest = hashlib.sha256()
-        for part in (*bind.sources(), self.emitted.flow.encode(), self.emitted.rho.encode(), processor().encode()):
-            digest.update(hashlib.sha256(part).digest())
+        digest = hashlib.sha256(_digest_of_sources())
+        for text in (self.emitted.flow, self.emitted.rho):
+            digest.update(hashlib.sha256(text.encode()).digest())
         return digest.hexdigest()[:32]
 
     def _compile_elsewhere(self) -> bool:
         """Start a process of low priority that compiles, unless one is at work for this cache; whether it was asked."""
-        request = cache_folder() / FOLDER / f"{self.digest()}.asked"
+        request = cache_folder() / FOLDER / f"{self.digest}.asked"
         try:
             folder(request.parent)
             if any(time.time() - each.stat().st_mtime < SETTINGS.dead for each in request.parent.glob("*.asked")):
@@ -128,6 +127,15 @@ class Machine:
         except (InputError, OSError) as error:
             cache.not_kept(error)
         return True
+
+
+@lru_cache(maxsize=1)
+def _digest_of_sources() -> bytes:
+    """Of the kernels, of what compiles them and of the processor."""
+    from singimpact.codegen.object_code import processor
+
+    parts = (*bind.sources(), processor().encode())
+    return hashlib.sha256(b"".join(hashlib.sha256(part).digest() for part in parts)).digest()
 
 
 _STARTED: list[Any] = []
@@ -172,7 +180,9 @@ def compile_asked(request: Path) -> None:
         compiler = bind.Compiler(machine.emitted)
         for name in machine.emitted.entries:
             if cache.recall(machine.place(name)) is None:
-                cache.keep(machine.place(name), object_code.emitted(compiler.text(name), name))
+                code = object_code.emitted(compiler.text(name), name)
+                if request.exists():  # else the cache was removed or emptied meanwhile
+                    cache.keep(machine.place(name), code)
     finally:
         request.unlink(missing_ok=True)
 

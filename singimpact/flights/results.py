@@ -70,7 +70,7 @@ class Flight:
         if later is None:
             raise AttributeError(f"{type(self).__name__} has no {name}")
         self.__dict__.update(later())
-        del self.__dict__["_later"]
+        self.__dict__.pop("_later", None)  # another thread may have read one of them at the same time
         return self.__dict__[name]
 
     def __getstate__(self) -> dict[str, Any]:

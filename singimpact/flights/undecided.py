@@ -61,6 +61,7 @@ class Judge:
     def __init__(self, model: CompiledModel, tau: Any, v: Any, shape: tuple[int, ...] | None = None) -> None:
         self.model, self.tau, self.v, self.shape = model, tau, v, shape
         if shape is None:
+            self.tau, self.v = tau.copy(), v.copy()  # they may be the caller's own, and change
             self.removed = np.ones(tau.size)
             self.hits = np.ones(tau.size, dtype=bool)
 

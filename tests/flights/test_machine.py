@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -16,6 +17,7 @@ from singimpact.codegen import object_code
 from singimpact.flights import machine
 from singimpact.flights.bind import MODULES, Emitted, constants
 from singimpact.flights.compiled_model import Allowance, CompiledModel, compiled_model
+from singimpact.flights.counted import counted
 from singimpact.flights.kernels import entries
 
 MODELS = {
@@ -85,6 +87,82 @@ def test_one_state_is_an_array_of_one(name, compiled):
         assert (one.tau, one.v, one.status) == (many.tau[index], many.v[index], many.status[index])
         assert one.condition == pytest.approx(many.condition[index], rel=1e-14)
         assert one.error == pytest.approx(many.error[index], rel=1e-12)
+
+
+@pytest.fixture
+def often():
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    yield
+    sys.setswitchinterval(before)
+
+
+def in_threads(work, count=8):
+    """The results of a function of the number of its thread."""
+    found = [None] * count
+
+    def run(at):
+        found[at] = work(at)
+
+    threads = [threading.Thread(target=run, args=(at,)) for at in range(count)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(120)
+    return found
+
+
+@pytest.mark.usefixtures("often")
+def test_threads_that_fly_one_state_a_call_do_not_meet(compiled):
+    model, rng = compiled["linear"], np.random.default_rng(7)
+    states = list(zip(rng.uniform(0, 2, 200).tolist(), rng.uniform(0.05, 2, 200).tolist(), strict=True))
+
+    def ends(_):
+        return [(step.tau, step.v) for _ in range(10) for step in (model.impact_map(*state) for state in states)]
+
+    assert in_threads(ends) == [ends(0)] * 8
+
+
+@pytest.mark.usefixtures("compiled")
+def test_tables_are_filled_beside_those_that_other_threads_fly_through(monkeypatch):
+    model = CompiledModel(MODELS["linear"], compiled_model(MODELS["linear"]).allowance)
+    called, kinds = CompiledModel._call, []
+
+    def watched(self, entry, scratch, job, *given, **more):
+        before = self.flat.copy()
+        result = called(self, entry, scratch, job, *given, **more)
+        assert np.array_equal(self.flat, before)
+        kinds.append(job[0])
+        return result
+
+    monkeypatch.setattr(CompiledModel, "_call", watched)
+    model.hits(np.array([0.3]), np.array([0.5]))
+    model.iterate(np.array([0.3]), np.array([0.5]), 1)
+    assert {entries.PREPARE, entries.PREPARE_BATCH} <= set(kinds)
+
+
+def test_what_is_read_later_does_not_follow_the_caller_s_arrays(compiled):
+    tau, v = np.array([0.3, 0.7]), np.array([0.5, 1.1])
+    want = compiled["duffing"].impact_map(tau.copy(), v.copy()).condition
+    step = compiled["duffing"].impact_map(tau, v)
+    tau[:], v[:] = 1.9, 0.01
+    assert np.array_equal(step.condition, want)
+
+
+def test_a_rebound_law_may_have_any_number_of_constants():
+    law = "-v*(1/2 + v**2/101 + v**4/1007 + v**6/10007 + v**8/100003 + v**10/1000003)/(1 + v**2/103 + v**4/1009)"
+    osc = si.linear(2, 0, law)
+    step = osc.impact_map(0.3, 0.7)
+    speed = abs(step.velocity)
+    want = speed * (0.5 + speed**2 / 101 + speed**4 / 1007 + speed**6 / 10007) / (1 + speed**2 / 103 + speed**4 / 1009)
+    assert step.v == pytest.approx(want, rel=1e-4)
+    assert osc.orbit(0.3, 0.7, 3).v[1] == pytest.approx(step.v, rel=1e-12)
+
+
+def test_one_state_with_a_law_of_its_own_is_flown_once(compiled):
+    with counted() as count:
+        compiled["linear"].replace(restitution="-0.8*v").impact_map(0.3, 0.7)
+    assert count.flights == 1
 
 
 @pytest.mark.usefixtures("compiled")

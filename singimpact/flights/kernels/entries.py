@@ -21,6 +21,7 @@ from singimpact.flights.kernels.layout import (
     COUNT,
     IMPACTS,
     KIND,
+    RHO,
     batch_model,
     block,
     columns_of,
@@ -51,7 +52,8 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     Parameters
     ----------
     sizes : see `layout`. flat, scratch : of the model. tau, v : states. w : times; the part of a time below which
-        chatter ends an orbit, then constants of rho; orders of roots removed at rest. out : results. status : codes.
+        chatter ends an orbit, or settings of a bracket, then constants of rho; orders of roots removed at rest.
+    out : results. status : codes.
 
     Returns
     -------
@@ -60,7 +62,9 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     count, kind = sizes[COUNT], sizes[KIND]
     model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
     if kind == SEGMENT:
-        flown, code = orbit_segment(tau[0], v[0], w[0], block(w, 1, (8,)), model, work, block(out, 0, (count, 11)))
+        flown, code = orbit_segment(
+            tau[0], v[0], w[0], block(w, 1, (sizes[RHO],)), model, work, block(out, 0, (count, 11))
+        )
         status[0] = code
         return int(flown)
     if kind == PREPARE:
@@ -72,8 +76,8 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     if kind == HITS:
         return linear_hits(states, speeds, model, work, block(out, 0, (10, count)), codes)
     if kind == BRACKET:
-        return linear_brackets(states, block(v, 0, (count, 3)), block(w, 0, (11,)), model, work,
-                               block(out, 0, (count, 2)), codes)  # fmt: skip
+        given, settings, rho = block(v, 0, (count, 3)), block(w, 0, (3,)), block(w, 3, (sizes[RHO],))
+        return linear_brackets((states, given), settings, rho, model, work, block(out, 0, (count, 2)), codes)
     if kind == RELEASES:
         return linear_releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
     return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
@@ -92,8 +96,8 @@ def batch_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, o
         bounds(model.numbers, batch.table)
         expansions(model.numbers, batch.series)
         return 0
-    fly_batches(block(tau, 0, (count,)), block(v, 0, (count,)), sizes[IMPACTS], block(w, 0, (8,)), model, batch,
-                block(status, 0, (count,)))  # fmt: skip
+    states, speeds, rho, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(w, 0, (sizes[RHO],)), status
+    fly_batches(states, speeds, sizes[IMPACTS], rho, model, batch, block(codes, 0, (count,)))
     return 0
 
 
@@ -112,11 +116,11 @@ def linear_hits(tau: Any, v: Any, model: Any, work: Any, out: Any, status: Any) 
     return others
 
 
-def linear_brackets(tau: Any, given: Any, w: Any, model: Any, work: Any, out: Any, status: Any) -> int:
-    """`bracket_gamma` of many phases; given : a velocity below gamma, one above it, and the time to its end."""
-    others = 0
+def linear_brackets(at: Any, settings: Any, w: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+    """`bracket_gamma` of many phases; at : the phases, and a velocity below gamma, one above, the time to its end."""
+    others, (tau, given) = 0, at
     for i in range(len(tau)):
-        out[i, 0], out[i, 1], status[i] = bracket_gamma(tau[i], given[i, 0], given[i, 1], given[i, 2], w, model, work)
+        out[i, 0], out[i, 1], status[i] = bracket_gamma(tau[i], given[i], settings, w, model, work)
         others += 1 if status[i] != 0 else 0
     return others
 
@@ -148,12 +152,14 @@ def taylor_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     count, kind = sizes[COUNT], sizes[KIND]
     model, work = taylor_model(flat, sizes), scratch_of(scratch, sizes)
     if kind == SEGMENT:
-        flown, code = taylor_segment(tau[0], v[0], w[0], block(w, 1, (8,)), model, work, block(out, 0, (count, 11)))
+        flown, code = taylor_segment(
+            tau[0], v[0], w[0], block(w, 1, (sizes[RHO],)), model, work, block(out, 0, (count, 11))
+        )
         status[0] = code
         return int(flown)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
     if kind == ITERATE:
-        iterate_taylor(states, speeds, sizes[IMPACTS], block(w, 0, (8,)), model, work, codes)
+        iterate_taylor(states, speeds, sizes[IMPACTS], block(w, 0, (sizes[RHO],)), model, work, codes)
         return 0
     return taylor_hits(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
 

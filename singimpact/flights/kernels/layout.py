@@ -12,9 +12,9 @@ from singimpact.flights.kernels.lanes import BATCH_ORDER, LANE_ROWS, LANES
 from singimpact.flights.kernels.refine import LEVEL
 from singimpact.flights.kernels.state import Batch, Columns, Flying, Linear, Model, Rules, Table, TaylorModel, Work
 
-KIND, COUNT, WAVES, ROWS, ROOM, CONSTANTS, IMPACTS = range(7)
+KIND, COUNT, WAVES, ROWS, ROOM, CONSTANTS, IMPACTS, RHO = range(8)
 """Entries of `sizes`: the kind of work; states, impacts or times; waves; rows of the tables and of the work of a
-flight; room for Taylor coefficients; constants of a recurrence; impacts of an iteration."""
+flight; room for Taylor coefficients; constants of a recurrence; impacts of an iteration; constants of rho."""
 TURN, SCALARS = 10, 15
 """Where the period and the scalars of a model begin; the ten rules come first."""
 TERMS = 24

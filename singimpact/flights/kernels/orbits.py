@@ -21,8 +21,9 @@ from singimpact.flights.kernels.waves import reduced_twice
 
 BELOW, ABOVE, SPENT = 50, 51, 52
 """Codes of `side_of_gamma`."""
-RHO = 8
-"""Places of the constants of rho."""
+WITHIN, WIDTH, MOST = range(3)
+"""Settings of `bracket_gamma`: the part of the time to the end of gamma in which chatter must end; the relative width
+to stop at; the impacts flown at most from one velocity."""
 
 
 def rebound(velocity: float, w: Any) -> float:
@@ -93,21 +94,20 @@ def iterate_taylor(tau: Any, v: Any, count: int, w: Any, model: Any, work: Any, 
         tau[i] += since - lost
 
 
-def side_of_gamma(tau: float, v: float, end: float, most: int, w: Any, model: Any, work: Any) -> int:
+def side_of_gamma(tau: float, v: float, end: float, settings: Any, w: Any, model: Any, work: Any) -> int:
     """BELOW: chatter from (tau, v) completes before `end`; ABOVE: an impact comes after it; else the code of a flight.
 
     Parameters
     ----------
-    end : time after tau at which gamma ends. most : impacts flown at most; then the code is SPENT.
-    w : constants of rho; behind them, in place RHO, the part of the time to the end in which chatter must end.
+    end : time after tau at which gamma ends. settings : after MOST impacts the code is SPENT. w : constants of rho.
     """
     since, lost = 0.0, 0.0
-    for _ in range(most):
+    for _ in range(int(settings[MOST])):
         at, at_low = sum_twice(tau, 0.0, since, -lost)
         t, t_low = reduced_twice(at, model.turn)
         t, t_low = sum_twice(t, t_low, at_low, 0.0)
         code, a = linear_hit(t, t_low, v, 0.0, model, work)
-        if a < 0 and 2 * v < -a * model.rules.lost * w[RHO] * (end - since):
+        if a < 0 and 2 * v < -a * model.rules.lost * settings[WITHIN] * (end - since):
             return BELOW
         if code == 3:  # no further impact: contact is lost
             return ABOVE
@@ -122,16 +122,17 @@ def side_of_gamma(tau: float, v: float, end: float, most: int, w: Any, model: An
     return SPENT
 
 
-def bracket_gamma(tau: float, low: float, high: float, end: float, w: Any, model: Any, work: Any) -> Any:
+def bracket_gamma(tau: float, given: Any, settings: Any, w: Any, model: Any, work: Any) -> Any:
     """(low, high, code): an interval of velocities around gamma at tau, halved until it is narrow.
 
     Parameters
     ----------
-    w : as in `side_of_gamma`; behind, the relative width to stop at and the impacts flown at most from one velocity.
+    given : a velocity below gamma, one above it, and the time to its end. settings, w : as in `side_of_gamma`.
     """
-    while high - low > w[RHO + 1] * high:
+    low, high, end = given[0], given[1], given[2]
+    while high - low > settings[WIDTH] * high:
         middle = (low + high) / 2
-        code = side_of_gamma(tau, middle, end, int(w[RHO + 2]), w, model, work)
+        code = side_of_gamma(tau, middle, end, settings, w, model, work)
         if code == BELOW:
             low = middle
         elif code == ABOVE:
