@@ -1,8 +1,8 @@
 """The kernels bound to numbers: compiled for doubles, or as they stand over lists of floats, mpf or balls.
 
-The kernels are ordinary modules.  Binding puts their functions into one namespace, where the four functions of a flow
-(coefficients, step size, restart, singular part), its bounds and the rebound law are those of the model at hand; only
-these, the recurrence of f and g and an expression for rho, are emitted as text.
+The kernels are ordinary modules.  Binding puts their functions into one namespace, where those that depend on the
+flow (`IN_STEPS`, coefficients, restart and bounds) and the rebound law are those of the model at hand.  Only the
+recurrence of f and g and an expression for rho are emitted as text.
 """
 
 from __future__ import annotations
@@ -43,6 +43,9 @@ from singimpact.flights.kernels import (
 MODULES = (radii, state, lanes, double_double, waves, roots, linear, steps, taylor, tables, tabulated, variational,
            refine, hits, orbits, batch_isolate, batch_refine, batch, layout, entries)  # fmt: skip
 UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+IN_STEPS = {"step_size": "step_size_of_discs", "singular_part": "singular_part_of_discs",
+            "next_hit": "next_hit_in_steps", "placed": "placed_in_steps"}  # fmt: skip
+"""Functions of linear models, and what stands in their places for models without a closed form."""
 ADDRESSES = 8
 """Arguments of an entry: sizes, model, scratch, tau, v, w, out, status."""
 
@@ -120,7 +123,7 @@ def over_lists(flow: str, rho: str = "", exact_restart: bool = True) -> Callable
         if flow or not exact_restart:
             made["restart"] = made["state_kept"]
         if flow:
-            made |= {name: made[f"{name}_of_discs"] for name in ("step_size", "singular_part")}
+            made |= {name: made[other] for name, other in IN_STEPS.items()}
         return made
 
     return space
@@ -191,8 +194,7 @@ def _chosen(emitted: Emitted) -> dict[str, Any]:
         exec(compile(text, "<emitted>", "exec"), made)
         own |= {name: part for name, part in made.items() if isinstance(part, types.FunctionType)}
     if emitted.flow:
-        own |= {"restart": own["state_kept"]}
-        own |= {name: own[f"{name}_of_discs"] for name in ("step_size", "singular_part")}
+        own |= {"restart": own["state_kept"], **{name: own[other] for name, other in IN_STEPS.items()}}
     return own
 
 

@@ -54,8 +54,8 @@ class Interpreter:
             self._rows("taylor_hits", given, out, status)
 
     def releases(self, tau: Array, removed: Array, out: Array, status: Array) -> None:
-        """`linear_releases` or `taylor_releases`."""
-        self._rows("linear_releases" if self.linear else "taylor_releases", (tau, removed), out, status)
+        """First hits of masses released at rest."""
+        self._rows("releases", (tau, removed), out, status)
 
     def _rows(self, name: str, given: tuple[Array, ...], out: Array, status: Array) -> None:
         work, _ = self.work()
@@ -64,24 +64,19 @@ class Interpreter:
         out[...], status[...] = rows, codes
 
     def segment(self, tau: float, v: float, near: float, w: Array, out: Array) -> tuple[int, int]:
-        """`orbit_segment` or `taylor_segment`."""
+        """One orbit, an impact a row."""
         work, _ = self.work()
         rows = out.tolist()
-        name = "orbit_segment" if self.linear else "taylor_segment"
-        flown, code = self.space[name](tau, v, near, w.tolist(), self.model, work, rows)
+        flown, code = self.space["orbit_segment"](tau, v, near, w.tolist(), self.model, work, rows)
         out[...] = rows
         return flown, code
 
     def iterate(self, tau: Array, v: Array, impacts: int, w: Array, status: Array) -> None:
         """Orbits one after the other: tau, v become the last states."""
         work, _ = self.work()
-        name = "orbit_segment" if self.linear else "taylor_segment"
-        for i in np.flatnonzero(status == 0).tolist():
-            rows = [[0.0] * 11 for _ in range(impacts)]
-            flown, code = self.space[name](float(tau[i]), float(v[i]), 0.0, w.tolist(), self.model, work, rows)
-            status[i] = code
-            if flown:
-                tau[i], v[i] = tau[i] + rows[flown - 1][0], rows[flown - 1][1]
+        times, speeds, codes = tau.tolist(), v.tolist(), status.tolist()
+        self.space["iterate"](times, speeds, impacts, w.tolist(), self.model, work, codes)
+        tau[:], v[:], status[:] = times, speeds, codes
 
     def variations(self, tau: Array, v: Array, times: Array, out: Array) -> None:
         """`linear_variations` or `taylor_variations`."""
@@ -98,7 +93,7 @@ class Interpreter:
         """`follow` of a Taylor flow."""
         work, _ = self.work()
         t, t_low = self.space["reduced_twice"](tau, self.model.turn)
-        work.launch[0] = t + t_low
+        self.space["placed"](t, t_low, self.model, work)
         rows = out.tolist()
         self.space["follow"](work.launch, v, times.tolist(), self.model.numbers, self.model.rules, work.flight, rows)
         out[...] = rows

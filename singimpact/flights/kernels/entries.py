@@ -13,6 +13,7 @@ from singimpact.flights.kernels.hits import (
     carried_errors,
     launch_acceleration,
     linear_hit,
+    placed,
     raised,
     released,
     taylor_hit,
@@ -31,12 +32,12 @@ from singimpact.flights.kernels.layout import (
     taylor_model,
 )
 from singimpact.flights.kernels.linear import response
-from singimpact.flights.kernels.orbits import bracket_gamma, iterate_taylor, orbit_segment, taylor_segment
+from singimpact.flights.kernels.orbits import bracket_gamma, iterate, orbit_segment
 from singimpact.flights.kernels.refine import fill_fine
 from singimpact.flights.kernels.tables import bounds, expansions, tabulate
 from singimpact.flights.kernels.taylor import follow, taylor_flight
 from singimpact.flights.kernels.variational import derivatives_at, judge
-from singimpact.flights.kernels.waves import reduced_twice, wall_acceleration
+from singimpact.flights.kernels.waves import reduced_twice
 
 PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET = range(10)
 """Kinds of work: fill the tables of a model, of its batches; first hits of many states; impacts of one orbit; the last
@@ -79,7 +80,7 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
         given, settings, rho = block(v, 0, (count, 3)), block(w, 0, (3,)), block(w, 3, (sizes[RHO],))
         return linear_brackets((states, given), settings, rho, model, work, block(out, 0, (count, 2)), codes)
     if kind == RELEASES:
-        return linear_releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
+        return releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
     return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
 
 
@@ -129,18 +130,18 @@ def linear_variations(tau: Any, v: Any, times: Any, model: Any, work: Any, out: 
     """dx/dv, dx'/dv, dx/dtau, dx'/dtau at given times."""
     for i in range(len(tau)):
         t, t_low = reduced_twice(tau[i], model.turn)
-        wall_acceleration(t, t_low, model.numbers, model.rest, work.launch)
+        placed(t, t_low, model, work)
         by_v, by_v_dot, by_tau, by_tau_dot, _size, _speed = response(work.launch, v[i], times[i], model.numbers)
         out[i, 0], out[i, 1], out[i, 2], out[i, 3] = by_v, by_v_dot, by_tau, by_tau_dot
     return 0
 
 
-def linear_releases(tau: Any, removed: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+def releases(tau: Any, removed: Any, model: Any, work: Any, out: Any, status: Any) -> int:
     """First hits of masses released at rest; t = 0 is a root of x - c `removed` times."""
     others = 0
     for i in range(len(tau)):
         t, t_low = reduced_twice(tau[i], model.turn)
-        a = wall_acceleration(t, t_low, model.numbers, model.rest, work.launch)
+        a = placed(t, t_low, model, work)
         code, out[0, i], out[1, i], out[2, i], out[3, i] = released(int(removed[i]), a, model, work)
         status[i] = code
         others += 1 if code != 0 else 0
@@ -152,14 +153,14 @@ def taylor_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     count, kind = sizes[COUNT], sizes[KIND]
     model, work = taylor_model(flat, sizes), scratch_of(scratch, sizes)
     if kind == SEGMENT:
-        flown, code = taylor_segment(
+        flown, code = orbit_segment(
             tau[0], v[0], w[0], block(w, 1, (sizes[RHO],)), model, work, block(out, 0, (count, 11))
         )
         status[0] = code
         return int(flown)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
     if kind == ITERATE:
-        iterate_taylor(states, speeds, sizes[IMPACTS], block(w, 0, (sizes[RHO],)), model, work, codes)
+        iterate(states, speeds, sizes[IMPACTS], block(w, 0, (sizes[RHO],)), model, work, codes)
         return 0
     return taylor_hits(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
 
@@ -176,12 +177,12 @@ def judge_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, o
     states, speeds, given = block(tau, 0, (count,)), block(v, 0, (count,)), block(w, 0, (count,))
     if kind == FOLLOW:
         t, t_low = reduced_twice(tau[0], model.turn)
-        work.launch[0] = t + t_low
+        placed(t, t_low, model, work)
         follow(work.launch, v[0], given, model.numbers, model.rules, work.flight, block(out, 0, (count, 2)))
         return 0
     if kind == RELEASES:
         codes = block(status, 0, (count,))
-        return taylor_releases(states, given, model, work, block(out, 0, (10, count)), codes)
+        return releases(states, given, model, work, block(out, 0, (10, count)), codes)
     columns = columns_of(scratch, sizes)
     if kind == VARIATIONS:
         return taylor_variations(states, speeds, given, model, work, columns, block(out, 0, (count, 4)))
@@ -204,23 +205,11 @@ def taylor_hits(tau: Any, v: Any, known: Any, model: Any, work: Any, out: Any, s
     return others
 
 
-def taylor_releases(tau: Any, removed: Any, model: Any, work: Any, out: Any, status: Any) -> int:
-    """First hits of masses released at rest; t = 0 is a root of x - c `removed` times."""
-    others = 0
-    for i in range(len(tau)):
-        t, t_low = reduced_twice(tau[i], model.turn)
-        work.launch[0] = t + t_low
-        code, out[0, i], out[1, i], out[2, i], out[3, i] = released(int(removed[i]), nan, model, work)
-        status[i] = code
-        others += 1 if code != 0 else 0
-    return others
-
-
 def taylor_variations(tau: Any, v: Any, times: Any, model: Any, work: Any, columns: Any, out: Any) -> int:
     """dx/dv, dx'/dv, dx/dtau, dx'/dtau at given times; nan where a flight does not get there."""
     for i in range(len(tau)):
         t, t_low = reduced_twice(tau[i], model.turn)
-        work.launch[0] = t + t_low
+        placed(t, t_low, model, work)
         out[i, 0], out[i, 1], out[i, 2], out[i, 3], reached = derivatives_at(
             work.launch, v[i], times[i], model.numbers, model.rules, work.flight, columns
         )
@@ -236,7 +225,8 @@ def judged_hits(tau: Any, v: Any, removed: Any, model: Any, work: Any, columns: 
     """
     for i in range(len(tau)):
         t, t_low = reduced_twice(tau[i], model.turn)
-        work.launch[0], trace[0, 3] = t + t_low, 0.0
+        placed(t, t_low, model, work)
+        trace[0, 3] = 0.0
         a = nan
         if v[i] > 0:
             a, _error = launch_acceleration(model, work)

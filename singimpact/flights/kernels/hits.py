@@ -5,7 +5,7 @@ A hit is a row of numbers, columns FLIGHT_TIME and following of `state`.
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, nan
 from typing import Any
 
 from singimpact.flights.kernels.double_double import sum_twice
@@ -36,6 +36,27 @@ UNIT = 2.0**-52
 NOT_REFINED, PRESSED, CANCELS = 30, 31, 32
 """Codes beside those of `taylor_flight`: balls must place the hit; the chatter left is short enough to be summed; a_c
 is needed to more digits than its sum has."""
+
+
+def next_hit(t: float, t_low: float, v: float, near: float, model: Any, work: Any) -> Any:
+    """`linear_hit`; `flights.bind` puts `next_hit_in_steps` in its place for models without a closed form."""
+    return linear_hit(t, t_low, v, near, model, work)
+
+
+def next_hit_in_steps(t: float, t_low: float, v: float, near: float, model: Any, work: Any) -> Any:
+    """`taylor_hit` within an orbit."""
+    return taylor_hit(t + t_low, v, near, inf, model, work)
+
+
+def placed(t: float, t_low: float, model: Any, work: Any) -> float:
+    """Fills work.launch for a launch at t + t_low; a_c there. Models without a closed form get `placed_in_steps`."""
+    return float(wall_acceleration(t, t_low, model.numbers, model.rest, work.launch))
+
+
+def placed_in_steps(t: float, t_low: float, model: Any, work: Any) -> float:  # noqa: ARG001
+    """The launch is its time; a_c is left to the recurrence."""
+    work.launch[0] = t + t_low
+    return nan
 
 
 def linear_hit(t: float, t_low: float, v: float, near: float, model: Any, work: Any) -> Any:

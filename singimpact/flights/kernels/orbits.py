@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from math import inf
 from typing import Any
 
 from singimpact.flights.kernels.double_double import sum_twice
-from singimpact.flights.kernels.hits import NOT_REFINED, linear_hit, taylor_hit
+from singimpact.flights.kernels.hits import NOT_REFINED, next_hit
 from singimpact.flights.kernels.state import (
     CONDITION,
     FLIGHT_TIME,
@@ -32,23 +31,18 @@ def rebound(velocity: float, w: Any) -> float:
 
 
 def orbit_segment(tau: float, v: float, near: float, w: Any, model: Any, work: Any, out: Any) -> Any:
-    """(impacts flown, code of the last flight) of an orbit of a linear model, at most one a row of `out`.
+    """(impacts flown, code of the last flight) of one orbit, at most one impact a row of `out`.
 
     Parameters
     ----------
     tau, v : the state. w : constants of rho. out : row i becomes the time since the start, v, flight time, velocity,
         a_c at the launch, kappa and the error of the flight time, and the derivatives of the flight time and of the
-        velocity by tau and v of impact i.
+        velocity by tau and v of impact i; the last six are of linear models.
     near : the orbit ends, with code PRESSED, where the chatter left is short, see `hits.linear_hit`.
     """
     since, lost = 0.0, 0.0
     for i in range(len(out)):
-        at, at_low = sum_twice(tau, 0.0, since, -lost)
-        t, t_low = reduced_twice(at, model.turn)
-        t, t_low = sum_twice(t, t_low, at_low, 0.0)
-        code, a = linear_hit(t, t_low, v, near, model, work)
-        # a hit that is not refined here, for want of a table, is within a few roundings more
-        code = 0 if code == NOT_REFINED else code
+        code, a = hit_later(tau, since, lost, v, near, model, work)
         if code != 0:
             return i, code
         since, lost = later(since, lost, work.hit[FLIGHT_TIME])
@@ -59,33 +53,26 @@ def orbit_segment(tau: float, v: float, near: float, w: Any, model: Any, work: A
     return len(out), 0
 
 
-def taylor_segment(tau: float, v: float, near: float, w: Any, model: Any, work: Any, out: Any) -> Any:
-    """`orbit_segment` of a model flown in Taylor steps."""
-    since, lost = 0.0, 0.0
-    for i in range(len(out)):
-        at, at_low = sum_twice(tau, 0.0, since, -lost)
-        t, t_low = reduced_twice(at, model.turn)
-        code, a = taylor_hit(t + (t_low + at_low), v, near, inf, model, work)
-        if code != 0:
-            return i, code
-        since, lost = later(since, lost, work.hit[FLIGHT_TIME])
-        v = rebound(work.hit[VELOCITY], w)
-        record(out[i], since, v, a, work.hit)
-        if not v > 0:
-            return i + 1, 8
-    return len(out), 0
+def hit_later(tau: float, since: float, lost: float, v: float, near: float, model: Any, work: Any) -> Any:
+    """`hits.next_hit` of a launch at tau + since - lost.
+
+    A hit that is not refined, for want of a table, is within a few roundings more: it counts as a hit.
+    """
+    at, at_low = sum_twice(tau, 0.0, since, -lost)
+    t, t_low = reduced_twice(at, model.turn)
+    t, t_low = sum_twice(t, t_low, at_low, 0.0)
+    code, a = next_hit(t, t_low, v, near, model, work)
+    return 0 if code == NOT_REFINED else code, a
 
 
-def iterate_taylor(tau: Any, v: Any, count: int, w: Any, model: Any, work: Any, status: Any) -> None:
+def iterate(tau: Any, v: Any, count: int, w: Any, model: Any, work: Any, status: Any) -> None:
     """`count` impacts from every state; tau, v become the last states, status what ended an orbit before, else 0."""
     for i in range(len(tau)):
         since, lost = 0.0, 0.0
         for _ in range(count):
             if status[i] != 0:
                 break
-            at, at_low = sum_twice(tau[i], 0.0, since, -lost)
-            t, t_low = reduced_twice(at, model.turn)
-            status[i], _a = taylor_hit(t + (t_low + at_low), v[i], 0.0, inf, model, work)
+            status[i], _a = hit_later(tau[i], since, lost, v[i], 0.0, model, work)
             if status[i] == 0:
                 since, lost = later(since, lost, work.hit[FLIGHT_TIME])
                 v[i] = rebound(work.hit[VELOCITY], w)
@@ -103,15 +90,12 @@ def side_of_gamma(tau: float, v: float, end: float, settings: Any, w: Any, model
     """
     since, lost = 0.0, 0.0
     for _ in range(int(settings[MOST])):
-        at, at_low = sum_twice(tau, 0.0, since, -lost)
-        t, t_low = reduced_twice(at, model.turn)
-        t, t_low = sum_twice(t, t_low, at_low, 0.0)
-        code, a = linear_hit(t, t_low, v, 0.0, model, work)
+        code, a = hit_later(tau, since, lost, v, 0.0, model, work)
         if a < 0 and 2 * v < -a * model.rules.lost * settings[WITHIN] * (end - since):
             return BELOW
         if code == 3:  # no further impact: contact is lost
             return ABOVE
-        if code != 0 and code != NOT_REFINED:
+        if code != 0:
             return int(code)
         since, lost = later(since, lost, work.hit[FLIGHT_TIME])
         v = rebound(work.hit[VELOCITY], w)
