@@ -268,12 +268,12 @@ def test_numbers_belong_to_the_context_of_the_user():
 
 
 def test_precisions_are_put_back_when_a_call_raises(monkeypatch):
-    from singimpact.flights import in_digits
+    from singimpact.flights import multiprecision
 
     def raises(*_):
         raise RuntimeError("in the middle")
 
-    monkeypatch.setattr(in_digits, "_march", raises)
+    monkeypatch.setattr(multiprecision, "_march", raises)
     before = mpmath.mp.prec, flint.ctx.prec, precision._own_context().prec
     with pytest.raises(RuntimeError):
         CUBIC.impact_map("1.2", "0.1", digits=33)

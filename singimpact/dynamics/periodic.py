@@ -9,8 +9,10 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
-from singimpact.flights.derivative import derivative, precise, rebound_slope
+from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
+from singimpact.flights.rebound_law import rebound_slope
+from singimpact.flights.response import precise
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator

@@ -11,7 +11,7 @@ import numpy as np
 from singimpact.algebra.expressions import Number, number, subtract
 from singimpact.algebra.numbers import as_float
 from singimpact.flights.bind import over_floats
-from singimpact.flights.in_digits import workspace
+from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.roots import first_root
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.model_numbers import constants_of, recurrence_of

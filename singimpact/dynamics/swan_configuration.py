@@ -18,7 +18,7 @@ from singimpact.algebra.numbers import as_float, constant
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.invariant_arcs import model_step
-from singimpact.flights.impact_map import rebound
+from singimpact.flights.rebound_law import rebound
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status

@@ -35,6 +35,7 @@ from singimpact.flights.model_numbers import (
     recurrence_of,
     turn_of,
 )
+from singimpact.flights.phase import reduced
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
@@ -232,6 +233,13 @@ class CompiledModel:
         return np.zeros(self._room + 4 * trace)
 
     # ---- work
+
+    def near(self, tau: Array) -> Array:
+        """Launch times within the reach of the reduction in kernels; farther ones are reduced exactly."""
+        period = self.osc.period
+        if period is None or not tau.size or max(tau.max(), -tau.min()) < self.nearest:
+            return tau
+        return np.where(np.abs(tau) < self.nearest, tau, reduced(tau, period))
 
     def hits(self, tau: Array, v: Array, pushes: Array | None = None) -> tuple[Array, Array]:
         """Codes and columns of hits, shape (10, n), of many states.

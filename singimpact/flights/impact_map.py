@@ -11,13 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.numbers import as_float, constant
-from singimpact.algebra.rings import DOUBLES
 from singimpact.flights import in_digits, undecided
 from singimpact.flights.compiled_model import EPSILON, Allowance, CompiledModel, allowed, compiled_model
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.model_numbers import horizon_of
+from singimpact.flights.rebound_law import rebound
 from singimpact.flights.results import SCALAR_STATUS, Flight, Step
 from singimpact.flights.states import States
 from singimpact.inputs import refuse
@@ -136,15 +135,6 @@ def _allowance(osc: Oscillator, tolerance: Any, horizon: Any, steps: Any) -> All
     if tolerance is horizon is steps is None:
         return None
     return Allowance(horizon_of(osc, horizon), _tolerance(tolerance), checked_steps(steps))
-
-
-def rebound(osc: Oscillator, velocity: Array) -> Array:
-    """rho(velocity) for velocities <= 0; nan where it is not positive for a velocity that is not 0."""
-    if not names_in(osc.restitution):
-        return np.abs(as_float(osc.restitution) * velocity)
-    with np.errstate(all="ignore"):
-        bounce = np.asarray(evaluate(osc.rho(), {"v": velocity}, DOUBLES), dtype=float)
-    return np.where(velocity == 0, 0.0, np.where((bounce > 0) & np.isfinite(bounce), bounce, np.nan))
 
 
 def checked_digits(digits: Any) -> int:

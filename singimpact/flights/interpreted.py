@@ -11,6 +11,7 @@ import numpy as np
 
 from singimpact.flights.bind import Emitted, over_floats
 from singimpact.flights.kernels import layout
+from singimpact.flights.kernels.state import Work
 
 LEFT_OPEN = (ZeroDivisionError, OverflowError, ValueError, TypeError)
 """What Python raises where doubles have an answer: 1/0, exp(1000), log(-1), a comparison of (-1)**0.5."""
@@ -26,6 +27,11 @@ def listed(part: Any) -> Any:
         values = [listed(each) for each in part]
         return type(part)(*values) if hasattr(part, "_fields") else tuple(values)
     return part.item() if isinstance(part, np.generic) else part
+
+
+def workspace(zero: Any, order: int, rows: int) -> Work:
+    """Scratch of one flight in numbers of any kind."""
+    return Work([zero] * (order + 2), [[zero] * (order + 2) for _ in range(rows)], [zero] * (order + 2))
 
 
 class Interpreter:

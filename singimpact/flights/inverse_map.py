@@ -11,10 +11,10 @@ from singimpact.algebra.expressions import Name, multiply, names_in, number, sub
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights.impact_map import first_hit
+from singimpact.flights.rebound_law import sharpened, speed_before
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
 from singimpact.flights.undecided import Shaped
-from singimpact.flights.velocity_before import sharpened, speed_before
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status, status_array
 

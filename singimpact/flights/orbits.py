@@ -13,7 +13,6 @@ from singimpact.flights.kernels.entries import AT_REST
 from singimpact.flights.kernels.hits import PRESSED
 from singimpact.flights.phase import reduced
 from singimpact.flights.states import States
-from singimpact.flights.undecided import near
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status, status_array
 
@@ -98,7 +97,7 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
     model = compiled_model(osc)
     if tolerance > EPSILON and not model.linear:
         model = allowed(osc, Allowance(model.allowance.horizon, tolerance))
-    start = near(osc, model, states.tau)
+    start = model.near(states.tau)
     times, speeds, codes = model.iterate(start, states.v, impacts)
     if tolerance > EPSILON and (left := codes == Status.unresolved).any():
         # a graze that a coarse flight does not decide: one more impact, accurately

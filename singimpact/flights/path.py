@@ -13,7 +13,6 @@ from singimpact.flights.closed_arrays import places
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.model_numbers import forcing_phases, numbers_of
 from singimpact.flights.states import States
-from singimpact.flights.undecided import near
 from singimpact.inputs import InputError
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.linear import linear_form
@@ -78,5 +77,5 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any
         both = places(launch, speed, forces, np.concatenate([*times, np.zeros(0)]), numbers_of(osc)[0])
         return np.split(both, np.cumsum(counts))[:-1]
     model = compiled_model(osc)
-    starts = near(osc, model, np.asarray(tau, dtype=float))
+    starts = model.near(np.asarray(tau, dtype=float))
     return [model.follow(start, speed, at) for start, speed, at in zip(starts.tolist(), v.tolist(), times, strict=True)]

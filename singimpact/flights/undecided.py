@@ -7,18 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.flights import in_digits
 from singimpact.flights.causes import decoded, explained
 from singimpact.flights.compiled_model import EPSILON, CompiledModel
-from singimpact.flights.derivative import response, usual_errors
 from singimpact.flights.escape import never_returns
 from singimpact.flights.escape_averaged import stays_up
 from singimpact.flights.escape_barrier import kept_up
 from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.kernels.hits import CANCELS, NOT_REFINED
 from singimpact.flights.limits import LIMITS
+from singimpact.flights.multiprecision import settle
+from singimpact.flights.path import path
 from singimpact.flights.phase import reduced
 from singimpact.flights.polish import polished
+from singimpact.flights.response import response, usual_errors
 from singimpact.flights.results import Flight
 from singimpact.flights.states import States
 from singimpact.oscillator.acceleration import acceleration
@@ -104,7 +105,7 @@ def flights(osc: Oscillator, model: CompiledModel, states: States) -> Flight:
 def flights_and_rows(osc: Oscillator, model: CompiledModel, states: States) -> tuple[Flight, Array]:
     """First hits in doubles, flat; and the columns of `kernels.state`, nan where they are not known."""
     if model.linear:
-        codes, rows = model.hits(near(osc, model, states.tau), states.v)
+        codes, rows = model.hits(model.near(states.tau), states.v)
         if not codes.any():
             return plain(codes, rows), rows
         fates, judge = decided(osc, model, states, codes, rows), None
@@ -122,7 +123,7 @@ def flights_and_rows(osc: Oscillator, model: CompiledModel, states: States) -> t
 
 def flown(osc: Oscillator, model: CompiledModel, states: States) -> tuple[Fates, Judge]:
     """Flights of a Taylor flow, and what judges them."""
-    tau = near(osc, model, states.tau)
+    tau = model.near(states.tau)
     codes, rows = model.hits(tau, states.v)
     open_ones = np.flatnonzero(codes == CANCELS)
     if open_ones.size:  # a_c at the launch has lost digits: flown with the exact one
@@ -142,20 +143,13 @@ def decided(osc: Oscillator, model: CompiledModel, states: States, codes: Array,
     lifted = [index for index, rest in states.rest.items() if rest.sign > 0]
     if lifted:
         removed = np.array([states.rest[index].order + 2 for index in lifted])
-        codes[lifted], rows[:, lifted] = model.releases(near(osc, model, states.tau[lifted]), removed)
+        codes[lifted], rows[:, lifted] = model.releases(model.near(states.tau[lifted]), removed)
     fates = Fates(*decoded(codes), rows)
     for index, rest in states.rest.items():
         if rest.sign <= 0:
             fates.status[index] = Status.sticks
     _refined(osc, model, states, codes, fates)
     return fates
-
-
-def near(osc: Oscillator, model: CompiledModel, tau: Array) -> Array:
-    """Launch times within the reach of the reduction in kernels; farther ones are reduced exactly."""
-    if osc.period is None or not tau.size or max(tau.max(), -tau.min()) < model.nearest:
-        return tau
-    return np.where(np.abs(tau) < model.nearest, tau, reduced(tau, osc.period))
 
 
 def plain(codes: Array, rows: Array) -> Flight:
@@ -186,7 +180,7 @@ def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array
         found = polished(osc, states, index, float(fates.rows[0, index]))
         if found is None and left:
             left -= 1
-            settled = in_digits.settle(osc, states, index, model.allowance.horizon)
+            settled = settle(osc, states, index, model.allowance.horizon)
             found = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
         if found is not None:
             fates.rows[:2, index] = found
@@ -210,7 +204,7 @@ def _settled(osc: Oscillator, model: CompiledModel, states: States, fates: Fates
     """Flights that doubles leave open near a graze, flown in many digits: the state is exact, so the answer exists."""
     open_ones = np.flatnonzero(fates.cause == Cause.near_graze)[: LIMITS.settled]
     for index in open_ones:
-        settled = in_digits.settle(osc, states, int(index), model.allowance.horizon)
+        settled = settle(osc, states, int(index), model.allowance.horizon)
         if settled is not None:
             fates.status[index], fates.rows[:4, index] = settled
             fates.rows[4:, index] = np.nan
@@ -264,8 +258,6 @@ def notes_of(osc: Oscillator, states: States, fates: Fates) -> dict[int, str]:
         tau = float(states.tau[index])
 
         def way(times: Array, at: int = index) -> Any:
-            from singimpact.flights.path import path
-
             return path(osc, states.tau[at], states.v[at], times)
 
         found = explained(osc, tau, fates.numbers[index], Cause(int(fates.cause[index])), way)

@@ -17,9 +17,9 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import acceleration
-from singimpact.flights.derivative import variations
 from singimpact.flights.inverse_map import backwards
 from singimpact.flights.path import many_paths
+from singimpact.flights.response import variations
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]

@@ -35,7 +35,7 @@ def step_size_of_discs(X, W, z, n, longest, ulp, p, pace):
 @contextmanager
 def last_terms() -> Iterator[None]:
     """A block in which flights in Taylor steps take this rule."""
-    from singimpact.flights import compiled_model, in_digits, model_numbers
+    from singimpact.flights import compiled_model, multiprecision, model_numbers
 
     usual = model_numbers.recurrence_of
 
@@ -43,7 +43,7 @@ def last_terms() -> Iterator[None]:
         flow = usual(osc)
         return replace(flow, source=f"{flow.source}\n{RULE}")
 
-    rooms: tuple[Any, ...] = (compiled_model, in_digits)
+    rooms: tuple[Any, ...] = (compiled_model, multiprecision)
     for room in rooms:
         room.recurrence_of = ruled
     _forget()

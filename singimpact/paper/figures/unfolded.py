@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from singimpact.dynamics.invariant_arcs import before, gammas_within, held, stable_manifold
-from singimpact.flights.impact_map import rebound
+from singimpact.flights.rebound_law import rebound
 from singimpact.paper.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Region, arc
 from singimpact.paper.figures.sheet import rebounded, reset
 from singimpact.paper.figures.swans import box, half, negative, positive, ring, shadow

@@ -1,17 +1,18 @@
-"""The velocity before an impact from the one after it: rho inverted on the branch that begins at rest."""
+"""The restitution law in numbers: rho, its slope, and the velocity before an impact from the one after it."""
 
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Expression, number
+from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.expressions import Expression, evaluate, names_in, number
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
-from singimpact.algebra.rings import Multiprecision
-from singimpact.flights.derivative import rebound_slope
+from singimpact.algebra.rings import DOUBLES, Multiprecision
 from singimpact.oscillator.model import Oscillator
 
 DOUBLINGS = 64
@@ -21,6 +22,34 @@ FLAT = 64  # roundings of v that one rounding of the speed may stand for
 SPARE = 40  # digits beside twice those asked for: at a greatest rebound half of the digits are lost
 
 Array = np.ndarray[Any, Any]
+
+
+def rebound(osc: Oscillator, velocity: Array) -> Array:
+    """rho(velocity) for velocities <= 0; nan where it is not positive for a velocity that is not 0."""
+    if not names_in(osc.restitution):
+        return np.abs(as_float(osc.restitution) * velocity)
+    with np.errstate(all="ignore"):
+        bounce = np.asarray(evaluate(osc.rho(), {"v": velocity}, DOUBLES), dtype=float)
+    return np.where(velocity == 0, 0.0, np.where((bounce > 0) & np.isfinite(bounce), bounce, np.nan))
+
+
+def rebound_in_digits(osc: Oscillator, velocity: Any, mp: Any) -> Any:
+    """rho(velocity) at the precision of an mpmath context."""
+    if not names_in(osc.restitution):
+        return abs(as_mpf(osc.restitution, mp) * velocity)
+    return mp.re(evaluate(osc.rho(), {"v": velocity}, Multiprecision(mp)))
+
+
+@lru_cache(maxsize=256)
+def _slope_of_rho(osc: Oscillator) -> Any:
+    return derivative(osc.rho(), "v")
+
+
+def rebound_slope(osc: Oscillator, velocity: Any, ring: Any = DOUBLES) -> Any:
+    """rho'(velocity)."""
+    if not names_in(osc.restitution):
+        return -evaluate(osc.restitution, {}, ring) + 0 * velocity
+    return evaluate(_slope_of_rho(osc), {"v": velocity}, ring) + 0 * velocity
 
 
 def speed_before(osc: Oscillator, v: Array) -> Array:
@@ -80,8 +109,6 @@ def _decided(osc: Oscillator, v: Array, speed: Array) -> Array:
 
 def _rebound(osc: Oscillator, speed: Array) -> tuple[Array, Array]:
     """rho(-U), and its slope along U."""
-    from singimpact.flights.impact_map import rebound
-
     with np.errstate(all="ignore"):
         return rebound(osc, -speed), -np.asarray(rebound_slope(osc, -speed), dtype=float)
 
@@ -102,8 +129,6 @@ def sharpened(osc: Oscillator, v: Expression, speed: float, digits: int) -> Any:
     ----------
     v : an exact number. speed : U as a double.
     """
-    from singimpact.flights import in_digits
-
     with digits_at(2 * digits + SPARE) as mp:
         place, after, ring = mp.mpf(-speed), as_mpf(v, mp), Multiprecision(mp)
         small = mp.mpf(10) ** (-digits - 5)
@@ -111,7 +136,7 @@ def sharpened(osc: Oscillator, v: Expression, speed: float, digits: int) -> Any:
             slope = rebound_slope(osc, place, ring)
             if not slope < 0:
                 return None
-            change = (in_digits.rebound(osc, place, mp) - after) / slope
+            change = (rebound_in_digits(osc, place, mp) - after) / slope
             place -= change
             if abs(change) <= small * abs(place):
                 return for_user(-place)
