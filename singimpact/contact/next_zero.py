@@ -12,7 +12,7 @@ from functools import lru_cache
 from math import floor, frexp
 from typing import Any
 
-from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.balls import Balls, Zero, as_rational, derivatives, refined, sign_at
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import (
     BOUND,
@@ -30,7 +30,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import Symbolic
 from singimpact.algebra.taylor import NotSmooth
-from singimpact.algebra.zeros import Zero, derivatives, isolate, refined, sign_at
+from singimpact.algebra.zeros import isolate
 from singimpact.contact.contact import acceleration
 from singimpact.contact.points import window
 from singimpact.inputs import InputError

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import floor
 from typing import Any
 
-from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.balls import Balls, Zero, as_rational, derivatives, refined
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import (
@@ -29,7 +29,7 @@ from singimpact.algebra.expressions import (
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC
-from singimpact.algebra.zeros import Zero, derivatives, is_one_root, isolate, refined
+from singimpact.algebra.zeros import is_one_root, isolate
 from singimpact.contact.points import enclosed, window
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator

@@ -217,8 +217,8 @@ class CompiledModel:
     @kept_property
     def sometimes_kept(self) -> bool:
         """Whether some launches of a Taylor flow are proved not to return before they are flown."""
-        from singimpact.flights.escape_averaged import bounds_of
-        from singimpact.flights.escape_barrier import fastest_kept
+        from singimpact.flights.no_return.averaged import bounds_of
+        from singimpact.flights.no_return.barrier import fastest_kept
 
         return not self.linear and (bounds_of(self.osc) is not None or fastest_kept(self.osc) > 0)
 

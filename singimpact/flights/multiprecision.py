@@ -22,12 +22,12 @@ from singimpact.codegen.over_lists import FUNCTIONS
 from singimpact.flights.balls import linear_flow
 from singimpact.flights.bind import over_lists, over_mpmath
 from singimpact.flights.closing import common_period, touches_again
-from singimpact.flights.escape import never_returns
-from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.state import Rules
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, linear_numbers, linear_waves, recurrence_of
+from singimpact.flights.no_return.linear import never_returns
+from singimpact.flights.no_return.polynomial import never_turns
 from singimpact.flights.states import States
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
@@ -150,6 +150,22 @@ def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[i
     if _touches(numbers):
         return int(Status.graze), [float(value) for value in numbers]
     return None
+
+
+def polished(osc: Oscillator, states: States, index: int, time: float) -> list[float] | None:
+    """Flight time and velocity of a hit of a linear model, correctly rounded up to a unit.
+
+    Which root is the first has been decided; here it is only placed. None where balls do not confirm it.
+    """
+    balls = Balls(LIMITS.polish_bits)
+    flow: Any = linear_flow(osc, balls.bits)
+    with balls_at(balls.bits):
+        tau, v = (evaluate(tree, {}, balls) for tree in (states.exact_tau(index), states.exact_v(index)))
+        try:
+            found = flow.polished(tau, v, time)
+        except (ArithmeticError, ValueError, TypeError):  # a ball that left the domain of log or a root
+            return None
+        return None if found is None else [float(part.mid()) for part in found]
 
 
 def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:

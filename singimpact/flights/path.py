@@ -1,22 +1,25 @@
-"""x and x' along one flight."""
+"""x and x' along one flight: Taylor steps, or the closed form over an array of times, so that nothing is compiled."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import factorial as factorial_of
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, float_array
 from singimpact.flights import counted
-from singimpact.flights.closed_arrays import places
 from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.kernels.double_double import product_twice
 from singimpact.flights.model_numbers import forcing_phases, numbers_of
 from singimpact.flights.states import States
 from singimpact.inputs import InputError
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
 
 
 class Path(NamedTuple):
@@ -53,11 +56,11 @@ def path(osc: Oscillator, tau: Any, v: Any, t: Any) -> Path:
     return Path(x.reshape(times.shape)[()], xdot.reshape(times.shape)[()])
 
 
-def _followed(osc: Oscillator, states: States, times: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def _followed(osc: Oscillator, states: States, times: Array) -> Array:
     return many_paths(osc, states.tau, states.v, [times])[0]
 
 
-def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any, Any]]) -> list[np.ndarray[Any, Any]]:
+def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[Array]) -> list[Array]:
     """x - c and x' of many launches, each at its own times: one array of shape (times, 2) a launch.
 
     Parameters
@@ -79,3 +82,89 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[np.ndarray[Any
     model = compiled_model(osc)
     starts = model.near(np.asarray(tau, dtype=float))
     return [model.follow(start, speed, at) for start, speed, at in zip(starts.tolist(), v.tolist(), times, strict=True)]
+
+
+def turning(a: Any, t: Any) -> Array:
+    """e^{a t}; the rounding of the angle is made good."""
+    angle, rest = product_twice(np.imag(a), 0.0, t, 0.0)
+    c, s = np.cos(angle), np.sin(angle)
+    return np.asarray(np.exp(np.real(a) * t) * ((c - rest * s) + 1j * (s + rest * c)))
+
+
+def pair(a: complex, b: complex, t: Array) -> Array:
+    """D[a, b](t) = (e^{a t} - e^{b t})/(a - b)."""
+    y = (a - b) * t / 2
+    found, near = np.empty(t.shape, dtype=complex), np.abs(y) < 0.1
+    small, y2 = t[near], y[near] ** 2
+    ratio = 1 + y2 / 6 * (1 + y2 / 20 * (1 + y2 / 42 * (1 + y2 / 72 * (1 + y2 / 110))))
+    found[near] = turning(b, small) * turning(y[near], 1.0) * small * ratio
+    if not near.all():
+        found[~near] = (turning(a, t[~near]) - turning(b, t[~near])) / (a - b)
+    return found
+
+
+def triple(a: complex, b: complex, c: complex, t: Array) -> Array:
+    """D[a, b, c](t), from the two points that are farthest apart, or from the series when all are close."""
+    ab, bc, ca = abs(a - b), abs(b - c), abs(c - a)
+    if ab >= bc and ab >= ca:
+        b, c = c, b
+    elif bc >= ca:
+        a, b = b, a
+    found, far = np.empty(t.shape, dtype=complex), np.abs((a - c) * t) > 0.5
+    if far.any():
+        found[far] = (pair(a, b, t[far]) - pair(b, c, t[far])) / (a - c)
+    found[~far] = series((a, b, c), t[~far], 13)
+    return found
+
+
+def beyond(a: complex, b: complex, rate: complex, t: Array) -> Array:
+    """rate D[a, b, 0, rate](t) = D[a, b, rate](t) - D[a, b, 0](t); for short times nothing cancels."""
+    found, far = np.empty(t.shape, dtype=complex), np.maximum(abs(rate), max(abs(a), abs(b))) * np.abs(t) > 1.0
+    if far.any():
+        found[far] = triple(a, b, rate, t[far]) - triple(a, b, 0j, t[far])
+    found[~far] = rate * series((a, b, 0j, rate), t[~far], 18)
+    return found
+
+
+def series(points: tuple[complex, ...], t: Array, terms: int) -> Array:
+    """D[points](t) of points that are close for such times, by complete homogeneous polynomials about their mean."""
+    mean, last = sum(points) / len(points), len(points) - 1
+    factorial = float(factorial_of(last))
+    sums: list[Any] = [np.ones(t.shape, dtype=complex) for _ in points]
+    total: Any = sums[0] / factorial
+    for m in range(1, terms + 1):
+        sums[0] = sums[0] * (points[0] - mean) * t
+        for at in range(1, len(points)):
+            sums[at] = sums[at - 1] + (points[at] - mean) * t * sums[at]
+        factorial *= m + last
+        total = total + sums[-1] / factorial
+    return np.asarray(total * t**last * turning(mean, t))
+
+
+def places(launch: Array, v: Array, push: Array, time: Array, p: Array) -> Array:
+    """x - c and x' at time[i] after launch i, which may be negative, shape (n, 2).
+
+    Parameters
+    ----------
+    launch : cosine and sine of every phase. v, time : as they are. p : the numbers of the kernel.
+    push : a_c at the launches: known to all its digits, where the sum of constant and waves would have cancelled.
+
+    Examples
+    --------
+    >>> free_fall = np.array([0.0, 0.0, 0.0, -2.0, 0.0])
+    >>> times, push = np.array([1.0, -1.0]), np.array([-2.0, -2.0])
+    >>> places(np.zeros((2, 0)), np.array([3.0, 0.0]), push, times, free_fall).tolist()
+    [[2.0, 1.0], [-1.0, 2.0]]
+    """
+    root = np.sqrt(complex(p[1] * p[1] / 4 - p[2]))
+    a, b = complex(-p[1] / 2 + root), complex(-p[1] / 2 - root)
+    with np.errstate(all="ignore"):  # what grows out of the range of doubles is inf or nan, as in the kernel
+        free = pair(a, b, time)
+        slope = turning(a, time) + b * free
+        z, u = v * free.real + push * triple(a, b, 0j, time).real, v * slope.real + push * free.real
+        for j in range((len(p) - 5) // 3):
+            rate = 1j * p[5 + 3 * j]
+            wave = complex(p[6 + 3 * j], -p[7 + 3 * j]) * (launch[:, 2 * j] + 1j * launch[:, 2 * j + 1])
+            z = z + (wave * beyond(a, b, rate, time)).real
+            u = u + (wave * rate * triple(a, b, rate, time)).real
+    return np.stack([z, u], axis=1)

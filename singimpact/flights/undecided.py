@@ -9,16 +9,15 @@ import numpy as np
 
 from singimpact.flights.causes import decoded, explained
 from singimpact.flights.compiled_model import EPSILON, CompiledModel
-from singimpact.flights.escape import never_returns
-from singimpact.flights.escape_averaged import stays_up
-from singimpact.flights.escape_barrier import kept_up
-from singimpact.flights.escape_polynomial import never_turns
 from singimpact.flights.kernels.hits import CANCELS, NOT_REFINED
 from singimpact.flights.limits import LIMITS
-from singimpact.flights.multiprecision import settle
+from singimpact.flights.multiprecision import polished, settle
+from singimpact.flights.no_return.averaged import stays_up
+from singimpact.flights.no_return.barrier import kept_up
+from singimpact.flights.no_return.linear import never_returns
+from singimpact.flights.no_return.polynomial import never_turns
 from singimpact.flights.path import path
 from singimpact.flights.phase import reduced
-from singimpact.flights.polish import polished
 from singimpact.flights.response import response, usual_errors
 from singimpact.flights.results import Flight
 from singimpact.flights.states import States

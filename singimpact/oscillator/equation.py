@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from singimpact.algebra.expressions import Expression
 from singimpact.algebra.rings import to_sympy
 from singimpact.oscillator.rebound import rho_of
 
-if TYPE_CHECKING:
-    from singimpact.oscillator.model import Oscillator
 
-
-def equation(osc: Oscillator) -> str:
+def equation(
+    f: Expression, g: Expression, clearance: Expression, restitution: Expression, parameters: Mapping[str, Expression]
+) -> str:
     """x'' + f = g, the wall, the rebound, and the numbers that the letters stand for.
 
     Examples
     --------
     >>> from singimpact.oscillator.model import Oscillator
-    >>> print(equation(Oscillator("x + x**3", "t*omega", 1, "1/2", {"omega": 2})))
+    >>> osc = Oscillator("x + x**3", "t*omega", 1, "1/2", {"omega": 2})
+    >>> print(equation(osc.f, osc.g, osc.clearance, osc.restitution, osc.parameters))
     \\ddot x + x^{3} + x = \\omega t,\\quad x \\ge 1,\\quad v \\mapsto - \\frac{v}{2},\\quad \\omega = 2
     """
-    force = "" if to_sympy(osc.f) == 0 else f" + {latex(osc.f)}".replace("+ -", "-")
-    parts = [rf"\ddot x{force} = {latex(osc.g)}", rf"x \ge {latex(osc.clearance)}"]
-    parts.append(rf"v \mapsto {latex(rho_of(osc.restitution))}")
-    parts += [f"{latex_name(name)} = {latex(value)}" for name, value in osc.parameters.items()]
+    force = "" if to_sympy(f) == 0 else f" + {latex(f)}".replace("+ -", "-")
+    parts = [rf"\ddot x{force} = {latex(g)}", rf"x \ge {latex(clearance)}"]
+    parts.append(rf"v \mapsto {latex(rho_of(restitution))}")
+    parts += [f"{latex_name(name)} = {latex(value)}" for name, value in parameters.items()]
     return r",\quad ".join(parts)
 
 

@@ -159,7 +159,7 @@ class Oscillator:
     def _repr_latex_(self) -> str:
         from singimpact.oscillator.equation import equation
 
-        return f"${equation(self)}$"
+        return f"${equation(self.f, self.g, self.clearance, self.restitution, self.parameters)}$"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_rebuilt, (type(self), self.to_dict()))

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,15 +17,38 @@ from singimpact.dynamics.invariant_arcs import gammas_within, stable_manifold
 from singimpact.dynamics.orbit import orbit
 from singimpact.flights.counted import counted
 from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
 from singimpact.scenes.kept import keep, key_of, recall
 from singimpact.surface.curve import STATES, SURFACE, Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface
 from singimpact.surface.named_vertices import NamedLine
 
-if TYPE_CHECKING:
-    from singimpact.scenes.scene import Scene
-
 STORED = ("lines", "visible", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")  # the rest costs no flight
+
+
+class Shown(Protocol):
+    """What is read of a scene."""
+
+    @property
+    def model(self) -> Oscillator: ...
+    @property
+    def tau(self) -> tuple[float, float]: ...
+    @property
+    def times(self) -> tuple[float, float]: ...
+    @property
+    def speeds(self) -> tuple[float, float]: ...
+    @property
+    def pixels(self) -> int: ...
+    @property
+    def feet(self) -> tuple[Any, ...]: ...
+    @property
+    def leaves(self) -> int: ...
+    @property
+    def orbits(self) -> tuple[tuple[Any, Any], ...]: ...
+    @property
+    def impacts(self) -> int: ...
+    def depends(self, need: str) -> tuple[Any, ...]:
+        """What the curves of a need depend on."""
 
 
 class Results:
@@ -37,7 +60,7 @@ class Results:
     cached : needs taken from disk.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Shown) -> None:
         self.scene, self.found = scene, dict[str, list[Curve]]()
         self.flights, self.seconds, self.cached = dict[str, int](), dict[str, float](), list[str]()
 

@@ -14,8 +14,7 @@ import sympy
 
 from singimpact.contact.contact import contact_order
 from singimpact.inputs import refuse
-from singimpact.theory.fixed_points import numerator_coefficients
-from singimpact.theory.homogeneous import lambda_, mu_of_lambda, r_of_lambda
+from singimpact.theory.homogeneous import P, Q, lambda_, mu_of_lambda, r_of_lambda
 
 Series = list[Fraction]
 OFFSETS = {"m3": Fraction(1, 2), "m_star": Fraction(-1), "lambda": Fraction(0)}
@@ -88,6 +87,11 @@ def series(quantity: str, end: int, order: int, at: str | int = "tangency") -> S
     return [value + (OFFSETS[quantity] if n == 0 else 0) for n, value in enumerate(rate[: order + 1])]
 
 
+def _coefficients(polynomial: Any) -> Series:
+    """Of a polynomial in lambda, from the constant one."""
+    return [Fraction(int(value)) for value in reversed(sympy.Poly(polynomial, lambda_).all_coeffs())]
+
+
 def _order(at: str | int) -> int:
     j = contact_order(at)
     if j < 1:
@@ -97,8 +101,8 @@ def _order(at: str | int) -> int:
 
 def _at_zero(j: int, order: int) -> Series:
     """lambda in powers of w, from lambda ((P/Q)/(j+1))^(1/(j+1)) = w."""
-    p = [Fraction(value, j + 1) for value in numerator_coefficients(j)]
-    q = [Fraction(value) for value in reversed(numerator_coefficients(j))]
+    p = [value / (j + 1) for value in _coefficients(P(j))]
+    q = _coefficients(Q(j))
     ratio = _times(_padded(p, order), _inverse(_padded(q, order)))
     root = _power(ratio, Fraction(1, j + 1))
     return _reversed([Fraction(0), *root[:order]])
@@ -106,9 +110,9 @@ def _at_zero(j: int, order: int) -> Series:
 
 def _at_one(j: int, order: int) -> Series:
     """lambda in powers of 1 - r: 1 - u with 1 - r(1 - u) a series in u that begins with a linear term."""
-    low = [Fraction(0)] * (j + 1) + [Fraction(value) for value in numerator_coefficients(j)]
+    low = [Fraction(0)] * (j + 1) + _coefficients(P(j))
     p = _padded(_mirrored(low), order)
-    q = _padded(_mirrored([Fraction(value) for value in reversed(numerator_coefficients(j))]), order)
+    q = _padded(_mirrored(_coefficients(Q(j))), order)
     rate = _times(p, _inverse(q))
     gap = _reversed([Fraction(0)] + [-value for value in rate[1:]])
     return [Fraction(1) - gap[0], *(-value for value in gap[1:])]
@@ -116,7 +120,7 @@ def _at_one(j: int, order: int) -> Series:
 
 def _mu(j: int, rate: Series, end: int) -> Series:
     """(P/Q)^2/lambda along a series of lambda; at r = 0 times w."""
-    p, q = ([Fraction(v) for v in values] for values in (numerator_coefficients(j), numerator_coefficients(j)[::-1]))
+    p, q = _coefficients(P(j)), _coefficients(Q(j))
     square = _power(_times(_along(p, rate), _inverse(_along(q, rate))), Fraction(2))
     below = rate[1:] if end == 0 else rate
     return _times(square[: len(below)], _inverse(below))

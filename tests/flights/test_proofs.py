@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.flights.escape import never_returns
 from singimpact.flights.kernels.roots import first_root
+from singimpact.flights.no_return.linear import never_returns
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status

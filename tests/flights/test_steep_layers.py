@@ -127,8 +127,8 @@ def test_a_mass_that_cannot_come_back_is_not_flown() -> None:
 
 def test_both_bounds_against_flights() -> None:
     """Whatever is said to stay up stays up, by flights: near the edge of both proofs."""
-    from singimpact.flights.escape_averaged import stays_up
-    from singimpact.flights.escape_barrier import kept_up
+    from singimpact.flights.no_return.averaged import stays_up
+    from singimpact.flights.no_return.barrier import kept_up
 
     rng = np.random.default_rng(3)
     for _ in range(20):

@@ -35,7 +35,7 @@ def step_size_of_discs(X, W, z, n, longest, ulp, p, pace):
 @contextmanager
 def last_terms() -> Iterator[None]:
     """A block in which flights in Taylor steps take this rule."""
-    from singimpact.flights import compiled_model, multiprecision, model_numbers
+    from singimpact.flights import compiled_model, model_numbers, multiprecision
 
     usual = model_numbers.recurrence_of
 

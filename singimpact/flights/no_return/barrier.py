@@ -23,7 +23,7 @@ from singimpact.algebra.expressions import Name, add, evaluate, multiply, number
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
-from singimpact.flights.escape_polynomial import extremes_of_forcing
+from singimpact.flights.no_return.polynomial import extremes_of_forcing
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]

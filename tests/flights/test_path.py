@@ -7,9 +7,8 @@ import pytest
 
 from singimpact.algebra.numbers import as_float
 from singimpact.flights.bind import over_floats
-from singimpact.flights.closed_arrays import places
 from singimpact.flights.model_numbers import forcing_phases, linear_numbers, numbers_of
-from singimpact.flights.path import path
+from singimpact.flights.path import path, places
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 
