@@ -6,9 +6,10 @@ sympy), `balls` (enclosures), `precision` (the
 one place that sets one), `certified` (a number with its radius), `symbols` (polynomials in symbols as numbers).
 Trees: `expressions` (evaluated over a ring, so one tree serves all kinds of number), `parsing` (a user's text into a
 tree), `derivatives` (of a tree by a name), `taylor` (elementary functions at a point).
-Jets: `jets`, `polynomials` (what they are made of), `sympy_ring` (a second engine for tests), `jet_maps` (inverses,
+Jets: `jets`, `polynomials` (what they are made of), `jet_maps` (inverses,
 implicit functions, blow-ups), `univariate` (one variable, level by level), `interpolation`, `horner` (on arrays).
-Zeros: `roots` (of polynomials), `zeros` (of functions, by balls), `double_zeros` (of functions with a parameter).
+Zeros: `solving` (halving, secants, Newton in balls), `roots` (of polynomials), `zeros` (of functions, by balls),
+`double_zeros` (of functions with a parameter).
 Proofs: `certificates` (made), `checking` (believed only once checked), `plain` (polynomials of the checker),
 `sentences` (what a certificate says).
 """

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 from singimpact.algebra.expressions import BOUND, Expression, Root, evaluate
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.precision import balls_at
+from singimpact.algebra.solving import newton_in_balls
 
 BITS_A_DIGIT = 3.3219281  # log2 10, rounded up
 BITS = 128  # of the balls that isolate zeros; far more than the least width of a piece needs
@@ -113,10 +114,12 @@ def sign_at(tree: Expression, variable: str, at: Fraction, order: int) -> int:
     return 0
 
 
+def _coefficient(taylor: Callable[..., list[Any]], order: int, times: int, at: Any) -> Any:
+    return taylor(at=at, order=order)[order] * times
+
+
 def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int = 0) -> Any:
     """A ball of about this many bits around the simple zero in a piece, by interval Newton steps."""
-    import flint
-
     low, high, work = _monotone(tree, variable, zero, order)
     most = max(bits + 64, work)
     work //= 2
@@ -124,15 +127,12 @@ def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int =
         work = min(2 * work, most)
         balls = Balls(work)
         with balls_at(work):
-            enclosure = balls.interval(low, high)
-            for _ in range(200):
-                middle = enclosure.mid()
-                value = derivatives(tree, variable, middle, order, balls)[order]
-                slope = derivatives(tree, variable, enclosure, order + 1, balls)[order + 1] * (order + 1)
-                smaller = (middle - value / slope).intersection(enclosure)
-                if smaller.rad() >= enclosure.rad() * flint.arb(0.9):
-                    break
-                enclosure = smaller
+            taylor = partial(derivatives, tree, variable, ring=balls)
+            enclosure = newton_in_balls(
+                partial(_coefficient, taylor, order, 1),
+                partial(_coefficient, taylor, order + 1, order + 1),
+                balls.interval(low, high),
+            )
         if work == most:
             return enclosure
         low, high = _ends(enclosure)

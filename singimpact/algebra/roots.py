@@ -9,8 +9,8 @@ from typing import Any
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.precision import balls_at
+from singimpact.algebra.solving import newton_in_balls
 
-TURNS = 8  # of Newton's method at one precision: each doubles the bits, three are enough
 FIRST_BITS = 128
 
 
@@ -43,12 +43,7 @@ def refined(poly: Any, isolated: Any, bits: int) -> Any:
     root, work, slope = isolated, min(FIRST_BITS, bits + 32), poly.derivative()
     while True:
         with balls_at(work):
-            for _ in range(TURNS):
-                middle = root.mid()
-                closer = (middle - poly(middle) / slope(root)).intersection(root)
-                if closer.rad() * 2 > root.rad():
-                    break
-                root = closer
+            root = newton_in_balls(poly, slope, root)
         if work == bits + 32:
             return root
         work = min(2 * work, bits + 32)

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.solving import halved
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.invariant_arcs import model_step
@@ -113,10 +114,7 @@ class SwanConfiguration:
     @cached_property
     def gamma_end(self) -> float:
         """Where gamma, which leaves B, meets Pi_0 again, between E' and A (positive swan)."""
-        low, high = self.points["E"][0], self.A
-        for _ in range(80):
-            middle = (low + high) / 2
-            low, high = (low, middle) if self._completes(middle) else (middle, high)
+        low, high = halved(lambda tau: not self._completes(tau), self.points["E"][0], self.A)
         return (low + high) / 2
 
     def _completes(self, tau: float) -> bool:

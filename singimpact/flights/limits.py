@@ -21,9 +21,7 @@ class Limits:
     likely : the same, as it is usually: hits of linear models with more than their condition explains are refined in
         balls (70 us), 22 of 100 random states.
     rough : a rounding of the flight time and of x' below this, relative, is never refined.
-    likely_steps : the share of it that a Taylor flow has whose steps were not traced, relative to its velocities.
-    likely_phase : the share of it that the phases of a closed form lose in a radian of time.
-    polish_bits : of those balls.
+    polish_bits : of the balls that place a hit which double-double arithmetic leaves open (70 us).
     derivatives_at_rest : how many derivatives of a_c are tried for a mass at rest before it is called at rest for good.
     settled : launches at most that double arithmetic leaves undecided and that are settled in many digits; a settled
         launch costs about 20 ms, so a grid laid along a graze does not hang.
@@ -35,7 +33,6 @@ class Limits:
         thousand periods of an ordinary model take 10 000.
     settling_steps : the same in many digits, where a step takes milliseconds.
     longest : steps at most of a linear model, which its horizon ends before.
-    block : flights between two looks at the keyboard.
     traced : steps kept for the errors of a flight; longer flights, one of 10^4, are flown again with more room.
     judging : tolerance of the steps that carry errors and conditions along.
     margin : times the estimate of the error of a Taylor flow: of 720 hits the true error was at most 1.3 times it.
@@ -52,8 +49,6 @@ class Limits:
     safety: float = 8.0
     likely: float = 4.0
     rough: tuple[float, float] = (1e-14, 1e-13)
-    likely_steps: float = 1.0
-    likely_phase: float = 1 / 64
     polish_bits: int = 192
     derivatives_at_rest: int = 12
     settled: int = 200
@@ -62,7 +57,6 @@ class Limits:
     steps: int = 16_000
     longest: int = 10_000_000
     settling_steps: int = 400
-    block: int = 64
     traced: int = 400
     judging: float = 1e-12
     margin: float = 2.5

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float, as_fraction, compare, constant
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES, EXACT, Doubles
+from singimpact.algebra.solving import newton_in_balls
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet
 from singimpact.contact.next_zero import ContactZero
@@ -240,7 +241,4 @@ def _multiplier_ball(j: int, r: Any, bits: int) -> Any:
         middle = (low + high) / 2
         low, high = (low, middle) if poly(Balls(bits).rational(middle)) > 0 else (middle, high)
         ball = Balls(bits).interval(low, high)
-    for _ in range(bits.bit_length() + 4):
-        middle = Balls(bits).rational(as_rational(ball))
-        ball = (middle - poly(middle) / slope(ball)).intersection(ball)
-    return ball
+    return newton_in_balls(poly, slope, ball)

@@ -5,12 +5,12 @@ from fractions import Fraction
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sympy_ring import SympyExact
 
 from singimpact.algebra.jet_maps import blow_up, derivation, divided, implicit, inverse_map
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.symbols import SymbolRing
-from singimpact.algebra.sympy_ring import SympyExact
 
 ENGINES = [EXACT, SympyExact()]
 rationals = st.fractions(-3, 3, max_denominator=7)

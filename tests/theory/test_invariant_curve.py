@@ -5,10 +5,10 @@ from fractions import Fraction
 import mpmath
 import pytest
 import sympy
+from sympy_ring import SympyExact
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.rings import DOUBLES, EXACT, Multiprecision
-from singimpact.algebra.sympy_ring import SympyExact
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact
 from singimpact.paper.routes.fold_series import fold_series

@@ -10,6 +10,7 @@ import numpy as np
 import sympy
 
 from singimpact.algebra.numbers import as_float
+from singimpact.algebra.solving import halved
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.trials import true_orbits
 from singimpact.status import Status
@@ -83,10 +84,7 @@ def _flight_times(place: Place, tau: float, v: Any) -> Any:
 def _bisected(place: Place, tau: float, low: float, high: float, size: float) -> float:
     """The v of the jump between two values on its two sides, to a part in 1e9."""
     start = float(_flight_times(place, tau, low))
-    while high - low > 1e-9 * high:
-        middle = (low + high) / 2
-        jumped = abs(float(_flight_times(place, tau, middle)) - start) > size
-        low, high = (low, middle) if jumped else (middle, high)
+    low, high = halved(lambda v: abs(float(_flight_times(place, tau, v)) - start) <= size, low, high, 1e-9)
     return (low + high) / 2
 
 

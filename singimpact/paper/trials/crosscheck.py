@@ -19,6 +19,7 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.jets import Jet
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES, EXACT, Multiprecision
+from singimpact.algebra.solving import secant
 from singimpact.contact.contact import Contact, acceleration_jet, contact_order, derivative_name, force_jet
 from singimpact.contact.points import tangency_points
 from singimpact.oscillator.model import Oscillator
@@ -186,14 +187,7 @@ def measured(series: Sheet, flow: true_orbits.Flow, quantity: str, steps: list[A
 
 def _true_launch(flow: true_orbits.Flow, sigma: Any, v: Any, t: Any) -> Any:
     """The launch velocity whose flight is back after t, by the secant method from the truncated one."""
-    other = v * (1 + v * 0 + 1e-6)
-    y, y_other = flow(sigma, v, t)[0], flow(sigma, other, t)[0]
-    for _ in range(12):
-        if y_other == y:
-            break
-        v, other = other, other - y_other * (other - v) / (y_other - y)
-        y, y_other = y_other, flow(sigma, other, t)[0]
-    return other
+    return secant(lambda speed: flow(sigma, speed, t)[0], v, v * (1 + v * 0 + 1e-6))
 
 
 @lru_cache(maxsize=16)

@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
+from singimpact.algebra.solving import halved, secant
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.trials import true_orbits
 
@@ -128,13 +129,8 @@ def _zero_set_point(model: Any, tau: float, h: float = 1e-2) -> ZeroSetPoint:
 
 
 def _launch(at: Any, c: float, tau: float, v: float, time: float) -> float:
-    """The launch velocity near v of a flight that is back after `time`, by Newton's method."""
-    for _ in range(30):
-        miss = float(at(tau, c, v, time)[0]) - c
-        v -= miss / ((float(at(tau, c, v + 1e-6, time)[0]) - c - miss) / 1e-6)
-        if abs(miss) < 1e-14:
-            break
-    return v
+    """The launch velocity near v of a flight that is back after `time`."""
+    return float(secant(lambda speed: float(at(tau, c, speed, time)[0]) - c, v, v + 1e-6, 30, 1e-15))
 
 
 @dataclass(frozen=True)
@@ -216,14 +212,8 @@ def jumps_are_grazes() -> Jumps:
 def _touch(model: Any, tau: float, low: float, high: float) -> float:
     """The smaller |x-dot| at the first hit on the two sides of a jump, after bisection to 1e-13."""
     start = float(model.first_hit(tau, low).flight_time)
-    while high - low > 1e-13:
-        middle = (low + high) / 2
-        if middle in (low, high):
-            break
-        low, high = (
-            (low, middle) if abs(float(model.first_hit(tau, middle).flight_time) - start) > 0.1 else (middle, high)
-        )
-    return float(min(abs(float(model.first_hit(tau, v).velocity)) for v in (low, high)))
+    ends = halved(lambda v: abs(float(model.first_hit(tau, v).flight_time) - start) <= 0.1, low, high, 1e-13)
+    return float(min(abs(float(model.first_hit(tau, v).velocity)) for v in ends))
 
 
 @dataclass(frozen=True)

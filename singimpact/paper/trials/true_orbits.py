@@ -20,6 +20,7 @@ import numpy as np
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float, as_fraction
 from singimpact.algebra.rings import DOUBLES
+from singimpact.algebra.solving import halved
 from singimpact.contact.contact import acceleration
 from singimpact.contact.points import tangency_points
 from singimpact.contact.swans import swan_points_over_clearance
@@ -230,13 +231,12 @@ def extrapolated(points: list[tuple[Any, Any]]) -> Any:
 
 def lambda_of(r: float, j: int) -> float:
     """The root in (0, 1) of r = lambda^(j+1) P_j/Q_j, by bisection: numbers only, for a guess and a comparison."""
-    low, high = 0.0, 1.0
-    for _ in range(100):
-        middle = (low + high) / 2
-        p = sum((j + 1 - i) * middle**i for i in range(j + 1))
-        q = sum((i + 1) * middle**i for i in range(j + 1))
-        low, high = (middle, high) if middle ** (j + 1) * p / q < r else (low, middle)
-    return (low + high) / 2
+
+    def restitution(rate: float) -> float:
+        above = sum((j + 1 - i) * rate**i for i in range(j + 1))
+        return rate ** (j + 1) * above / sum((i + 1) * rate**i for i in range(j + 1))
+
+    return float(halved(lambda rate: restitution(rate) < r, 0.0, 1.0)[0])
 
 
 def gamma_case(name: str, model: Oscillator, a_j: float, j: int, flow: Flow, start: Any, accuracy: Any) -> GammaCase:

@@ -12,6 +12,7 @@ import sympy
 
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
+from singimpact.algebra.solving import secant
 from singimpact.contact.contact import force_jet
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.trials import arcs, leaves, true_orbits
@@ -49,14 +50,8 @@ class Place:
     def launch(self, sigma: float, t: float) -> float:
         """v_c(sigma, t): the v whose flight is back after t, t < 0 too, by the secant method."""
         flow = true_orbits.scipy_flow(self.model, self.tau)
-        v, other = 0.0, -float(flow(sigma, 0.0, t)[0])
-        y, y_other = -other, float(flow(sigma, other, t)[0])
-        for _ in range(12):
-            if y_other == y or abs(y_other) < 1e-15 * abs(other):
-                break
-            v, other = other, other - y_other * (other - v) / (y_other - y)
-            y, y_other = y_other, float(flow(sigma, other, t)[0])
-        return other
+        guess = -float(flow(sigma, 0.0, t)[0])
+        return float(secant(lambda v: float(flow(sigma, v, t)[0]), 0.0, guess, small=1e-15 * abs(guess)))
 
     def impact(self, sigma: float, t: float) -> float:
         """x-dot at the return of that flight."""

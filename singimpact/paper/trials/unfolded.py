@@ -11,6 +11,7 @@ import numpy as np
 import sympy
 from scipy.optimize import brentq
 
+from singimpact.algebra.solving import halved
 from singimpact.impact_oscillator import ImpactOscillator, universal
 from singimpact.paper.trials import true_orbits
 
@@ -97,12 +98,9 @@ def tangency_at_A() -> tuple[float, float]:
 
 
 @lru_cache(maxsize=8)
-def gamma_end(r: str, v: float = 0.0, halvings: int = 40) -> float:
+def gamma_end(r: str, v: float = 0.0, narrow: float = 1e-12) -> float:
     """sigma in (E', A) from which, at velocity v, the positive swan's orbit runs along gamma into B: by bisection."""
-    low, high = -float(np.sqrt(3)) + 1e-9, -1 - 1e-9
-    for _ in range(halvings):
-        middle = (low + high) / 2
-        low, high = (low, middle) if completes(r, middle, v) else (middle, high)
+    low, high = halved(lambda sigma: not completes(r, sigma, v), -float(np.sqrt(3)) + 1e-9, -1 - 1e-9, narrow)
     return (low + high) / 2
 
 
@@ -177,13 +175,15 @@ def _jump_heights(h: float, limit: float, jumps: int) -> tuple[float, ...]:
     """v/h^2 at the first jumps on the line sigma = -1 - h, from delta downwards to `limit`."""
     heights, high = [], 24 * 0.4
     for count in range(1, jumps + 1):
-        low, top = limit, high
-        for _ in range(48):
-            middle = (low + top) / 2
-            low, top = (low, middle) if _impacts_before_leaving(-1 - h, middle * h * h) < count else (middle, top)
+        low, top = _jump(h, count, limit, high)
         heights.append((low + top) / 2)
         high = low
     return tuple(heights)
+
+
+def _jump(h: float, count: int, low: float, high: float) -> tuple[float, float]:
+    """Neighbouring v/h^2 above which fewer than `count` impacts follow."""
+    return halved(lambda height: _impacts_before_leaving(-1 - h, height * h * h) >= count, low, high, 1e-14)
 
 
 def _impacts_before_leaving(sigma: float, v: float, most: int = 60) -> int:
