@@ -6,11 +6,17 @@ A cache is a convenience: when it cannot be read or written, one line says so an
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import time
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, fields, is_dataclass
 from functools import lru_cache
+from io import BytesIO
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from singimpact.inputs import InputError, shown
 from singimpact.store import DRAFT, cache_folder, changeable, folder, tell, written
@@ -75,6 +81,61 @@ def recall(place: Path) -> bytes | None:
         damaged(place, "its content is not what was written")
         return None
     return content
+
+
+def packed(thing: Any) -> bytes:
+    """The bytes of a tree of dataclasses, tuples, lists, dicts, numbers, texts and arrays: JSON, then the arrays.
+
+    Examples
+    --------
+    >>> unpacked(packed({"ages": AGES, "pair": (1, [2.5, None])}), (Ages,))
+    {'ages': Ages(draft=86400.0), 'pair': (1, [2.5, None])}
+    """
+    arrays: list[Any] = []
+    stream = BytesIO()
+    stream.write(json.dumps(_tree(thing, arrays)).encode() + b"\n")
+    for array in arrays:
+        np.save(stream, array, allow_pickle=False)
+    return stream.getvalue()
+
+
+def unpacked(content: bytes, kinds: Iterable[type]) -> Any:
+    """What was packed; `kinds` are the dataclasses that may occur in it.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError : it is not what `packed` wrote, or of other kinds.
+    """
+    stream = BytesIO(content)
+    tree = json.loads(stream.readline())
+    return _grown(tree, {kind.__name__: kind for kind in kinds}, lambda: np.load(stream, allow_pickle=False))
+
+
+def _tree(thing: Any, arrays: list[Any]) -> Any:
+    """Every object becomes a list that begins with its kind; arrays are gathered in the order in which they are met."""
+    if isinstance(thing, np.ndarray):
+        arrays.append(thing)
+        return ["array", None]
+    if is_dataclass(thing):
+        return [type(thing).__name__, {each.name: _tree(getattr(thing, each.name), arrays) for each in fields(thing)}]
+    if isinstance(thing, Mapping):
+        return ["dict", {key: _tree(value, arrays) for key, value in thing.items()}]
+    if isinstance(thing, list | tuple):
+        return ["list" if isinstance(thing, list) else "tuple", [_tree(each, arrays) for each in thing]]
+    return thing.item() if isinstance(thing, np.generic) else thing
+
+
+def _grown(tree: Any, kinds: Mapping[str, type], array: Callable[[], Any]) -> Any:
+    if not isinstance(tree, list):
+        return tree
+    kind, inside = tree
+    if kind == "array":
+        return array()
+    if isinstance(inside, dict):
+        parts = {key: _grown(value, kinds, array) for key, value in inside.items()}
+        return parts if kind == "dict" else kinds[kind](**parts)
+    parts_in_order = [_grown(each, kinds, array) for each in inside]
+    return tuple(parts_in_order) if kind == "tuple" else parts_in_order
 
 
 def _unfollowed(place: str, flags: int) -> int:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 from functools import lru_cache
 from importlib.metadata import version
-from io import BytesIO
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from singimpact import cache
 from singimpact.store import cache_folder
@@ -42,31 +40,14 @@ def recall(key: str) -> list[Curve] | None:
     content = cache.recall(_place(key))
     if content is None:
         return None
-    with np.load(BytesIO(content), allow_pickle=False) as found:
-        heads = json.loads(str(found["heads"]))
-        return [_curve(head, found[f"p{n}"], found[f"v{n}"]) for n, head in enumerate(heads)]
+    found: list[Curve] = cache.unpacked(content, (Curve, Mark))
+    return found
 
 
 def keep(key: str, curves: list[Curve]) -> None:
-    """Put curves on disk; a cache that cannot be written is no reason to fail."""
-    arrays: dict[str, Any] = {f"p{n}": curve.points for n, curve in enumerate(curves)}
-    arrays |= {f"v{n}": curve.visible for n, curve in enumerate(curves)}
-    stream = BytesIO()
-    np.savez(stream, heads=json.dumps([_head(curve) for curve in curves]), **arrays)
-    cache.keep(_place(key), stream.getvalue())
+    """Put curves on disk, with what is visible of them; a cache that cannot be written is no reason to fail."""
+    cache.keep(_place(key), cache.packed([replace(curve, first_hits=curve.visible) for curve in curves]))
 
 
 def _place(key: str) -> Path:
     return cache_folder() / "curves" / f"{key}.curves"
-
-
-def _head(curve: Curve) -> dict[str, Any]:
-    marks = [[mark.index, mark.name] for mark in curve.marks]
-    return {"name": curve.name, "axes": curve.axes, "marks": marks, "closed": curve.closed,
-            "tolerance": curve.tolerance}  # fmt: skip
-
-
-def _curve(head: dict[str, Any], points: Any, visible: Any) -> Curve:
-    marks = tuple(Mark(int(index), str(name)) for index, name in head["marks"])
-    first, second = head["axes"]
-    return Curve(head["name"], points, (first, second), marks, head["closed"], head["tolerance"], visible)

@@ -1,9 +1,7 @@
-"""Verdicts kept in the user's cache folder, one sealed file of JSON a claim, under the claim's canonical key."""
+"""Verdicts kept in the user's cache folder, one sealed file a claim, under the claim's canonical key."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -23,21 +21,19 @@ def recall(name: str, key: str) -> Verdict | None:
     if content is None:
         return None
     try:
-        data = json.loads(content)
-        return _verdict(data["verdict"]) if data["key"] == key else None
+        known, verdict = cache.unpacked(content, (Verdict, Trial))
+        return _checked(verdict) if known == key else None
     except (ValueError, KeyError, TypeError) as error:
         cache.damaged(_place(name), str(error))
         return None
 
 
-def _verdict(data: dict[str, Any]) -> Verdict:
-    if set(data) != {field.name for field in fields(Verdict)} or data["kind"] not in KINDS:
+def _checked(verdict: Any) -> Verdict:
+    if not isinstance(verdict, Verdict) or verdict.kind not in KINDS:
         raise ValueError("not a verdict")
-    certificates = tuple(data["certificates"])
-    trials = tuple(Trial(**trial) for trial in data["trials"])
-    if not all(accepts(certificate) for certificate in certificates):
+    if not all(accepts(certificate) for certificate in verdict.certificates):
         raise ValueError("a certificate is not accepted")
-    return Verdict(**(data | {"rests_on": tuple(data["rests_on"]), "certificates": certificates, "trials": trials}))
+    return verdict
 
 
 def keep(verdict: Verdict, key: str) -> None:
@@ -46,4 +42,4 @@ def keep(verdict: Verdict, key: str) -> None:
     A cache that cannot be written is no reason to fail: the verdict stands, it is only not kept.
     """
     if verdict.kind != "error":
-        cache.keep(_place(verdict.id), json.dumps({"key": key, "verdict": asdict(verdict)}).encode())
+        cache.keep(_place(verdict.id), cache.packed((key, verdict)))

@@ -2,12 +2,12 @@
 
 import ast
 import dataclasses
-import json
 
 import pytest
 
-from singimpact.cache import recall
+from singimpact.cache import recall, unpacked
 from singimpact.paper.claims import CLAIMS, deciding, keys, memory, run, select
+from singimpact.paper.claims.claim import Trial, Verdict
 from singimpact.paper.claims.keys import key_of
 
 
@@ -111,7 +111,7 @@ def test_damaged_entry_is_decided_again(text, cache, decided, capsys):
     assert run(select(["e:yeq"]), kept=True)[0].kind == "proved"
     assert decided == ["e:yeq"]
     assert str(path) in capsys.readouterr().err
-    assert json.loads(recall(path))["verdict"]["kind"] == "proved"
+    assert unpacked(recall(path), (Verdict, Trial))[1].kind == "proved"
 
 
 def test_cache_that_cannot_be_written_is_no_failure(monkeypatch, capsys):
