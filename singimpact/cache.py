@@ -23,7 +23,7 @@ from singimpact.store import DRAFT, cache_folder, changeable, folder, tell, writ
 
 
 @dataclass(frozen=True)
-class Ages:
+class CacheSettings:
     """When what a killed process left is taken away.
 
     Parameters
@@ -34,7 +34,7 @@ class Ages:
     draft: float = 86_400.0
 
 
-AGES = Ages()
+AGES = CacheSettings()
 _SAID: list[str] = []  # why results are not kept, once in a process
 
 
@@ -88,8 +88,8 @@ def packed(thing: Any) -> bytes:
 
     Examples
     --------
-    >>> unpacked(packed({"ages": AGES, "pair": (1, [2.5, None])}), (Ages,))
-    {'ages': Ages(draft=86400.0), 'pair': (1, [2.5, None])}
+    >>> unpacked(packed({"ages": AGES, "pair": (1, [2.5, None])}), (CacheSettings,))
+    {'ages': CacheSettings(draft=86400.0), 'pair': (1, [2.5, None])}
     """
     arrays: list[Any] = []
     stream = BytesIO()

@@ -22,7 +22,7 @@ from singimpact.store import require_writable, written
 
 
 @dataclass(frozen=True)
-class Portions:
+class PoolSettings:
     """How cases are handed out.
 
     Parameters
@@ -39,7 +39,7 @@ class Portions:
     deaths: int = 2
 
 
-PORTIONS = Portions()
+PORTIONS = PoolSettings()
 
 
 @dataclass(frozen=True)

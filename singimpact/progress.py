@@ -13,13 +13,13 @@ from singimpact.notebook import CellLine, in_notebook
 
 
 @dataclass(frozen=True)
-class Pace:
+class ProgressSettings:
     """When a line of progress is worth showing."""
 
     delay: float = 1.0  # seconds; what is done sooner needs no line, and rich takes 0.1 s to import
 
 
-PACE = Pace()
+PACE = ProgressSettings()
 
 
 def watched() -> bool:

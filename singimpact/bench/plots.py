@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from singimpact.bench.measuring import Measured, Row
-from singimpact.scenes.looks import BLACK, BLUE, DASH_DOT, DASHES, DOTS, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
+from singimpact.scenes.style import BLACK, BLUE, DASH_DOT, DASHES, DOTS, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
 
 COLORS = (BLUE, VERMILLION, GREEN, PURPLE, BLACK, ORANGE, SKY, GREY)
 MARKERS = "osD^vP*X"

@@ -27,7 +27,7 @@ def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> No
     What a figure shows is kept in the cache as numbers: a run that was cut off goes on where it was.
     """
     from singimpact.paper.figures import FIGURES
-    from singimpact.paper.figures.kept import kept_picture
+    from singimpact.paper.figures.cached import kept_picture
     from singimpact.paper.figures.rendering import drawn
 
     numbers = _numbers(which, list(FIGURES))

@@ -15,7 +15,7 @@ from singimpact.inputs import InputError
 
 
 @dataclass(frozen=True)
-class Patience:
+class CompileSettings:
     """How long a document may take."""
 
     seconds: float = 300.0  # a section of twenty pages takes 3 s; the rest is a first run that builds fonts
@@ -86,10 +86,10 @@ def _run(folder: str) -> None:
     try:
         done = subprocess.run(
             command, cwd=folder, capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL,
-            env=environment, timeout=Patience().seconds, check=False,
+            env=environment, timeout=CompileSettings().seconds, check=False,
         )  # fmt: skip
     except subprocess.TimeoutExpired:
-        raise CompileError(f"latexmk did not end within {Patience().seconds:.0f} s") from None
+        raise CompileError(f"latexmk did not end within {CompileSettings().seconds:.0f} s") from None
     if done.returncode:
         found = re.search(r"^\S*document\.tex:\d+: .*$", done.stdout, re.MULTILINE)
         raise CompileError(found.group() if found else f"latexmk ended with exit code {done.returncode}")

@@ -15,12 +15,12 @@ from singimpact.documents.steps import Section, Step
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory import chatter_limit, dynamics_on_gamma, fibre, gamma, normal_form, v_c
+from singimpact.theory.contact_points import points_of
 from singimpact.theory.fold_form import FoldForm
 from singimpact.theory.formulas import LIMITS
 from singimpact.theory.frozen import COMMAND, curve_functions, sheet_functions
 from singimpact.theory.homogeneous import r_of_lambda
 from singimpact.theory.notation import latex
-from singimpact.theory.places import points_of
 from singimpact.theory.plane_forms import HIGHEST
 from singimpact.theory.power_series import PowerSeries
 

@@ -1,7 +1,7 @@
 """Flights after flights: orbits, sticking, chatter, gamma and W^s, periodic points, basins, bifurcation diagrams.
 
 Not here: one flight (`flights`), power series of the chatter's end (`theory`), pictures of an orbit (`scenes`).
-Files: `orbit` (impacts, rest and chatter in order), `rest` (when a mass lifts off), `chatter` (when impacts end),
+Files: `orbit` (impacts, rest and chatter in order), `release` (when a mass lifts off), `chatter` (when impacts end),
 `completion` (its map), `remaining` (its terms in doubles), `gathered` (results of many states), `threshold` (the
 velocity between complete and incomplete chatter), `enclosed` (both in balls, of linear models), `invariant_arcs` (gamma
 and the stable manifolds, grown), `swan_configuration` (the named points of an unfolded swan), `periodic` (periodic

@@ -24,9 +24,9 @@ from singimpact.flights.balls import LinearFlow
 from singimpact.flights.states import States
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
 from singimpact.theory.invariant_curve import multiplier_across
-from singimpact.theory.places import Place
 
 Found = TypeVar("Found")
 

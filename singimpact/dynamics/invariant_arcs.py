@@ -23,8 +23,8 @@ from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.surface.curve import STATES, Curve, Mark, Window, distances
+from singimpact.theory.contact_points import points_of
 from singimpact.theory.formulas import arc_in_numbers
-from singimpact.theory.places import points_of
 from singimpact.theory.power_series import PowerSeries
 
 Array = np.ndarray[Any, Any]

@@ -17,7 +17,7 @@ from singimpact.contact.points import tangency_points
 from singimpact.dynamics.attractors import CHATTER, OTHER
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.orbit import orbit
-from singimpact.dynamics.rest import release
+from singimpact.dynamics.release import release
 from singimpact.flights.orbits import iterate
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.dynamics.chatter import ENDING, summed
-from singimpact.dynamics.rest import release
+from singimpact.dynamics.release import release
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.states import States

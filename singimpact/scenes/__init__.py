@@ -3,7 +3,7 @@
 Not here: what is drawn (`dynamics`, `surface`, `flights`), text with formulas (`documents`), the paper's figures
 (`paper.figures`).
 Files: `drawing` (`plot`: one call for everything that can be drawn), `orbit` (x(t)), `scene` (a window and its layers),
-`needs` (what layers ask for), `layers`, `kept` (results on disk), `looks` (colours and lines), `basins`,
+`layer_data` (what layers ask for), `layers`, `cached` (results on disk), `style` (colours and lines), `basins`,
 `clearance_frames` and `explore` (the page).
 """
 

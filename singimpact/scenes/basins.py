@@ -8,7 +8,7 @@ import numpy as np
 
 from singimpact.dynamics.basins import Basins
 from singimpact.dynamics.bifurcation import Bifurcation
-from singimpact.scenes.looks import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
+from singimpact.scenes.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
 
 FIXED = {"not decided": "#F2F2F2", "never returns": "#FFFFFF", "chaotic": "#C9C9C9", "rest": BLACK}
 CHATTERED = (BLACK, "#3D3D3D", "#6B6B6B")  # chatter for ever, of one lift-off or another

@@ -6,9 +6,9 @@ from typing import Any
 
 from singimpact.dynamics.orbit import Orbit
 from singimpact.inputs import refuse
-from singimpact.scenes.looks import PENS
 from singimpact.scenes.orbit import draw_orbit
 from singimpact.scenes.scene import Scene
+from singimpact.scenes.style import PENS
 from singimpact.surface.curve import Curve
 
 LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}

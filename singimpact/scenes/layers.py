@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from singimpact.scenes.looks import PENS
+from singimpact.scenes.style import PENS
 from singimpact.surface.curve import STATES, SURFACE, Curve
 
 Drawer = Callable[[Any, list[Curve], str], None]

@@ -16,8 +16,8 @@ from singimpact.algebra.numbers import as_float, constant
 from singimpact.inputs import InputError, refuse, shown, unknown
 from singimpact.oscillator.files import FIELDS, read_fields
 from singimpact.oscillator.model import Oscillator
+from singimpact.scenes.layer_data import Results
 from singimpact.scenes.layers import LAYERS
-from singimpact.scenes.needs import Results
 from singimpact.surface.curve import STATES, SURFACE, window_ends
 
 DPI = 100

@@ -5,8 +5,8 @@ Not here: the points and their jets (`contact`), finite flights (`flights`), the
 Files, the series: `sheet` (v_c), `involution` (from p to phi), `invariant_curve` (gamma, the stable fibre),
 `completion` (where chatter ends), `homogeneous` (the leading parts, in closed form), `plane_forms` and `fold_form`
 (normal forms of p and phi). Their numbers: `fixed_points` (certified), `multipliers` (as functions of r).
-What a user asks: `formulas` (`v_c`, `gamma`, ...), `power_series` (what they answer), `places` (a model at a point, in
-the best numbers), `letters` (parameters that stay letters), `constants` (exact numbers that are not rational),
+What a user asks: `formulas` (`v_c`, `gamma`, ...), `power_series` (what they answer), `contact_points` (a model at a
+point, in the best numbers), `letters` (parameters that stay letters), `constants` (exact numbers, not rational),
 `symbolic_curve` (gamma in symbols), `digits` (more bits until each digit is certain), `notation` (LaTeX), `frozen`
 (the source in `generated`).
 """

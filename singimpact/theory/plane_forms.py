@@ -22,9 +22,9 @@ from singimpact.contact.contact import contact_order
 from singimpact.germs.normal_form import NormalForm
 from singimpact.germs.normal_form import normal_form as reduced
 from singimpact.inputs import InputError, refuse
+from singimpact.theory.contact_points import exact_contact, place
 from singimpact.theory.digits import sympy_digits, with_digits
 from singimpact.theory.fold_form import FoldForm, fold_form
-from singimpact.theory.places import exact_contact, place
 from singimpact.theory.sheet import sheet
 
 HIGHEST = {"tangency": 12, "cusp": 8}  # for symbols: seconds; each order takes about twice the one before

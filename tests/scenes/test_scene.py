@@ -54,7 +54,7 @@ def test_a_further_layer_costs_only_itself():
 
 
 def test_a_layer_beside_another_in_one_scene(monkeypatch):
-    monkeypatch.setattr("singimpact.scenes.needs.recall", lambda _key: None)
+    monkeypatch.setattr("singimpact.scenes.layer_data.recall", lambda _key: None)
     one, two, both = scene("horizon"), scene("zero-set"), scene("horizon", "zero-set")
     spent = []
     for each in (one, two, both):

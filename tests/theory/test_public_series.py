@@ -9,8 +9,8 @@ import sympy
 
 import singimpact as si
 from singimpact.inputs import InputError
+from singimpact.theory.contact_points import multiplier
 from singimpact.theory.invariant_curve import restitution_of
-from singimpact.theory.places import multiplier
 
 DUFFING = ("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 

@@ -30,7 +30,7 @@ Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
-class Search:
+class BarrierSettings:
     """Where barriers are looked for.
 
     Attributes
@@ -46,7 +46,7 @@ class Search:
     bits: int = 96
 
 
-SEARCH = Search()
+SEARCH = BarrierSettings()
 
 
 def kept_up(osc: Oscillator, v: Array) -> Array:

@@ -21,13 +21,13 @@ Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
-class Margin:
+class MarginSettings:
     """`part` of the size of all terms must be left over: 2^20 roundings, far above what the few operations here do."""
 
     part: float = 2.0**-32
 
 
-MARGIN = Margin()
+MARGIN = MarginSettings()
 
 
 def never_returns(osc: Oscillator, form: LinearForm, tau: Array, time: Array, z: Array, u: Array) -> Array:

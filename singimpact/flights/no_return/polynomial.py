@@ -25,7 +25,7 @@ Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
-class Proof:
+class ProofSettings:
     """How the inequality is checked.
 
     Parameters
@@ -39,7 +39,7 @@ class Proof:
     bits: int = 128
 
 
-PROOF = Proof()
+PROOF = ProofSettings()
 
 
 def never_turns(osc: Oscillator, z: Array, u: Array) -> Array:

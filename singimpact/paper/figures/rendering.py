@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
-from singimpact.scenes.looks import PENS
+from singimpact.scenes.style import PENS
 
 WIDTH, HEIGHT = 4.3, 3.4  # of a panel, in inches
 LETTER = 12

@@ -7,7 +7,7 @@ from pathlib import Path
 from singimpact import cache
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
 from singimpact.paper.figures.registry import picture
-from singimpact.scenes.kept import key_of
+from singimpact.scenes.cached import key_of
 from singimpact.store import cache_folder
 
 KINDS = (Picture, Panel, Line, Region, Dot)
