@@ -22,6 +22,7 @@ from singimpact.flights.kernels import (
     batch,
     batch_isolate,
     batch_refine,
+    chatter,
     double_double,
     entries,
     hits,
@@ -39,9 +40,10 @@ from singimpact.flights.kernels import (
     variational,
     waves,
 )
+from singimpact.generated import completion
 
 MODULES = (radii, state, lanes, double_double, waves, roots, linear, steps, taylor, tables, tabulated, variational,
-           refine, hits, orbits, batch_isolate, batch_refine, batch, layout, entries)  # fmt: skip
+           refine, hits, orbits, completion, chatter, batch_isolate, batch_refine, batch, layout, entries)  # fmt: skip
 UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 ADDRESSES = 8
 """Arguments of an entry: sizes, model, scratch, tau, v, w, out, status."""

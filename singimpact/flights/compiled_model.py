@@ -20,6 +20,7 @@ from singimpact.flights import counted
 from singimpact.flights.bind import Emitted
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
 from singimpact.flights.kernels import entries, layout
+from singimpact.flights.kernels.chatter import NO_ROOM
 from singimpact.flights.kernels.hits import UNIT
 from singimpact.flights.kernels.lanes import LANES
 from singimpact.flights.limits import LIMITS, degree_for
@@ -62,6 +63,8 @@ class TableSettings:
     block: int = 65_536
     # the same when flights are interpreted
     interpreted: int = 64
+    # impacts of a chatter that scratch has rows for: at first, and of a state that needs more
+    chatter: tuple[int, int] = (4096, 2**20)
 
 
 TABLES = TableSettings()
@@ -379,6 +382,36 @@ class CompiledModel:
         self._call(entry, self._new_scratch(), entries.BRACKET, tau.size, given=(tau, rows, numbers), out=out,
                    status=status)  # fmt: skip
         return out, status
+
+    def limits(self, tau: Array, v: Array, settings: tuple[float, float, float]) -> tuple[Array, Array] | None:
+        """Codes of chatters, and end, error and impacts, shape (3, n); None where no compiled entry flies them.
+
+        Parameters
+        ----------
+        tau, v : states, v > 0. settings : see `kernels.chatter.chatter_end`.
+        """
+        entry = self._entry(self.main, self.orbits) if self.linear and self.constant_restitution else None
+        if entry is None:
+            return None
+        out, status = np.empty((3, tau.size)), np.empty(tau.size, np.int8)
+        numbers, begin, many = np.concatenate([self.rho, settings]), 0, 4
+        scratch, room = self._new_scratch(3 * TABLES.chatter[0] // 2), TABLES.chatter[0]
+        while begin < tau.size:
+            part = slice(begin, begin + many)
+            rows, codes = np.empty((3, tau[part].size)), status[part]
+            self._call(entry, scratch, entries.LIMIT, codes.size, room, (tau[part], v[part], numbers), rows, codes)
+            for index in np.flatnonzero(codes == NO_ROOM).tolist():
+                one, last = slice(begin + index, begin + index + 1), TABLES.chatter[1]
+                end = np.empty((3, 1))
+                self._call(entry, self._new_scratch(3 * last // 2), entries.LIMIT, 1, last, (tau[one], v[one], numbers),
+                           end, codes[index : index + 1])  # fmt: skip
+                rows[:, index : index + 1] = end
+            out[:, part] = rows
+            begin += codes.size
+            flown = int(rows[2].sum())
+            counted.add(flown)
+            many = max(1, min(TABLES.block, 4 * many, TABLES.block * codes.size // max(flown, 1)))
+        return status, out
 
     def variations(self, tau: Array, v: Array, times: Array) -> Array:
         """dx/dv, dx'/dv, dx/dtau, dx'/dtau at given flight times, shape (n, 4)."""

@@ -9,6 +9,7 @@ from math import nan
 from typing import Any
 
 from singimpact.flights.kernels.batch import fly_batches
+from singimpact.flights.kernels.chatter import linear_limits
 from singimpact.flights.kernels.hits import (
     carried_errors,
     launch_acceleration,
@@ -37,21 +38,22 @@ from singimpact.flights.kernels.taylor import follow, taylor_flight
 from singimpact.flights.kernels.variational import derivatives_at, judge
 from singimpact.flights.kernels.waves import reduced_twice, wall_acceleration
 
-PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET = range(10)
+PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET, LIMIT = range(11)
 """Kinds of work: fill the tables of a model, of its batches; first hits of many states; impacts of one orbit; the last
 states of many orbits; derivatives of x and x' at given times; x and x' along one flight; errors and conditions of hits
-of a Taylor flow; flights from rest; brackets of gamma."""
+of a Taylor flow; flights from rest; brackets of gamma; ends of chatter."""
 AT_REST = 40
 """The code of a state with v = 0 among `HITS`: it is not flown."""
 
 
 def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
-    """PREPARE, HITS, SEGMENT, RELEASES or VARIATIONS of a linear model.
+    """PREPARE, HITS, SEGMENT, RELEASES, VARIATIONS, BRACKET or LIMIT of a linear model.
 
     Parameters
     ----------
     sizes : see `layout`. flat, scratch : of the model. tau, v : states. w : times; the part of a time below which
         chatter ends an orbit, then constants of rho; orders of roots removed at rest. out : results. status : codes.
+        IMPACTS of LIMIT are rows behind all scratch.
 
     Returns
     -------
@@ -74,6 +76,9 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     if kind == BRACKET:
         return linear_brackets(states, block(v, 0, (count, 3)), block(w, 0, (11,)), model, work,
                                block(out, 0, (count, 2)), codes)  # fmt: skip
+    if kind == LIMIT:
+        rows = block(scratch, scratch_length(sizes), (sizes[IMPACTS], 6))
+        return linear_limits(states, speeds, block(w, 0, (11,)), model, work, rows, block(out, 0, (3, count)), codes)
     if kind == RELEASES:
         return linear_releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
     return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
