@@ -5,7 +5,7 @@ users; `states` are read once, `results` come back. `compiled_model` holds all t
 of the kernels: `kernels/` are plain modules, `bind` puts them over numbers, `machine` compiles and keeps them,
 `interpreted` runs them until then; `model_numbers`, `phase`, `limits` are what it is made from. `undecided` decides
 flights that end in no plain hit: `escape`, `escape_polynomial`, `escape_averaged`, `escape_barrier` prove that none
-returns, `closing` that one touches, `causes` says why one is open; `in_digits`, `balls`, `polish`, `velocity_before`
-compute with many digits; `closed_arrays` is the closed form over arrays; `counted` counts flights.
+returns, `closing` that one touches, `causes` says why one is open; `in_digits`, `balls`, `short_balls`, `polish`,
+`velocity_before` compute with many digits; `closed_arrays` is the closed form over arrays; `counted` counts flights.
 Not here: flights after flights (`dynamics`), curves of flights (`surface`), power series (`theory`).
 """
