@@ -25,6 +25,7 @@ from singimpact.flights.kernels import (
     chatter,
     double_double,
     entries,
+    gamma,
     hits,
     lanes,
     layout,
@@ -43,7 +44,8 @@ from singimpact.flights.kernels import (
 from singimpact.generated import completion
 
 MODULES = (radii, state, lanes, double_double, waves, roots, linear, steps, taylor, tables, tabulated, variational,
-           refine, hits, orbits, completion, chatter, batch_isolate, batch_refine, batch, layout, entries)  # fmt: skip
+           refine, hits, orbits, gamma, completion, chatter, batch_isolate, batch_refine, batch, layout,
+           entries)  # fmt: skip
 UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 ADDRESSES = 8
 """Arguments of an entry: sizes, model, scratch, tau, v, w, out, status."""

@@ -365,13 +365,13 @@ class CompiledModel:
             begin += block
         return times[: tau.size], speeds[: tau.size], status[: tau.size]
 
-    def brackets(self, tau: Array, given: Array, settings: tuple[float, float, float]) -> tuple[Array, Array] | None:
+    def brackets(self, tau: Array, given: Array, settings: tuple[float, ...]) -> tuple[Array, Array] | None:
         """Brackets of gamma, shape (n, 2), and codes; None where no compiled entry of a linear model is there.
 
         Parameters
         ----------
         given : velocities below and above gamma, and times to its end, shape (n, 3). settings : see
-            `kernels.orbits.bracket_gamma`.
+            `kernels.gamma.bracket_gamma`.
         """
         entry = self._compiled(self.main, 0.05 * tau.size, self.orbits) if self.linear else None
         if entry is None:

@@ -10,6 +10,7 @@ from typing import Any
 
 from singimpact.flights.kernels.batch import fly_batches
 from singimpact.flights.kernels.chatter import linear_limits
+from singimpact.flights.kernels.gamma import SERIES, TERMS_OF_GAMMA, bracket_gamma
 from singimpact.flights.kernels.hits import (
     carried_errors,
     launch_acceleration,
@@ -31,7 +32,7 @@ from singimpact.flights.kernels.layout import (
     taylor_model,
 )
 from singimpact.flights.kernels.linear import response
-from singimpact.flights.kernels.orbits import bracket_gamma, iterate_taylor, orbit_segment, taylor_segment
+from singimpact.flights.kernels.orbits import iterate_taylor, orbit_segment, taylor_segment
 from singimpact.flights.kernels.refine import fill_fine
 from singimpact.flights.kernels.tables import bounds, expansions, tabulate
 from singimpact.flights.kernels.taylor import follow, taylor_flight
@@ -74,7 +75,7 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     if kind == HITS:
         return linear_hits(states, speeds, model, work, block(out, 0, (10, count)), codes)
     if kind == BRACKET:
-        return linear_brackets(states, block(v, 0, (count, 3)), block(w, 0, (11,)), model, work,
+        return linear_brackets(states, block(v, 0, (count, 3)), block(w, 0, (SERIES + TERMS_OF_GAMMA,)), model, work,
                                block(out, 0, (count, 2)), codes)  # fmt: skip
     if kind == LIMIT:
         rows = block(scratch, scratch_length(sizes), (sizes[IMPACTS], 6))

@@ -19,8 +19,6 @@ from singimpact.flights.kernels.state import (
 )
 from singimpact.flights.kernels.waves import reduced_twice
 
-BELOW, ABOVE, SPENT = 50, 51, 52
-"""Codes of `side_of_gamma`."""
 RHO = 8
 """Places of the constants of rho."""
 
@@ -91,54 +89,6 @@ def iterate_taylor(tau: Any, v: Any, count: int, w: Any, model: Any, work: Any, 
                 if not v[i] > 0:
                     status[i] = 8
         tau[i] += since - lost
-
-
-def side_of_gamma(tau: float, v: float, end: float, most: int, w: Any, model: Any, work: Any) -> int:
-    """BELOW: chatter from (tau, v) completes before `end`; ABOVE: an impact comes after it; else the code of a flight.
-
-    Parameters
-    ----------
-    end : time after tau at which gamma ends. most : impacts flown at most; then the code is SPENT.
-    w : constants of rho; behind them, in place RHO, the part of the time to the end in which chatter must end.
-    """
-    since, lost = 0.0, 0.0
-    for _ in range(most):
-        at, at_low = sum_twice(tau, 0.0, since, -lost)
-        t, t_low = reduced_twice(at, model.turn)
-        t, t_low = sum_twice(t, t_low, at_low, 0.0)
-        code, a = linear_hit(t, t_low, v, 0.0, model, work)
-        if a < 0 and 2 * v < -a * model.rules.lost * w[RHO] * (end - since):
-            return BELOW
-        if code == 3:  # no further impact: contact is lost
-            return ABOVE
-        if code != 0 and code != NOT_REFINED:
-            return int(code)
-        since, lost = later(since, lost, work.hit[FLIGHT_TIME])
-        v = rebound(work.hit[VELOCITY], w)
-        if since - lost >= end:
-            return ABOVE
-        if not v > 0:
-            return 8
-    return SPENT
-
-
-def bracket_gamma(tau: float, low: float, high: float, end: float, w: Any, model: Any, work: Any) -> Any:
-    """(low, high, code): an interval of velocities around gamma at tau, halved until it is narrow.
-
-    Parameters
-    ----------
-    w : as in `side_of_gamma`; behind, the relative width to stop at and the impacts flown at most from one velocity.
-    """
-    while high - low > w[RHO + 1] * high:
-        middle = (low + high) / 2
-        code = side_of_gamma(tau, middle, end, int(w[RHO + 2]), w, model, work)
-        if code == BELOW:
-            low = middle
-        elif code == ABOVE:
-            high = middle
-        else:
-            return low, high, code
-    return low, high, 0
 
 
 def later(since: float, lost: float, time: float) -> Any:
