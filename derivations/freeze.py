@@ -53,9 +53,10 @@ def claim_index() -> dict[Path, bytes]:
 
 def generated() -> dict[Path, bytes]:
     """The source under singimpact/generated: from theory and codegen alone, so it works with that folder emptied."""
-    from singimpact.theory.frozen import curve_module, sheet_module
+    from singimpact.theory.frozen import completion_module, curve_module, sheet_module
 
-    return {GENERATED / "sheets.py": sheet_module().encode(), GENERATED / "curves.py": curve_module().encode()}
+    modules = {"sheets": sheet_module(), "curves": curve_module(), "completion": completion_module()}
+    return {GENERATED / f"{name}.py": source.encode() for name, source in modules.items()}
 
 
 def main() -> None:

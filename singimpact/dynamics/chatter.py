@@ -17,17 +17,26 @@ from singimpact.dynamics import enclosed
 from singimpact.dynamics.completion import completion
 from singimpact.dynamics.gathered import gathered
 from singimpact.dynamics.remaining import remaining
+from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
+from singimpact.flights.kernels.chatter import COMPLETED, EXHAUSTED, LIFTED, NO_ROOM, TOO_WIDE
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
 from singimpact.inputs import whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Cause, Status
+from singimpact.status import Cause, Status, status_array
 
 EPSILON = 2.0**-52
+ENDED = {
+    COMPLETED: (Status.complete, Cause.decided),
+    LIFTED: (Status.lifts_off, Cause.decided),
+    EXHAUSTED: (Status.unresolved, Cause.impacts_exhausted),
+    TOO_WIDE: (Status.unresolved, Cause.overflow),
+}
+"""Statuses and causes of the codes of `kernels.chatter`."""
 
 
 @dataclass(frozen=True)
@@ -113,16 +122,43 @@ def chatter_limit(
     >>> print(f"{end.tau:.14f}", Status(end.status).name, bool(end.error < 1e-13))
     0.95935923442208 complete True
     """
-    states = States.of(osc, tau, v, digits if isinstance(digits, int) else 15)
-    if states.shape:
+    states, most = (
+        States.of(osc, tau, v, digits if isinstance(digits, int) else 15),
+        whole("impacts", impacts, 1, 10**7),
+    )
+    if states.shape and digits is not None:
         each = [chatter_limit(osc, *states.given(index), digits=digits, impacts=impacts)
                 for index in range(states.v.size)]  # fmt: skip
         return gathered(ChatterLimit, each, states.shape)  # type: ignore[no-any-return]
-    flown = _Flown(osc, states, whole("impacts", impacts, 1, 10**7))
-    found = flown.limit()
+    found = _in_doubles(osc, states, most)
     if digits is None or found.status not in (Status.complete, Status.lifts_off):
         return found
     return _enclosed(osc, states, checked_digits(digits)) or _precise(osc, states, found, digits)
+
+
+def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
+    """The limits of states: by the compiled loop of a linear model, else one after the other."""
+    model, count = compiled_model(osc), states.v.size
+    at = np.flatnonzero((states.v > 0) & (np.abs(states.tau) < model.nearest))
+    near = 0.0 if compare(osc.slope_at_rest(), 1) == 0 else ENDING.near
+    compiled = model.limits(states.tau[at], states.v[at], (near, float(most), ENDING.trust)) if at.size else None
+    tau, error, impacts = (np.full(count, np.nan) for _ in range(3))
+    codes = np.full(count, NO_ROOM, np.int8)
+    if compiled is not None:
+        codes[at], (tau[at], error[at], impacts[at]) = compiled
+    status, cause = decoded(codes)
+    for code, (ended, why) in ENDED.items():
+        status[codes == code], cause[codes == code] = ended, why
+    none = (status != Status.complete) & (status != Status.lifts_off)
+    tau[none] = error[none] = np.nan
+    for index in np.flatnonzero(codes == NO_ROOM).tolist():
+        one = _Flown(osc, states, most, index).limit()
+        tau[index], error[index], impacts[index] = one.tau, one.error, one.impacts
+        status[index], cause[index] = one.status, one.cause
+    if not states.shape:
+        return ChatterLimit(tau[0], int(impacts[0]), error[0], status[0], cause=cause[0])
+    parts = tau, impacts.astype(np.int64), error, status_array(status), np.full(count, None), cause
+    return ChatterLimit(*(part.reshape(states.shape) for part in parts))
 
 
 def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | None:
@@ -157,11 +193,11 @@ def _last(terms: list[Any]) -> Any:
 
 
 class _Flown:
-    """A chatter sequence in doubles."""
+    """A chatter sequence in doubles, of any model: `kernels.chatter` does the same for linear ones."""
 
-    def __init__(self, osc: Oscillator, states: States, most: int) -> None:
-        self.osc, self.states, self.most = osc, states, most
-        self.times, self.speeds, self.cause = [float(states.tau[0])], [float(states.v[0])], Cause.decided
+    def __init__(self, osc: Oscillator, states: States, most: int, index: int = 0) -> None:
+        self.osc, self.given, self.most = osc, states.given(index), most
+        self.times, self.speeds, self.cause = [float(states.tau[index])], [float(states.v[index])], Cause.decided
         self.slopes: list[list[float]] = []
         self._known: list[Any] | None = None
 
@@ -201,7 +237,7 @@ class _Flown:
         """A start at rest is flown by the map, which knows what follows."""
         if self.speeds[0] > 0:
             return Status.hit
-        step = impact_map(self.osc, *self.states.given(0))
+        step = impact_map(self.osc, *self.given)
         if step.status == Status.hit:
             self.times.append(float(step.tau))
             self.speeds.append(float(step.v))
@@ -220,6 +256,8 @@ class _Flown:
         self.slopes += found.slopes.T[:kept].tolist()
         if kept != found.tau.size:
             return Status.hit, False
+        if found.status and len(self.times) > 1 and acceleration(self.osc, np.array(self.times[-1:]))[0] >= 0:
+            return Status.hit, False  # contact is lost at this impact, wherever the mass goes from there
         self.cause = Cause(found.cause)
         return Status(found.status), found.short or (short and near == 0.0)
 

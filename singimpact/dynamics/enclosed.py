@@ -20,6 +20,7 @@ from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.algebra.precision import balls_at
 from singimpact.contact.next_zero import ContactZero
+from singimpact.dynamics.guide import guided, newton, spread
 from singimpact.flights.balls import LinearFlow
 from singimpact.flights.states import States
 from singimpact.oscillator.linear import linear_form
@@ -59,9 +60,11 @@ def enclosable(osc: Oscillator) -> bool:
     return linear_form(osc) is not None and not names_in(osc.restitution) and as_float(osc.restitution) < 1
 
 
-def _with_more_bits(attempt: Callable[[LinearFlow], Found | None], osc: Oscillator, digits: int) -> Found | None:
-    """attempt(flow) at growing precision, until it decides."""
-    bits = ceil(digits * 3.33) + ORBITS.spare
+def _with_more_bits(
+    attempt: Callable[[LinearFlow], Found | None], osc: Oscillator, digits: int, expected: int = 0
+) -> Found | None:
+    """attempt(flow) at growing precision, from that which is expected to be enough, until it decides."""
+    bits = max(ceil(digits * 3.33), expected) + ORBITS.spare
     while bits <= ORBITS.bits * (digits + 32):
         with balls_at(bits):
             found = attempt(LinearFlow(osc, bits))
@@ -151,15 +154,24 @@ def threshold(osc: Oscillator, tau: Expression, rough: Any, end: ContactZero, di
     ----------
     rough : the v found in doubles. end : the zero of a_c into which gamma runs.
     """
-    near = _with_more_bits(lambda flow: _searched(_Gamma(osc, flow, end), tau, rough, digits), osc, digits)
+    guide = guided(osc, tau, float(rough), end, digits)
+    near, lost = None, 0
+    if guide is not None:
+        bits = ceil(digits * 3.33) + ORBITS.spare
+        with balls_at(bits):
+            flow = LinearFlow(osc, bits)
+            near = newton(flow, tau, float(rough), guide, digits)
+            lost = 0 if near is None else spread(flow, tau, near, guide, digits)
+    if near is None:
+        near = _with_more_bits(lambda flow: _searched(_Gamma(osc, flow, end), tau, rough, digits), osc, digits)
     if near is None:
         return None
     margin = abs(near) / (4 * 10**digits)
-    low, high = near - margin, near + margin
 
     def side(v: Fraction) -> int | None:
-        return _with_more_bits(lambda flow: _side(flow, end.moved(flow.balls.bits), tau, v), osc, digits)
+        return _with_more_bits(lambda flow: _side(flow, end.moved(flow.balls.bits), tau, v), osc, digits, lost)
 
+    low, high = near - margin, near + margin
     return from_ends(low, high, digits) if side(low) == -1 and side(high) == 1 else None
 
 
@@ -239,7 +251,7 @@ def _side(flow: LinearFlow, end: Any, tau: Expression, v: Fraction) -> int | Non
     for _ in range(ORBITS.impacts):
         if not time < end or not speed > 4 * speed.rad():
             return None
-        left = remaining(flow, time, speed) if flow.acceleration(time) < 0 else None
+        left = _left_before(flow, time, speed, end)
         if left is not None and time + left < end:
             return -1
         hit = flow.first_hit(time, speed, end - time)
@@ -249,3 +261,11 @@ def _side(flow: LinearFlow, end: Any, tau: Expression, v: Fraction) -> int | Non
             return 1
         time, speed = time + hit.time, -flow.r * hit.velocity
     return None
+
+
+def _left_before(flow: LinearFlow, time: Any, speed: Any, end: Any) -> Any | None:
+    """`remaining`, where its window lies before a zero of a_c: next to gamma it does not, and no bounds close."""
+    a = flow.acceleration(time)
+    if not (a < 0 and ORBITS.wide * 2 * speed < -a * (1 - flow.r) * (end - time)):
+        return None
+    return remaining(flow, time, speed)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.balls import as_rational
+from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
 from singimpact.algebra.precision import digits_at, for_user
@@ -18,11 +19,14 @@ from singimpact.dynamics.gathered import gathered
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
+from singimpact.flights.kernels.gamma import TERMS_OF_GAMMA
 from singimpact.flights.orbits import orbit_segment
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
+from singimpact.theory.contact_points import Place
+from singimpact.theory.formulas import curve_at
 
 EPSILON = 2.0**-52
 
@@ -41,6 +45,8 @@ class Search:
         2/(j + 2) at contact order j.
     edges : halvings towards velocities whose side doubles do not decide. widest : the relative error of a v, at most.
     first, more, rounds : impacts of the first refinement, more each time, at most.
+    coarse : the relative width of a bracket in which Newton's method begins; the series of gamma is met where such a
+        distance is ten times larger. bits : of the balls in which that series is computed.
     """
 
     narrow: float = 4 * EPSILON
@@ -53,6 +59,8 @@ class Search:
     first: int = 6
     more: int = 4
     rounds: int = 2000
+    coarse: float = 2.0**-12
+    bits: int = 128
 
 
 SEARCH = Search()
@@ -143,7 +151,7 @@ def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> T
         low, high = high, 2 * high
         if side != _Side.below or high > 1e12:
             return _without(Status.unresolved)
-    low, high = _bracket(osc, tau, low, high, end, impacts)
+    low, high = _bracket(osc, tau, low, high, zero, impacts)
     while high - low > SEARCH.narrow * high:
         middle = (low + high) / 2
         side = _side(osc, tau, middle, end, impacts)
@@ -161,14 +169,30 @@ def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> T
     return Threshold(np.float64(v), np.float64(error), np.int8(Status.complete))
 
 
-def _bracket(osc: Oscillator, tau: float, low: float, high: float, end: float, impacts: int) -> tuple[float, float]:
+def _bracket(
+    osc: Oscillator, tau: float, low: float, high: float, zero: ContactZero, impacts: int
+) -> tuple[float, float]:
     """Velocities on both sides of gamma, as near as the compiled loop of a linear model decides them."""
     model = compiled_model(osc)
-    if abs(tau) >= model.nearest:
+    if abs(tau) >= model.nearest or not model.linear:
         return low, high
-    settings = SEARCH.short, SEARCH.narrow, float(impacts)
-    found = model.brackets(np.array([tau]), np.array([[low, high, end - tau]]), settings)
+    series = _series(osc, replace(zero, turns=0)) if model.constant_restitution else (0.0, 1.0, *[0.0] * TERMS_OF_GAMMA)
+    settings = SEARCH.short, SEARCH.narrow, float(impacts), SEARCH.coarse, *series
+    found = model.brackets(np.array([tau]), np.array([[low, high, zero.tau - tau]]), settings)
     return (low, high) if found is None else (float(found[0][0, 0]), float(found[0][0, 1]))
+
+
+@lru_cache(maxsize=256)
+def _series(osc: Oscillator, zero: ContactZero) -> tuple[float, ...]:
+    """The distance from the end of gamma at which the series is as good as doubles, 0 for none; j; the coefficients."""
+    first, last = zero.order + 1, zero.order + TERMS_OF_GAMMA
+    graph = curve_at(Place(osc, zero.order, None, zero), last, Balls(SEARCH.bits)).graph
+    g = [float(graph[n].mid()) for n in range(first, last + 1)]
+    if not (np.isfinite(g).all() and g[0]):
+        return 0.0, float(zero.order), *[0.0] * TERMS_OF_GAMMA
+    # two coefficients, as every other one is zero where the forcing is symmetric; those left out are taken for as large
+    sizes = [(EPSILON / 4 * abs(g[0] / g[n])) ** (1 / (n + 1)) for n in (len(g) - 2, len(g) - 1) if g[n]]
+    return min(sizes, default=1.0), float(zero.order), *g
 
 
 def _edge(osc: Oscillator, tau: float, decided: float, near: float, end: float, impacts: int) -> float:

@@ -15,7 +15,8 @@ from typing import Any
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate, names_in
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra.precision import balls_at, kept_property
+from singimpact.flights.short_balls import ShortFlights
 from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 
@@ -78,6 +79,10 @@ class LinearFlow:
     def _ball(self, tree: Any) -> Any:
         return evaluate(tree, {}, self.balls)
 
+    @kept_property
+    def _short(self) -> ShortFlights:
+        return ShortFlights(self)
+
     def number(self, value: Fraction) -> Any:
         """A rational as a ball."""
         return self.balls.rational(value)
@@ -100,6 +105,8 @@ class LinearFlow:
         -------
         BallHit or None : None when these balls do not decide it.
         """
+        if removed == 1 and (soon := self._short.hit(tau, v)) is not None:
+            return BallHit(None, None) if limit is not None and soon[0] > limit else BallHit(*soon)
         longest = LIMITS.turns / self.fastest
         end = longest if limit is None or limit > longest else limit.upper()
         low, high = self.number(Fraction(0)), self._first_window(tau, v, removed)

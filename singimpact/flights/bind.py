@@ -22,8 +22,10 @@ from singimpact.flights.kernels import (
     batch,
     batch_isolate,
     batch_refine,
+    chatter,
     double_double,
     entries,
+    gamma,
     hits,
     lanes,
     layout,
@@ -39,9 +41,11 @@ from singimpact.flights.kernels import (
     variational,
     waves,
 )
+from singimpact.generated import completion
 
 MODULES = (radii, state, lanes, double_double, waves, roots, linear, steps, taylor, tables, tabulated, variational,
-           refine, hits, orbits, batch_isolate, batch_refine, batch, layout, entries)  # fmt: skip
+           refine, hits, orbits, gamma, completion, chatter, batch_isolate, batch_refine, batch, layout,
+           entries)  # fmt: skip
 UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 IN_STEPS = {"step_size": "step_size_of_discs", "singular_part": "singular_part_of_discs",
             "next_hit": "next_hit_in_steps", "placed": "placed_in_steps"}  # fmt: skip

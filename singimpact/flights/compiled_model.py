@@ -22,6 +22,7 @@ from singimpact.flights import counted
 from singimpact.flights.bind import Emitted
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
 from singimpact.flights.kernels import entries, layout
+from singimpact.flights.kernels.chatter import NO_ROOM
 from singimpact.flights.kernels.hits import UNIT
 from singimpact.flights.kernels.lanes import LANES
 from singimpact.flights.limits import LIMITS, degree_for
@@ -65,6 +66,8 @@ class TableSettings:
     block: int = 65_536
     # the same when flights are interpreted
     interpreted: int = 64
+    # impacts of a chatter that scratch has rows for: at first, and of a state that needs more
+    chatter: tuple[int, int] = (4096, 2**20)
 
 
 TABLES = TableSettings()
@@ -383,13 +386,13 @@ class CompiledModel:
             begin += block
         return times[: tau.size], speeds[: tau.size], status[: tau.size]
 
-    def brackets(self, tau: Array, given: Array, settings: tuple[float, float, float]) -> tuple[Array, Array] | None:
+    def brackets(self, tau: Array, given: Array, settings: tuple[float, ...]) -> tuple[Array, Array] | None:
         """Brackets of gamma, shape (n, 2), and codes; None where no compiled entry of a linear model is there.
 
         Parameters
         ----------
         given : velocities below and above gamma, and times to its end, shape (n, 3). settings : see
-            `kernels.orbits.bracket_gamma`.
+            `kernels.gamma.bracket_gamma`.
         """
         entry = self._compiled(self.main, 0.05 * tau.size, self.orbits) if self.linear else None
         if entry is None:
@@ -399,6 +402,38 @@ class CompiledModel:
         rows = np.ascontiguousarray(given, dtype=float)
         self._call(entry, self._new_scratch(), (entries.BRACKET, tau.size, 0), (tau, rows, numbers), out, status)
         return out, status
+
+    def limits(self, tau: Array, v: Array, settings: tuple[float, float, float]) -> tuple[Array, Array] | None:
+        """Codes of chatters, and end, error and impacts, shape (3, n); None where no compiled entry flies them.
+
+        Parameters
+        ----------
+        tau, v : states, v > 0. settings : see `kernels.chatter.chatter_end`.
+        """
+        entry = self._entry(self.main, self.orbits) if self.linear and self.constant_restitution else None
+        if entry is None:
+            return None
+        out, status = np.empty((3, tau.size)), np.empty(tau.size, np.int8)
+        numbers, begin, many = np.concatenate([settings, self.rho]), 0, 4
+        scratch, room = self._new_scratch(3 * TABLES.chatter[0] // 2), TABLES.chatter[0]
+        while begin < tau.size:
+            part = slice(begin, begin + many)
+            rows, codes = np.empty((3, tau[part].size)), status[part]
+            given = tau[part], v[part], numbers
+            self._call(entry, scratch, (entries.LIMIT, codes.size, room), given, rows, codes)
+            for index in np.flatnonzero(codes == NO_ROOM).tolist():
+                one, last = slice(begin + index, begin + index + 1), TABLES.chatter[1]
+                end = np.empty((3, 1))
+                given = tau[one], v[one], numbers
+                more = self._new_scratch(3 * last // 2)
+                self._call(entry, more, (entries.LIMIT, 1, last), given, end, codes[index : index + 1])
+                rows[:, index : index + 1] = end
+            out[:, part] = rows
+            begin += codes.size
+            flown = int(rows[2].sum())
+            counted.add(flown)
+            many = max(1, min(TABLES.block, 4 * many, TABLES.block * codes.size // max(flown, 1)))
+        return status, out
 
     def variations(self, tau: Array, v: Array, times: Array) -> Array:
         """dx/dv, dx'/dv, dx/dtau, dx'/dtau at given flight times, shape (n, 4)."""

@@ -22,6 +22,7 @@ PLACES = ("generic", "tangency", "swan")
 CURVED = {"fibre": (0, 4), "gamma_tangency": (1, 5), "gamma_swan": (2, 6)}  # contact order, last power of sigma
 MOVED = {"motion_tangency": (1, 4), "motion_swan": (2, 4)}
 COMPLETED, OUTLINED = 4, 6
+LINEAR = ("f_01", "f_10")  # the jets of f that a linear model has: damping and stiffness
 HIGHEST, HIGHEST_COMPLETION = 10, 8  # of a curve with symbols: a minute
 COMMAND = "python derivations/freeze.py"
 
@@ -67,6 +68,12 @@ def curve_module() -> str:
     return module_source(title, COMMAND, curve_functions())
 
 
+def completion_module() -> str:
+    """The terms of tau_inf of a linear model with a number for restitution, as a file for kernels."""
+    title = "The chatter that is left in a linear model, term by term."
+    return module_source(title, COMMAND, [_completion(COMPLETED, apart=True, linear=True)])
+
+
 def curve_functions(order: int | None = None) -> list[str]:
     """The source of each curve, to the orders that are frozen, or to `order` where symbols reach it."""
     return [
@@ -92,12 +99,17 @@ def _curve(name: str, j: int, top: int, part: str) -> str:
     return rational_series_source(name, series, says)
 
 
-def _completion(top: int, apart: bool = False) -> str:
+def _completion(top: int, apart: bool = False, linear: bool = False) -> str:
     found = symbolic_completion(top)
     coefficients = {n: _factored(value.terms) for n, value in found.coefficients.items()}
+    if linear:
+        absent = [n for n, name in enumerate(found.names) if not name.startswith("a_") and name not in LINEAR]
+        coefficients = {n: {key: value for key, value in terms.items() if not any(key[i] for i in absent)}
+                        for n, terms in coefficients.items()}  # fmt: skip
     series = RationalSeries("v", found.names, coefficients, _unit(0, found.names), argument=1, apart=apart)
     name, what = ("chatter_terms", "The terms of") if apart else ("chatter_limit", "")
-    says = f"{what} tau_inf - tau to v^{top}; lambda is the restitution r.".strip()
+    name, kind = (f"linear_{name}", " of a linear model") if linear else (name, "")
+    says = f"{what} tau_inf - tau{kind} to v^{top}; lambda is the restitution r.".strip()
     return rational_series_source(name, series, says)
 
 

@@ -10,8 +10,8 @@ import pytest
 import sympy
 
 import singimpact as si
-from singimpact.generated import curves
-from singimpact.theory.frozen import CURVED, MOVED, curve_module
+from singimpact.generated import completion, curves
+from singimpact.theory.frozen import CURVED, MOVED, completion_module, curve_module
 
 EPSILON = 2.0**-52
 NAMES = [*CURVED, *MOVED, "chatter_limit", "outline_tangency"]
@@ -60,6 +60,15 @@ def symbolic(name):
 
 def test_source_is_what_the_theory_writes(clone):
     assert (clone / "singimpact" / "generated" / "curves.py").read_text() == curve_module()
+    assert (clone / "singimpact" / "generated" / "completion.py").read_text() == completion_module()
+
+
+def test_the_terms_of_a_linear_model_are_those_without_the_other_jets():
+    letters = list(inspect.signature(completion.linear_chatter_terms).parameters)
+    values = {letter: Fraction(n + 2, 9 + n * n) for n, letter in enumerate(letters)}
+    absent = {letter: Fraction(0) for letter in names_of("chatter_terms") if letter not in letters}
+    assert len(absent) == 6
+    assert completion.linear_chatter_terms(**values) == curves.chatter_terms(**values, **absent)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -4,7 +4,8 @@
 first root of a polynomial), `linear` (closed form), `tables` (that closed form at multiples of a step), `tabulated` (a
 flight through a table), `taylor` (a flight in Taylor steps), `steps` (how long a Taylor step may be), `variational` (a
 flight with its derivatives), `refine` (a hit placed in double-double), `hits` (a flight with its conditions),
-`orbits` (impact after impact), `batch`, `batch_isolate`, `batch_refine` over `lanes` (many orbits in lock-step),
-`layout` (where the numbers lie), `entries` (what Python calls).
+`orbits` (impact after impact), `chatter` (impacts until they are summed up), `gamma` (velocities on gamma), `batch`,
+`batch_isolate`, `batch_refine` over `lanes` (many orbits in lock-step), `layout` (where the numbers lie), `entries`
+(what Python calls).
 Not here: anything that knows expressions, states as they are written, or statuses in words: the files of `flights`.
 """

@@ -9,6 +9,8 @@ from math import nan
 from typing import Any
 
 from singimpact.flights.kernels.batch import fly_batches
+from singimpact.flights.kernels.chatter import SETTINGS_OF_CHATTER, linear_limits
+from singimpact.flights.kernels.gamma import SETTINGS_OF_GAMMA, bracket_gamma
 from singimpact.flights.kernels.hits import (
     carried_errors,
     launch_acceleration,
@@ -32,29 +34,30 @@ from singimpact.flights.kernels.layout import (
     taylor_model,
 )
 from singimpact.flights.kernels.linear import response
-from singimpact.flights.kernels.orbits import bracket_gamma, iterate, orbit_segment
+from singimpact.flights.kernels.orbits import iterate, orbit_segment
 from singimpact.flights.kernels.refine import fill_fine
+from singimpact.flights.kernels.state import Search
 from singimpact.flights.kernels.tables import bounds, expansions, tabulate
 from singimpact.flights.kernels.taylor import follow, taylor_flight
 from singimpact.flights.kernels.variational import derivatives_at, judge
 from singimpact.flights.kernels.waves import reduced_twice
 
-PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET = range(10)
+PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET, LIMIT = range(11)
 """Kinds of work: fill the tables of a model, of its batches; first hits of many states; impacts of one orbit; the last
 states of many orbits; derivatives of x and x' at given times; x and x' along one flight; errors and conditions of hits
-of a Taylor flow; flights from rest; brackets of gamma."""
+of a Taylor flow; flights from rest; brackets of gamma; ends of chatter."""
 AT_REST = 40
 """The code of a state with v = 0 among `HITS`: it is not flown."""
 
 
 def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
-    """PREPARE, HITS, SEGMENT, RELEASES or VARIATIONS of a linear model.
+    """PREPARE, HITS, SEGMENT, RELEASES, VARIATIONS, BRACKET or LIMIT of a linear model.
 
     Parameters
     ----------
     sizes : see `layout`. flat, scratch : of the model. tau, v : states. w : times; the part of a time below which
-        chatter ends an orbit, or settings of a bracket, then constants of rho; orders of roots removed at rest.
-    out : results. status : codes.
+        chatter ends an orbit, or settings of a bracket or of a limit, then constants of rho; orders of roots removed at
+        rest. out : results. status : codes. IMPACTS of LIMIT are rows behind all scratch.
 
     Returns
     -------
@@ -77,8 +80,12 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     if kind == HITS:
         return linear_hits(states, speeds, model, work, block(out, 0, (10, count)), codes)
     if kind == BRACKET:
-        given, settings, rho = block(v, 0, (count, 3)), block(w, 0, (3,)), block(w, 3, (sizes[RHO],))
-        return linear_brackets((states, given), settings, rho, model, work, block(out, 0, (count, 2)), codes)
+        search = Search(block(w, 0, (SETTINGS_OF_GAMMA,)), block(w, SETTINGS_OF_GAMMA, (sizes[RHO],)))
+        return linear_brackets(states, block(v, 0, (count, 3)), search, model, work, block(out, 0, (count, 2)), codes)
+    if kind == LIMIT:
+        rows = block(scratch, scratch_length(sizes), (sizes[IMPACTS], 6))
+        search = Search(block(w, 0, (SETTINGS_OF_CHATTER,)), block(w, SETTINGS_OF_CHATTER, (sizes[RHO],)))
+        return linear_limits(states, speeds, search, model, work, rows, block(out, 0, (3, count)), codes)
     if kind == RELEASES:
         return releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
     return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
@@ -117,11 +124,12 @@ def linear_hits(tau: Any, v: Any, model: Any, work: Any, out: Any, status: Any) 
     return others
 
 
-def linear_brackets(at: Any, settings: Any, w: Any, model: Any, work: Any, out: Any, status: Any) -> int:
-    """`bracket_gamma` of many phases; at : the phases, and a velocity below gamma, one above, the time to its end."""
-    others, (tau, given) = 0, at
+def linear_brackets(tau: Any, given: Any, search: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+    """`bracket_gamma` of many phases; given : a velocity below gamma, one above it, and the time to its end."""
+    others = 0
     for i in range(len(tau)):
-        out[i, 0], out[i, 1], status[i] = bracket_gamma(tau[i], given[i], settings, w, model, work)
+        low, high, end = given[i, 0], given[i, 1], given[i, 2]
+        out[i, 0], out[i, 1], status[i] = bracket_gamma(tau[i], low, high, end, search, model, work)
         others += 1 if status[i] != 0 else 0
     return others
 

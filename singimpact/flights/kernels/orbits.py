@@ -18,12 +18,6 @@ from singimpact.flights.kernels.state import (
 )
 from singimpact.flights.kernels.waves import reduced_twice
 
-BELOW, ABOVE, SPENT = 50, 51, 52
-"""Codes of `side_of_gamma`."""
-WITHIN, WIDTH, MOST = range(3)
-"""Settings of `bracket_gamma`: the part of the time to the end of gamma in which chatter must end; the relative width
-to stop at; the impacts flown at most from one velocity."""
-
 
 def rebound(velocity: float, w: Any) -> float:
     """rho(velocity) of a constant restitution w[0]; `flights.bind` puts an emitted rho in its place."""
@@ -58,11 +52,16 @@ def hit_later(tau: float, since: float, lost: float, v: float, near: float, mode
 
     A hit that is not refined, for want of a table, is within a few roundings more: it counts as a hit.
     """
-    at, at_low = sum_twice(tau, 0.0, since, -lost)
-    t, t_low = reduced_twice(at, model.turn)
-    t, t_low = sum_twice(t, t_low, at_low, 0.0)
+    t, t_low = launched(tau, since, lost, model)
     code, a = next_hit(t, t_low, v, near, model, work)
     return 0 if code == NOT_REFINED else code, a
+
+
+def launched(tau: float, since: float, lost: float, model: Any) -> Any:
+    """(t, t_low): tau + since - lost, reduced by the period."""
+    at, at_low = sum_twice(tau, 0.0, since, -lost)
+    t, t_low = reduced_twice(at, model.turn)
+    return sum_twice(t, t_low, at_low, 0.0)
 
 
 def iterate(tau: Any, v: Any, count: int, w: Any, model: Any, work: Any, status: Any) -> None:
@@ -79,51 +78,6 @@ def iterate(tau: Any, v: Any, count: int, w: Any, model: Any, work: Any, status:
                 if not v[i] > 0:
                     status[i] = 8
         tau[i] += since - lost
-
-
-def side_of_gamma(tau: float, v: float, end: float, settings: Any, w: Any, model: Any, work: Any) -> int:
-    """BELOW: chatter from (tau, v) completes before `end`; ABOVE: an impact comes after it; else the code of a flight.
-
-    Parameters
-    ----------
-    end : time after tau at which gamma ends. settings : after MOST impacts the code is SPENT. w : constants of rho.
-    """
-    since, lost = 0.0, 0.0
-    for _ in range(int(settings[MOST])):
-        code, a = hit_later(tau, since, lost, v, 0.0, model, work)
-        if a < 0 and 2 * v < -a * model.rules.lost * settings[WITHIN] * (end - since):
-            return BELOW
-        if code == 3:  # no further impact: contact is lost
-            return ABOVE
-        if code != 0:
-            return int(code)
-        since, lost = later(since, lost, work.hit[FLIGHT_TIME])
-        v = rebound(work.hit[VELOCITY], w)
-        if since - lost >= end:
-            return ABOVE
-        if not v > 0:
-            return 8
-    return SPENT
-
-
-def bracket_gamma(tau: float, given: Any, settings: Any, w: Any, model: Any, work: Any) -> Any:
-    """(low, high, code): an interval of velocities around gamma at tau, halved until it is narrow.
-
-    Parameters
-    ----------
-    given : a velocity below gamma, one above it, and the time to its end. settings, w : as in `side_of_gamma`.
-    """
-    low, high, end = given[0], given[1], given[2]
-    while high - low > settings[WIDTH] * high:
-        middle = (low + high) / 2
-        code = side_of_gamma(tau, middle, end, settings, w, model, work)
-        if code == BELOW:
-            low = middle
-        elif code == ABOVE:
-            high = middle
-        else:
-            return low, high, code
-    return low, high, 0
 
 
 def later(since: float, lost: float, time: float) -> Any:

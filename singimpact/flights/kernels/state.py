@@ -142,6 +142,13 @@ class Flying(NamedTuple):
     twice: Any
 
 
+class Search(NamedTuple):
+    """What a search over orbits is given: its settings, see `gamma` and `chatter`, and the constants of rho."""
+
+    settings: Any
+    rho: Any
+
+
 class Batch(NamedTuple):
     """A linear model as `batch` flies it, and scratch of a batch.
 
