@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @click.command(short_help="run time against error, beside other tools")
 @click.argument("groups", metavar="[GROUP]...", nargs=-1)
-@click.option("--quick", is_flag=True, help="Fewer cases and rounds, within a minute.")
+@click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
 @click.option("--plots", metavar="DIR", help="Draw time against error there, a picture a group.")
 @click.option("--picture", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
 @click.option("--format", "form", type=click.Choice(["text", "markdown"]), default="text", show_default=True)
@@ -41,8 +41,8 @@ def command(
     workers: int | None, keep: str | None, family: str, balls: int, digits_checks: int, as_json: bool,
     output: str | None,
 ) -> None:  # fmt: skip
-    """Measure in one run, in CPU time, beside other tools: map, chatter, threshold, series, fixed-points, emitted,
-    figures, growth, grid, start; all of them without a GROUP (with --quick all but the last two).
+    """Measure in one run, in CPU time, beside other tools: map, orbit, regimes, chatter, threshold, series,
+    fixed-points, emitted, figures, growth, start; all of them without a GROUP (with --quick all but the last).
 
     The group `states` flies random states and the same ones by a slow solver of 60 digits; --states, --seed, --workers
     and --keep are its own. With `--family steep` it flies 20 families with steep layers beside a solver of small fixed
@@ -91,18 +91,21 @@ def _joined(found: list[Measured]) -> dict[str, Any]:
     from singimpact.bench.report import as_data
 
     parts = [as_data(each) for each in found]
-    joined: dict[str, Any] = {key: [item for part in parts for item in part[key]] for key in ("rows", "exponents")}
+    joined: dict[str, Any] = {
+        key: [item for part in parts for item in part[key]] for key in ("rows", "exponents", "notes")
+    }
     return {**joined, "skipped": sorted({name for part in parts for name in part["skipped"]})}
 
 
 def _text(found: Measured, form: str) -> str:
-    from singimpact.bench.report import NOTE, skipped, tables
+    from singimpact.bench.report import NOTE, reached, skipped, tables
 
     laid_out = markdown if form == "markdown" else columns
     heading = f"## {found.group}" if form == "markdown" else found.group
     parts = [heading, *(laid_out(header, cells) for header, cells in tables(found)), skipped(found)]
     if any(row.wrong is not None for row in found.rows):
         parts.append(NOTE)
+    parts += [reached(found), "\n".join(found.notes)]
     return "\n\n".join(part for part in parts if part)
 
 
