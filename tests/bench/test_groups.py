@@ -12,7 +12,7 @@ from singimpact.bench.drawn import KINDS, RESTITUTIONS, Draws, Fed
 from singimpact.bench.groups import GROUPS, impact_map, measured, regimes, series, usual
 from singimpact.bench.measuring import FULL, QUICK, Effort, measure
 
-SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=10)
+SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)
 COSTLY = ("series", "figures", "start")
 EVENTS = {"scipy DOP853, terminal event", "heyoka, terminal event"}
 PEERS = {

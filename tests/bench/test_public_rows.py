@@ -17,7 +17,7 @@ from singimpact.bench.measuring import Case, Effort, Method, cpu_seconds
 
 PACKAGE = str(Path(si.__file__).parent)
 BENCH = str(Path(PACKAGE) / "bench")
-SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=10)
+SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)
 IN_PROCESS = ["map", "orbit", "regimes", "chatter", "threshold", "fixed-points", "emitted", "growth"]
 
 

@@ -6,10 +6,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from math import cos
 from typing import Any
 
+from singimpact.bench.compiled import compiled
 from singimpact.bench.drawn import CHATTERING, Draws, States, counted, model
 from singimpact.bench.groups.impact_map import ACCURACY, HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
@@ -25,13 +27,14 @@ STOPS = (1e-3, 1e-4, 1e-5, 1e-6)
 
 def cases(effort: Effort) -> Iterator[Case]:
     """Two restitutions as close as wanted; then a state a call by restitution, and an array."""
+    notes = compiled(("orbit",), effort.wait)
     for r in ("0.5", "0.9"):
-        yield _case(r, effort)
+        yield replace(_case(r, effort), notes=notes)
     for restitution in (0.9,) if effort.quick else (0.5, 0.9, 0.99, 0.999):
         yield _drawn(CHATTERING, restitution, 1, effort)
     yield _drawn("duffing", 0.7, 1, effort)
     for restitution in (0.9,) if effort.quick else (0.5, 0.9):
-        yield _drawn(CHATTERING, restitution, 1000 if effort.quick else 100_000, effort)
+        yield _drawn(CHATTERING, restitution, 25 * effort.judged if effort.quick else 100_000, effort)
 
 
 def _case(r: str, effort: Effort) -> Case:
@@ -61,8 +64,6 @@ def _flown(name: str, fly: Callable[[Problem], tuple[Any, Any]], problem: Proble
 
 
 def _in_digits(problem: Problem, stop: float, digits: int) -> Method:
-    from dataclasses import replace
-
     import mpmath
 
     def run() -> list[Any]:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.bench.compiled import compiled
 from singimpact.bench.drawn import RESTITUTIONS, Draws, Fed, States, counted, model
 from singimpact.bench.measuring import Aim, Case, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta, taylor_events
@@ -43,8 +44,10 @@ class Sizes:
 
 def sizes_of(effort: Effort) -> Sizes:
     """Those of an effort."""
-    judged = {"linear": effort.judged, "duffing": effort.judged // 10}
-    return Sizes(2000, 10_000, 200, 5, judged) if effort.quick else Sizes(20_000, 100_000, 10_000, 30, judged)
+    judged = {"linear": effort.judged, "duffing": max(effort.judged // 10, 1)}
+    if effort.quick:
+        return Sizes(50 * effort.judged, 250 * effort.judged, 5 * effort.judged, 5, judged)
+    return Sizes(20_000, 100_000, 10_000, 30, judged)
 
 
 @dataclass(frozen=True)
@@ -79,36 +82,19 @@ CALLS = (
 
 def cases(effort: Effort) -> Iterator[Case]:
     """A case a way to call the map; then its derivative and its inverse on arrays."""
-    sizes = sizes_of(effort)
-    _warm()
+    sizes, notes = sizes_of(effort), _warm(effort)
     for calls in CALLS:
-        yield _map(calls, sizes)
+        yield replace(_map(calls, sizes), notes=notes)
     yield _derivative(sizes)
     yield _inverse(sizes)
 
 
-def _warm() -> None:
+def _warm(effort: Effort) -> list[str]:
     """The models' tables, and code where it is compiled meanwhile: what `bench start` times."""
-    for family in ("linear", "duffing"):
-        compiled(family)
-        for restitution in RESTITUTIONS:
-            model(family, restitution).impact_map(0.5, 1.0)
-
-
-@lru_cache(maxsize=4)
-def compiled(family: str) -> None:
-    """Fly until flights of a family are no longer interpreted: a state then costs a tenth, or 60 s have passed."""
-    import time
-
-    draw, begun, slowest = Draws(family, "generic", 256), time.monotonic(), 0.0
-    while time.monotonic() - begun < 60:
-        states = draw()
-        start = time.thread_time()
-        states.osc.impact_map(states.tau, states.v)
-        spent = time.thread_time() - start
-        slowest = max(slowest, spent)
-        if spent < 20e-6 * states.tau.size:
-            return
+    for restitution in RESTITUTIONS:
+        model("linear", restitution).impact_map(0.5, 1.0)
+        model("duffing", restitution).impact_map(0.5, 1.0)
+    return compiled(("map",), effort.wait)
 
 
 def _map(calls: Calls, sizes: Sizes) -> Case:

@@ -6,14 +6,16 @@ Every timed call has other states; the times of some impacts of the first call a
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from itertools import chain as joined
 from typing import Any
 
 import numpy as np
 
+from singimpact.bench.compiled import compiled
 from singimpact.bench.drawn import CHATTERING, RESTITUTIONS, Draws, States, counted
-from singimpact.bench.groups.impact_map import ACCURACY, HEYOKA, SCIPY, compiled, taylor_stepper
+from singimpact.bench.groups.impact_map import ACCURACY, HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Aim, Case, Counted, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta
 from singimpact.bench.peers.impacts import chain
@@ -28,12 +30,11 @@ NAMES = {"linear": "linear", "duffing": "Duffing", CHATTERING: "linear, chatter 
 
 def cases(effort: Effort) -> Iterator[Case]:
     """Orbits of both families, and orbits that chatter; then iterates of arrays."""
-    compiled("linear")
-    compiled("duffing")
     rates = RESTITUTIONS[::4] if effort.quick else RESTITUTIONS
+    notes = compiled(("orbit", "iterate"), effort.wait)
     for family in ("linear", "duffing"):
         for restitution in rates:
-            yield _orbit(family, restitution, effort)
+            yield replace(_orbit(family, restitution, effort), notes=notes)
     yield _orbit(CHATTERING, 0.5, effort)
     for restitution in rates:
         yield _iterate("linear", restitution, effort)

@@ -10,6 +10,7 @@ from functools import partial
 from math import pi
 from typing import Any
 
+from singimpact.bench.compiled import compiled
 from singimpact.bench.drawn import Draws, States, counted, model, pressing
 from singimpact.bench.groups.chatter import affordable
 from singimpact.bench.groups.impact_map import HEYOKA, SCIPY, taylor_stepper
@@ -26,11 +27,12 @@ GUESS = 0.05
 
 def cases(effort: Effort) -> Iterator[Case]:
     """One phase as close as wanted, then others by restitution, and an array; peers bisect, to a relative width."""
-    yield _one(effort)
+    notes = compiled(("orbit",), effort.wait)
+    yield replace(_one(effort), notes=notes)
     for restitution in (0.5, 0.9) if effort.quick else (0.5, 0.7, 0.9, 0.99):
         yield _drawn("linear", restitution, 1, effort)
     yield _drawn("duffing", 0.7, 1, effort)
-    yield _drawn("linear", 0.5, 100 if effort.quick else 1000, effort)
+    yield _drawn("linear", 0.5, effort.judged if effort.quick else 1000, effort)
 
 
 def _one(effort: Effort) -> Case:
