@@ -8,6 +8,7 @@ import sys
 import numpy as np
 import pytest
 
+from singimpact.bench import page
 from singimpact.bench.drawn import KINDS, RESTITUTIONS, Draws, Fed
 from singimpact.bench.groups import GROUPS, impact_map, measured, regimes, series, usual
 from singimpact.bench.measuring import FULL, QUICK, Effort, measure
@@ -148,6 +149,19 @@ def test_markdown(singimpact):
     assert lines[0] == "## fixed-points"
     assert lines[2].startswith("| case | method | setting | time | to reach | error | wrong | missed |")
     assert len({line.count("|") for line in lines[2:] if line.startswith("|")}) == 1
+
+
+def test_page_of_the_documentation(singimpact, tmp_path):
+    """One command writes it, and links the pictures from where it lies."""
+    (tmp_path / "docs").mkdir()
+    told = singimpact("bench", "fixed-points", "--quick", "--format", "page", "--plots", tmp_path / "docs" / "p",
+                      "-o", tmp_path / "docs" / "page.md")  # fmt: skip
+    assert told.exit_code == 0, told.output
+    text = (tmp_path / "docs" / "page.md").read_text()
+    assert text.startswith(f"<!-- written by `{page.COMMAND}`")
+    assert "![Fixed points: time against error](p/bench-fixed-points.png)" in text
+    assert (tmp_path / "docs" / "p" / "bench-fixed-points.png").is_file()
+    assert set(page.TITLES) == set(GROUPS)
 
 
 def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):

@@ -105,10 +105,10 @@ def _map(calls: Calls, sizes: Sizes) -> Case:
     setting = f"{counted(split, 'state')} a call"
     own = [Method("singimpact, impact_map", setting, _one_a_call if split == 1 else partial(_arrays, split),
                   problems=count, draw=_divided(draw(count), split), aim=Aim(calls.microseconds))]  # fmt: skip
-    if calls.family == "duffing" and split == count:
+    if calls.family == "duffing" and not calls.states:
         own += [Method("singimpact, impact_map", f"tolerance {tolerance:.0e}", partial(_coarse, tolerance),
                        problems=count, draw=draw(count)) for tolerance in TOLERANCES]  # fmt: skip
-    aim = FASTER if calls.family == "linear" and split == count else Aim()
+    aim = FASTER if calls.family == "linear" and not calls.states else Aim()
     methods, skipped = _beside(own, calls.family, (draw, sizes), aim)
     truth, kappas = drawn_flights.hits(draw(count)(), sizes.judged[calls.family])
     return Case(f"{calls.name}, {setting}", methods, truth, kappas, skipped)
