@@ -32,13 +32,18 @@ WORKS: dict[str, Callable[[States], None]] = {"map": _map, "orbit": _orbit, "ite
 
 
 def compiled(works: Sequence[str], wait: float) -> list[str]:
-    """Notes about work, keys of `WORKS`, that is still interpreted after so many seconds, for both families."""
+    """Notes about work, keys of `WORKS`, that is still interpreted so many seconds after a first wait."""
     return [note for family in ("linear", "duffing") for work in works for note in _waited(family, work, wait)]
+
+
+@lru_cache(maxsize=1)
+def _begun() -> float:
+    return time.monotonic()
 
 
 @lru_cache(maxsize=16)
 def _waited(family: str, work: str, wait: float) -> tuple[str, ...]:
-    draw, begun = Draws(family, "generic", TRIED), time.monotonic()
+    draw, begun = Draws(family, "generic", TRIED), _begun()
     while True:
         states = draw()
         start = time.thread_time()

@@ -43,7 +43,7 @@ def cases(effort: Effort) -> Iterator[Case]:
 
 def _orbit(family: str, restitution: float, effort: Effort) -> Case:
     """Every run has several orbits; impacts are counted that were flown, not the ones that a sum stands for."""
-    starts, impacts = (4, 250) if effort.quick else (10, 1000)
+    starts, impacts = 4 if effort.quick else 10, 1000
     few = (2, 20) if effort.quick else (10, 100)
     draw = partial(Draws, family, "generic", restitution=restitution)
     own = [Method("singimpact, orbit", f"{impacts} impacts a call", partial(_orbits, impacts), draw=draw(starts),
