@@ -44,6 +44,7 @@ def _begun() -> float:
 @lru_cache(maxsize=16)
 def _waited(family: str, work: str, wait: float) -> tuple[str, ...]:
     draw, begun = Draws(family, "generic", TRIED), _begun()
+    WORKS[work](draw())  # loads modules, and lays out tables
     while True:
         states = draw()
         start = time.thread_time()
