@@ -43,7 +43,7 @@ def _begun() -> float:
 
 @lru_cache(maxsize=16)
 def _waited(family: str, work: str, wait: float) -> tuple[str, ...]:
-    draw, begun = Draws(family, "generic", TRIED), _begun()
+    draw, begun = Draws(family, "generic", TRIED, 0.9), _begun()
     WORKS[work](draw())  # loads modules, and lays out tables
     while True:
         states = draw()
