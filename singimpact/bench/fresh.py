@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -16,21 +20,46 @@ def spent_so_far():
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + ended.ru_utime + ended.ru_stime
 {before}
-base, start = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, spent_so_far()
+base, start, begun = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, spent_so_far(), time.perf_counter()
 {timed}
-spent, most = spent_so_far() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+wall, spent = time.perf_counter() - begun, spent_so_far() - start
+most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 {after}
-print(json.dumps([spent, (most - base) / 1024, answer]))
+print(json.dumps([spent, (most - base) / 1024, answer, wall]))
 """
 
 
 @dataclass(frozen=True)
 class Cost:
-    """CPU seconds (with those of children that have ended) and megabytes of what was timed, and the `answer` given."""
+    """CPU seconds (with those of children that have ended) and megabytes of what was timed, the `answer` given, and
+    seconds by the clock on the wall.
+    """
 
     seconds: float
     megabytes: float
     answer: Any
+    wall: float
+
+
+CHILDREN = """
+import os
+answer = None
+while hasattr(os, "wait4"):
+    try:
+        _, _, used = os.wait4(-1, 0)
+    except ChildProcessError:
+        break
+    answer = [(answer or [0])[0] + used.ru_utime + used.ru_stime, time.perf_counter() - begun]
+"""
+"""An `after` that waits for children: their CPU seconds, and seconds from the beginning until the last has ended."""
+
+
+@lru_cache(maxsize=1)
+def _bytecode() -> str:
+    """A folder for bytecode, where it must not be written beside the sources."""
+    place = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, place, ignore_errors=True)
+    return place
 
 
 def cost(timed: str, before: str = "", after: str = "answer = None", around: dict[str, str] | None = None) -> Cost:
@@ -43,6 +72,8 @@ def cost(timed: str, before: str = "", after: str = "answer = None", around: dic
     """
     paths = [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
     given = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **(around or {})}
+    if given.pop("PYTHONDONTWRITEBYTECODE", None):  # an installed package has its bytecode
+        given["PYTHONPYCACHEPREFIX"] = _bytecode()
     text = AROUND.format(before=before, timed=timed, after=after)
     done = subprocess.run([sys.executable, "-c", text], env=given, capture_output=True, text=True, check=True)
     return Cost(*json.loads(done.stdout))

@@ -22,7 +22,6 @@ if sys.platform != "win32":
     import resource
 
 EPSILON = 2.0**-52
-Run = Callable[[], Any]
 
 
 class NotInstalled(InputError):
@@ -39,7 +38,8 @@ class Effort:
     least : CPU seconds of a timing at least, reached by calling again; the clock ticks in microseconds.
     once : a method that takes so many seconds is timed once after the first round: its noise is below its length.
     fresh : rounds of a method that runs in a process of its own, which costs a second beside what is timed.
-    states : of a regime. copies : of a state in an array or a compiled loop.
+    states : of a regime. judged : random states whose answers are compared with the truth.
+    wait : seconds to wait for a process that compiles, in a new cache folder.
     """
 
     quick: bool = False
@@ -48,11 +48,12 @@ class Effort:
     once: float = 2.0
     fresh: int = 3
     states: int = 40
-    copies: int = 100
+    judged: int = 400
+    wait: float = 300.0
 
 
 FULL = Effort()
-QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, fresh=1, states=4, copies=8)
+QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, fresh=1, states=4, judged=40, wait=60.0)
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,42 @@ class Timed:
 
 
 @dataclass(frozen=True)
+class Counted:
+    """Answers of a run that knows only afterwards how many problems it solved, as impacts of an orbit."""
+
+    problems: int
+    answers: Sequence[Any]
+
+
+@dataclass(frozen=True)
+class Aim:
+    """What a method is to reach.
+
+    Parameters
+    ----------
+    microseconds : of a problem, at most. times : the time of the first method of the case, at least.
+    """
+
+    microseconds: float | None = None
+    times: float | None = None
+
+    def reached(self, microseconds: float, ratio: float, wrong: int | None) -> bool | None:
+        """Whether a measured time is within the aim, with no answer wrong; None where there is no aim.
+
+        Examples
+        --------
+        >>> Aim(6.0).reached(5.0, 1.0, 0), Aim(6.0).reached(5.0, 1.0, 2), Aim(times=4.0).reached(9.0, 3.9, None)
+        (True, False, False)
+        """
+        if self.times is not None:  # of a peer: its wrong answers do not count against the first method
+            return ratio >= self.times
+        return None if self.microseconds is None else microseconds <= self.microseconds and not wrong
+
+
+NO_AIM = Aim()
+
+
+@dataclass(frozen=True)
 class Method:
     """One way to the answers of a case.
 
@@ -88,20 +125,23 @@ class Method:
     ----------
     name, setting : as the table shows them; one that begins with "singimpact" calls public names only, "kernel" is a
         private function of the package. run : gives an answer a problem; None or nan where it has none.
-    size : what the cost grows with. copies : how often a run solves each problem.
+    size : what the cost grows with.
     epsilon : of the arithmetic; answers may be off by ten times their condition times this.
     problems : by which the time of a run is divided; without it by its answers.
     first : the first round is what is asked: what is computed then is kept.
+    draw : makes other problems for every timed call, outside the clock; `run` takes them. The first ones are judged.
+    aim : what is to be reached.
     """
 
     name: str
     setting: str
-    run: Run
+    run: Callable[..., Any]
     size: float | None = None
-    copies: int = 1
     epsilon: float = EPSILON
     problems: int | None = None
     first: bool = False
+    draw: Callable[[], Any] | None = None
+    aim: Aim = NO_AIM
 
 
 @dataclass(frozen=True)
@@ -113,6 +153,7 @@ class Case:
     truth : a number or its decimal text a problem; empty where only time is measured.
     conditions : of the problems. skipped : peers that are not installed.
     missed : relative error of another answer altogether: the next impact is further away than this.
+    notes : sentences below the table.
     """
 
     name: str
@@ -121,6 +162,7 @@ class Case:
     conditions: Sequence[float] = ()
     skipped: Sequence[str] = ()
     missed: float = 1e-2
+    notes: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -133,6 +175,7 @@ class Row:
     wrong : answers off by more than ten times condition times epsilon, or absent. missed : of these, the ones that are
         absent or off by more than a hundredth: another impact. of : problems.
     ratio, spread : time over that of the first method of the case, median and quartiles. rounds : timings.
+    aim : what is to be reached. reached : whether it is, with no answer wrong; None without an aim.
     """
 
     group: str
@@ -148,15 +191,18 @@ class Row:
     ratio: float
     spread: tuple[float, float]
     rounds: int
+    aim: Aim
+    reached: bool | None
 
 
 @dataclass
 class Measured:
-    """The rows of a group, and the peers that were not installed."""
+    """The rows of a group, the peers that were not installed, and sentences about its cases."""
 
     group: str
     rows: list[Row] = field(default_factory=list)
     skipped: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
 
 def with_peers(own: Sequence[Method], *peers: Callable[[], Sequence[Method]]) -> tuple[list[Method], list[str]]:
@@ -178,26 +224,38 @@ def with_peers(own: Sequence[Method], *peers: Callable[[], Sequence[Method]]) ->
     return methods, skipped
 
 
+@dataclass(frozen=True)
+class _Turn:
+    """CPU seconds of a run, the problems solved in it, its answers; whether it brought its own clock."""
+
+    seconds: float
+    problems: float
+    answers: Sequence[Any]
+    fresh: bool
+
+    @property
+    def each(self) -> float:
+        return self.seconds / self.problems
+
+
 def measure(group: str, case: Case, effort: Effort) -> list[Row]:
     """A row a method."""
-    first = [_timed(method.run) for method in case.methods]
-    rounds = [_rounds(method, fresh, effort) for method, (_, _, fresh) in zip(case.methods, first, strict=True)]
-    spent = np.array([[seconds for seconds, _, _ in first]] * effort.rounds)
+    first = [_turn(method) for method in case.methods]
+    rounds = [_rounds(method, turn.fresh, effort) for method, turn in zip(case.methods, first, strict=True)]
+    begun = list(first)
     for at in (at for at, count in enumerate(rounds) if count):
-        if not first[at][2]:  # a process of its own is as cold the second time
-            spent[:, at] = _timed(case.methods[at].run)[0]
-        if spent[0, at] >= effort.once:
+        if not first[at].fresh:  # a process of its own is as cold the second time
+            begun[at] = _turn(case.methods[at])
+        if begun[at].seconds >= effort.once:
             rounds[at] = 0
-    calls = [1 if fresh else max(ceil(effort.least / max(seconds, 1e-7)), 1)
-             for (_, _, fresh), seconds in zip(first, spent[0], strict=True)]  # fmt: skip
+    calls = [1 if turn.fresh else max(ceil(effort.least / max(turn.seconds, 1e-7)), 1) for turn in begun]
+    spent = np.array([[turn.each for turn in begun]] * effort.rounds)
     for turn in range(effort.rounds):
         for at in (at for at, count in enumerate(rounds) if count):
             again = turn < rounds[at]
-            spent[turn, at] = _timed(case.methods[at].run, calls[at])[0] if again else spent[turn % rounds[at], at]
-    for at, (method, (_, answers, _)) in enumerate(zip(case.methods, first, strict=True)):
-        spent[:, at] /= method.copies * (method.problems or max(len(answers), 1))
-    return [_row(group, case, method, answers, spent[:, at], spent[:, at] / spent[:, 0], max(rounds[at], 1))
-            for at, (method, (_, answers, _)) in enumerate(zip(case.methods, first, strict=True))]  # fmt: skip
+            spent[turn, at] = _turn(case.methods[at], calls[at]).each if again else spent[turn % rounds[at], at]
+    return [_row(group, case, method, turn, (spent[:, at], spent[:, at] / spent[:, 0], max(rounds[at], 1)))
+            for at, (method, turn) in enumerate(zip(case.methods, first, strict=True))]  # fmt: skip
 
 
 def _rounds(method: Method, fresh: bool, effort: Effort) -> int:
@@ -215,16 +273,26 @@ def cpu_seconds() -> float:
     return time.process_time() + ended.ru_utime + ended.ru_stime
 
 
-def _timed(run: Run, calls: int = 1) -> tuple[float, Sequence[Any], bool]:
-    """CPU seconds of a run, the mean of some calls; its answers; whether it brought its own clock."""
+def _turn(method: Method, calls: int = 1) -> _Turn:
+    """A method timed: the mean of some calls, on the same problems, or on others each time where they are drawn."""
+    given = [() if method.draw is None else (method.draw(),) for _ in range(calls)]
     start = cpu_seconds()
-    for _ in range(calls):
-        found = run()
+    found = [method.run(*each) for each in given]
     spent = (cpu_seconds() - start) / calls
-    return (found.seconds, found.answers, True) if isinstance(found, Timed) else (spent, found, False)
+    problems = sum(each.problems if isinstance(each, Counted) else method.problems or max(len(_answers(each)), 1)
+                   for each in found) / calls  # fmt: skip
+    last = found[-1]
+    if isinstance(last, Timed):
+        return _Turn(last.seconds, problems, last.answers, True)
+    return _Turn(spent, problems, _answers(last), False)
 
 
-def _row(group: str, case: Case, method: Method, answers: Sequence[Any], spent: Any, ratios: Any, rounds: int) -> Row:
+def _answers(found: Any) -> Sequence[Any]:
+    return found.answers if isinstance(found, Timed | Counted) else found
+
+
+def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any, Any, int]) -> Row:
+    answers, (spent, ratios, rounds) = turn.answers, timings
     error = wrong = missed = None
     of = min(len(answers), len(case.truth)) if case.truth else method.problems or len(answers)
     if case.truth:
@@ -236,8 +304,9 @@ def _row(group: str, case: Case, method: Method, answers: Sequence[Any], spent: 
         seen = [off for off in errors if isfinite(off)]
         error = float(np.median(seen)) if seen else None
     low, middle, high = np.quantile(ratios, [0.25, 0.5, 0.75]).tolist()
-    return Row(group, case.name, method.name, method.setting, method.size, float(np.median(spent)) * 1e6, error, wrong,
-               missed, of, middle, (low, high), rounds)  # fmt: skip
+    microseconds = float(np.median(spent)) * 1e6
+    return Row(group, case.name, method.name, method.setting, method.size, microseconds, error, wrong, missed, of,
+               middle, (low, high), rounds, method.aim, method.aim.reached(microseconds, middle, wrong))  # fmt: skip
 
 
 def _least(method: Method) -> float:

@@ -8,13 +8,18 @@ from typing import Any
 from singimpact.bench.exponents import exponents
 from singimpact.bench.measuring import Measured, Row
 
-HEADER = ("case", "method", "setting", "microseconds", "error", "wrong", "missed", "times the first", "quartiles")
+HEADER = ("case", "method", "setting", "time", "to reach", "error", "wrong", "missed", "times the first",
+          "quartiles")  # fmt: skip
 GROWTH = ("case", "method", "time grows with the power", "+-", "from", "to")
 Table = tuple[tuple[str, ...], list[list[str]]]
 
 NOTE = (
     "CPU time of one problem, median of the rounds; error relative, median of the problems; wrong: off by more than ten"
     " times condition times epsilon, or no answer; missed: of these, off by more than 1 %."
+)
+AIMED = (
+    "To reach: a time at most, with no answer wrong, or times the first row at least; reached or missed as measured"
+    " here, on this machine and under its load."
 )
 
 
@@ -29,19 +34,51 @@ def tables(found: Measured) -> list[Table]:
     return made
 
 
+def in_words(microseconds: float) -> str:
+    """A time with its unit, in three digits.
+
+    Examples
+    --------
+    >>> in_words(0.4912), in_words(1291.6), in_words(42183319.0)
+    ('0.491 us', '1.29 ms', '42.2 s')
+    """
+    factor, unit = (1, "us") if microseconds < 999.5 else (1e3, "ms") if microseconds < 999.5e3 else (1e6, "s")
+    value = microseconds / factor
+    return f"{value:.3g} {unit}" if value < 999.5 else f"{value:.0f} {unit}"
+
+
 def _cells(row: Row) -> list[str]:
     judged = row.wrong is not None
     return [
         row.case,
         row.method,
         row.setting,
-        f"{row.microseconds:.3g}" if row.microseconds < 1e3 else f"{row.microseconds:.0f}",
+        in_words(row.microseconds),
+        _aim(row),
         "" if row.error is None else f"{row.error:.1e}",
         f"{row.wrong}/{row.of}" if judged else "",
         f"{row.missed}/{row.of}" if judged else "",
         f"{row.ratio:.3g}",
         f"{row.spread[0]:.3g} to {row.spread[1]:.3g}",
     ]
+
+
+def _aim(row: Row) -> str:
+    """What is to be reached, and whether it is."""
+    if row.reached is None:
+        return ""
+    figure = f"{row.aim.times:g} times" if row.aim.times is not None else in_words(row.aim.microseconds or 0)
+    return f"{figure}: {'reached' if row.reached else 'missed'}"
+
+
+def reached(found: Measured) -> str:
+    """How many aims are reached, and the rows that miss theirs; empty without aims."""
+    aimed = [row for row in found.rows if row.reached is not None]
+    if not aimed:
+        return ""
+    count = sum(bool(row.reached) for row in aimed)
+    short = [f"missed: {row.case}, {row.method}, {row.setting}" for row in aimed if not row.reached]
+    return "\n".join([f"{AIMED} {count} of {len(aimed)} are reached.", *short])
 
 
 def skipped(found: Measured) -> str:
@@ -52,4 +89,5 @@ def skipped(found: Measured) -> str:
 def as_data(found: Measured) -> dict[str, Any]:
     """Rows, exponents and what was skipped, as JSON takes them."""
     fits = [{"group": found.group, **asdict(fit)} for fit in exponents(found.rows)]
-    return {"rows": [asdict(row) for row in found.rows], "exponents": fits, "skipped": list(found.skipped)}
+    return {"rows": [asdict(row) for row in found.rows], "exponents": fits, "skipped": list(found.skipped),
+            "notes": list(found.notes)}  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,10 +23,11 @@ if TYPE_CHECKING:
 
 @click.command(short_help="run time against error, beside other tools")
 @click.argument("groups", metavar="[GROUP]...", nargs=-1)
-@click.option("--quick", is_flag=True, help="Fewer cases and rounds, within a minute.")
+@click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
 @click.option("--plots", metavar="DIR", help="Draw time against error there, a picture a group.")
 @click.option("--picture", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
-@click.option("--format", "form", type=click.Choice(["text", "markdown"]), default="text", show_default=True)
+@click.option("--format", "form", type=click.Choice(["text", "markdown", "page"]), default="text", show_default=True,
+              help="`page` writes the page of the documentation, with the pictures of --plots.")  # fmt: skip
 @click.option("--states", type=click.IntRange(1, 10**9), default=100_000, show_default=True, help="How many states.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Which states.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
@@ -41,8 +43,8 @@ def command(
     workers: int | None, keep: str | None, family: str, balls: int, digits_checks: int, as_json: bool,
     output: str | None,
 ) -> None:  # fmt: skip
-    """Measure in one run, in CPU time, beside other tools: map, chatter, threshold, series, fixed-points, emitted,
-    figures, growth, grid, start; all of them without a GROUP (with --quick all but the last two).
+    """Measure in one run, in CPU time, beside other tools: map, orbit, regimes, chatter, threshold, series,
+    fixed-points, emitted, figures, growth, start; all of them without a GROUP (with --quick all but the last).
 
     The group `states` flies random states and the same ones by a slow solver of 60 digits; --states, --seed, --workers
     and --keep are its own. With `--family steep` it flies 20 families with steep layers beside a solver of small fixed
@@ -59,7 +61,7 @@ def command(
     place = None if plots is None else folder(plots)
     found = _measured([group for group in chosen if group != "states"], effort)
     told = {"quick": quick, **_joined(found)}
-    texts = [_text(each, form) for each in found]
+    texts = _page(found, place, picture, output) if form == "page" else [_text(each, form) for each in found]
     wrong = False
     if "states" in chosen and family == "steep":
         steep = steep_states(states, seed, workers, keep, (balls, digits_checks), not quick)
@@ -91,18 +93,32 @@ def _joined(found: list[Measured]) -> dict[str, Any]:
     from singimpact.bench.report import as_data
 
     parts = [as_data(each) for each in found]
-    joined: dict[str, Any] = {key: [item for part in parts for item in part[key]] for key in ("rows", "exponents")}
+    joined: dict[str, Any] = {
+        key: [item for part in parts for item in part[key]] for key in ("rows", "exponents", "notes")
+    }
     return {**joined, "skipped": sorted({name for part in parts for name in part["skipped"]})}
 
 
-def _text(found: Measured, form: str) -> str:
-    from singimpact.bench.report import NOTE, skipped, tables
+def _page(found: list[Measured], place: Path | None, picture: str, output: str | None) -> list[str]:
+    """The page of the documentation; pictures are linked from where it is written."""
+    from singimpact.bench.page import page
 
-    laid_out = markdown if form == "markdown" else columns
-    heading = f"## {found.group}" if form == "markdown" else found.group
+    link = None
+    if place is not None:
+        beside = Path(output).resolve().parent if output is not None else Path.cwd()
+        link = Path(os.path.relpath(place.resolve(), beside)).as_posix() + f"/bench-{{}}.{picture}"
+    return [page([(each.group, _text(each, "page")) for each in found], link)]
+
+
+def _text(found: Measured, form: str) -> str:
+    from singimpact.bench.report import NOTE, reached, skipped, tables
+
+    laid_out = columns if form == "text" else markdown
+    heading = {"text": found.group, "markdown": f"## {found.group}"}.get(form, "")
     parts = [heading, *(laid_out(header, cells) for header, cells in tables(found)), skipped(found)]
     if any(row.wrong is not None for row in found.rows):
         parts.append(NOTE)
+    parts += [reached(found), "\n".join(found.notes)]
     return "\n\n".join(part for part in parts if part)
 
 

@@ -5,24 +5,29 @@ from __future__ import annotations
 import json
 import sys
 
+import numpy as np
 import pytest
 
-from singimpact.bench.groups import GROUPS, flights, measured, series, usual
+from singimpact.bench import page
+from singimpact.bench.drawn import KINDS, RESTITUTIONS, Draws, Fed
+from singimpact.bench.groups import GROUPS, impact_map, measured, regimes, series, usual
 from singimpact.bench.measuring import FULL, QUICK, Effort, measure
 
-SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, copies=2)
-COSTLY = ("series", "figures", "grid", "start")
+SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)
+COSTLY = ("series", "figures", "start")
+EVENTS = {"scipy DOP853, terminal event", "heyoka, terminal event"}
 PEERS = {
-    "map": {"scipy DOP853", "heyoka", "mpmath findroot", "mpmath odefun"},
-    "chatter": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 30"},
-    "threshold": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 15"},
+    "map": EVENTS,
+    "orbit": EVENTS,
+    "regimes": {"scipy DOP853", "heyoka", "mpmath findroot", "mpmath odefun"},
+    "chatter": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 30", *EVENTS},
+    "threshold": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 15", *EVENTS},
     "series": {"sympy, integrals and series", "sympy, implicit function"},
     "fixed-points": {"mpmath findroot", "numpy roots"},
     "emitted": {"sympy lambdify", "sympy lambdify, cse", "sympy subs"},
     "figures": {"contour of a grid"},
     "growth": {"mpmath findroot", "scipy DOP853, 1e-9", "heyoka, 1e-9"},
-    "grid": {"heyoka"},
-    "start": {"numba, a kernel of one line"},
+    "start": EVENTS,
 }
 CUT = ("order", "tolerance")  # settings at which an answer is not meant to have all digits
 
@@ -38,35 +43,71 @@ def test_group_at_its_smallest_size(name):
     assert all(row.microseconds > 0 for row in found.rows)
     judged = [row for row in ours if row.wrong is not None and (name == "emitted" or not row.setting.startswith(CUT))]
     assert [row for row in judged if row.wrong] == []
-    assert judged or name in ("series", "growth", "grid", "start")
+    assert judged or name in ("series", "growth", "start")
     assert not found.skipped
 
 
 def test_duffing_too():
-    """A quick look leaves this family out; its tolerances trade error for time."""
-    rows = measure("map", flights._regime("duffing", "generic", SMALL), SMALL)
-    ours = {row.setting: row for row in rows if row.method == "kernel"}
-    assert ours["compiled loop"].wrong == 0
-    assert ours["tolerance 1e-06"].error > ours["tolerance 1e-09"].error > ours["compiled loop"].error
-    assert ours["tolerance 1e-06"].missed == 0
+    """A quick look leaves this family out."""
+    first, *_ = measure("regimes", regimes.of_states("duffing", "generic", SMALL), SMALL)
+    assert (first.method, first.wrong) == ("singimpact, a call a state", 0)
+
+
+def test_map_shows_every_way_to_call_it():
+    """One state, ten, a hundred, a thousand and arrays, each with its aim and both peers in the same case."""
+    calls = {(each.family, each.kind, each.states) for each in impact_map.CALLS}
+    assert {("linear", "generic", n) for n in (1, 10, 100, 1000, 0)} <= calls
+    assert {("linear", kind, 0) for kind in ("v from 1e-8 to 1e-2", "tau within 1e6", impact_map.FED)} <= calls
+    assert {("duffing", "generic", 1), ("duffing", "generic", 0)} <= calls
+    assert impact_map.sizes_of(FULL).many == 100_000
+
+
+def test_aims_are_judged_by_what_was_measured():
+    rows = measured("map", SMALL).rows
+    ours = [row for row in rows if row.method == "singimpact, impact_map" and not row.setting.startswith("tolerance")]
+    assert [row.aim.microseconds for row in ours] == [each.microseconds for each in impact_map.CALLS]
+    assert [row.reached for row in ours] == [row.microseconds <= row.aim.microseconds for row in ours]
+    faster = [row for row in rows if row.aim.times is not None]
+    assert [row.method for row in faster] == ["heyoka, terminal event"] * 4
+    assert [row.reached for row in faster] == [row.ratio >= 4 for row in faster]
+    assert all(row.reached is None for row in rows if row.aim == type(row.aim)())
+
+
+@pytest.mark.parametrize("kind", [*KINDS, impact_map.FED])
+def test_every_call_has_other_states(kind):
+    """And every method has the same ones, in the same order."""
+    made = [(Fed("linear", n) if kind == impact_map.FED else Draws("linear", kind, n)) for n in (50, 20)]
+    first, few = [each() for each in made]
+    assert np.array_equal(few.tau, first.tau[:20])
+    assert np.array_equal(few.v, first.v[:20])
+    second = made[0]()
+    assert not np.isin(second.tau, first.tau).any()
+    assert not np.isin(second.v, first.v).any()
+
+
+def test_restitutions_are_taken_in_turn():
+    draw = Draws("linear", "generic", 1)
+    assert [draw().restitution for _ in range(6)] == [*RESTITUTIONS, RESTITUTIONS[0]]
+    assert (min(RESTITUTIONS), max(RESTITUTIONS)) == (0.5, 0.999)
 
 
 def test_groups_of_a_quick_look(singimpact):
     assert set(GROUPS) == set(usual(FULL)) == set(PEERS)
-    assert set(GROUPS) - set(usual(QUICK)) == {"grid", "start"}
+    assert set(GROUPS) - set(usual(QUICK)) == {"start"}
     told = " ".join(singimpact("bench", "--help").stdout.split())
     assert [name for name in GROUPS if name not in told] == []
 
 
 def test_peers_miss_what_they_are_known_to_miss():
     """Chatter: the root is 1e-12 away from the trivial one, and a terminal event does not see it."""
-    rows = [row for row in measured("chatter", SMALL).rows if row.method.startswith(("scipy", "heyoka"))]
+    rows = [row for row in measured("chatter", SMALL).rows if row.method.endswith("1e-9")]
     assert rows
     assert all(row.wrong == row.missed == 1 for row in rows)
 
 
 def test_peer_that_is_not_installed_is_named(monkeypatch, singimpact):
     monkeypatch.setitem(sys.modules, "heyoka", None)
+    impact_map.taylor_stepper.cache_clear()
     found = measured("chatter", SMALL)
     assert found.skipped == ["heyoka"]
     assert not [row for row in found.rows if row.method.startswith("heyoka")]
@@ -94,7 +135,7 @@ def test_command_writes_table_data_and_pictures(singimpact, tmp_path):
     )
     assert told.exit_code == 0, told.output
     data = json.loads((tmp_path / "b.json").read_text())
-    named = "group case method setting size microseconds error wrong missed of ratio spread rounds"
+    named = "group case method setting size microseconds error wrong missed of ratio spread rounds aim reached"
     assert list(data["rows"][0]) == named.split()
     assert data["quick"] is True
     assert all(row["spread"][0] <= row["ratio"] <= row["spread"][1] for row in data["rows"])
@@ -106,8 +147,21 @@ def test_markdown(singimpact):
     told = singimpact("bench", "fixed-points", "--quick", "--format", "markdown")
     lines = told.stdout.splitlines()
     assert lines[0] == "## fixed-points"
-    assert lines[2].startswith("| case | method | setting | microseconds | error | wrong | missed |")
+    assert lines[2].startswith("| case | method | setting | time | to reach | error | wrong | missed |")
     assert len({line.count("|") for line in lines[2:] if line.startswith("|")}) == 1
+
+
+def test_page_of_the_documentation(singimpact, tmp_path):
+    """One command writes it, and links the pictures from where it lies."""
+    (tmp_path / "docs").mkdir()
+    told = singimpact("bench", "fixed-points", "--quick", "--format", "page", "--plots", tmp_path / "docs" / "p",
+                      "-o", tmp_path / "docs" / "page.md")  # fmt: skip
+    assert told.exit_code == 0, told.output
+    text = (tmp_path / "docs" / "page.md").read_text()
+    assert text.startswith(f"<!-- written by `{page.COMMAND}`")
+    assert "![Fixed points: time against error](p/bench-fixed-points.png)" in text
+    assert (tmp_path / "docs" / "p" / "bench-fixed-points.png").is_file()
+    assert set(page.TITLES) == set(GROUPS)
 
 
 def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):

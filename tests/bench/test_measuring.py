@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from singimpact.bench.exponents import exponents, fitted
-from singimpact.bench.measuring import EPSILON, Case, Effort, Measured, Method, Timed, condition, measure
+from singimpact.bench.measuring import EPSILON, Aim, Case, Counted, Effort, Measured, Method, Timed, condition, measure
 from singimpact.bench.plots import plotted
+from singimpact.bench.report import reached, tables
 
 EFFORT = Effort(rounds=5, least=0, once=100, fresh=5)
 
@@ -58,7 +59,7 @@ def test_ratios_are_taken_within_a_round():
 
 
 def test_cpu_time_of_a_problem():
-    """Sleep is not work; copies, problems and repeated calls divide."""
+    """Sleep is not work; problems and repeated calls divide."""
 
     def work():
         stop = time.process_time() + 2e-3
@@ -70,11 +71,52 @@ def test_cpu_time_of_a_problem():
         time.sleep(0.02)
         return [None, None]
 
-    methods = [Method("work", "", work), Method("copies", "", work, copies=10), Method("sleep", "", sleep)]
+    methods = [Method("work", "", work), Method("copies", "", work, problems=20), Method("sleep", "", sleep)]
     one, copies, asleep = measure("group", Case("case", methods), Effort(rounds=3, least=0))
     assert one.microseconds == pytest.approx(1000, rel=0.5)
     assert copies.microseconds == pytest.approx(one.microseconds / 10, rel=0.5)
     assert asleep.microseconds < 0.5 * one.microseconds
+
+
+def test_drawn_problems_are_others_in_every_call_and_cost_nothing():
+    drawn, run = [], []
+
+    def draw():
+        stop = time.process_time() + 5e-3
+        while time.process_time() < stop:
+            pass
+        drawn.append(len(drawn) + 1)
+        return drawn[-1]
+
+    def work(given):
+        run.append(given)
+        return [given]
+
+    (row,) = measure("group", Case("case", [Method("drawn", "", work, draw=draw)], ["1"]), Effort(rounds=3, least=0))
+    assert run == drawn == [1, 2, 3, 4, 5]
+    assert row.microseconds < 1000
+    assert (row.wrong, row.of) == (0, 1)  # the answer of the first call is judged
+
+
+def test_a_run_may_count_its_problems():
+    methods = [Method("counted", "", lambda: Counted(4, [1]))]
+    (row,) = measure("group", Case("case", methods, ["1"]), Effort(rounds=3, least=0))
+    assert (row.wrong, row.of) == (0, 1)
+
+
+def test_an_aim_needs_right_answers():
+    planted = (("right", 1e-6, 1, 2.0), ("wrong", 1e-6, 2, 2.0), ("slow", 3e-6, 1, 2.0))
+    methods = [Method(name, "", fixed(seconds, [answer]), aim=Aim(most)) for name, seconds, answer, most in planted]
+    methods.append(Method("peer", "", fixed(5e-6, [2]), aim=Aim(times=4)))
+    found = Measured("group", measure("group", Case("case", methods, ["1"]), EFFORT))
+    assert [row.reached for row in found.rows] == [True, False, False, True]
+    ((_, cells),) = tables(found)
+    assert [cell[4] for cell in cells] == ["2 us: reached", "2 us: missed", "2 us: missed", "4 times: reached"]
+    assert "2 of 4 are reached" in reached(found)
+    assert [line.split(", ")[1] for line in reached(found).splitlines() if line.startswith("missed")] == [
+        "wrong",
+        "slow",
+    ]
 
 
 def test_condition():

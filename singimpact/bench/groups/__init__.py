@@ -1,7 +1,7 @@
 """The groups of `singimpact bench`: each a function from an effort to its cases, found when it is asked for.
 
-Files: `flights` (`bench map`), `chatter`, `threshold`, `fixed_points`, `series`, `emitted`, `figures`, `growth` (how
-cost grows), `grid` (orbits of many states), `start` (a new process).
+Files: `impact_map` (`bench map`), `orbit`, `regimes` (hard states), `chatter`, `threshold`, `fixed_points`, `series`,
+`emitted`, `figures`, `growth` (how cost grows), `start` (a new process, a new cache folder).
 A new group: a file with a function `cases`, and its name here.
 """
 
@@ -14,9 +14,10 @@ from singimpact.bench.groups import (
     emitted,
     figures,
     fixed_points,
-    flights,
-    grid,
     growth,
+    impact_map,
+    orbit,
+    regimes,
     series,
     start,
     threshold,
@@ -24,7 +25,9 @@ from singimpact.bench.groups import (
 from singimpact.bench.measuring import Case, Effort, Measured, measure
 
 GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
-    "map": flights.cases,
+    "map": impact_map.cases,
+    "orbit": orbit.cases,
+    "regimes": regimes.cases,
     "chatter": chatter.cases,
     "threshold": threshold.cases,
     "series": series.cases,
@@ -32,10 +35,9 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "emitted": emitted.cases,
     "figures": figures.cases,
     "growth": growth.cases,
-    "grid": grid.cases,
     "start": start.cases,
 }
-SLOW = ("grid", "start")  # compile in every fresh cache what a first look does not need
+SLOW = ("start",)  # compiles in new cache folders, again and again
 
 
 def usual(effort: Effort) -> list[str]:
@@ -50,4 +52,5 @@ def measured(name: str, effort: Effort, told: Callable[[str], None] = lambda _: 
         told(f"{name}: {case.name}")
         found.rows += measure(name, case, effort)
         found.skipped += [peer for peer in case.skipped if peer not in found.skipped]
+        found.notes += [note for note in case.notes if note not in found.notes]
     return found

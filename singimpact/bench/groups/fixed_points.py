@@ -24,7 +24,7 @@ def cases(effort: Effort) -> Iterator[Case]:
         ways = (("singimpact, certified", "digits", _own), ("mpmath findroot", "dps", _findroot))
         methods = [Method(way, f"{word} {d}", partial(_part, function, r, part, d), epsilon=10.0**-d)
                    for way, word, function in ways for d in asked]  # fmt: skip
-        methods.append(Method("numpy roots", "doubles", lambda r=r, part=part: _numpy(r)[part]))  # type: ignore[misc]
+        methods.append(Method("numpy roots", "doubles", lambda r=r, part=part: _numpy(r)[part]))
         yield Case(name, methods, _own(r, DIGITS[-1] + SPARE)[part], _conditions(r)[part])
 
 

@@ -15,12 +15,12 @@ import numpy as np
 
 from singimpact import theory
 from singimpact.algebra.rings import EXACT
-from singimpact.bench.groups.flights import closed
+from singimpact.bench.groups.regimes import closed
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import many_digits, runge_kutta, taylor_events
+from singimpact.bench.peers.impacts import chain
 from singimpact.bench.problems import Problem
 from singimpact.contact.contact import Contact
-from singimpact.flights.orbits import orbit_segment
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.theory.fixed_points import tangency
 from singimpact.theory.invariant_curve import invariant_curve
@@ -118,25 +118,14 @@ def _flown_array(count: int, periods: float = 3 / PERIOD) -> Any:
 
 
 def _impacts(effort: Effort) -> Case:
-    """r = 1, so that impacts never end; the peers fly through their first events.
-
-    `orbit` looks after every impact whether chatter can be summed up; the kernel only flies.
-    """
+    """r = 1, so that impacts never end; the peers fly through their first events."""
     sizes = (1000, 3000, 10_000) if effort.quick else (1000, 3000, 10_000, 30_000, 100_000)
-    few = tuple(size // 100 for size in sizes)
-    endless = linear(2, "0.3", 1)
+    endless, problem = linear(2, "0.3", 1), replace(START, restitution=1.0)
     methods, skipped = with_peers(
-        _line("singimpact", few[1:4], lambda n: endless.orbit(0.0, 1.0, n)),
-        lambda: _line("scipy DOP853, 1e-9", few[:3], partial(_chain, runge_kutta.stepper("linear", 1e-9))),
-        lambda: _line("heyoka, 1e-9", sizes[:3], partial(_chain, taylor_events.stepper("linear", 1e-9))),
-    )
-    return _grown("impacts of an orbit", "kernel", sizes, lambda n: orbit_segment(endless, 0.0, 1.0, n), methods,
+        [],
+        lambda: _line("scipy DOP853, 1e-9", [size // 100 for size in sizes[:3]],
+                      partial(chain, runge_kutta.stepper("linear", 1e-9), problem)),
+        lambda: _line("heyoka, 1e-9", sizes[:3], partial(chain, taylor_events.stepper("linear", 1e-9), problem)),
+    )  # fmt: skip
+    return _grown("impacts of an orbit", "singimpact", sizes, lambda n: endless.orbit(0.0, 1.0, n), methods,
                   skipped=skipped)  # fmt: skip
-
-
-def _chain(fly: Callable[[Problem], tuple[float, float]], count: int) -> None:
-    """Impacts in a row with r = 1; where a peer fails it starts again, for a length of time is what is measured."""
-    tau, v = START.tau, START.v
-    for _ in range(count):
-        time, velocity = fly(replace(START, tau=tau, v=v))
-        tau, v = (tau + time, abs(velocity)) if abs(velocity) > 1e-3 else (START.tau, START.v)

@@ -1,41 +1,175 @@
-"""`bench start`: the first impact in a new process whose disk cache is warm, beside a cached kernel of one line."""
+"""`bench start`: what a new process costs, with object code in the cache folder, and in a new cache folder.
+
+Each row is a process of its own, in a cache folder made for it; the states are others in every process.  CPU seconds of
+a process do not hold those of the child that compiles, which goes on when the process has ended: it is waited for after
+the clock has stopped, and has rows of its own.
+"""
 
 from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
+from itertools import count
 from pathlib import Path
 
-from singimpact.bench.fresh import cost
-from singimpact.bench.measuring import Case, Effort, Method, Timed
+from singimpact.bench.drawn import CLEARANCES, OMEGAS
+from singimpact.bench.fresh import CHILDREN, Cost, cost
+from singimpact.bench.measuring import Aim, Case, Effort, Method, Timed, with_peers
+from singimpact.bench.peers import runge_kutta, taylor_events
+from singimpact.store import cache_folder
 
-LINE = """
-import numba
-@numba.njit(cache=True)
-def twice(x):
-    return 2 * x
-"""
-CALLS = {
-    "numba, a kernel of one line": "import sys; sys.path.insert(0, {place!r}); import line; line.twice(1.5)",
-    "singimpact, linear": "import singimpact; singimpact.linear('2.8', 0, '0.8').impact_map(0.9, 0.1)",
-    "singimpact, cubic": "from singimpact import ImpactOscillator; "
-    "ImpactOscillator('x + xdot/10 + 3*x**3/10', 'cos(1.7*t)', '0.3', '0.6').impact_map(0.9, 0.1)",
+IMPORT = "import singimpact as si"
+MODELS = {
+    "linear": f"si.linear({OMEGAS['linear']}, {CLEARANCES['linear']}, 0.8)",
+    "Duffing": f"si.ImpactOscillator('x + 0.1*xdot + 0.3*x**3', 'cos(omega*t)', {CLEARANCES['duffing']}, 0.8,"
+    f" {{'omega': {OMEGAS['duffing']}}})",
 }
+LINEAR = MODELS["linear"]
+DRAWN = """
+import numpy as np
+rng = np.random.default_rng({seed})
+tau, v = rng.uniform(0, 2, {states}), rng.uniform(0.05, 2, {states})
+"""
+PEER = """
+from singimpact.bench.drawn import Draws
+from singimpact.bench.peers import runge_kutta, taylor_events
+draw = Draws("linear", "generic", {states})
+draw.turn = {seed}
+problems = draw().problems()
+"""
+SHORT_CHILDREN = "import resource; resource.setrlimit(resource.RLIMIT_CPU, (3, resource.RLIM_INFINITY))"
+"""Ends a child that compiles for a folder that is given up, after three seconds of its CPU time."""
+SEEDS = count()
+FEW, MANY = 1000, 100_000
 
 
-def cases(effort: Effort) -> Iterator[Case]:  # noqa: ARG001
-    """CPU time from the first import to the first result; a first round fills the cache."""
+def first_model(family: str) -> str:
+    """A user's first lines: the model."""
+    return f"{IMPORT}\nosc = {MODELS[family]}"
+
+
+def first_answer(family: str) -> str:
+    """The model and one state."""
+    return f"{first_model(family)}\nosc.impact_map({0.1 + next(SEEDS) / 1000}, 0.7)"
+
+
+def script(family: str, states: int) -> str:
+    """The model and an array of states."""
+    drawn = DRAWN.format(seed=next(SEEDS), states=states)
+    return f"{first_model(family)}\n{drawn}\nosc.impact_map(tau, v)"
+
+
+@dataclass(frozen=True)
+class Script:
+    """A script in a new process: what is timed, and what goes before; made anew for every run."""
+
+    timed: Callable[[], str]
+    before: str = ""
+
+    def in_folder(self, place: str, after: str = "answer = None") -> Cost:
+        """Run with the cache in a folder."""
+        return cost(self.timed(), self.before, after, {"SINGIMPACT_CACHE": place})
+
+
+def cases(effort: Effort) -> Iterator[Case]:
+    """Two new cache folders, one a family; then processes that find object code in them.
+
+    A first process of each kind is not counted: it leaves bytecode, and the files in memory.
+    """
     with tempfile.TemporaryDirectory() as place:
-        (Path(place) / "line.py").write_text(LINE, encoding="utf-8")
-        around = {"SINGIMPACT_CACHE": place} if os.environ.get("SINGIMPACT_CACHE") == "off" else {}
-        for code in CALLS.values():
-            cost(code.format(place=place), around=around)
-        methods = [Method(name, "disk cache warm", partial(_first, code.format(place=place), around))
-                   for name, code in CALLS.items()]  # fmt: skip
-        yield Case("first call in a new process", methods)
+        for family in MODELS:
+            Script(partial(script, family, 10), SHORT_CHILDREN).in_folder(str(Path(place) / "unused"), CHILDREN)
+        for family in MODELS:
+            yield _new_folder(family, place)
+        yield _warm(effort, str(Path(place) / "kept"))
 
 
-def _first(code: str, around: dict[str, str]) -> Timed:
-    return Timed(cost(code, around=around).seconds, [None])
+def _new_folder(family: str, place: str) -> Case:
+    """The script leaves its object code in `place`; the first answer has a folder of its own."""
+    with tempfile.TemporaryDirectory() as alone:
+        answer = Script(partial(first_answer, family), SHORT_CHILDREN).in_folder(alone, CHILDREN)
+    place = str(Path(place) / "kept")
+    before = _files(place)
+    many = Script(partial(script, family, MANY))
+    first, second = many.in_folder(place, CHILDREN), many.in_folder(place, CHILDREN)
+    made = {path: size for path, size in _files(place).items() if path not in before}
+    own = [
+        _known("singimpact, first answer", "CPU", answer.seconds, Aim(0.3e6)),
+        _known("singimpact, first answer", "wall", answer.wall),
+        _known("singimpact, script", f"{MANY} states, wall", first.wall, Aim(6e6)),
+        _known("singimpact, script", f"{MANY} states, CPU", first.seconds),
+        _known("singimpact, script again", f"{MANY} states, CPU", second.seconds, Aim(0.4e6)),
+        _known("singimpact, script again", f"{MANY} states, wall", second.wall),
+    ]
+    if first.answer is not None:
+        spent, until = first.answer
+        name = "singimpact, child that compiles"
+        own += [_known(name, "CPU", spent), _known(name, "wall, from the script's first line", until)]
+    return Case(f"new cache folder, {family}", own, notes=[_place(family, made)])
+
+
+def _known(name: str, setting: str, seconds: float, aim: Aim = Aim()) -> Method:  # noqa: B008
+    """A row of what has been measured: a folder is new once."""
+    return Method(name, setting, lambda: Timed(seconds, [None]), first=True, aim=aim)
+
+
+def _files(place: str) -> dict[str, int]:
+    """Bytes of the files in a folder."""
+    return {
+        path.relative_to(place).as_posix(): path.stat().st_size for path in Path(place).rglob("*") if path.is_file()
+    }
+
+
+def _place(family: str, made: dict[str, int]) -> str:
+    """Where compiling leaves its object code."""
+    names = sorted({f"{path.partition('/')[0]}/*{path[path.index('.') :]}" for path in made})
+    if "SINGIMPACT_CACHE" in os.environ:
+        where = "the folder named by SINGIMPACT_CACHE"
+    else:
+        where = str(cache_folder()).replace(str(Path.home()), "~", 1)
+    return f"{family}: compiling keeps {sum(made.values()) / 1e6:.2f} MB in {', '.join(names)} of {where}."
+
+
+def _warm(effort: Effort, place: str) -> Case:
+    def row(name: str, setting: str, script: Script, aim: Aim = Aim()) -> Method:  # noqa: B008
+        return Method(name, setting, partial(_timed, script, place), aim=aim)
+
+    own = [
+        row("singimpact, import", "", Script(lambda: IMPORT)),
+        row(
+            "singimpact, first model", "after the import", Script(lambda: f"osc = {MODELS['linear']}", IMPORT), Aim(1e4)
+        ),
+        row("singimpact, first answer", "linear", Script(partial(first_answer, "linear"))),
+        row("singimpact, script", f"linear, {FEW} states", Script(partial(script, "linear", FEW)), Aim(0.2e6)),
+        row("singimpact, script", f"linear, {MANY} states", Script(partial(script, "linear", MANY)), Aim(0.4e6)),
+        row("singimpact, script", f"Duffing, {FEW} states", Script(partial(script, "Duffing", FEW))),
+        row("singimpact, script", f"Duffing, {MANY} states", Script(partial(script, "Duffing", MANY))),
+    ]
+    sizes = (FEW,) if effort.quick else (FEW, MANY)
+    methods, skipped = with_peers(
+        own,
+        lambda: [_peer("heyoka, terminal event", "taylor_events.stepper('linear')", n, row) for n in sizes],
+        lambda: [_peer("scipy DOP853, terminal event", "runge_kutta.stepper('linear', 1e-12)", 100, row)],
+    )
+    return Case("new process, object code there", methods, skipped=skipped)
+
+
+def _peer(name: str, stepper: str, states: int, row: Callable[..., Method]) -> Method:
+    """The peer's import is timed, that of numpy is not.
+
+    Raises
+    ------
+    NotInstalled : it is not there.
+    """
+    peer = taylor_events if name.startswith("heyoka") else runge_kutta
+    peer.stepper("linear")
+    cost("import heyoka" if peer is taylor_events else "import scipy.integrate")  # leaves its bytecode
+    before = PEER.format(states=states, seed=next(SEEDS))
+    return row(name, f"linear, {states} states", Script(lambda: f"fly = {stepper}\nfor p in problems: fly(p)", before))
+
+
+def _timed(script: Script, place: str) -> Timed:
+    return Timed(script.in_folder(place).seconds, [None])

@@ -1,12 +1,19 @@
-"""`bench threshold`: the v between complete and incomplete chatter, x'' + x = cos 2.8t, c = 0, r = 1/2, over pi/2.8."""
+"""`bench threshold`: the v between complete and incomplete chatter: x'' + x = cos 2.8t, c = 0, r = 1/2, over pi/2.8, as
+close as wanted; and c = 0.3 or Duffing's model, over other phases in every timed call.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from math import pi
 from typing import Any
 
+from singimpact.bench.compiled import compiled
+from singimpact.bench.drawn import Draws, States, counted, model, pressing
+from singimpact.bench.groups.chatter import affordable
+from singimpact.bench.groups.impact_map import HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
 from singimpact.bench.peers import impacts, many_digits, runge_kutta, taylor_events
 from singimpact.bench.problems import Problem, values
@@ -19,14 +26,23 @@ GUESS = 0.05
 
 
 def cases(effort: Effort) -> Iterator[Case]:
-    """One case; peers bisect, to a relative width."""
+    """One phase as close as wanted, then others by restitution, and an array; peers bisect, to a relative width."""
+    notes = compiled(("orbit",), effort.wait)
+    yield replace(_one(effort), notes=notes)
+    for restitution in (0.5, 0.9) if effort.quick else (0.5, 0.7, 0.9, 0.99):
+        yield _drawn("linear", restitution, 1, effort)
+    yield _drawn("duffing", 0.7, 1, effort)
+    yield _drawn("linear", 0.5, effort.judged if effort.quick else 1000, effort)
+
+
+def _one(effort: Effort) -> Case:
     osc = linear("2.8", 0, "0.5")
     problem = Problem("linear", "chatter", 2.8, 0.0, 0.5, pi / 2.8, GUESS, "", "")
     widths = WIDTHS[:2] if effort.quick else WIDTHS
     own = [Method("singimpact", "doubles", lambda: [threshold(osc, "pi/2.8").v])]
     own += [
         Method("singimpact", f"digits {d}", partial(_digits, osc, d), epsilon=10.0**-d)
-        for d in ((20,) if effort.quick else (20, 40))
+        for d in ((30,) if effort.quick else (20, 30, 40))
     ]
     methods, skipped = with_peers(
         own,
@@ -36,7 +52,7 @@ def cases(effort: Effort) -> Iterator[Case]:
     )
     kappa = condition(lambda tau, _: float(threshold(osc, tau).v), pi / 2.8, 1.0, 1e-4)
     truth = values()["threshold.linear[w=2.8,c=0,r=0.5](pi/2.8)"]
-    yield Case("linear, r = 0.5", methods, [truth], [kappa], skipped)
+    return Case("linear, r = 0.5", methods, [truth], [kappa], skipped)
 
 
 def _digits(osc: Any, digits: int) -> list[Any]:
@@ -45,3 +61,51 @@ def _digits(osc: Any, digits: int) -> list[Any]:
 
 def _bisected(name: str, fly: Callable[[Problem], tuple[Any, Any]], problem: Problem, width: float) -> Method:
     return Method(name, f"to {width:.0e}", lambda: [impacts.threshold(fly, problem, END, width)])
+
+
+CALLS = 5  # of a timed run of a phase a call
+JUDGED = {("linear", 0.5): 3, ("linear", 0.7): 2, ("linear", 0.9): 1, ("linear", 0.99): 0, ("duffing", 0.7): 1}
+"""Phases with 20 digits: of Duffing's model it takes 10 s, and 50 s at r = 0.99, which is not judged."""
+TO = 1e-3  # relative width at which a peer's bisection ends
+
+
+def _drawn(family: str, restitution: float, count: int, effort: Effort) -> Case:
+    """Some calls of one phase, or one of an array."""
+    draw = partial(Draws, family, "chattering", restitution=restitution)
+    osc, run = model(family, restitution), _a_phase if count == 1 else _an_array
+    if count > 1:
+        count = affordable(_an_array, draw, count)
+    setting, problems = f"{counted(count, 'phase')} a call", CALLS if count == 1 else count
+    own = [Method("singimpact, threshold", setting, run, problems=problems, draw=draw(problems))]
+    methods, skipped = with_peers(
+        own,
+        lambda: [_between(HEYOKA, taylor_stepper(family), draw(1))],
+        lambda: [_between(SCIPY, runge_kutta.stepper(family, 1e-9), draw(1))],
+    )
+    judged = JUDGED[family, restitution]
+    if effort.quick:
+        judged = min(judged, 1) if family == "linear" else 0
+    phases = draw(judged)().tau.tolist()
+    truth = [threshold(osc, tau, digits=20).v for tau in phases]
+    kappas = [condition(lambda tau, _: float(threshold(osc, tau).v), tau, 1.0, 1e-4) for tau in phases]
+    name = "Duffing" if family == "duffing" else family
+    title = f"{name}, c = 0.3, r = {restitution:g}, {setting}"
+    notes = [] if judged else [f"{title}: times alone, no answer is judged: many digits of it take too long."]
+    return Case(title, methods, truth, kappas, skipped, notes=notes)
+
+
+def _a_phase(states: States) -> list[float]:
+    return [float(threshold(states.osc, tau).v) for tau in states.tau.tolist()]
+
+
+def _an_array(states: States) -> Any:
+    return threshold(states.osc, states.tau).v
+
+
+def _between(name: str, fly: Any, draw: Draws) -> Method:
+    end = pressing(draw.family)[1]
+
+    def run(problems: Any) -> list[Any]:
+        return [impacts.threshold(fly, replace(each, v=GUESS), end, TO) for each in problems]
+
+    return Method(name, f"{counted(draw.count, 'phase')}, to {TO:.0e}", run, draw=lambda: draw().problems())

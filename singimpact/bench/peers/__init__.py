@@ -1,7 +1,7 @@
 """What a user would pick instead: each as its own documentation shows it. They are imported when they are timed.
 
 Files: `runge_kutta` (scipy), `taylor_events` (heyoka), `many_digits` (mpmath): a flight to its first event;
-`last_terms` (the usual step rule of Taylor integrators); `impacts` (chatter and thresholds, by any of these);
+`last_terms` (the usual step rule of Taylor integrators); `impacts` (orbits, chatter, thresholds, by any of these);
 `plain_series` and `lambdified` (sympy); `contours` (a zero set on a grid). A peer that is not there raises
 `NotInstalled`.
 """

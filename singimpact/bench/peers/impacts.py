@@ -1,9 +1,10 @@
-"""Chatter limits and thresholds by flying impact after impact, for any peer that flies to its first event."""
+"""Impact after impact for any peer that flies to its first event: orbits, chatter limits, thresholds; D G at a hit."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import cos
 from typing import Any
 
 from singimpact.bench.problems import Problem
@@ -46,3 +47,25 @@ def _lands_after(fly: Fly, problem: Problem, end: float, stop: float) -> bool:
         if not tau < end:
             return True
     return False
+
+
+def chain(fly: Fly, problem: Problem, count: int) -> list[float]:
+    """Times of `count` impacts from a state; where a peer fails it begins again, for so many flights are timed."""
+    tau, v, times = problem.tau, problem.v, []
+    for _ in range(count):
+        time, velocity = fly(replace(problem, tau=tau, v=v))
+        speed = problem.restitution * abs(velocity)
+        tau, v = (tau + time, speed) if speed > LEAST else (problem.tau, problem.v)
+        times.append(tau)
+    return times
+
+
+LEAST = 1e-6  # velocity below which peers go through the wall
+
+
+def derivative_of_map(problem: Problem, time: float, there: list[float]) -> list[float]:
+    """The entries of D G from the time of a hit and (x', y, y', z, z') there: y varies with v, z with tau."""
+    u, y, y_dot, z, z_dot = there
+    e, r = cos(problem.omega * time) - problem.clearance, problem.restitution
+    time_by_tau, time_by_v = -z / u, -y / u
+    return [1 + time_by_tau, time_by_v, -r * (z_dot + e * time_by_tau), -r * (y_dot + e * time_by_v)]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from math import cos
+from math import cos, sin
 from typing import Any
 
 from singimpact.bench.measuring import NotInstalled
+from singimpact.bench.peers.impacts import derivative_of_map
 from singimpact.bench.problems import Problem
 
 TOLERANCES = (1e-6, 1e-9, 1e-12)
@@ -39,5 +40,37 @@ def stepper(family: str, tolerance: float = 1e-9) -> Any:
         if found.status != 1:
             return float("nan"), float("nan")
         return float(found.t[-1]) - problem.tau, float(found.y[1, -1])
+
+    return fly
+
+
+def varied(tolerance: float = 1e-9) -> Any:
+    """A function from a problem of the linear family to the four entries of D G, from the variational equation.
+
+    Raises
+    ------
+    NotInstalled : scipy is not there.
+    """
+    try:
+        from scipy.integrate import solve_ivp
+    except ImportError:
+        raise NotInstalled("scipy") from None
+
+    def fly(problem: Problem) -> list[float]:
+        omega = problem.omega
+
+        def field(t: float, w: Any) -> list[float]:
+            return [w[1], cos(omega * t) - w[0], w[3], -w[2], w[5], -omega * sin(omega * t) - w[4]]
+
+        def event(t: float, w: Any) -> float:  # noqa: ARG001
+            return float(w[0] - problem.clearance)
+
+        event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
+        span = (problem.tau, problem.tau + LONGEST)
+        start = [problem.clearance, problem.v, 0.0, 1.0, 0.0, 0.0]
+        found = solve_ivp(field, span, start, method="DOP853", rtol=tolerance, atol=tolerance, events=event)
+        if found.status != 1:
+            return [float("nan")] * 4
+        return derivative_of_map(problem, float(found.t[-1]), found.y[1:, -1].tolist())
 
     return fly

@@ -1,4 +1,4 @@
-"""`bench map`: one flight to the next impact, in four regimes of two families, and in many digits."""
+"""`bench regimes`: hard states against 40 digits, one flight each, in four regimes of two families; many digits."""
 
 from __future__ import annotations
 
@@ -6,23 +6,16 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-import numpy as np
-
-from singimpact.bench.measuring import EPSILON, Case, Effort, Method, with_peers
+from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import many_digits, runge_kutta, taylor_events
 from singimpact.bench.problems import FAMILIES, REGIMES, Problem, states
-from singimpact.flights.compiled_model import Allowance, allowed, codes_and_columns
-from singimpact.flights.states import States
-
-TOLERANCES = (1e-6, 1e-9, 1e-12)
-WIDE = 10  # states of an array; some flights take 15 ms each, for doubles cannot tell their digits
 
 
 def cases(effort: Effort) -> Iterator[Case]:
     """A case a family and regime; then one in many digits. A quick look leaves out duffing, whose kernel takes long."""
     for family in FAMILIES[:1] if effort.quick else FAMILIES:
         for regime in REGIMES:
-            yield _regime(family, regime, effort)
+            yield of_states(family, regime, effort)
     yield _many_digits(effort)
 
 
@@ -32,17 +25,11 @@ def of_regime(family: str, regime: str, count: int) -> list[Problem]:
     return found[:: max(len(found) // count, 1)][:count]
 
 
-def _regime(family: str, regime: str, effort: Effort) -> Case:
-    problems, copies = of_regime(family, regime, effort.states), effort.copies
-    own = [
-        Method("kernel", "compiled loop", _looped(problems, copies, EPSILON), copies=copies),
-        Method("singimpact, a call a state", "doubles", partial(_arrays, problems, None)),
-    ]
-    if not effort.quick:
-        own.append(Method("singimpact, an array", f"of {WIDE}", partial(_arrays, problems, WIDE), copies=WIDE))
-    if family == "duffing":  # a linear model has a closed form, and no tolerance
-        own += [Method("kernel", f"tolerance {tolerance:.0e}", _looped(problems, copies, tolerance), copies=copies)
-                for tolerance in TOLERANCES]  # fmt: skip
+def of_states(family: str, regime: str, effort: Effort) -> Case:
+    """A case of states from the table, each of a model of its own."""
+    problems = of_regime(family, regime, effort.states)
+    models = [problem.model() for problem in problems]
+    own = [Method("singimpact, a call a state", "doubles", partial(_flown, models, problems))]
     methods, skipped = with_peers(
         own,
         lambda: [_peer("scipy DOP853", runge_kutta, family, problems, tolerance)
@@ -63,34 +50,9 @@ def _peer(name: str, peer: Any, family: str, problems: list[Problem], tolerance:
     return Method(name, f"tolerance {tolerance:.0e}", lambda: [fly(problem)[0] for problem in problems])
 
 
-def _arrays(problems: list[Problem], copies: int | None) -> list[float]:
-    """Through the public function, equal states side by side, or one state a call."""
-    found = []
-    for problem in problems:
-        tau, v = (problem.tau, problem.v) if copies is None else (np.full(copies, problem.tau), problem.v)
-        found.append(float(np.ravel(problem.model().first_hit(tau, v).flight_time)[0]))
-    return found
-
-
-def _looped(problems: list[Problem], copies: int, tolerance: float) -> Callable[[], list[float]]:
-    loops = [_loop(problem, copies, tolerance) for problem in problems]
-    return lambda: [loop() for loop in loops]
-
-
-def _loop(problem: Problem, copies: int, tolerance: float) -> Callable[[], float]:
-    """The compiled loop over equal states, as an orbit or a grid runs it: what a flight itself costs."""
-    osc = problem.model()
-    allowance = Allowance(1000.0, max(tolerance, EPSILON))
-    model = allowed(osc, allowance)
-    model.machine.compile_here(model.main)
-    given = States.read(np.full(copies, problem.tau), problem.v)
-    tau, v = given.tau, given.v.copy()
-
-    def run() -> float:
-        codes, rows = codes_and_columns(model, tau, v)
-        return float(rows[0, 0]) if codes[0] == 0 else float("nan")
-
-    return run
+def _flown(models: list[Any], problems: list[Problem]) -> list[float]:
+    """Through the public function; models are made before, as a user has one for many states."""
+    return [osc.first_hit(problem.tau, problem.v).flight_time for osc, problem in zip(models, problems, strict=True)]
 
 
 def _many_digits(effort: Effort) -> Case:

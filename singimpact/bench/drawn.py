@@ -1,0 +1,164 @@
+"""Models and random states of the rows that a user's own loop is compared with: other states for every timed call.
+
+x'' + x = cos 2.8t and x'' + x'/10 + x + 3x^3/10 = cos 1.7t over the wall at 0.3, and x'' + x = cos 2t over the wall at
+0.7, whose orbits chatter, rest and lift off again and again.  The numbers are doubles: a peer and the truth have the
+same ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import lru_cache
+from math import acos, pi
+from typing import Any
+
+import numpy as np
+
+from singimpact.bench.problems import Problem
+from singimpact.impact_oscillator import ImpactOscillator, linear
+
+Array = np.ndarray[Any, Any]
+CHATTERING = "linear, chattering"
+OMEGAS = {"linear": 2.8, "duffing": 1.7, CHATTERING: 2.0}
+CLEARANCES = {"linear": 0.3, "duffing": 0.3, CHATTERING: 0.7}
+RESTITUTIONS = (0.5, 0.7, 0.9, 0.99, 0.999)
+"""Of the models that timed calls take in turn."""
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things.
+
+    Examples
+    --------
+    >>> counted(1, "state"), counted(20, "phase")
+    ('1 state', '20 phases')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+@lru_cache(maxsize=32)
+def model(family: str, restitution: float) -> ImpactOscillator:
+    """The oscillator of a family."""
+    if family != "duffing":
+        return linear(OMEGAS[family], CLEARANCES[family], restitution)
+    force = "x + 0.1*xdot + 0.3*x**3"
+    return ImpactOscillator(force, "cos(omega*t)", CLEARANCES[family], restitution, {"omega": OMEGAS[family]})
+
+
+@dataclass(frozen=True)
+class States:
+    """States of one model; `problems` gives them to a peer."""
+
+    family: str
+    restitution: float
+    tau: Array
+    v: Array
+
+    @property
+    def osc(self) -> ImpactOscillator:
+        """Their model."""
+        return model(self.family, self.restitution)
+
+    def problems(self) -> list[Problem]:
+        """A problem a state."""
+        return [self.problem(tau, v) for tau, v in zip(self.tau.tolist(), self.v.tolist(), strict=True)]
+
+    def problem(self, tau: float, v: float) -> Problem:
+        """A state of this model as a peer takes it."""
+        omega, clearance = OMEGAS[self.family], CLEARANCES[self.family]
+        return Problem(self.family, "drawn", omega, clearance, self.restitution, tau, v, "", "")
+
+
+def _generic(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, Array]:  # noqa: ARG001
+    return rng.uniform(0, 2 * pi / OMEGAS[family], count), rng.uniform(0.05, 2, count)
+
+
+def _slow(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, Array]:  # noqa: ARG001
+    return rng.uniform(0, 2 * pi / OMEGAS[family], count), 10 ** rng.uniform(-8, -2, count)
+
+
+def _far(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, Array]:  # noqa: ARG001
+    return rng.uniform(-1e6, 1e6, count), rng.uniform(0.05, 2, count)
+
+
+def _chattering(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, Array]:
+    """Where a_c presses, and so slow that the impacts accumulate before it ceases to."""
+    return _pressed(rng, family, count), (1 - restitution) * rng.uniform(0.01, 0.05, count)
+
+
+def _pressed(rng: Any, family: str, count: int) -> Array:
+    """Phases in the middle of the time that a_c presses, less some for the force of Duffing's model."""
+    begin, end = pressing(family)
+    return begin + (end - begin) * rng.uniform(0.2, 0.7, count)  # type: ignore[no-any-return]
+
+
+def pressing(family: str) -> tuple[float, float]:
+    """Zeros of cos(omega tau) - clearance: it falls through the first one and rises through the second."""
+    omega, angle = OMEGAS[family], acos(CLEARANCES[family])
+    return angle / omega, (2 * pi - angle) / omega
+
+
+KINDS: dict[str, Callable[[Any, str, float, int], tuple[Array, Array]]] = {
+    "generic": _generic,
+    "v from 1e-8 to 1e-2": _slow,
+    "tau within 1e6": _far,
+    "chattering": _chattering,
+}
+BEGUN = 10  # impacts that have been flown from random states before an iterated map is timed
+
+
+@dataclass
+class Draws:
+    """The states of one timed call after the other: the first call of every method has the same ones.
+
+    Parameters
+    ----------
+    family, kind, count : of a call. `kind` is a key of `KINDS`. restitution : without it one of `RESTITUTIONS` in turn.
+    """
+
+    family: str
+    kind: str
+    count: int
+    restitution: float | None = None
+    turn: int = field(default=0, init=False)
+
+    def __call__(self) -> States:
+        """The next ones."""
+        rng = np.random.default_rng([self.turn, *map(ord, self.kind)])
+        restitution = self.restitution or RESTITUTIONS[self.turn % len(RESTITUTIONS)]
+        tau, v = KINDS[self.kind](rng, self.family, restitution, LARGEST)
+        self.turn += 1
+        return States(self.family, restitution, tau[: self.count], v[: self.count])
+
+
+LARGEST = 100_000
+"""States that are drawn, so that a method of fewer states has the first ones of the others."""
+
+
+@lru_cache(maxsize=4)
+def _orbits(family: str, restitution: float, impacts: int) -> States:
+    """Random states after so many calls of the map; where an orbit has ended another state begins."""
+    if not impacts:
+        return Draws(family, "generic", LARGEST, restitution)()
+    before = _orbits(family, restitution, impacts - 1)
+    step = before.osc.impact_map(before.tau, before.v)
+    going = np.isfinite(step.tau) & (step.v > 0)
+    tau, v = np.where(going, step.tau, before.tau[::-1]), np.where(going, step.v, before.v[::-1])
+    return States(family, restitution, tau, v)
+
+
+@dataclass
+class Fed:
+    """The states of one timed call after the other, each what the map makes of those before."""
+
+    family: str
+    count: int
+    restitution: float = 0.9
+    turn: int = field(default=0, init=False)
+
+    def __call__(self) -> States:
+        """The next ones."""
+        found = _orbits(self.family, self.restitution, BEGUN + self.turn)
+        self.turn += 1
+        return States(self.family, self.restitution, found.tau[: self.count], found.v[: self.count])
