@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, as_fraction, compare, constant, float_array
 from singimpact.inputs import InputError, refuse, whole
-from singimpact.oscillator.files import read_fields, to_toml
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+    from pathlib import Path as FilePath
 
     from singimpact.contact.points import TangencyPoints
     from singimpact.contact.swans import SwanPoint
@@ -170,6 +169,8 @@ class ImpactOscillator(Oscillator):
         [parameters]
         omega = "2"
         """
+        from singimpact.oscillator.files import to_toml
+
         return to_toml(self.to_dict())
 
 
@@ -219,6 +220,8 @@ def universal(kappa: Any, restitution: Any) -> ImpactOscillator:
 
 def read_model(path: str | FilePath) -> ImpactOscillator:
     """The model in a TOML file with f, g, clearance, restitution and perhaps parameters and period."""
+    from singimpact.oscillator.files import read_fields
+
     return ImpactOscillator(**read_fields(path))
 
 

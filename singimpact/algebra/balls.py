@@ -9,7 +9,6 @@ from functools import lru_cache, partial
 from typing import Any
 
 from singimpact.algebra.expressions import BOUND, Expression, Root, evaluate
-from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.solving import newton_in_balls
 
@@ -97,6 +96,8 @@ class Zero:
 
 def derivatives(tree: Expression, variable: str, at: Any, order: int, ring: Any) -> list[Any]:
     """Taylor coefficients of a tree at `at`, an element of the ring."""
+    from singimpact.algebra.jets import JetSpace
+
     space = JetSpace((variable,), order, ring)
     step = space.generators()[0] if order else space.jet({})
     jet = space.evaluate(tree, {variable: space.constant(at) + step})

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number
+from singimpact.algebra.expressions import Expression, Number, Pi, Product, evaluate, names_in, number
 from singimpact.algebra.parsing import from_sympy, parse
 from singimpact.inputs import InputError, refuse, shown
 
@@ -143,12 +143,25 @@ def sign_of(tree: Expression) -> int:
     """
     if isinstance(tree, Number):
         return (tree.value > 0) - (tree.value < 0)
+    if known := _sign_of_parts(tree):
+        return known
     for bits in (64, 256, 1024, 4096):
         ball = _ball(tree, bits)
         if ball > 0 or ball < 0:
             return 1 if ball > 0 else -1
     told = "is not decided with 4096 bits: write the number as a rational if it is zero"
     raise InputError(f"the sign of {shown(str(tree), 200)} {told}")
+
+
+def _sign_of_parts(tree: Expression) -> int:
+    """The sign of a product of numbers and pi; 0 where balls must decide. It spares a session that asks for no more
+    the loading of them.
+    """
+    if isinstance(tree, Number):
+        return (tree.value > 0) - (tree.value < 0)
+    if isinstance(tree, Product):
+        return math.prod(_sign_of_parts(factor) for factor in tree.factors)
+    return 1 if isinstance(tree, Pi) else 0
 
 
 def compare(left: Expression, right: Expression | int) -> int:

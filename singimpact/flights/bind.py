@@ -69,9 +69,9 @@ class Emitted:
     rho: str = ""
 
     @property
-    def entries(self) -> tuple[str, str]:
+    def entries(self) -> tuple[str, ...]:
         """The entries that fly such models, in the order in which they are compiled."""
-        return ("taylor_entry", "judge_entry") if self.flow else ("linear_entry", "batch_entry")
+        return ("taylor_entry", "judge_entry") if self.flow else ("linear_entry", "batch_entry", "search_entry")
 
 
 def _own(module: types.ModuleType) -> dict[str, Callable[..., Any]]:

@@ -71,6 +71,8 @@ class TableSettings:
 
 
 TABLES = TableSettings()
+PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_BATCH}
+"""Kinds of work that fill the tables which an entry reads."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,7 @@ class CompiledModel:
         self.machine: Machine = machine_of(Emitted(source, rows))
         # only orbits call rho: the first hits of all linear models have one machine
         self.orbits: Machine = machine_of(Emitted(source, rows, text))
-        self.main, self.second = self.machine.emitted.entries
+        self.main = self.machine.emitted.entries[0]
         self.sizes, self.flat = self._laid_out()
         self._sizes, self._flat_address = self.sizes.tolist(), _address(self.flat)
         self._room = layout.scratch_length(self.sizes)
@@ -185,8 +187,8 @@ class CompiledModel:
         return self._ready(name, (machine or self.machine).compile_here(name)[0])
 
     def _ready(self, name: str, entry: Callable[..., int]) -> Callable[..., int]:
-        if self.linear and name not in self._prepared:
-            kind = entries.PREPARE_BATCH if name == "batch_entry" else entries.PREPARE
+        kind = PREPARATIONS.get(name)
+        if kind is not None and name not in self._prepared:
             # in a copy, for other threads fly through the tables meanwhile, or fill others
             before = self.flat.copy()
             filled = before.copy()
@@ -394,7 +396,7 @@ class CompiledModel:
         given : velocities below and above gamma, and times to its end, shape (n, 3). settings : see
             `kernels.gamma.bracket_gamma`.
         """
-        entry = self._compiled(self.main, 0.05 * tau.size, self.orbits) if self.linear else None
+        entry = self._search(0.05 * tau.size)
         if entry is None:
             return None
         out, status = np.empty((tau.size, 2)), np.empty(tau.size, np.int8)
@@ -403,6 +405,12 @@ class CompiledModel:
         self._call(entry, self._new_scratch(), (entries.BRACKET, tau.size, 0), (tau, rows, numbers), out, status)
         return out, status
 
+    def _search(self, seconds: float) -> Callable[..., int] | None:
+        """The entry of searches along orbits; None where it is not compiled."""
+        if not self.linear or self._compiled(self.main, seconds, self.orbits) is None:
+            return None
+        return self._compiled("search_entry", 0.0, self.orbits)
+
     def limits(self, tau: Array, v: Array, settings: tuple[float, float, float]) -> tuple[Array, Array] | None:
         """Codes of chatters, and end, error and impacts, shape (3, n); None where no compiled entry flies them.
 
@@ -410,7 +418,7 @@ class CompiledModel:
         ----------
         tau, v : states, v > 0. settings : see `kernels.chatter.chatter_end`.
         """
-        entry = self._entry(self.main, self.orbits) if self.linear and self.constant_restitution else None
+        entry = self._search(0.0) if self.constant_restitution else None
         if entry is None:
             return None
         out, status = np.empty((3, tau.size)), np.empty(tau.size, np.int8)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -90,6 +89,8 @@ class Oscillator:
     @property
     def structure(self) -> str:
         """A digest of f and g alone: models that differ in parameters, clearance or restitution share it."""
+        import hashlib  # slower to load than a model is made
+
         return hashlib.sha256(f"{self._texts[0]}|{self._texts[1]}".encode()).hexdigest()[:16]
 
     def force(self, keep: Collection[str] = ()) -> Expression:

@@ -9,7 +9,6 @@ from typing import Any
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Name, evaluate, multiply, names_in, number, substitute
 from singimpact.algebra.numbers import compare, constant, tree_of
-from singimpact.algebra.rings import EXACT
 from singimpact.inputs import InputError, refuse
 
 ACCEPTED = "a number in (0, 1], or an expression rho in v with rho(0) = 0 and -1 <= rho'(0) < 0, such as -0.8*v + v**2"
@@ -31,7 +30,9 @@ def read(value: Any, parameters: dict[str, Expression]) -> Expression:
         if isinstance(value, str) and "v" in value:
             raise
         raise refuse("restitution", value, ACCEPTED) from error
-    _check(value, substitute(rho_of(tree), parameters))
+    good = _good(substitute(tree, parameters)) if "v" in names_in(tree) else compare(tree, 0) > 0 >= compare(tree, 1)
+    if not good:
+        raise refuse("restitution", value, ACCEPTED)
     return tree
 
 
@@ -40,19 +41,19 @@ def rho_of(restitution: Expression) -> Expression:
     return restitution if "v" in names_in(restitution) else multiply(number(-1), restitution, Name("v"))
 
 
-def _check(value: Any, rho: Expression) -> None:
+def _good(rho: Expression) -> bool:
     rest = {"v": number(0)}
     try:
         start, slope = _value(substitute(rho, rest)), _value(substitute(derivative(rho, "v"), rest))
-        good = compare(start, 0) == 0 and compare(slope, 0) < 0 <= compare(slope, -1)
+        return compare(start, 0) == 0 and compare(slope, 0) < 0 <= compare(slope, -1)
     except (ArithmeticError, ValueError):
-        good = False
-    if not good:
-        raise refuse("restitution", value, ACCEPTED)
+        return False
 
 
 def _value(tree: Expression) -> Expression:
     """A constant as a rational when it is one: products with 0 and sin(0) stand unevaluated in a tree."""
+    from singimpact.algebra.rings import EXACT
+
     try:
         return number(Fraction(evaluate(tree, {}, EXACT)))
     except ArithmeticError:

@@ -27,7 +27,8 @@ MODELS = {
 def compiled():
     """What all linear models share."""
     model = compiled_model(MODELS["swan"][0])
-    model.orbits.compile_here(model.main)
+    for name in (model.main, "search_entry"):
+        model.orbits.compile_here(name)
 
 
 def halved_alone(monkeypatch):

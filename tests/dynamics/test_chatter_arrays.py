@@ -35,7 +35,8 @@ MODELS = {
 def compiled():
     """What all linear models share; without it arrays are flown state by state."""
     model = compiled_model(MODELS["ball"])
-    model.orbits.compile_here(model.main)
+    for name in (model.main, "search_entry"):
+        model.orbits.compile_here(name)
 
 
 def plain(osc, tau, v, impacts=10**6):

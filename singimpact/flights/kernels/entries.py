@@ -1,6 +1,6 @@
 """What Python calls: one function for linear models and one for Taylor flows, over addresses.
 
-`sizes[KIND]` is the kind of work. Two entries are what most sessions need; the other two are compiled after them.
+`sizes[KIND]` is the kind of work. The entries that most sessions need are compiled first.
 """
 
 from __future__ import annotations
@@ -51,13 +51,12 @@ AT_REST = 40
 
 
 def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
-    """PREPARE, HITS, SEGMENT, RELEASES, VARIATIONS, BRACKET or LIMIT of a linear model.
+    """PREPARE, HITS, SEGMENT, RELEASES or VARIATIONS of a linear model.
 
     Parameters
     ----------
     sizes : see `layout`. flat, scratch : of the model. tau, v : states. w : times; the part of a time below which
-        chatter ends an orbit, or settings of a bracket or of a limit, then constants of rho; orders of roots removed at
-        rest. out : results. status : codes. IMPACTS of LIMIT are rows behind all scratch.
+        chatter ends an orbit, then constants of rho; orders of roots removed at rest. out : results. status : codes.
 
     Returns
     -------
@@ -79,13 +78,6 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
     if kind == HITS:
         return linear_hits(states, speeds, model, work, block(out, 0, (10, count)), codes)
-    if kind == BRACKET:
-        search = Search(block(w, 0, (SETTINGS_OF_GAMMA,)), block(w, SETTINGS_OF_GAMMA, (sizes[RHO],)))
-        return linear_brackets(states, block(v, 0, (count, 3)), search, model, work, block(out, 0, (count, 2)), codes)
-    if kind == LIMIT:
-        rows = block(scratch, scratch_length(sizes), (sizes[IMPACTS], 6))
-        search = Search(block(w, 0, (SETTINGS_OF_CHATTER,)), block(w, SETTINGS_OF_CHATTER, (sizes[RHO],)))
-        return linear_limits(states, speeds, search, model, work, rows, block(out, 0, (3, count)), codes)
     if kind == RELEASES:
         return releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
     return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
@@ -107,6 +99,25 @@ def batch_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, o
     states, speeds, rho, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(w, 0, (sizes[RHO],)), status
     fly_batches(states, speeds, sizes[IMPACTS], rho, model, batch, block(codes, 0, (count,)))
     return 0
+
+
+def search_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
+    """BRACKET or LIMIT of a linear model whose tables are filled.
+
+    Parameters
+    ----------
+    w : settings of the search, then constants of rho. sizes : IMPACTS of LIMIT are rows behind all scratch.
+    """
+    count = sizes[COUNT]
+    model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
+    states, codes = block(tau, 0, (count,)), block(status, 0, (count,))
+    if sizes[KIND] == BRACKET:
+        search = Search(block(w, 0, (SETTINGS_OF_GAMMA,)), block(w, SETTINGS_OF_GAMMA, (sizes[RHO],)))
+        return linear_brackets(states, block(v, 0, (count, 3)), search, model, work, block(out, 0, (count, 2)), codes)
+    rows = block(scratch, scratch_length(sizes), (sizes[IMPACTS], 6))
+    search = Search(block(w, 0, (SETTINGS_OF_CHATTER,)), block(w, SETTINGS_OF_CHATTER, (sizes[RHO],)))
+    speeds = block(v, 0, (count,))
+    return linear_limits(states, speeds, search, model, work, rows, block(out, 0, (3, count)), codes)
 
 
 def linear_hits(tau: Any, v: Any, model: Any, work: Any, out: Any, status: Any) -> int:
