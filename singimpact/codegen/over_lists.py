@@ -30,18 +30,11 @@ def _compiled(text: str) -> CodeType:
 
 
 def nested(tree: ast.Module) -> ast.Module:
-    """A syntax tree with a[i][j] for a[i, j]."""
-    found: ast.Module = _Nested().visit(tree)
-    return ast.fix_missing_locations(found)
-
-
-class _Nested(ast.NodeTransformer):
-    def visit_Subscript(self, node: ast.Subscript) -> ast.AST:
-        self.generic_visit(node)
-        if not isinstance(node.slice, ast.Tuple):
-            return node
-        value: ast.expr = node.value
-        *first, last = node.slice.elts
-        for index in first:
-            value = ast.Subscript(value, index, ast.Load())
-        return ast.Subscript(value, last, node.ctx)
+    """The syntax tree, changed to a[i][j] for a[i, j]."""
+    # in place, and not by a `NodeTransformer`: every new process waits for this before its first answer
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Tuple):
+            *first, node.slice = node.slice.elts
+            for index in first:
+                node.value = ast.copy_location(ast.Subscript(node.value, index, ast.Load()), node)
+    return tree

@@ -46,6 +46,8 @@ from singimpact.generated import completion
 MODULES = (radii, state, lanes, double_double, waves, roots, linear, steps, taylor, tables, tabulated, variational,
            refine, hits, orbits, gamma, completion, chatter, batch_isolate, batch_refine, batch, layout,
            entries)  # fmt: skip
+COMPILED = (lanes, batch_isolate, batch_refine, batch)
+"""Modules that are never run over lists."""
 UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 IN_STEPS = {"step_size": "step_size_of_discs", "singular_part": "singular_part_of_discs",
             "next_hit": "next_hit_in_steps", "placed": "placed_in_steps"}  # fmt: skip
@@ -115,7 +117,7 @@ def over_lists(flow: str, rho: str = "", exact_restart: bool = True) -> Callable
     >>> space["first_root"]([2.0, -2.0], 1, 3.0, 0.0, 1e-16)[:2]
     (1, 1.0)
     """
-    codes = [_nested_code(module) for module in MODULES]
+    codes = [_nested_code(module) for module in MODULES if module not in COMPILED]
     emitted = [compile(nested(ast.parse(text)), "<emitted>", "exec") for text in (flow, rho) if text]
 
     def space(functions: dict[str, Any]) -> dict[str, Any]:
@@ -160,7 +162,7 @@ def over_floats(flow: str = "", rho: str = "") -> dict[str, Any]:
 def _nested_code(module: types.ModuleType) -> Any:
     """The functions of a kernel module, with a[i][j] for a[i, j]: lists of lists are faster than arrays here."""
     tree = ast.parse(inspect.getsource(module))
-    tree.body = [part for part in tree.body if isinstance(part, ast.FunctionDef)]
+    tree.body = [part for part in tree.body if isinstance(part, ast.FunctionDef) and not part.name.endswith("_entry")]
     return compile(nested(tree), str(module.__file__), "exec")
 
 
