@@ -124,8 +124,9 @@ class CompiledModel:
         self.price = LIMITS.interpreted_linear if self.linear else LIMITS.interpreted_taylor
         # launch times beyond are reduced by exact arithmetic first
         self.nearest = 2.0**25 * as_float(osc.period) if osc.period is not None else np.inf
+        self._spare: list[tuple[Array, int]] = []
         self._prepared: set[str] = set()
-        self._quick: Callable[[float, float], Any] | None = None
+        self._quick: Callable[..., Any] | None = None
         self._interpreter: Interpreter | None = None
 
     # ---- preparation
@@ -192,23 +193,38 @@ class CompiledModel:
             # in a copy, for other threads fly through the tables meanwhile, or fill others
             before = self.flat.copy()
             filled = before.copy()
-            self._call(entry, self._new_scratch(), (kind, 0, 0), flat=filled)
+            self._call(entry, (kind, 0, 0), flat=filled)
             changed = filled != before
             self.flat[changed] = filled[changed]
             self._prepared.add(name)
         return entry
 
     def _call(
-        self, entry: Callable[..., int], scratch: Array, job: tuple[int, int, int], given: tuple[Array, ...] = (),
-        out: Array | None = None, status: Array | None = None, flat: Array | None = None,
+        self, entry: Callable[..., int], job: tuple[int, int, int], given: tuple[Array, ...] = (),
+        out: Array | None = None, status: Array | None = None, flat: Array | None = None, trace: Array | None = None,
     ) -> int:  # fmt: skip
-        """One call of an entry; job : its kind, the states, and impacts or rows of a trace."""
+        """One call of an entry.
+
+        Parameters
+        ----------
+        job : its kind, the states, and impacts or rows of a trace. trace : scratch with room for such rows.
+        """
         sizes = _SIZES(*self._sizes)
         sizes[layout.KIND], sizes[layout.COUNT], sizes[layout.IMPACTS] = job
         addresses = [_address(part) for part in given] + [_NOWHERE] * (3 - len(given))
         addresses += [_NOWHERE if part is None else _address(part) for part in (out, status)]
         model = self._flat_address if flat is None else _address(flat)
-        return entry(sizes, model, _address(scratch), *addresses)
+        if trace is not None:
+            return entry(sizes, model, _address(trace), *addresses)
+        # scratch is lent to one call at a time, so that threads do not meet in it
+        try:
+            scratch, at = self._spare.pop()
+        except IndexError:
+            scratch, at = _addressed(self._new_scratch())
+        try:
+            return entry(sizes, model, at, *addresses)
+        finally:
+            self._spare.append((scratch, at))
 
     def _compiled(self, name: str, seconds: float, machine: Machine | None = None) -> Callable[..., int] | None:
         """An entry for work that takes so long when it is interpreted; None: interpret it."""
@@ -260,26 +276,25 @@ class CompiledModel:
         else:
             out[4:] = np.nan
             given = tau, v, np.full(tau.size, np.nan) if pushes is None else pushes
-        begin, scratch = 0, None
+        begin = 0
         while begin < tau.size:
             entry = self._compiled(self.main, self.price * min(TABLES.interpreted, tau.size - begin))
             end = min(begin + (TABLES.block if entry else TABLES.interpreted), tau.size)
             if entry is None:
                 self._interpreted_hits(given, (out, status), slice(begin, end))
             else:
-                scratch = self._new_scratch() if scratch is None else scratch
-                self._compiled_hits(entry, scratch, given, (out, status), slice(begin, end))
+                self._compiled_hits(entry, given, (out, status), slice(begin, end))
             begin = end
         return status, out
 
-    def _compiled_hits(self, entry: Any, scratch: Array, given: Any, found: Any, part: slice) -> None:
+    def _compiled_hits(self, entry: Any, given: Any, found: Any, part: slice) -> None:
         out, status = found
         if part.start == 0 and part.stop == status.size:
-            self._call(entry, scratch, (entries.HITS, status.size, 0), given, out, status)
+            self._call(entry, (entries.HITS, status.size, 0), given, out, status)
             return
         rows = out[:, part].copy()
         blocks = tuple(each[part] for each in given)
-        self._call(entry, scratch, (entries.HITS, rows.shape[1], 0), blocks, rows, status[part])
+        self._call(entry, (entries.HITS, rows.shape[1], 0), blocks, rows, status[part])
         out[:, part] = rows
 
     def _interpreted_hits(self, given: Any, found: Any, part: slice) -> None:
@@ -290,13 +305,16 @@ class CompiledModel:
             out[:, part] = rows
         except LEFT_OPEN:
             if rows.shape[1] == 1:
-                self._compiled_hits(self._here(self.main), self._new_scratch(), given, found, part)
+                self._compiled_hits(self._here(self.main), given, found, part)
                 return
             for index in range(part.start, part.stop):
                 self._interpreted_hits(given, found, slice(index, index + 1))
 
-    def quick(self) -> Callable[[float, float], Any]:
-        """A function (tau, v) -> (code, list of the columns of a hit) of two floats, v > 0, with the least overhead."""
+    def quick(self) -> Callable[..., Any]:
+        """A function (tau, v) -> (code, list of the columns of a hit) of two floats, v > 0, with the least overhead.
+
+        A third number is a_c at the launch of a Taylor flow, nan where it is not known.
+        """
         if self._quick is None:
             found = self.machine.entry(self.main)
             if found is None:
@@ -305,11 +323,11 @@ class CompiledModel:
             self._quick = self._bound(found[1])
         return self._quick
 
-    def _one(self, tau: float, v: float) -> tuple[int, list[float]]:
-        status, out = self.hits(np.array([tau]), np.array([v]))
+    def _one(self, tau: float, v: float, push: float = np.nan) -> tuple[int, list[float]]:
+        status, out = self.hits(np.array([tau]), np.array([v]), np.array([push]))
         return int(status[0]), out[:, 0].tolist()
 
-    def _bound(self, entry: Callable[..., int]) -> Callable[[float, float], Any]:
+    def _bound(self, entry: Callable[..., int]) -> Callable[..., Any]:
         """`quick` over scratch of its own; a thread that finds another one in it goes the longer way."""
         sizes, scratch = self.sizes.copy(), self._new_scratch()
         sizes[layout.KIND], sizes[layout.COUNT] = entries.HITS, 1
@@ -320,12 +338,12 @@ class CompiledModel:
             ctypes.addressof(status))]  # fmt: skip
         count, alone = counted.add, Lock()
 
-        def quick(tau: float, v: float, kept: Any = (sizes, scratch)) -> Any:  # noqa: ARG001
+        def quick(tau: float, v: float, push: float = np.nan, kept: Any = (sizes, scratch)) -> Any:  # noqa: ARG001
             if not alone.acquire(blocking=False):
-                return self._one(tau, v)
+                return self._one(tau, v, push)
             try:
                 count(1)
-                state[0], state[1] = tau, v
+                state[0], state[1], state[2] = tau, v, push
                 entry(*addresses)
                 return status[0], out[:]
             finally:
@@ -345,7 +363,7 @@ class CompiledModel:
                 return status, out
             except LEFT_OPEN:
                 entry = self._here(name)
-        self._call(entry, self._new_scratch(), (entries.RELEASES, tau.size, 0), (tau, tau, orders), out, status)
+        self._call(entry, (entries.RELEASES, tau.size, 0), (tau, tau, orders), out, status)
         return status, out
 
     def segment(self, tau: float, v: float, count: int, near: float = 0.0) -> tuple[Array, int]:
@@ -360,7 +378,7 @@ class CompiledModel:
             except LEFT_OPEN:
                 entry = self._here(self.main, self.orbits)
         given = np.array([tau]), np.array([v]), np.concatenate([[near], self.rho])
-        flown = self._call(entry, self._new_scratch(), (entries.SEGMENT, count, 0), given, out, status)
+        flown = self._call(entry, (entries.SEGMENT, count, 0), given, out, status)
         counted.add(flown)
         return out[:flown], int(status[0])
 
@@ -371,7 +389,7 @@ class CompiledModel:
         status = np.where(speeds > 0, 0, entries.AT_REST).astype(np.int8)
         status[tau.size :] = entries.AT_REST
         name = "batch_entry" if self.linear else self.main
-        entry, scratch, begin = self._compiled(name, 0.0, self.orbits), self._new_scratch(), 0
+        entry, begin = self._compiled(name, 0.0, self.orbits), 0
         while begin < size:
             if entry is None and self.orbits.spent > LIMITS.patience and compilable():
                 entry = self._here(name, self.orbits)
@@ -384,7 +402,7 @@ class CompiledModel:
                 self.interpreter.iterate(times[part], speeds[part], impacts, self.rho, codes)
             else:
                 given = times[part], speeds[part], self.rho
-                self._call(entry, scratch, (entries.ITERATE, codes.size, impacts), given, status=codes)
+                self._call(entry, (entries.ITERATE, codes.size, impacts), given, status=codes)
             begin += block
         return times[: tau.size], speeds[: tau.size], status[: tau.size]
 
@@ -402,7 +420,7 @@ class CompiledModel:
         out, status = np.empty((tau.size, 2)), np.empty(tau.size, np.int8)
         numbers = np.concatenate([settings, self.rho])
         rows = np.ascontiguousarray(given, dtype=float)
-        self._call(entry, self._new_scratch(), (entries.BRACKET, tau.size, 0), (tau, rows, numbers), out, status)
+        self._call(entry, (entries.BRACKET, tau.size, 0), (tau, rows, numbers), out, status)
         return out, status
 
     def _search(self, seconds: float) -> Callable[..., int] | None:
@@ -428,13 +446,13 @@ class CompiledModel:
             part = slice(begin, begin + many)
             rows, codes = np.empty((3, tau[part].size)), status[part]
             given = tau[part], v[part], numbers
-            self._call(entry, scratch, (entries.LIMIT, codes.size, room), given, rows, codes)
+            self._call(entry, (entries.LIMIT, codes.size, room), given, rows, codes, trace=scratch)
             for index in np.flatnonzero(codes == NO_ROOM).tolist():
                 one, last = slice(begin + index, begin + index + 1), TABLES.chatter[1]
                 end = np.empty((3, 1))
                 given = tau[one], v[one], numbers
                 more = self._new_scratch(3 * last // 2)
-                self._call(entry, more, (entries.LIMIT, 1, last), given, end, codes[index : index + 1])
+                self._call(entry, (entries.LIMIT, 1, last), given, end, codes[index : index + 1], trace=more)
                 rows[:, index : index + 1] = end
             out[:, part] = rows
             begin += codes.size
@@ -454,7 +472,7 @@ class CompiledModel:
                 return out
             except LEFT_OPEN:
                 entry = self._here(name)
-        self._call(entry, self._new_scratch(), (entries.VARIATIONS, tau.size, 0), (tau, v, times), out)
+        self._call(entry, (entries.VARIATIONS, tau.size, 0), (tau, v, times), out)
         return out
 
     def follow(self, tau: float, v: float, times: Array) -> Array:
@@ -468,7 +486,7 @@ class CompiledModel:
             except LEFT_OPEN:
                 entry = self._here("judge_entry")
         given = np.array([tau]), np.array([v]), times
-        self._call(entry, self._new_scratch(), (entries.FOLLOW, times.size, 0), given, out)
+        self._call(entry, (entries.FOLLOW, times.size, 0), given, out)
         return out
 
     def judged(self, tau: Array, v: Array, removed: Array) -> Array:
@@ -489,7 +507,8 @@ class CompiledModel:
                 return out
             except LEFT_OPEN:
                 entry = self._here("judge_entry")
-        self._call(entry, self._new_scratch(room), (entries.JUDGE, tau.size, room), (tau, v, removed), out)
+        trace = self._new_scratch(room)
+        self._call(entry, (entries.JUDGE, tau.size, room), (tau, v, removed), out, trace=trace)
         return out
 
 
@@ -504,6 +523,10 @@ _SIZES = ctypes.c_int64 * 8
 def _address(array: Array) -> int:
     """Where the numbers of a contiguous array lie; `array.ctypes` takes four times as long."""
     return int(array.__array_interface__["data"][0])
+
+
+def _addressed(array: Array) -> tuple[Array, int]:
+    return array, _address(array)
 
 
 _NONE = np.zeros(16)

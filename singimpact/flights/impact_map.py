@@ -14,12 +14,14 @@ import numpy as np
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.flights import in_digits, undecided
 from singimpact.flights.compiled_model import EPSILON, Allowance, CompiledModel, allowed, compiled_model
+from singimpact.flights.kernels.hits import CANCELS
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.model_numbers import horizon_of
 from singimpact.flights.rebound_law import rebound
 from singimpact.flights.results import SCALAR_STATUS, Flight, Step
 from singimpact.flights.states import States
 from singimpact.inputs import refuse
+from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status, status_array
 
@@ -111,6 +113,8 @@ def _quickly(model: CompiledModel, tau: float, v: float) -> dict[str, Any] | Non
     if not (0 < v < inf and -model.nearest < tau < model.nearest) or model.sometimes_kept:
         return None
     code, hit = model.quick()(tau, v)
+    if code == CANCELS:  # a_c at the launch has lost digits: flown with the exact one
+        code, hit = model.quick()(tau, v, float(acceleration(model.osc, np.array([tau]))[0]))
     if code != 0:
         return None
     fields = {"flight_time": hit[0], "velocity": hit[1], "status": SCALAR_STATUS[0], "depth": np.nan, "bound": np.nan,

@@ -128,9 +128,9 @@ def test_tables_are_filled_beside_those_that_other_threads_fly_through(monkeypat
     model = CompiledModel(MODELS["linear"], compiled_model(MODELS["linear"]).allowance)
     called, kinds = CompiledModel._call, []
 
-    def watched(self, entry, scratch, job, *given, **more):
+    def watched(self, entry, job, *given, **more):
         before = self.flat.copy()
-        result = called(self, entry, scratch, job, *given, **more)
+        result = called(self, entry, job, *given, **more)
         assert np.array_equal(self.flat, before)
         kinds.append(job[0])
         return result
