@@ -321,7 +321,7 @@ def test_a_file_is_written_as_often_as_its_results_grow_by_a_quarter(count, tmp_
 
     rows = []
     true = np.savez
-    monkeypatch.setattr(cases, "PORTIONS", cases.Portions(each=count))
+    monkeypatch.setattr(cases, "PORTIONS", cases.PoolSettings(each=count))
     monkeypatch.setattr(cases, "KEEPING", cases.KeepingSettings(share=0.0))
     monkeypatch.setattr(np, "savez", lambda stream, **parts: (rows.append(len(parts["index"])), true(stream, **parts)))
     with ThreadPoolExecutor(1) as pool:
