@@ -69,7 +69,10 @@ def wait_for(found, seconds=300):
         time.sleep(0.01)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(each, marks=pytest.mark.slow) for each in (signal.SIGINT, signal.SIGTERM)] + [signal.SIGKILL],
+)
 def test_an_interrupted_verify_keeps_whole_verdicts_and_resumes(number, tmp_path):
     place, output = tmp_path / "cache" / "verdicts", tmp_path / "verdicts.txt"
     run = command(tmp_path, "verify", "s3-slope-r", "e:lin", "e:swan", "-o", output)
@@ -232,6 +235,7 @@ def test_damaged_curves_are_named(damage, tmp_path, monkeypatch, capsys):
     assert str(path) in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_damaged_machine_code_is_named_and_made_again(damage, tmp_path):
     def ran():
@@ -283,6 +287,7 @@ def test_an_output_on_a_full_disk_is_one_line(tmp_path):
     assert not drafts(tmp_path)
 
 
+@pytest.mark.slow
 def test_an_unwritable_cache_folder_is_told_once(tmp_path):
     (tmp_path / "cache").touch()
     answer, told = started(["-c", MACHINE], tmp_path).communicate(timeout=300)

@@ -246,7 +246,9 @@ def _refined(osc: Oscillator, place: Any, rough: Threshold, end: ContactZero, di
                 return _without(Status.unresolved)
             last, change = change, abs(miss / slope)
             v -= miss / slope
-            if not 0 < v < mp.inf:  # the slope of `miss` is below the range of doubles
+            if (
+                not abs(v - rough.v) < rough.v
+            ):  # Newton's method goes elsewhere: its slope is below the range of doubles
                 return _without(Status.unresolved)
             if max(change, last * change / v) < small * v and last < mp.mpf(10) ** (-digits // 2) * v:
                 break

@@ -25,8 +25,8 @@ Array = np.ndarray[Any, Any]
 def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) -> Flight:
     """First hits with `digits` digits, with the conditions that doubles know.
 
-    Flights in Taylor steps are flown in doubles before: a flight that does not come back there does not here, and the
-    number of its steps is known.
+    All are flown in doubles before: a flight that does not come back there does not here, and the number of its Taylor
+    steps is known.
     """
     size = states.v.size
     known, budgets = _known_in_doubles(osc, states, allowance)
@@ -59,11 +59,15 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
 def _known_in_doubles(
     osc: Oscillator, states: States, allowance: Allowance
 ) -> tuple[dict[int, tuple[int, Array, int]], Array]:
-    """Code, numbers and cause of Taylor flights that do not come back; the steps allowed to the others."""
+    """Code, numbers and cause of flights that do not come back; the Taylor steps allowed to the others."""
     budgets = np.full(states.v.size, allowance.steps)
     model = allowed(osc, allowance)
     if model.linear:
-        return {}, budgets
+        codes, rows = model.hits(model.near(states.tau), states.v)
+        fates = undecided.Fates(*decoded(codes), rows)
+        undecided.escapes(osc, model, states, fates)
+        gone = (states.v > 0) & ((fates.status == Status.no_return) | (fates.status == Status.escaped))
+        return {int(i): (int(fates.status[i]), rows[:4, i], 0) for i in np.flatnonzero(gone)}, budgets
     tiny = [i for i in np.flatnonzero(states.v == 0).tolist() if sign_of(states.exact_v(i)) > 0]
     fates, judge = undecided.flown(osc, model, states)
     undecided.escapes(osc, model, states, fates)

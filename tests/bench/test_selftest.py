@@ -29,7 +29,12 @@ MODELS = {
 }
 
 
-@pytest.mark.parametrize("name", MODELS)
+LONG = ("friction", "no graze")  # 20 s each
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=pytest.mark.slow) if each in LONG else each for each in MODELS]
+)
 def test_nothing_is_wrong(name):
     found = si.selftest(MODELS[name], states=30, seed=1)
     assert found.wrong == 0, str(found)

@@ -43,7 +43,7 @@ def test_the_threshold_of_a_swan_is_enclosed():
 
 # gamma of x'' = g(t) with one power of t is one power of sigma: what the series gives is exact
 @pytest.mark.parametrize(("j", "g"), [(1, "t"), (2, "-t**2"), (3, "t**3"), (4, "-t**4"), (5, "t**5")])
-@pytest.mark.parametrize("tau", ["-1", "-0.01"])
+@pytest.mark.parametrize("tau", ["-1", pytest.param("-0.01", marks=pytest.mark.slow)])
 def test_homogeneous_models_have_the_threshold_of_their_series(j, g, tau):
     model = si.ImpactOscillator("0", g, 0, "1/2")
     found = si.threshold(model, tau)

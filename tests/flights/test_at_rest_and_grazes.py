@@ -123,5 +123,5 @@ def ratio(text):
 def test_without_a_common_period_a_flight_from_a_swan_is_no_graze(change):
     """A little damping or detuning: the touch of fourth order is missed or becomes a hit."""
     model = si.ImpactOscillator(f"x + {change}", "cos(2*t)", -1, "1/2")
-    hit = model.first_hit("pi/2", 0, digits=30)
+    hit = model.first_hit("pi/2", 0, digits=30, horizon=20)
     assert hit.status != Status.graze or abs(hit.flight_time - 2 * np.pi) > 1e-3

@@ -136,6 +136,7 @@ def test_fold_form_of_a_model_in_digits_and_exactly():
     assert abs(outline.coeff_monomial(sympy.Symbol("sigma") ** 2) - sympy.N(3 * a1 / 8, 45)) < 1e-38
 
 
+@pytest.mark.slow
 def test_forms_with_symbols():
     assert public_form(8, at="cusp").residual_vanishes
     assert public_form(8).residual_vanishes
