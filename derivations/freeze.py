@@ -53,10 +53,9 @@ def claim_index() -> dict[Path, bytes]:
 
 def generated() -> dict[Path, bytes]:
     """The source under singimpact/generated: from theory and codegen alone, so it works with that folder emptied."""
-    from singimpact.theory.frozen import completion_module, curve_module, sheet_module
+    from singimpact.theory.frozen import completion_module
 
-    modules = {"sheets": sheet_module(), "curves": curve_module(), "completion": completion_module()}
-    return {GENERATED / f"{name}.py": source.encode() for name, source in modules.items()}
+    return {GENERATED / "completion.py": completion_module().encode()}
 
 
 def main() -> None:

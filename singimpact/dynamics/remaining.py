@@ -1,6 +1,6 @@
 """The chatter left at a state with a short rest, summed up: the terms of tau_inf - tau in powers of v, in doubles.
 
-The terms are frozen from the theory (`generated.curves.chatter_terms`); the jets that a model fixes are computed once.
+The terms are frozen from the theory (`generated.completion`); the jets that a model fixes are computed once.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from singimpact.algebra.expressions import Expression, evaluate, number, substit
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import Contact
-from singimpact.generated.curves import chatter_terms
+from singimpact.generated.completion import chatter_terms
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 

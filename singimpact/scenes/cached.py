@@ -14,7 +14,7 @@ from singimpact import cache
 from singimpact.store import cache_folder
 from singimpact.surface.curve import Curve, Mark
 
-ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/", "generated/")  # rooms that no curve depends on
+ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/")  # rooms that no curve depends on
 
 
 def key_of(*parts: Any) -> str:

@@ -1,4 +1,4 @@
-"""The source that `generated/` holds: formulas in the jets of a contact, free of any model."""
+"""Source of formulas in the jets of a contact, free of any model: what `generated/` holds, and what users ask for."""
 
 from __future__ import annotations
 
@@ -69,9 +69,9 @@ def curve_module() -> str:
 
 
 def completion_module() -> str:
-    """The terms of tau_inf of a linear model with a number for restitution, as a file for kernels."""
-    title = "The chatter that is left in a linear model, term by term."
-    return module_source(title, COMMAND, [_completion(COMPLETED, apart=True, linear=True)])
+    """The terms of tau_inf, of any model and of a linear one with a number for restitution: what the package runs."""
+    title = "The chatter that is left, term by term."
+    return module_source(title, COMMAND, [_completion(COMPLETED, apart=True, linear=part) for part in (False, True)])
 
 
 def curve_functions(order: int | None = None) -> list[str]:

@@ -28,7 +28,6 @@ IMPORTED = re.compile(
 )
 ABOVE = (  # folders that no verdict depends on, and the sections, which each claim adds for itself
     "paper/claims/sections/", "paper/sections/", "paper/figures/", "cli/", "documents/", "scenes/", "bench/",
-    "generated/",
 )  # fmt: skip
 
 
