@@ -32,7 +32,12 @@ def pytest_unconfigure(config):
         shutil.rmtree(config.singimpact_cache, ignore_errors=True)
 
 
+LONGEST = ("test_faults.py", "test_claims.py", "test_steep_layers.py", "test_threshold.py")
+"""Files that take a minute: handed out first, so that no worker is left with one at the end."""
+
+
 def pytest_collection_modifyitems(config, items):
+    items.sort(key=lambda item: item.path.name not in LONGEST)
     if config.getoption("--slow"):
         return
     slow = [item for item in items if item.get_closest_marker("slow")]
