@@ -178,13 +178,21 @@ def _covering(found: Certified) -> Any:
         return mp.convert(found.radius) + abs(mp.convert(found.value)) * mp.mpf(10) ** -found.digits
 
 
-def summed(osc: Oscillator, tau: float, v: float, resolution: float) -> float | None:
-    """The time that is left of a complete chatter, when its error is below `resolution`; None: fly on."""
+def chatter_left(osc: Oscillator, tau: float, v: float) -> tuple[float, float] | None:
+    """The time left of a complete chatter and the size of the last term of its series; None where a_c does not press."""
     a = acceleration(osc, np.array([tau]))
     if not a[0] < 0 or compare(osc.slope_at_rest(), 1) == 0:
         return None
     left, error = remaining(osc, np.array([tau]), np.array([v]), a)
-    return float(left[0]) if error[0] <= resolution else None
+    return float(left[0]), float(error[0])
+
+
+def impacts_until(osc: Oscillator, error: float, wanted: float) -> int:
+    """Impacts after which the last term of the series, now `error`, is below `wanted`; one where it is no number."""
+    if not np.isfinite(error):
+        return 1
+    r = as_float(osc.slope_at_rest())
+    return max(1, ceil(log(error / (wanted + 1e-300)) / (ENDING.order * -log(r))))
 
 
 def _last(terms: list[Any]) -> Any:
@@ -216,7 +224,7 @@ class _Flown:
                 if not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
                     status, self.cause = Status.unresolved, Cause.overflow
                     continue
-                count = self._more(error, tau)
+                count = impacts_until(self.osc, error, EPSILON * abs(tau) / 8)
             if self._left() > 0:
                 status, short = self._fly(count, 0.0 if short or not lasting else ENDING.near, short)
             else:
@@ -226,12 +234,6 @@ class _Flown:
     def _left(self) -> int:
         """Impacts that may still be flown."""
         return self.most - (len(self.times) - 1)
-
-    def _more(self, error: float, tau: float) -> int:
-        """Impacts after which the last term is below rounding."""
-        r = as_float(self.osc.slope_at_rest())
-        wanted = EPSILON * abs(tau) / 8 + 1e-300
-        return max(1, ceil(log(error / wanted) / (ENDING.order * -log(r))))
 
     def _first(self) -> Status:
         """A start at rest is flown by the map, which knows what follows."""

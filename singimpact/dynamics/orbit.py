@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.dynamics.chatter import ENDING, summed
+from singimpact.algebra.numbers import as_float
+from singimpact.dynamics.chatter import ENDING, chatter_left, impacts_until
 from singimpact.dynamics.release import release
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import orbit_segment
@@ -27,8 +28,8 @@ class OrbitSettings:
 
     # impacts of one call into compiled code
     block: int = 4096
-    # impacts flown at most before the sum of a short chatter is tried again
-    more: int = 64
+    # two lift-offs are one when their phases differ by at most so many roundings: both are doubles next to one zero of a_c
+    same: float = 4 * EPSILON
 
 
 SETTINGS = OrbitSettings()
@@ -61,8 +62,13 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     Parameters
     ----------
     osc : the model. tau, v : the state, v >= 0.
-    impacts : how many flights are flown; chatter that is summed up costs none.
+    impacts : how many flights are flown; a chatter that is summed up counts as one.
     horizon : flight time at which a flight is given up; None for the package default.
+
+    Notes
+    -----
+    What follows a lift-off is fixed by its phase. When the mass lifts off at a phase again, the events since the first
+    time are repeated, shifted by whole periods; they are not flown again.
 
     Returns
     -------
@@ -77,10 +83,9 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     states = States.read(tau, v)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
-    run = _Run(osc, states, horizon)
-    most = whole("impacts", impacts, 0, 10**7)
-    while run.flown < most and not run.over:
-        run.advance(most - run.flown)
+    run = _Run(osc, states, horizon, whole("impacts", impacts, 0, 10**7))
+    while run.flown < run.most and not run.over:
+        run.advance()
     times, velocities = np.concatenate(run.times), np.concatenate(run.velocities)
     return Orbit(osc, times, velocities, np.concatenate(run.kinds), run.phases)
 
@@ -88,29 +93,31 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
 class _Run:
     """An orbit that is being flown: its events in blocks, its phases."""
 
-    def __init__(self, osc: Oscillator, states: States, horizon: Any) -> None:
-        self.osc, self.horizon, self.given = osc, horizon, states.given(0)
+    def __init__(self, osc: Oscillator, states: States, horizon: Any, most: int) -> None:
+        self.osc, self.horizon, self.most, self.given = osc, horizon, most, states.given(0)
         self.tau, self.v = float(states.tau[0]), float(states.v[0])
         self.begun, self.flown, self.over = self.tau, 0, False
         self.times, self.velocities = [np.array([self.tau])], [np.array([self.v])]
         self.kinds: list[Array] = [np.array(["start"], dtype="U8")]
         self.phases: list[tuple[str, float, float]] = []
-        # whether the chatter left is short, and how many impacts are flown before its sum is tried again
-        self.short, self.more = False, 1
+        # whether the chatter left is short, and how many impacts are flown before it can be summed up
+        self.short, self.more = False, 0
+        # time of every lift-off, and how many blocks of events there were
+        self.lifted: list[tuple[float, int]] = []
 
-    def advance(self, most: int) -> None:
+    def advance(self) -> None:
         """At least one flight, or the end of a chatter."""
         if self.v > 0 and self.horizon is None:
             if self.short and self._summed():
                 return
-            count = min(most, self.more if self.short else SETTINGS.block)
-            found = orbit_segment(self.osc, self.tau, self.v, count, 0.0 if self.short else ENDING.near)
+            left = self.most - self.flown
+            if self.short:
+                found = orbit_segment(self.osc, self.tau, self.v, min(left, self.more))
+            else:
+                found = orbit_segment(self.osc, self.tau, self.v, min(left, SETTINGS.block), ENDING.near)
             self._impacts(found.tau, found.v)
-            self.more = min(2 * self.more, SETTINGS.more) if self.short else self.more
-            self.short = found.short
-            if not found.status:
-                return
-            if self.flown == most:
+            self.short = not found.status and (self.short or found.short)
+            if not found.status or self.flown == self.most:
                 return
         self._mapped()
 
@@ -137,11 +144,17 @@ class _Run:
 
     def _summed(self) -> bool:
         """Whether the chatter left is summed up, which counts as one flight."""
-        left = summed(self.osc, self.tau, self.v, EPSILON * max(abs(self.tau), self.tau - self.begun))
-        if left is None:
+        left = chatter_left(self.osc, self.tau, self.v)
+        if left is None:  # a_c presses no more
+            self.short = False
             return False
-        self._go("chatter", self.tau + left, 0.0, "complete")
-        self.flown, self.short, self.more = self.flown + 1, False, 1
+        time, error = left
+        resolution = EPSILON * max(abs(self.tau), self.tau - self.begun)
+        if not error <= resolution:
+            self.more = impacts_until(self.osc, error, resolution)
+            return False
+        self._go("chatter", self.tau + time, 0.0, "complete")
+        self.flown, self.short = self.flown + 1, False
         self._rest()
         return True
 
@@ -163,7 +176,31 @@ class _Run:
 
     def _rest(self) -> None:
         lifted = release(self.osc, self.tau)
-        if np.isfinite(lifted):
-            self._go("sticking", lifted, 0.0, "release")
-        else:
+        if not np.isfinite(lifted):
             self._end("sticking" if np.isinf(lifted) else "unresolved", lifted)
+            return
+        self._go("sticking", lifted, 0.0, "release")
+        period = 0.0 if self.osc.period is None else as_float(self.osc.period)
+        for earlier, block in self.lifted if period else ():
+            turns = np.rint((lifted - earlier) / period)
+            if abs(lifted - earlier - turns * period) <= SETTINGS.same * max(abs(lifted), period):
+                self._repeat(block, turns * period)
+                return
+        self.lifted.append((lifted, len(self.times)))
+
+    def _repeat(self, block: int, time: float) -> None:
+        """The events since a lift-off at this phase, again and again, until all flights asked for are there."""
+        times, velocities, kinds = (np.concatenate(part[block:]) for part in (self.times, self.velocities, self.kinds))
+        flights = np.count_nonzero(kinds != "release")
+        left = self.most - self.flown
+        again = -(-left // flights)
+        shifts = time * np.arange(1, again + 1)
+        counted = np.cumsum(np.tile(kinds != "release", again))
+        kept = int(np.searchsorted(counted, left, side="right"))
+        phases = ([kind for kind, *_ in self.phases[-times.size :]] * again)[:kept]
+        ends = np.add.outer(shifts, times).ravel()[:kept]
+        self.phases += zip(phases, [self.tau, *ends[:-1].tolist()], ends.tolist(), strict=True)
+        self.times.append(ends)
+        self.velocities.append(np.tile(velocities, again)[:kept])
+        self.kinds.append(np.tile(kinds, again)[:kept])
+        self.flown = self.most

@@ -81,3 +81,28 @@ def test_bad_count(impacts: object) -> None:
 def test_one_state_at_a_time() -> None:
     with pytest.raises(InputError, match="one state"):
         linear(2, 0, 1).orbit([0, 1], 1)
+
+
+def test_what_follows_a_lift_off_is_repeated() -> None:
+    osc = linear(2, "0.9", "0.5")
+    orbit = osc.orbit(0.31, 0.5, impacts=400)
+    assert np.count_nonzero(orbit.kind != "release") == 401
+    assert [phase[1] for phase in orbit.phases] == orbit.tau[:-1].tolist()
+    assert [phase[2] for phase in orbit.phases] == orbit.tau[1:].tolist()
+    for index in np.flatnonzero(orbit.kind == "release")[5:40:7]:
+        # flown again from the state before: the same events
+        again = osc.orbit(orbit.tau[index - 2], orbit.v[index - 2], impacts=12)
+        kinds = again.kind.tolist()[1:]
+        assert kinds == orbit.kind[index - 1 :].tolist()[: len(kinds)]
+        assert again.tau[1:] == pytest.approx(orbit.tau[index - 1 :][: len(kinds)], rel=1e-14)
+        assert again.v[1:] == pytest.approx(orbit.v[index - 1 :][: len(kinds)], rel=1e-11, abs=1e-300)
+
+
+@pytest.mark.parametrize("impacts", [37, 38, 39, 40, 41])
+def test_a_shorter_orbit_is_the_beginning_of_a_longer_one(impacts: int) -> None:
+    osc = linear(2, "0.9", "0.5")
+    short, long = osc.orbit(0.31, 0.5, impacts=impacts), osc.orbit(0.31, 0.5, impacts=300)
+    count = short.tau.size
+    assert short.kind.tolist() == long.kind[:count].tolist()
+    assert short.tau == pytest.approx(long.tau[:count], rel=1e-15)
+    assert np.count_nonzero(short.kind != "release") - 1 == impacts
