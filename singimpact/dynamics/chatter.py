@@ -179,7 +179,7 @@ def _covering(found: Certified) -> Any:
 
 
 def chatter_left(osc: Oscillator, tau: float, v: float) -> tuple[float, float] | None:
-    """The time left of a complete chatter and the size of the last term of its series; None where a_c does not press."""
+    """The time left of a complete chatter and the last term of its series; None where a_c does not press."""
     a = acceleration(osc, np.array([tau]))
     if not a[0] < 0 or compare(osc.slope_at_rest(), 1) == 0:
         return None

@@ -28,7 +28,7 @@ class OrbitSettings:
 
     # impacts of one call into compiled code
     block: int = 4096
-    # two lift-offs are one when their phases differ by at most so many roundings: both are doubles next to one zero of a_c
+    # two lift-offs are one when their phases differ by at most this, relative: both are doubles next to one zero of a_c
     same: float = 4 * EPSILON
 
 
