@@ -42,7 +42,7 @@ class ImpactOscillator(Oscillator):
 
     def first_hit(
         self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
-        steps: int | None = None,
+        steps: int | None = None, out: Mapping[str, Any] | None = None,
     ) -> Flight:  # fmt: skip
         """The first hit F of flights from (tau, v): see `singimpact.flights.impact_map.first_hit`.
 
@@ -55,11 +55,11 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.impact_map import first_hit
 
-        return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps)
+        return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
     def impact_map(
         self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
-        steps: int | None = None,
+        steps: int | None = None, out: Mapping[str, Any] | None = None,
     ) -> Step:  # fmt: skip
         """The impact map G(tau, v): see `singimpact.flights.impact_map.impact_map`.
 
@@ -71,7 +71,7 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.impact_map import impact_map
 
-        return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps)
+        return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
     def flight(self, tau: Any, v: Any, t: Any) -> Path:
         """x and x' at times t along one flight: see `singimpact.flights.path.path`."""

@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import lru_cache
 from math import frexp, ldexp
 from threading import Lock
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from singimpact.codegen.scalar import scalar
 from singimpact.flights import counted
 from singimpact.flights.bind import Emitted
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
+from singimpact.flights.interruptible import LONG, interruptible
 from singimpact.flights.kernels import entries, layout
 from singimpact.flights.kernels.chatter import NO_ROOM
 from singimpact.flights.kernels.hits import UNIT
@@ -128,6 +130,11 @@ class CompiledModel:
         self._prepared: set[str] = set()
         self._quick: Callable[..., Any] | None = None
         self._interpreter: Interpreter | None = None
+        # seconds of a state by kind of work, as last measured; before that, and at least, with many steps allowed
+        self._seconds: dict[int, float] = {}
+        steps = 0.0 if self.linear else max(allowance.steps / LIMITS.steps - 1, 0.0)
+        self._guess = 1e-6 if self.linear else 3e-4 * (1 + steps)
+        self._least = 3e-4 * steps
 
     # ---- preparation
 
@@ -209,22 +216,32 @@ class CompiledModel:
         ----------
         job : its kind, the states, and impacts or rows of a trace. trace : scratch with room for such rows.
         """
+        units = max(job[1], 1) * (max(job[2], 1) if job[0] == entries.ITERATE else 1)
         sizes = _SIZES(*self._sizes)
         sizes[layout.KIND], sizes[layout.COUNT], sizes[layout.IMPACTS] = job
         addresses = [_address(part) for part in given] + [_NOWHERE] * (3 - len(given))
         addresses += [_NOWHERE if part is None else _address(part) for part in (out, status)]
         model = self._flat_address if flat is None else _address(flat)
         if trace is not None:
-            return entry(sizes, model, _address(trace), *addresses)
-        # scratch is lent to one call at a time, so that threads do not meet in it
+            return self._timed(entry, (sizes, model, _address(trace), *addresses), units, (trace, given, out, status))
+        # scratch is lent to one call at a time, so that threads do not meet in it; an interrupted call keeps it
         try:
             scratch, at = self._spare.pop()
         except IndexError:
             scratch, at = _addressed(self._new_scratch())
-        try:
-            return entry(sizes, model, at, *addresses)
-        finally:
-            self._spare.append((scratch, at))
+        found = self._timed(entry, (sizes, model, at, *addresses), units, (scratch, given, out, status, flat))
+        self._spare.append((scratch, at))
+        return found
+
+    def _timed(self, entry: Callable[..., int], arguments: tuple[Any, ...], units: int, kept: tuple[Any, ...]) -> int:
+        """A call of an entry; one that is expected to be long hears Ctrl-C."""
+        kind = arguments[0][layout.KIND]
+        known = self._seconds.get(kind, self._guess)
+        begun = perf_counter()
+        found = interruptible(entry, arguments, kept) if known * units > LONG else entry(*arguments)
+        spent = (perf_counter() - begun) / units
+        self._seconds[kind] = max(spent, 0.9 * known if kind in self._seconds else self._least)
+        return found
 
     def _compiled(self, name: str, seconds: float, machine: Machine | None = None) -> Callable[..., int] | None:
         """An entry for work that takes so long when it is interpreted; None: interpret it."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.expressions import names_in
+from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import Allowance, allowed, compiled_model
 from singimpact.flights.kernels.state import TIME_BY_TAU, VELOCITY_BY_V
 from singimpact.flights.model_numbers import horizon_of
@@ -39,6 +41,8 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
     >>> (derivative(Oscillator("0", "-2", 0, "1/2"), 0, 1).matrix + 0).tolist()
     [[1.0, 1.0], [0.0, 0.5]]
     """
+    if many(tau, v):
+        return in_blocks(partial(derivative, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     states = States.of(osc, tau, v)
     model = compiled_model(osc) if horizon is None else allowed(osc, Allowance(horizon_of(osc, horizon)))
     hit, rows = flights_and_rows(osc, model, states)

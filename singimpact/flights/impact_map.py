@@ -6,6 +6,8 @@ few flights that end in no plain hit are decided one by one (`undecided`).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import partial
 from math import inf
 from typing import Any
 
@@ -13,6 +15,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.flights import in_digits, undecided
+from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import EPSILON, Allowance, CompiledModel, allowed, compiled_model
 from singimpact.flights.kernels.hits import CANCELS
 from singimpact.flights.limits import LIMITS
@@ -32,7 +35,7 @@ NO_NOTES: dict[int, str] = {}
 
 def first_hit(
     osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
-    steps: int | None = None,
+    steps: int | None = None, out: Mapping[str, Array] | None = None,
 ) -> Flight:  # fmt: skip
     """The first hit of the obstacle by the flight from (tau, v).
 
@@ -45,10 +48,13 @@ def first_hit(
     horizon : time after which a flight is given up; 1000 periods of g if not given, or 2e5 radians of the fastest
         motion where those come first. At most 1e7 radians.
     steps : Taylor steps after which a flight of a model without a closed form is given up, 16000 if not given.
+    out : arrays that take the results, by field: {"flight_time": a, "velocity": b}, memory maps too. Of the shape of
+        the states, doubles (`status` and `cause`: int8). Other fields than these, `status` and `cause` are not kept.
 
     Returns
     -------
-    Flight : arrays of the broadcast shape, scalars for scalars.
+    Flight : arrays of the broadcast shape, scalars for scalars; 34 to 66 bytes a state. Arrays of more than 131072
+        states are flown in blocks, which take 20 MB beside them.
 
     Examples
     --------
@@ -56,18 +62,21 @@ def first_hit(
     >>> hit.flight_time.tolist(), hit.velocity.tolist(), hit.status.tolist()
     ([0.0, 1.0, 3.0], [0.0, -1.0, -3.0], [2, 0, 0])
     """
-    if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None:
+    if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
         fields = _quickly(compiled_model(osc), tau, v)
         if fields is not None:
             later = fields.pop("later")
             return Flight.made(later, **fields)
+    if many(tau, v, out, digits):
+        fly = partial(first_hit, osc, tolerance=tolerance, horizon=horizon, steps=steps)
+        return in_blocks(fly, tau, v, out)  # type: ignore[no-any-return]
     states = States.of(osc, tau, v, digits)
     return _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps))
 
 
 def impact_map(
     osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
-    steps: int | None = None,
+    steps: int | None = None, out: Mapping[str, Array] | None = None,
 ) -> Step:  # fmt: skip
     """The impact map G(tau, v) = (tau + T, -r x'(T)); parameters as in `first_hit`.
 
@@ -82,12 +91,15 @@ def impact_map(
     >>> step.tau, step.v, step.status
     (4.0, 1.5, np.int8(0))
     """
-    if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None:
+    if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
         model = compiled_model(osc)
         fields = _quickly(model, tau, v) if model.constant_restitution else None
         if fields is not None:
             later = fields.pop("later")
             return Step.made(later, tau=tau + fields["flight_time"], v=-model.r * fields["velocity"], **fields)
+    if many(tau, v, out, digits):
+        fly = partial(impact_map, osc, tolerance=tolerance, horizon=horizon, steps=steps)
+        return in_blocks(fly, tau, v, out)  # type: ignore[no-any-return]
     states = States.of(osc, tau, v, digits)
     hit = _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps))
     if digits is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from singimpact.algebra.expressions import Name, multiply, names_in, number, substitute
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
+from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.rebound_law import sharpened, speed_before
 from singimpact.flights.results import Step
@@ -49,6 +50,8 @@ def inverse_map(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None,
     >>> before.tau, before.v, before.status
     (np.float64(1.0), np.float64(3.0), np.int8(0))
     """
+    if many(tau, v, digits=digits):
+        return in_blocks(partial(inverse_map, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     states = States.read(tau, v)
     if digits is None:
         return _in_doubles(osc, states, horizon)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import EPSILON, Allowance, allowed, compiled_model
 from singimpact.flights.kernels.entries import AT_REST
@@ -93,6 +95,8 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
     >>> ends.tau.tolist(), ends.v.tolist()
     ([1.75, 2.75], [0.125, 0.125])
     """
+    if many(tau, v):
+        return in_blocks(partial(iterate, osc, impacts=impacts, tolerance=tolerance), tau, v)  # type: ignore[no-any-return]
     states = States.read(tau, v)
     model = compiled_model(osc)
     if tolerance > EPSILON and not model.linear:

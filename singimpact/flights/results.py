@@ -11,7 +11,7 @@ import numpy as np
 from singimpact.notebook import table
 from singimpact.status import Cause, Status, status_array
 
-LATER = ("condition", "velocity_condition", "time_error", "velocity_error")
+JUDGED = ("condition", "velocity_condition", "time_error", "velocity_error")
 """Fields that may be computed when they are first read: of a Taylor flow they take longer than the flight."""
 SCALAR_STATUS = tuple(np.int8(code) for code in range(len(Status)))
 
@@ -57,8 +57,8 @@ class Flight:
         object.__setattr__(self, "status", status_array(self.status))
 
     @classmethod
-    def made(cls, later: Callable[[], dict[str, Any]] | None = None, **values: Any) -> Self:
-        """A result from its fields; `later` gives those of `LATER` that are not among them."""
+    def made(cls, later: Callable[[str], dict[str, Any]] | None = None, **values: Any) -> Self:
+        """A result from its fields; `later` gives one that is not among them, perhaps with others, when it is read."""
         found = object.__new__(cls)
         found.__dict__.update(values)
         if later is not None:
@@ -66,11 +66,10 @@ class Flight:
         return found
 
     def __getattr__(self, name: str) -> Any:
-        later = self.__dict__.get("_later") if name in LATER else None
+        later = self.__dict__.get("_later") if name in type(self).__dataclass_fields__ else None
         if later is None:
             raise AttributeError(f"{type(self).__name__} has no {name}")
-        self.__dict__.update(later())
-        self.__dict__.pop("_later", None)  # another thread may have read one of them at the same time
+        self.__dict__.update(later(name))
         return self.__dict__[name]
 
     def __getstate__(self) -> dict[str, Any]:

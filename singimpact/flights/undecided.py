@@ -19,7 +19,7 @@ from singimpact.flights.no_return.polynomial import never_turns
 from singimpact.flights.path import path
 from singimpact.flights.phase import reduced
 from singimpact.flights.response import response, usual_errors
-from singimpact.flights.results import Flight
+from singimpact.flights.results import JUDGED, Flight
 from singimpact.flights.states import States
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -65,7 +65,7 @@ class Judge:
             self.removed = np.ones(tau.size)
             self.hits = np.ones(tau.size, dtype=bool)
 
-    def __call__(self) -> dict[str, Any]:
+    def __call__(self, _name: str) -> dict[str, Any]:
         if self.shape is not None:  # one state, as numbers
             self.tau, self.v = np.array([self.tau]), np.array([self.v])
             self.removed, self.hits = np.ones(1), np.ones(1, dtype=bool)
@@ -74,7 +74,7 @@ class Judge:
         judged = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])
         rows[:, chosen] = judged[2:6]
         rows[2:] = LIMITS.margin * rows[2:] + EPSILON
-        values = dict(zip(("condition", "velocity_condition", "time_error", "velocity_error"), rows, strict=True))
+        values = dict(zip(JUDGED, rows, strict=True))
         if self.shape is None:
             return values
         return {name: value.reshape(self.shape)[()] for name, value in values.items()}
@@ -92,8 +92,8 @@ class Shaped:
     def __init__(self, later: Any, shape: tuple[int, ...]) -> None:
         self.later, self.shape = later, shape
 
-    def __call__(self) -> dict[str, Any]:
-        return {name: np.asarray(value).reshape(self.shape)[()] for name, value in self.later().items()}
+    def __call__(self, name: str) -> dict[str, Any]:
+        return {each: np.asarray(value).reshape(self.shape)[()] for each, value in self.later(name).items()}
 
 
 def flights(osc: Oscillator, model: CompiledModel, states: States) -> Flight:
@@ -235,8 +235,7 @@ def result(osc: Oscillator, states: States, fates: Fates, judge: Judge | None, s
         late = conditions(osc, states, others & hit, time, velocity)
         late[2:, settled] = EPSILON
         judged = np.where(others & hit, late, judged)
-    names = ("condition", "velocity_condition", "time_error", "velocity_error")
-    return Flight.made(**fields, **dict(zip(names, judged, strict=True)))
+    return Flight.made(**fields, **dict(zip(JUDGED, judged, strict=True)))
 
 
 def conditions(osc: Oscillator, states: States, chosen: Array, time: Array, velocity: Array) -> Array:

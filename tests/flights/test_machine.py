@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import threading
 import time
+from threading import Timer
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ import pytest
 import singimpact as si
 from singimpact import store
 from singimpact.codegen import object_code
-from singimpact.flights import machine
+from singimpact.flights import interruptible, machine
 from singimpact.flights.bind import MODULES, Emitted, constants
 from singimpact.flights.compiled_model import Allowance, CompiledModel, compiled_model
 from singimpact.flights.counted import counted
@@ -266,3 +268,18 @@ def test_the_kinds_of_work_are_told_apart():
     kinds = (entries.PREPARE, entries.PREPARE_BATCH, entries.HITS, entries.SEGMENT, entries.ITERATE,
              entries.VARIATIONS, entries.FOLLOW, entries.JUDGE, entries.RELEASES)  # fmt: skip
     assert len(set(kinds)) == len(kinds)
+
+
+def test_long_calls_hear_an_interruption(compiled):
+    osc = compiled["duffing"]
+    osc.iterate(0.3, 0.5, 100)
+    Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        osc.iterate(0.3, 0.5, 1_000_000)
+    late = [thread for thread in threading.enumerate() if thread.name == interruptible.NAME]
+    assert late  # the call itself has not ended
+    for thread in late:
+        thread.join()
+    # what the interrupted call wrote into is not lent again
+    again = osc.iterate(0.3, 0.5, 100)
+    assert again == osc.iterate(0.3, 0.5, 100)

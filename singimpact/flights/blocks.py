@@ -1,0 +1,186 @@
+"""Large arrays of states, flown block by block: results are written into arrays made once, or into the caller's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from singimpact.flights.results import Flight
+from singimpact.inputs import InputError
+
+Array = np.ndarray[Any, Any]
+SPARSE = ("depth", "bound")
+"""Numbers that few flights have."""
+ALWAYS = ("status", "cause")
+"""Fields that are there whatever arrays a caller gives."""
+
+
+@dataclass(frozen=True)
+class BlockSettings:
+    """How arrays are cut."""
+
+    # states of a block: its scratch is 16 MB, and a linear model flies it in 0.03 s
+    states: int = 65_536
+    # arrays of at most so many states go in one piece
+    whole: int = 131_072
+
+
+BLOCKS = BlockSettings()
+
+
+def many(tau: Any, v: Any, out: Mapping[str, Array] | None = None, digits: int | None = None) -> bool:
+    """Whether states are flown in blocks: arrays of more than `BLOCKS.whole` of them, and all with `out`.
+
+    Examples
+    --------
+    >>> many(np.zeros((1000, 1)), np.ones(1000)), many(0.0, 1.0)
+    (True, False)
+    """
+    if digits is not None:
+        if out is not None:
+            raise InputError("out= takes doubles: leave it away with digits=")
+        return False
+    if out is not None:
+        return True
+    if _size(tau) * _size(v) <= BLOCKS.whole:
+        return False
+    try:
+        return int(np.prod(np.broadcast_shapes(np.shape(tau), np.shape(v)))) > BLOCKS.whole
+    except ValueError:
+        return False  # refused where the states are read
+
+
+def in_blocks(fly: Callable[[Any, Any], Any], tau: Any, v: Any, out: Mapping[str, Array] | None = None) -> Any:
+    """The result of `fly` on `many` states.
+
+    Parameters
+    ----------
+    fly : of tau and v, arrays of one dimension or one of them a number; it returns a `Flight` or a record of arrays.
+    out : arrays by the names of the fields that are kept, of the shape of the states.
+
+    Examples
+    --------
+    >>> from singimpact.flights.orbits import Ends
+    >>> found = in_blocks(lambda tau, v: Ends(tau + v, v, np.zeros(v.size, np.int8)), 1.0, np.arange(200_000.0))
+    >>> found.tau[-1], found.v.shape
+    (np.float64(200000.0), (200000,))
+    """
+    shape = np.broadcast_shapes(np.shape(tau), np.shape(v))
+    size = int(np.prod(shape))
+    columns = [_flat(value, shape) for value in (tau, v)]
+    parts = _Parts(shape, out)
+    for begin in range(0, max(size, 1), BLOCKS.states):
+        chosen = slice(begin, min(begin + BLOCKS.states, size))
+        parts.add(fly(*(column(chosen) for column in columns)), chosen)
+    return parts.result()
+
+
+def _size(value: Any) -> int:
+    """Elements of an array; 1 for all that is none."""
+    return int(value.size) if isinstance(value, np.ndarray) else 1
+
+
+def _flat(value: Any, shape: tuple[int, ...]) -> Callable[[slice], Any]:
+    """What gives the blocks of a value; of a number the number."""
+    if np.ndim(value) == 0:
+        # with `out` a state of two numbers is an array of one
+        return (lambda _chosen: value) if shape else (lambda _chosen: np.array([value], dtype=object))
+    array = value if isinstance(value, np.ndarray) else np.array(value, dtype=object)  # text among numbers stays text
+    if array.shape == shape and array.flags.c_contiguous:
+        whole = array.reshape(-1)
+        return lambda chosen: np.asarray(whole[chosen])
+    return lambda chosen: np.broadcast_to(array, shape).flat[chosen]
+
+
+class _Parts:
+    """Results of blocks, as they come."""
+
+    def __init__(self, shape: tuple[int, ...], out: Mapping[str, Array] | None) -> None:
+        self.shape, self.size = shape, int(np.prod(shape))
+        self.out = None if out is None else dict(out)
+        self.arrays: dict[str, Array] = {}
+        self.notes: dict[int, str] = {}
+        self.rare: list[tuple[Array, Array]] = []
+        self.later: list[Any] = []
+        self.kind: Any = None
+
+    def add(self, part: Any, chosen: slice) -> None:
+        """The results of one block."""
+        if self.kind is None:
+            self._begin(part)
+        fields = vars(part)
+        for name, target in self.arrays.items():
+            if target.flags.c_contiguous:
+                target.reshape(self.size, *target.shape[len(self.shape) :])[chosen] = fields[name]
+            else:
+                target.flat[chosen] = fields[name]
+        self.notes |= {chosen.start + index: note for index, note in fields.get("notes", {}).items()}
+        if SPARSE[0] in fields and self.out is None:
+            rows = np.stack([fields[name] for name in SPARSE])
+            known = np.flatnonzero(~np.isnan(rows).all(axis=0))
+            if known.size:
+                self.rare.append((chosen.start + known, rows[:, known]))
+        if "_later" in fields and self.out is None:
+            self.later.append(fields["_later"])
+
+    def _begin(self, part: Any) -> None:
+        self.kind = type(part)
+        fields = {name: value for name, value in vars(part).items() if isinstance(value, np.ndarray)}
+        for name in SPARSE if self.out is None else ():
+            fields.pop(name, None)
+        if self.out is not None:
+            self._check(fields)
+            fields = {name: value for name, value in fields.items() if name in self.out or name in ALWAYS}
+        for name, value in fields.items():
+            given = None if self.out is None else self.out.get(name)
+            if given is None:
+                given = np.empty(self.shape + value.shape[1:], value.dtype)
+            self.arrays[name] = given
+
+    def _check(self, fields: Mapping[str, Array]) -> None:
+        assert self.out is not None
+        for name, target in self.out.items():
+            if name not in fields:
+                raise InputError(f"out has the name {name!r}: give arrays for {', '.join(fields)}")
+            wanted = self.shape + fields[name].shape[1:], fields[name].dtype
+            found = (getattr(target, "shape", None), getattr(target, "dtype", type(target).__name__))
+            if found != wanted or not target.flags.writeable:
+                raise InputError(
+                    f"out[{name!r}] has shape {found[0]} and type {found[1]}: give a writable array of shape"
+                    f" {wanted[0]} and type {wanted[1]}"
+                )
+
+    def result(self) -> Any:
+        """All blocks as one."""
+        if not issubclass(self.kind, Flight):
+            return self.kind(**self.arrays)
+        later = _Later(self.shape, self.rare, self.later) if self.out is None else _NotKept()
+        return self.kind.made(later, **self.arrays, notes=self.notes)
+
+
+@dataclass(frozen=True)
+class _Later:
+    """Fields of all blocks that are put together when they are read."""
+
+    shape: tuple[int, ...]
+    rare: list[tuple[Array, Array]]
+    parts: list[Any] = field(default_factory=list)
+
+    def __call__(self, name: str) -> dict[str, Any]:
+        if name in SPARSE:
+            rows = np.full((2, int(np.prod(self.shape))), np.nan)
+            for index, values in self.rare:
+                rows[:, index] = values
+            return {each: row.reshape(self.shape) for each, row in zip(SPARSE, rows, strict=True)}
+        blocks = [part(name) for part in self.parts]
+        return {each: np.concatenate([block[each] for block in blocks]).reshape(self.shape) for each in blocks[0]}
+
+
+class _NotKept:
+    """What is read of a result whose arrays the caller gave."""
+
+    def __call__(self, name: str) -> dict[str, Any]:
+        raise AttributeError(f"{name} was not kept: name it in out=, or leave out= away")
