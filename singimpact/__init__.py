@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from singimpact import theory as theory
     from singimpact.bench.selftest.run import selftest as selftest
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
+    from singimpact.impact_oscillator import branch as branch
+    from singimpact.impact_oscillator import event_curve as event_curve
     from singimpact.impact_oscillator import linear as linear
     from singimpact.impact_oscillator import read_model as read_model
     from singimpact.impact_oscillator import swan_points as swan_points
@@ -39,6 +41,8 @@ _ROOMS = {
 }
 _HOMES = {
     "ImpactOscillator": "singimpact.impact_oscillator",
+    "branch": "singimpact.impact_oscillator",
+    "event_curve": "singimpact.impact_oscillator",
     "linear": "singimpact.impact_oscillator",
     "universal": "singimpact.impact_oscillator",
     "read_model": "singimpact.impact_oscillator",

@@ -16,11 +16,14 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
     from pathlib import Path as FilePath
 
+    from singimpact.branches.branch import Branch
+    from singimpact.branches.event_curve import EventCurve
+    from singimpact.branches.events import Event
+    from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits
     from singimpact.contact.points import TangencyPoints
     from singimpact.contact.swans import SwanPoint
     from singimpact.dynamics.chatter import ChatterLimit
     from singimpact.dynamics.orbit import Orbit
-    from singimpact.dynamics.periodic import PeriodicOrbit
     from singimpact.dynamics.threshold import Threshold
     from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.path import Path
@@ -143,11 +146,18 @@ class ImpactOscillator(Oscillator):
 
         return chatter_limit(self, tau, v, digits=digits, impacts=impacts)
 
-    def periodic(self, n: int, k: int, *, digits: int | None = None) -> list[PeriodicOrbit]:
-        """Orbits of n impacts in k periods: see `singimpact.dynamics.periodic.periodic`."""
-        from singimpact.dynamics.periodic import periodic
+    def periodic(self, n: Any, k: int, start: Any = None, *, digits: int | None = None) -> PeriodicOrbits:
+        """Orbits of n impacts in k periods: see `singimpact.branches.periodic.periodic`.
 
-        return periodic(self, n, k, digits=digits)
+        Examples
+        --------
+        >>> found = linear(4, 0, "0.5").periodic(1, 2)
+        >>> found.complete, f"{found[0].v[0]:.12f}"
+        (True, '0.533333333333')
+        """
+        from singimpact.branches.periodic import periodic
+
+        return periodic(self, n, k, start, digits=digits)
 
     def orbit(self, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None) -> Orbit:
         """Impacts, chatter and rest in order: see `singimpact.dynamics.orbit.orbit`."""
@@ -305,6 +315,33 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     from singimpact.dynamics.threshold import threshold
 
     return threshold(osc, tau, digits=digits, impacts=impacts)
+
+
+def branch(
+    orbit: PeriodicOrbit, over: str = "clearance", between: Any = None, *, points: int = 2000, step: float | None = None
+) -> Branch:
+    """A periodic orbit followed as a number of its model moves: see `singimpact.branches.branch.branch`.
+
+    Examples
+    --------
+    >>> osc = linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45")
+    >>> found = branch(osc.periodic(1, 1)[0], over="amplitude", between=(-0.5, -0.3))
+    >>> print(found.events[-1])
+    <graze of impact 1 at amplitude = -0.368781778292>
+    """
+    from singimpact.branches.branch import branch
+
+    return branch(orbit, over, between, points=points, step=step)
+
+
+def event_curve(
+    event: Event, over: Any = ("clearance", "restitution"), between: Any = None, *, points: int = 1000,
+    step: float | None = None,
+) -> EventCurve:  # fmt: skip
+    """The curve of an event of a branch in two numbers: see `singimpact.branches.event_curve.event_curve`."""
+    from singimpact.branches.event_curve import event_curve
+
+    return event_curve(event, over, between, points=points, step=step)
 
 
 def sweep(function: Any, cases: Any, executor: Executor | None = None, output: str | FilePath | None = None) -> Any:

@@ -21,7 +21,7 @@ import sympy
 import singimpact as si
 from singimpact import fixed_points, theory
 from singimpact.algebra import precision
-from singimpact.dynamics import periodic
+from singimpact.branches import starts
 
 THREADS = 8
 FORGETTING = ("singimpact.algebra", "singimpact.contact", "singimpact.theory")
@@ -138,7 +138,7 @@ def forget():
 def few_starts():
     """Orbits are sought from few states: with the usual number of them a kernel is compiled, which takes 15 s."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(periodic, "STARTS", dataclasses.replace(periodic.STARTS, phases=6, speeds=4))
+        patch.setattr(starts, "SETTINGS", dataclasses.replace(starts.SETTINGS, phases=6, speeds=4, fewer=(6, 4)))
         yield
 
 

@@ -107,12 +107,14 @@ class _Writer:
         self.emit("if k == 0:", f"    {target('k')} = {start}", "else:", *(f"    {line}" for line in otherwise))
 
 
-def recurrence(force: Expression, forcing: Expression) -> Recurrence:
+def recurrence(force: Expression, forcing: Expression, push: Expression | None = None) -> Recurrence:
     """The recurrence for the Taylor coefficients of a flight and of its variational equation, with their bounds.
 
     Parameters
     ----------
     force, forcing : f in x, xdot and parameters; g in t and parameters.
+    push : what drives the third column: g' without it, for the derivative by the launch time; with g_p - f_p that
+        column is the derivative by a parameter p.
 
     Raises
     ------
@@ -132,14 +134,14 @@ def recurrence(force: Expression, forcing: Expression) -> Recurrence:
     body = [*motion, "if k == 0:", "    X[2] += shift"]
     source = [_function("coefficients(launch, time, z, u, shift, n, p, work)", body), disc_source(bound, parts)]
     source.append(rounding_source(writer.disc("", "unit"), parts, steady))
-    source += _columns(writer, motion, force, forcing)
+    source += _columns(writer, motion, force, derivative(forcing, "t") if push is None else push)
     return Recurrence("\n\n".join(source), tuple(writer.constants), max(writer.rows, 1), tuple(bound.suspects))
 
 
-def _columns(writer: _Writer, motion: list[str], force: Expression, forcing: Expression) -> list[str]:
-    """The source for columns A'' = -f_x A - f_x' A', the same for B, and Z'' = -f_x Z - f_x' Z' + g'."""
+def _columns(writer: _Writer, motion: list[str], force: Expression, push: Expression) -> list[str]:
+    """The source for columns A'' = -f_x A - f_x' A', the same for B, and Z'' = -f_x Z - f_x' Z' + push."""
     writer.lines.clear()
-    push, by_x, by_xdot = derivative(forcing, "t"), derivative(force, "x"), derivative(force, "xdot")
+    by_x, by_xdot = derivative(force, "x"), derivative(force, "xdot")
     pushes = _terms(writer, push, "", "by_tau")
     pulls = _linear_pull(writer, by_x, "{0}[{1}]")
     pulls += _linear_pull(writer, by_xdot, "({1} + 1) * {0}[{1} + 1]")

@@ -1,10 +1,11 @@
-"""Flights after flights: orbits, sticking, chatter, gamma and W^s, periodic points, basins, bifurcation diagrams.
+"""Flights after flights: orbits, sticking, chatter, gamma and W^s, basins, bifurcation diagrams.
 
-Not here: one flight (`flights`), power series of the chatter's end (`theory`), pictures of an orbit (`scenes`).
+Not here: one flight (`flights`), orbits that close (`branches`), power series of the chatter's end (`theory`), pictures
+of an orbit (`scenes`).
 Files: `orbit` (impacts, rest and chatter in order), `release` (when a mass lifts off), `chatter` (when impacts end),
 `completion` (its map), `remaining` (its terms in doubles), `gathered` (results of many states), `threshold` (the
 velocity between complete and incomplete chatter), `enclosed` (both in balls, of linear models), `guide` (a velocity on
 gamma in many digits, not proved), `invariant_arcs` (gamma and the stable manifolds, grown), `swan_configuration` (the
-named points of an unfolded swan), `periodic` (periodic points), `attractors`, `basins`, `long_run` (what orbits do for
+named points of an unfolded swan), `attractors`, `basins`, `long_run` (what orbits do for
 ever), `bifurcation`.
 """

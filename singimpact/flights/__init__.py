@@ -7,6 +7,7 @@ of the kernels: `kernels/` are plain modules, `bind` puts them over numbers, `ma
 flights that end in no plain hit: `no_return/` proves that none returns, `closing` that one touches, `causes` says why
 one is open, `multiprecision`, `balls` and `short_balls` fly it with many digits; `in_digits` does so with all states.
 `response` and `rebound_law` are derivatives at a hit and what the impact makes of them; `counted` counts flights,
-`blocks` cuts large arrays, `interruptible` makes long calls hear Ctrl-C.
+`family` flies models with derivatives by their numbers, `blocks` cuts large arrays, `interruptible` makes long calls
+hear Ctrl-C.
 Not here: flights after flights (`dynamics`), curves of flights (`surface`), power series (`theory`).
 """

@@ -18,6 +18,7 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import names_in, substitute
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
+from singimpact.codegen.recurrence import Recurrence
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import counted
 from singimpact.flights.bind import Emitted
@@ -34,6 +35,7 @@ from singimpact.flights.model_numbers import (
     has_table,
     horizon_of,
     numbers_of,
+    numbers_of_flow,
     phases_of,
     recurrence_of,
     turn_of,
@@ -104,16 +106,18 @@ class CompiledModel:
     States are doubles here, v > 0; results are codes of the kernels, see `kernels.entries`, and rows of numbers.
     """
 
-    def __init__(self, osc: Oscillator, allowance: Allowance) -> None:
+    def __init__(self, osc: Oscillator, allowance: Allowance, flow: Recurrence | None = None) -> None:
+        """`flow` : a recurrence of the model with another third column, see `codegen.recurrence`."""
         self.osc, self.allowance = osc, allowance
         self.form = linear_form(osc)
-        self.linear = has_table(osc)
+        self.linear = flow is None and has_table(osc)
         text, trees = scalar(rho_of(osc.restitution), "v", "rebound")
         self.constant_restitution = not names_in(osc.restitution)
         if self.constant_restitution:
             text, trees = "", (osc.restitution,)
         self.rho = np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
-        flow = None if self.linear else recurrence_of(osc)
+        flow = None if self.linear else flow or recurrence_of(osc)
+        self.flow = flow
         source, rows = ("", 0) if flow is None else (flow.source, flow.rows)
         self.machine: Machine = machine_of(Emitted(source, rows))
         # only orbits call rho: the first hits of all linear models have one machine
@@ -147,7 +151,7 @@ class CompiledModel:
                  LIMITS.safety * (EPSILON if self.linear else allowance.epsilon), LIMITS.likely,
                  max(LIMITS.rough[0], coarse), max(LIMITS.rough[1], coarse), self._pace(),
                  1 - as_float(osc.slope_at_rest()))  # fmt: skip
-        numbers, rest = numbers_of(osc)
+        numbers, rest = numbers_of(osc) if self.flow is None else (numbers_of_flow(osc, self.flow), np.zeros(0))
         room = max(order, degree_for(LIMITS.judging)) + 2 + LIMITS.derivatives_at_rest
         sizes = np.zeros(8, dtype=np.int64)
         sizes[layout.RHO] = self.rho.size
@@ -266,6 +270,10 @@ class CompiledModel:
         if self._interpreter is None:
             self._interpreter = Interpreter(self.orbits.emitted, self.flat, self.sizes)
         return self._interpreter
+
+    def forget_lists(self) -> None:
+        """Numbers of `flat` were changed: the lists that interpreted flights read are made again."""
+        self._interpreter = None
 
     def _new_scratch(self, trace: int = 0) -> Array:
         return np.zeros(self._room + 4 * trace)

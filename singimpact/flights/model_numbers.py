@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 from functools import lru_cache
 from math import frexp
@@ -76,10 +77,20 @@ def numbers_of(osc: Oscillator) -> tuple[Array, Array]:
 @lru_cache(maxsize=256)
 def _numbers_of(osc: Oscillator, linear: bool) -> tuple[Array, Array]:
     trees = constants_of(osc, linear)
+    numbers = _in_range(trees)
+    return numbers, np.array([_below(tree) for tree in trees]) if linear else np.zeros(numbers.size)
+
+
+def numbers_of_flow(osc: Oscillator, flow: Recurrence) -> Array:
+    """The clearance and the constants of a recurrence with the model's parameters put in."""
+    return _in_range([osc.clearance, *(substitute(tree, osc.parameters) for tree in flow.constants)])
+
+
+def _in_range(trees: Iterable[Expression]) -> Array:
     numbers = np.array([as_float(tree) for tree in trees])
     if not np.all(np.isfinite(numbers)):
         raise InputError("a constant of the model is too large for a double: scale the model, or ask with digits=")
-    return numbers, np.array([_below(tree) for tree in trees]) if linear else np.zeros(numbers.size)
+    return numbers
 
 
 def phases_of(osc: Oscillator) -> tuple[Array, Array]:

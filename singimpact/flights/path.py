@@ -8,7 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float, float_array
+from singimpact.algebra.rings import DOUBLES
 from singimpact.flights import counted
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.kernels.double_double import product_twice
@@ -168,3 +170,26 @@ def places(launch: Array, v: Array, push: Array, time: Array, p: Array) -> Array
             z = z + (wave * beyond(a, b, rate, time)).real
             u = u + (wave * rate * triple(a, b, rate, time)).real
     return np.stack([z, u], axis=1)
+
+
+def ends(osc: Oscillator, tau: Array, v: Array, times: Array) -> tuple[Array, Array, Array]:
+    """x - c, x' and x'' at one time of each flight; the obstacle is not felt, and v may be negative.
+
+    Examples
+    --------
+    >>> [part.tolist() for part in ends(Oscillator("0", "-2", 0, 1), np.zeros(1), np.full(1, 3.0), np.full(1, 3.0))]
+    [[0.0], [-3.0], [-2.0]]
+    """
+    counted.add(tau.size)
+    if linear_form(osc) is not None:
+        rows = places(forcing_phases(osc, tau), v, acceleration(osc, tau), times, numbers_of(osc)[0])
+    else:
+        model = compiled_model(osc)
+        rows = np.full((tau.size, 2), np.nan)
+        for i in np.flatnonzero(np.isfinite(times)).tolist():
+            rows[i] = model.follow(float(tau[i]), float(v[i]), times[i : i + 1])[0]
+    place, speed = rows.T
+    with np.errstate(all="ignore"):
+        forcing = evaluate(osc.forcing(), {"t": tau + times}, DOUBLES)
+        force = evaluate(osc.force(), {"x": as_float(osc.clearance) + place, "xdot": speed}, DOUBLES)
+        return place, speed, np.asarray(forcing - force + 0 * place)

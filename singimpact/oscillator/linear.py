@@ -21,6 +21,9 @@ from singimpact.algebra.expressions import (
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import linear_in_t
 
+MOVING = frozenset({"x", "xdot"})
+"""Names in f that are no parameters."""
+
 
 @dataclass(frozen=True)
 class Harmonic:
@@ -53,8 +56,21 @@ def linear_form(osc: Oscillator) -> LinearForm | None:
     >>> print(linear_form(Oscillator("x**3", "cos(2*t)", 0, 1)))
     None
     """
-    pull = _affine(osc.force())
-    waves = _waves(osc.forcing())
+    return form_of(osc.force(), osc.forcing())
+
+
+def form_of(force: Expression, forcing: Expression) -> LinearForm | None:
+    """The linear form of f and g, in which parameters may be letters.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> form = form_of(parse("k*x", ["k", "x"]), parse("a*cos(w*t)", ["a", "w", "t"]))
+    >>> print(form.stiffness, form.harmonics[0].rate)
+    k w
+    """
+    pull = _affine(force)
+    waves = _waves(forcing)
     if pull is None or waves is None:
         return None
     stiffness, damping, offset = pull
@@ -64,7 +80,7 @@ def linear_form(osc: Oscillator) -> LinearForm | None:
 
 def _affine(tree: Expression) -> tuple[Expression, Expression, Expression] | None:
     """(k, d, m) of k x + d xdot + m."""
-    names = names_in(tree)
+    names = names_in(tree) & MOVING
     if not names:
         return number(0), number(0), tree
     if isinstance(tree, Name):
@@ -76,7 +92,7 @@ def _affine(tree: Expression) -> tuple[Expression, Expression, Expression] | Non
             return None
         return add(*(p[0] for p in found)), add(*(p[1] for p in found)), add(*(p[2] for p in found))
     if isinstance(tree, Product):
-        moving = [factor for factor in tree.factors if names_in(factor)]
+        moving = [factor for factor in tree.factors if names_in(factor) & MOVING]
         inner = _affine(moving[0]) if len(moving) == 1 else None
         if inner is None:
             return None

@@ -87,14 +87,28 @@ def period_of(forcing: Expression) -> Expression | None:
     >>> print(period_of(parse("t*cos(t)", ["t"])))
     None
     """
+    period = common_period(forcing)
+    if period is None:
+        return None
+    return period if compare(period, 0) > 0 else multiply(number(-1), period)
+
+
+def common_period(forcing: Expression) -> Expression | None:
+    """The same up to its sign, where rates may hold letters.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> print(common_period(parse("cos(w*t) + sin(2*w*t)", ["w", "t"])))
+    2*pi/w
+    """
     rates = _frequencies(forcing)
     moving = [_split(rate) for rate in rates or [] if rate != number(0)]
     if not moving or any(rest != moving[0][1] for _, rest in moving):
         return None
     sizes = [abs(size) for size, _ in moving]
     common = Fraction(gcd(*(size.numerator for size in sizes)), lcm(*(size.denominator for size in sizes)))
-    period = multiply(number(2 / common), Pi(), power(moving[0][1], number(-1)))
-    return period if compare(period, 0) > 0 else multiply(number(-1), period)
+    return multiply(number(2 / common), Pi(), power(moving[0][1], number(-1)))
 
 
 def checked_period(forcing: Expression, given: Any, found: Expression | None) -> Expression:

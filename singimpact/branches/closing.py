@@ -1,0 +1,195 @@
+"""The closing conditions of a periodic orbit, on the surface of flights that do not feel the wall.
+
+    x(T_i) = c,   rho(x'(T_i)) = v_{i+1},   T_i = tau_{i+1} - tau_i,   tau_{n+1} = tau_1 + k P       i = 1, ..., n
+
+They are smooth in tau_i, v_i and in every number of the model, through v_i = 0 too, where the orbit grazes: no square
+root.  A solution with some v_i < 0, or with a flight that is below the wall somewhere, is virtual.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.flights.family import Family
+
+Array = np.ndarray[Any, Any]
+NEAR = 0.1
+"""A minimum of x - c is refined when its sample is below this part of the largest height."""
+
+
+@dataclass(frozen=True)
+class Loop:
+    """The closing conditions at a point.
+
+    Parameters
+    ----------
+    miss : x(T_i) - c and rho(x'(T_i)) - v_{i+1} of each flight, shape (2n,).
+    slope : its derivatives by tau_1 ... tau_n, v_1 ... v_n, and the numbers that move, shape (2n, 2n + numbers).
+    wrap : the part of the first 2n columns by which the last flight ends at the first state.
+    """
+
+    miss: Array
+    slope: Array
+    wrap: Array
+
+    def determinant(self, multiplier: float) -> float:
+        """det(J(mu)), which vanishes where mu is a multiplier of the orbit; J(1) is the slope."""
+        square = self.slope[:, : len(self.miss)]
+        return float(np.linalg.det(square + (multiplier - 1) * self.wrap))
+
+    def characteristic(self) -> tuple[float, float, float]:
+        """a_0, a_1, a_2 with det(J(mu)) = a_0 + a_1 mu + a_2 mu^2; a_2 = 0 where the last flight ends in a graze."""
+        zero, plus, minus = (self.determinant(mu) for mu in (0.0, 1.0, -1.0))
+        return zero, (plus - minus) / 2, (plus + minus) / 2 - zero
+
+    def multipliers(self) -> Array:
+        """The two multipliers, the larger first; inf at a graze."""
+        zero, one, two = self.characteristic()
+        size = max(abs(zero), abs(one), abs(two))
+        if abs(two) <= 1e-14 * size:
+            return np.array([np.inf, -zero / one if one else np.nan], dtype=complex)
+        root = np.sqrt(complex(one * one - 4 * zero * two))
+        far = -one - root if one > 0 else -one + root  # nothing cancels
+        first = far / (2 * two)
+        second = 2 * zero / far if far else first
+        return np.array([first, second])
+
+
+@dataclass(frozen=True)
+class Closing:
+    """Closing conditions of n impacts in k periods over a family of models.
+
+    A point is an array tau_1, ..., tau_n, v_1, ..., v_n and the numbers of the family.
+    """
+
+    family: Family
+    n: int
+    k: int
+
+    @property
+    def over(self) -> tuple[str, ...]:
+        """Names of the numbers that move."""
+        return self.family.over
+
+    def values(self, point: Array) -> dict[str, float]:
+        """The numbers that move."""
+        return dict(zip(self.family.over, point[2 * self.n :].tolist(), strict=True))
+
+    def flights(self, point: Array) -> list[tuple[float, float, float, float]]:
+        """Launch in the first period, periods before it, velocity and flight time, of each flight."""
+        n, period = self.n, self.family.period(self.values(point)).value
+        times, speeds = [*point[:n].tolist(), float(point[0]) + self.k * period], point[n : 2 * n].tolist()
+        before = [float(np.floor(time / period)) for time in times[:n]]
+        return [(times[i] - before[i] * period, before[i], speeds[i], times[i + 1] - times[i]) for i in range(n)]
+
+    def at(self, point: Array) -> Loop:
+        """The conditions and their derivatives at a point."""
+        n, over, values = self.n, self.family.over, self.values(point)
+        slopes = np.array(self.family.period(values).slopes)
+        miss, slope, wrap = np.zeros(2 * n), np.zeros((2 * n, 2 * n + len(over))), np.zeros((2 * n, 2 * n))
+        for i, (launch, before, v, time) in enumerate(self.flights(point)):
+            end = self.family.end(values, launch, v, time)
+            velocity, factor, by_law = self.family.rebound(float(end.place[1]), values)
+            after, last = (i + 1) % n, i == n - 1
+            miss[2 * i], miss[2 * i + 1] = end.place[0], velocity - point[n + after]
+            scale = np.array([1.0, factor])
+            slope[2 * i : 2 * i + 2, i] += scale * (end.by_tau - end.by_time)
+            slope[2 * i : 2 * i + 2, n + i] += scale * end.by_v
+            part = np.zeros((2, 2 * n))
+            part[:, after] = scale * end.by_time
+            part[1, n + after] = -1.0
+            slope[2 * i : 2 * i + 2, : 2 * n] += part
+            if last:
+                wrap[2 * i : 2 * i + 2] = part
+            if len(over):
+                # launches in the first period move with the period, and so does the length of the last flight
+                moved = end.by_numbers - np.outer(before * slopes, end.by_tau)
+                moved += np.outer(self.k * slopes, end.by_time) if last else 0.0
+                slope[2 * i : 2 * i + 2, 2 * n :] = (moved * scale).T
+                slope[2 * i + 1, 2 * n :] += by_law
+        return Loop(miss, slope, wrap)
+
+    def newton(self, point: Array, rounds: int = 30, tolerance: float = 4e-15) -> tuple[Array, Loop] | None:
+        """The orbit near a point at its numbers; None where Newton's method does not get there."""
+        at, size, n = point.copy(), np.inf, 2 * self.n
+        for _ in range(rounds):
+            loop = self.at(at)
+            if not np.isfinite(loop.miss).all() or not np.isfinite(loop.slope).all():
+                return None
+            try:
+                step = np.linalg.solve(loop.slope[:, :n], loop.miss)
+            except np.linalg.LinAlgError:
+                return None
+            at[:n] -= step
+            before, size = size, float(np.max(np.abs(step) / self.scales(at)[:n]))
+            if size <= tolerance or (size >= before / 2 and size < 1e-11):
+                return at, self.at(at)
+            if not size < 1e3:
+                return None
+        return None
+
+    def scales(self, point: Array) -> Array:
+        """Sizes of the parts of a point: a period, the largest velocity or one that a period gives, 1."""
+        n, values = self.n, self.values(point)
+        period = self.family.period(values).value
+        push = max(abs(float(self.family.end(values, i * period / 8, 0.0, 0.0).by_time[1])) for i in range(8))
+        speeds = np.full(n, max(float(np.abs(point[n : 2 * n]).max()), push * period / 16, 1e-300))
+        return np.concatenate([np.full(n, period), speeds, np.ones(len(self.family.over))])
+
+    def heights(self, point: Array) -> list[tuple[float, float]]:
+        """The lowest place between launch and hit of each flight: its time after the launch, and x - c there.
+
+        A flight that has none, for it falls all the way after its rise, gives (nan, inf).
+        """
+        found = []
+        values = self.values(point)
+        for launch, _before, v, time in self.flights(point):
+            found.append(lowest(self.family, values, (launch, v, time)))
+        return found
+
+
+def lowest(family: Family, values: dict[str, float], flight: tuple[float, float, float]) -> tuple[float, float]:
+    """The lowest local minimum of x - c inside a flight, refined; (nan, inf) where there is none."""
+    launch, v, time = flight
+    if not time > 0:
+        return np.nan, np.inf
+    rows = family.path(values, launch, v, time)
+    if not np.isfinite(rows).all():
+        return np.nan, -np.inf
+    times = np.linspace(0.0, time, len(rows) + 1)
+    slopes = np.concatenate([[v], rows[:, 1]])
+    turns = np.flatnonzero((slopes[:-1] < 0) & (slopes[1:] >= 0))
+    best, near = (np.nan, np.inf), NEAR * float(np.abs(rows[:, 0]).max())
+    for index in turns.tolist():
+        between = float(times[index]), float(times[index + 1])
+        at, height = between[1], float(rows[index, 0])
+        if height < near:
+            at = _turning_point(family, values, launch, v, between)
+            height = float(family.end(values, launch, v, at).place[0])
+        if height < best[1]:
+            best = at, height
+    return best
+
+
+def _turning_point(
+    family: Family, values: dict[str, float], launch: float, v: float, between: tuple[float, float]
+) -> float:
+    """Where x' = 0 between two times, by Newton's method kept inside."""
+    low, high = between
+    at = (low + high) / 2
+    for _ in range(60):
+        end = family.end(values, launch, v, at)
+        speed, bend = end.by_time.tolist()
+        if speed < 0:
+            low = at
+        else:
+            high = at
+        step = at - speed / bend if bend else np.nan
+        after = step if low < step < high else (low + high) / 2
+        if abs(after - at) <= 1e-15 * abs(at) or high - low <= 1e-15 * high:
+            return after
+        at = after
+    return at

@@ -1,0 +1,162 @@
+"""A curve of solutions followed by pseudo-arclength: predictor along the tangent, Newton's method across it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+Array = np.ndarray[Any, Any]
+
+
+class Conditions(Protocol):
+    """Equations for a curve: one fewer than there are unknowns."""
+
+    def equations(self, point: Array) -> tuple[Array, Array]:
+        """Values and their derivatives, shapes (m,) and (m, m + 1); nan where there are none."""
+        ...
+
+
+@dataclass(frozen=True)
+class ContinuationSettings:
+    """Steps are lengths in unknowns divided by their scales."""
+
+    # the first step, of the largest one
+    first: float = 0.3
+    # below this part of the largest step the curve is said to end
+    least: float = 1e-6
+    # Newton's method: rounds, and when it has arrived, relative to the scales
+    rounds: int = 8
+    arrived: float = 1e-13
+    # a step that takes so many rounds is followed by a longer one, or by a shorter one
+    easy: int = 4
+    longer: float = 1.5
+    # the largest angle between two tangents, as a cosine
+    turn: float = 0.95
+
+
+SETTINGS = ContinuationSettings()
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of the curve, its unit tangent in scaled unknowns, and its distance along the last step."""
+
+    at: Array
+    tangent: Array
+
+
+@dataclass
+class Curve:
+    """Solutions of some equations along a curve.
+
+    Parameters
+    ----------
+    conditions : the equations. scales : of the unknowns. step : the largest one.
+    """
+
+    conditions: Conditions
+    scales: Array
+    step: float
+    note: str = field(default="", init=False)
+
+    def begin(self, at: Array, towards: Array | None = None) -> Point | None:
+        """The point of the curve next to a guess; its tangent points along `towards`."""
+        point = at.copy()
+        direction = None
+        for _ in range(4 * SETTINGS.rounds):
+            values, slopes = self._scaled(point)
+            if not _finite(values, slopes):
+                return None
+            change = np.linalg.lstsq(slopes, values, rcond=None)[0]
+            point = point - change * self.scales
+            if np.abs(change).max() <= SETTINGS.arrived:
+                direction = null_vector(self._scaled(point)[1])
+                break
+        if direction is None:
+            return None
+        if towards is not None and direction @ (towards / self.scales) < 0:
+            direction = -direction
+        return Point(point, direction)
+
+    def beyond(self, start: Point, length: float) -> tuple[Point, int] | None:
+        """The point at a distance along the tangent of another, and the rounds that it took."""
+        point = start.at + length * start.tangent * self.scales
+        base = start.at / self.scales
+        for count in range(1, SETTINGS.rounds + 1):
+            values, slopes = self._scaled(point)
+            if not _finite(values, slopes):
+                return None
+            bordered = np.vstack([slopes, start.tangent])
+            miss = np.append(values, start.tangent @ (point / self.scales - base) - length)
+            try:
+                change = np.linalg.solve(bordered, miss)
+            except np.linalg.LinAlgError:
+                return None
+            point = point - change * self.scales
+            size = float(np.abs(change).max())
+            if size <= SETTINGS.arrived or (count > 2 and size <= 1e-11):
+                return self._with_tangent(point, start.tangent), count
+            if size > 4 * self.step:
+                return None
+        return None
+
+    def walk(self, start: Point, most: int) -> Iterator[tuple[Point, float, Point]]:
+        """Points after a start: the one before, the step from it, the new one; `note` says why it ended."""
+        length, here = SETTINGS.first * self.step, start
+        for _ in range(most):
+            found = self.beyond(here, length)
+            while found is None or here.tangent @ found[0].tangent < SETTINGS.turn:
+                length /= 2
+                if length < SETTINGS.least * self.step:
+                    self.note = self._ended(here, length)
+                    return
+                found = self.beyond(here, length)
+            after, rounds = found
+            yield here, length, after
+            here = after
+            length = min(length * SETTINGS.longer, self.step) if rounds <= SETTINGS.easy else length
+        self.note = f"{most} points are spent: the curve goes on (points=)"
+
+    def _scaled(self, point: Array) -> tuple[Array, Array]:
+        values, slopes = self.conditions.equations(point)
+        return values, slopes * self.scales
+
+    def _with_tangent(self, point: Array, before: Array) -> Point:
+        slopes = self._scaled(point)[1]
+        right = np.zeros(len(before))
+        right[-1] = 1.0
+        try:
+            tangent = np.linalg.solve(np.vstack([slopes, before]), right)
+        except np.linalg.LinAlgError:
+            tangent = null_vector(slopes)
+            tangent = tangent if tangent @ before > 0 else -tangent
+        return Point(point, tangent / np.linalg.norm(tangent))
+
+    def _ended(self, here: Point, length: float) -> str:
+        values, slopes = self._scaled(here.at + length * here.tangent * self.scales)
+        if not _finite(values, slopes):
+            return "f, g or the flight has no value just beyond the last point"
+        return "steps shrink to nothing at the last point: the equations are singular there"
+
+
+def _finite(values: Array, slopes: Array) -> bool:
+    return bool(np.isfinite(values).all() and np.isfinite(slopes).all())
+
+
+def null_vector(slopes: Array) -> Array:
+    """The unit vector that a matrix with one row fewer than columns takes to zero."""
+    return np.asarray(np.linalg.svd(slopes)[2][-1])
+
+
+def root_between(test: Callable[[float], float], low: float, high: float, ends: tuple[float, float]) -> float:
+    """Where a test changes sign between two lengths, by Brent's method."""
+    from scipy.optimize import brentq
+
+    if ends[0] == 0:
+        return low
+    if ends[1] == 0:
+        return high
+    return float(brentq(test, low, high, xtol=1e-15 * max(high, 1e-300), rtol=8.9e-16, maxiter=100))

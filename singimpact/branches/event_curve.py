@@ -1,0 +1,358 @@
+"""Curves of folds, doublings and grazes in two numbers of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.branches.branch import SETTINGS, interval
+from singimpact.branches.closing import Closing
+from singimpact.branches.continuation import Curve, Point, root_between
+from singimpact.branches.events import Event
+from singimpact.branches.numbers import with_number
+from singimpact.branches.solutions import AnyClosing, closing_of
+from singimpact.flights.family import CLEARANCE, RESTITUTION
+from singimpact.inputs import refuse, whole
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+NUDGE = 1e-6
+"""Half the width of a difference, in scaled unknowns: its error is 1e-12 of the slope, that of Newton's method none."""
+
+
+@dataclass(frozen=True)
+class Special:
+    """A point of codimension two.
+
+    Parameters
+    ----------
+    kind : "cusp" (two folds meet), "resonant graze" (folds and doublings leave the curve of grazes), "fold at a graze",
+        "doubling at a graze", "degenerate graze" (a_c = 0 there), "two grazes", "graze", "fold and doubling".
+    parameters : the two numbers. index : it lies after this point of the curve.
+    """
+
+    kind: str
+    parameters: tuple[float, float]
+    index: int
+
+
+@dataclass(frozen=True, eq=False)
+class EventCurve:
+    """Events of one kind in two numbers.
+
+    Parameters
+    ----------
+    kind : of the events. over : the two numbers. parameters : shape (m, 2). tau, v : shape (m, n).
+    visible : shape (m,): whether no flight is below the wall. special : points of codimension two. notes : how it ends.
+    """
+
+    oscillator: Oscillator
+    kind: str
+    over: tuple[str, str]
+    n: int
+    k: int
+    parameters: Array
+    tau: Array
+    v: Array
+    visible: Array
+    special: tuple[Special, ...]
+    notes: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.parameters)
+
+    def to_csv(self, file: str | Path) -> None:
+        """Write a line a point: the two numbers, the states, visible."""
+        from singimpact.store import written
+
+        names = [*self.over, *(f"{name}_{i + 1}" for name in ("tau", "v") for i in range(self.tau.shape[1])), "visible"]
+        rows = zip(self.parameters, self.tau, self.v, self.visible, strict=True)
+        lines = [
+            ",".join([*(repr(float(each)) for part in row[:3] for each in part), str(int(row[3]))]) for row in rows
+        ]
+        with written(file) as draft:
+            draft.write_text("\n".join([",".join(names), *lines]) + "\n", encoding="utf-8")
+
+    def __repr__(self) -> str:
+        lines = [f"<curve of {self.kind} events of ({self.n}, {self.k}) orbits in {' and '.join(self.over)}, "
+                 f"{len(self)} points"]  # fmt: skip
+        lines += [f"  {each.kind} at ({each.parameters[0]:.12g}, {each.parameters[1]:.12g})" for each in self.special]
+        return "\n".join([*lines, *(f"  {note}" for note in self.notes)]) + ">"
+
+
+def event_curve(
+    event: Event, over: Sequence[str] = (CLEARANCE, RESTITUTION), between: Any = None, *, points: int = 1000,
+    step: float | None = None,
+) -> EventCurve:  # fmt: skip
+    """The curve of a fold, doubling, graze or hidden impact in two numbers of the model.
+
+    Parameters
+    ----------
+    event : of a branch. over : two numbers, as `branch` takes them. between : a pair of intervals, one a number.
+    points : at most so many on either side of the event. step : the largest step, a part of the intervals (0.02).
+
+    Returns
+    -------
+    EventCurve : with its points of codimension two, each located to rounding of the test that names it.
+
+    Examples
+    --------
+    >>> from singimpact.branches.branch import branch
+    >>> from singimpact.branches.periodic import periodic
+    >>> model = Oscillator("x + b*xdot", "-A*cos(w*t)", -1, "0.8", {"A": "0.45", "b": "0.1", "w": "0.8"})
+    >>> graze = branch(periodic(model, 1, 1)[0], "A", (0.3, 0.5)).events[0]
+    >>> curve = event_curve(graze, ("A", "w"), ((0.05, 0.6), (0.6, 0.95)))
+    >>> A, w = curve.parameters.T
+    >>> bool(np.abs(A / np.hypot(1 - w * w, 0.1 * w) - 1).max() < 1e-12)
+    True
+    """
+    over = tuple(over)
+    if not isinstance(event, Event) or event.kind == "torus":
+        raise refuse("event", event, "a fold, doubling, graze or hidden impact among the events of a branch")
+    if len(over) != 2 or over[0] == over[1]:
+        raise refuse("over", over, "two different numbers of the model")
+    whole("points", points, 2, 10**6)
+    orbit = event.orbit
+    osc = orbit.oscillator
+    for name in over:
+        osc = with_number(osc, name)
+    given = (None, None) if between is None else tuple(between)
+    if len(given) != 2:
+        raise refuse("between", between, "a pair of intervals, one for each number")
+    values = [
+        as_float(getattr(osc, name) if name in (CLEARANCE, RESTITUTION) else osc.parameters[name]) for name in over
+    ]
+    ends = [interval(name, part, value) for name, part, value in zip(over, given, values, strict=True)]
+    n = int(orbit.n)
+    closing = closing_of(osc, n, orbit.k, over)
+    states = np.concatenate([np.asarray(part, dtype=float) for part in (orbit.tau, orbit.v)])
+    if not n:
+        raise refuse("event", event, "an event of an orbit with impacts: event.others()[0] has one that grazes alike")
+    walk = _Walk(closing, event.kind, ends, _grazing(closing, event, states))
+    return walk.curve(np.concatenate([states, values]), osc, points, step or SETTINGS.step)
+
+
+def _grazing(closing: AnyClosing, event: Event, states: Array) -> int:
+    """Which impact or flight of the orbit grazes: the orbit begins at its least phase, a branch where it likes."""
+    if event.kind == "graze":
+        return int(np.argmin(np.abs(states[closing.n :])))
+    if event.kind == "hidden impact":
+        plain = closing_of(event.orbit.oscillator, closing.n, closing.k, ())
+        return int(np.argmin([abs(height) for _, height in plain.heights(states)]))
+    return 0
+
+
+@dataclass
+class _Walk:
+    """An event curve while it is followed."""
+
+    closing: AnyClosing
+    kind: str
+    ends: list[tuple[float, float]]
+    impact: int
+
+    def __post_init__(self) -> None:
+        self.scales = np.zeros(0)
+
+    # ---- equations
+
+    def test(self, point: Array) -> float:
+        """What vanishes at the event."""
+        if self.kind == "graze":
+            return float(point[self.closing.n + self.impact]) / float(self.scales[self.closing.n])
+        if self.kind == "hidden impact":
+            return self.closing.heights(point)[self.impact][1]
+        return self._determinant(point, 1.0 if self.kind == "fold" else -1.0)
+
+    def _determinant(self, point: Array, multiplier: float) -> float:
+        """det J(mu) of scaled unknowns."""
+        size = 2 * self.closing.n
+        loop = self.closing.at(point)
+        square = (loop.slope[:, :size] + (multiplier - 1) * loop.wrap) * self.scales[:size]
+        return float(np.linalg.det(square / np.abs(self.scales[: self.closing.n].max())))
+
+    def gradient(self, point: Array) -> Array:
+        """The derivative of the test by each scaled unknown, by central differences; the test is exact."""
+        if self.kind == "graze":
+            found = np.zeros(len(point))
+            found[self.closing.n + self.impact] = 1.0 / self.scales[self.closing.n]
+            return found
+        found = np.empty(len(point))
+        for i in range(len(point)):
+            moved = np.zeros(len(point))
+            moved[i] = NUDGE * self.scales[i]
+            found[i] = (self.test(point + moved) - self.test(point - moved)) / (2 * moved[i])
+        return found
+
+    def equations(self, point: Array) -> tuple[Array, Array]:
+        """The closing conditions and the test; nan where a flight has collapsed."""
+        if not self._sound(point):
+            return np.full(2 * self.closing.n + 1, np.nan), np.full((2 * self.closing.n + 1, len(point)), np.nan)
+        loop = self.closing.at(point)
+        return np.append(loop.miss, self.test(point)), np.vstack([loop.slope, self.gradient(point)])
+
+    def _sound(self, point: Array) -> bool:
+        assert isinstance(self.closing, Closing)
+        values = self.closing.values(point)
+        if not 0 < values.get(RESTITUTION, 0.5) < 1.05:
+            return False
+        period = self.closing.family.period(values).value
+        return bool(period > 0) and all(f[3] > SETTINGS.shortest * period for f in self.closing.flights(point))
+
+    # ---- the curve
+
+    def curve(self, guess: Array, osc: Oscillator, most: int, step: float) -> EventCurve:
+        """Both ways from a guess."""
+        self.scales = self.closing.scales(guess)
+        self.scales[-2:] = [high - low for low, high in self.ends]
+        start = Curve(self, self.scales, step).begin(guess)
+        if start is None:
+            raise refuse("event", self.kind, "an event that solves its equations with these two numbers")
+        if start.tangent[-2] < 0:
+            start = Point(start.at, -start.tangent)
+        notes: list[str] = []
+        rows, special = [start], []
+        for sign in (-1.0, 1.0):
+            side, met = self._side(Curve(self, self.scales, step), Point(start.at, sign * start.tangent), most, notes)
+            if sign < 0:
+                rows = side[::-1] + rows
+                special = [Special(each.kind, each.parameters, len(side) - each.index - 1) for each in met[::-1]]
+            else:
+                special += [Special(each.kind, each.parameters, len(rows) + each.index - 1) for each in met]
+                rows += side
+            if notes[-1].startswith("closed"):
+                break
+        at, n, k = np.array([row.at for row in rows]), self.closing.n, self.closing.k
+        assert isinstance(self.closing, Closing)
+        names = self.closing.family.over
+        return EventCurve(osc, self.kind, (names[0], names[1]), n, k, at[:, 2 * n :], at[:, :n], at[:, n : 2 * n],
+                          np.array([self._visible(row.at) for row in rows]), tuple(special), tuple(notes))  # fmt: skip
+
+    def _side(self, curve: Curve, start: Point, most: int, notes: list[str]) -> tuple[list[Point], list[Special]]:
+        rows: list[Point] = []
+        special: list[Special] = []
+        before = self._tests(start)
+        for here, length, after in curve.walk(start, most):
+            crossed = self._crossed(after.at)
+            if crossed is not None:
+                end = self._end(curve, here, length, crossed)
+                if end is not None:
+                    rows.append(end)
+                which = self.closing.over[crossed[0]]
+                notes.append(f"ends at {which} = {crossed[1]:.12g}, the end of its interval")
+                return rows, special
+            tests = self._tests(after)
+            special += self._special(curve, here, length, (before, tests), len(rows))
+            rows.append(after)
+            before = tests
+            gap, move = (start.at - here.at) / curve.scales, (after.at - here.at) / curve.scales
+            share = float(gap @ move / (move @ move))
+            if len(rows) > 10 and 0 <= share < 1 and np.linalg.norm(gap - share * move) < 0.1 * np.linalg.norm(move):
+                notes.append("closed: the curve comes back to where it began")
+                return rows, special
+        where = (rows[-1] if rows else start).at[-2:]
+        notes.append(f"at ({where[0]:.12g}, {where[1]:.12g}): {curve.note}")
+        return rows, special
+
+    def _crossed(self, point: Array) -> tuple[int, float] | None:
+        for i, (low, high) in enumerate(self.ends):
+            value = float(point[len(point) - 2 + i])
+            if not low <= value <= high:
+                return i, low if value < low else high
+        return None
+
+    def _end(self, curve: Curve, here: Point, length: float, crossed: tuple[int, float]) -> Point | None:
+        which, goal = crossed
+
+        def past(part: float) -> float:
+            found = curve.beyond(here, part) if part else (here, 0)
+            return np.nan if found is None else float(found[0].at[len(here.at) - 2 + which] - goal)
+
+        ends = past(0.0), past(length)
+        if not ends[0] * ends[1] < 0:
+            return None
+        found = curve.beyond(here, root_between(past, 0.0, length, ends))
+        return None if found is None else found[0]
+
+    # ---- points of codimension two
+
+    def _tests(self, point: Point) -> dict[str, float]:
+        """Numbers that change sign at points of codimension two."""
+        at, n = point.at, self.closing.n
+        tests: dict[str, float] = {}
+        if self.kind == "graze":
+            fold, doubling = self._determinant(at, 1.0), self._determinant(at, -1.0)
+            tests |= {"fold at a graze": fold, "doubling at a graze": doubling}
+            tests["degenerate graze"] = self._push(at)
+        elif self.kind == "fold":
+            size = 2 * n
+            vector = np.linalg.svd(self.closing.at(at).slope[:, :size] * self.scales[:size])[2][-1]
+            slope = self.gradient(at)[:size] * self.scales[:size]
+            turned = vector if vector[int(np.argmax(np.abs(vector)))] > 0 else -vector
+            tests |= {"cusp": float(slope @ turned), "fold and doubling": self._determinant(at, -1.0)}
+        elif self.kind == "period-doubling":
+            tests["fold and doubling"] = self._determinant(at, 1.0)
+        for i in range(n):
+            if self.kind != "graze" or i != self.impact:
+                tests[f"two grazes {i}" if self.kind == "graze" else f"graze {i}"] = float(at[n + i])
+        return tests
+
+    def _push(self, at: Array) -> float:
+        """a_c at the impact that grazes."""
+        assert isinstance(self.closing, Closing)
+        launch = self.closing.flights(at)[self.impact][0]
+        return float(self.closing.family.end(self.closing.values(at), launch, 0.0, 0.0).by_time[1])
+
+    def _special(
+        self, curve: Curve, here: Point, length: float, tests: tuple[dict[str, float], dict[str, float]], index: int
+    ) -> list[Special]:
+        before, after = tests
+        found: list[tuple[float, str, Point]] = []
+        for name, value in before.items():
+            later = after.get(name)
+            if later is None or not value * later < 0:
+                continue
+            kept: dict[float, Point] = {0.0: here}
+
+            def test(part: float, name: str = name, kept: dict[float, Point] = kept) -> float:
+                if part not in kept:
+                    moved = curve.beyond(here, part)
+                    if moved is None:
+                        raise ArithmeticError
+                    kept[part] = moved[0]
+                return self._tests(kept[part])[name]
+
+            try:
+                part = root_between(test, 0.0, length, (value, later))
+                test(part)
+            except ArithmeticError:
+                continue
+            if not (name == "cusp" and abs(self._tests(kept[part])[name]) > 0.1 * max(abs(value), abs(later))):
+                found.append((part, name.rstrip("0123456789 "), kept[part]))
+        return _merged(sorted(found, key=lambda each: each[0]), length, index)
+
+    def _visible(self, at: Array) -> bool:
+        n = self.closing.n
+        if float(at[n : 2 * n].min()) < -1e-9 * float(self.scales[n]):
+            return False
+        low = min(height for _, height in self.closing.heights(at))
+        return low >= -1e-9 * float(self.scales[n])
+
+
+def _merged(found: list[tuple[float, str, Point]], length: float, index: int) -> list[Special]:
+    """Fold and doubling that meet a graze at one point are one resonant graze."""
+    names = {name for _, name, _ in found}
+    special: list[Special] = []
+    for pair in ({"fold at a graze", "doubling at a graze"}, {"graze", "fold and doubling"}):
+        parts = [part for part, name, _ in found if name in pair]
+        if pair <= names and max(parts) - min(parts) < 1e-6 * length:
+            point = next(point for _, name, point in found if name in pair)
+            special.append(Special("resonant graze", (float(point.at[-2]), float(point.at[-1])), index))
+            found = [each for each in found if each[1] not in pair]
+    return special + [Special(name, (float(at[-2]), float(at[-1])), index) for _, name, at in
+                      ((part, name, point.at) for part, name, point in found)]  # fmt: skip

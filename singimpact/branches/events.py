@@ -1,0 +1,45 @@
+"""What happens to a periodic orbit at a point of its branch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.branches.switching import others
+
+
+@dataclass(frozen=True, eq=False)
+class Event:
+    """What happens at a point of a branch.
+
+    Parameters
+    ----------
+    kind : "fold" (two orbits meet), "period-doubling" (multiplier -1), "torus" (two multipliers on the unit circle),
+        "graze" (an impact of the orbit has no velocity), "hidden impact" (a flight touches the wall on its way).
+    parameter : the number of the model there. orbit : the orbit. index : it lies after this point of the branch.
+    impact : which impact or flight grazes. time : of a hidden impact after its launch.
+    """
+
+    kind: str
+    parameter: float
+    orbit: PeriodicOrbit
+    index: int
+    impact: int = 0
+    time: float = np.nan
+    over: str = ""
+
+    def others(self) -> list[PeriodicOrbit]:
+        """Orbits of the other branches that meet this one here, to be followed by `branch`.
+
+        Returns
+        -------
+        list : at a doubling the orbit of 2n impacts in 2k periods next to it; at a graze the orbit without that impact;
+            at a hidden impact the orbit with an impact there. Empty at folds and tori.
+        """
+        return others(self.kind, self.orbit, self.over, self.parameter)
+
+    def __repr__(self) -> str:
+        which = f" of impact {self.impact + 1}" if self.kind == "graze" and self.orbit.n else ""
+        return f"<{self.kind}{which} at {self.over} = {self.parameter:.12g}>"

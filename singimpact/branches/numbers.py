@@ -1,0 +1,65 @@
+"""Numbers of a model that a branch can move, also those that the model does not name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from singimpact.algebra.expressions import Name, add, multiply, names_in, number
+from singimpact.flights.family import CLEARANCE, RESTITUTION
+from singimpact.inputs import InputError, unknown
+from singimpact.oscillator.model import Oscillator
+
+LINEAR = {"amplitude": 1, "damping": 0, "stiffness": 1, "phase": 0}
+"""Numbers of `si.linear` that a model leaves out at these values."""
+
+
+def with_number(osc: Oscillator, name: str) -> Oscillator:
+    """The same model with a number among its fields and parameters.
+
+    Parameters
+    ----------
+    name : "clearance", "restitution", a parameter; "amplitude" (a factor of g) or "damping" (a term damping*xdot in f)
+        of any model; "stiffness" or "phase" of one with the term x in f or the wave cos(rate*t) for g.
+
+    Raises
+    ------
+    InputError : the model has no such number, or none can be put in.
+
+    Examples
+    --------
+    >>> with_number(Oscillator("x", "cos(2*t)", 0, 1), "amplitude")
+    Oscillator(f='x', g='amplitude*cos(2*t)', clearance='0', restitution='1', parameters={'amplitude': '1'})
+    """
+    if name == RESTITUTION and "v" in names_in(osc.restitution):
+        raise InputError(
+            "over = 'restitution': the restitution of this model is a law in v; give one of its parameters"
+        )
+    if name in (CLEARANCE, RESTITUTION) or name in osc.parameters:
+        return osc
+    if name not in LINEAR:
+        raise unknown("number of the model", str(name), [CLEARANCE, RESTITUTION, *osc.parameters, *LINEAR])
+    letter, f, g = Name(name), osc.f, osc.g
+    if name == "amplitude":
+        g = multiply(letter, g)
+    elif name == "damping":
+        f = add(f, multiply(letter, Name("xdot")))
+    elif name == "stiffness":
+        f = add(f, multiply(add(letter, number(-1)), Name("x")))
+    else:
+        g = _shifted(g, letter)
+    fields: dict[str, Any] = {"f": f, "g": g, "clearance": osc.clearance, "restitution": osc.restitution}
+    return type(osc)(**fields, parameters={**osc.parameters, name: LINEAR[name]})
+
+
+def _shifted(g: Any, letter: Name) -> Any:
+    """g with a phase added to the arguments of its waves."""
+    from singimpact.algebra.expressions import Call, Product, Sum
+
+    match g:
+        case Sum(parts):
+            return add(*(_shifted(part, letter) for part in parts))
+        case Product(parts):
+            return multiply(*(_shifted(part, letter) for part in parts))
+        case Call(function, argument) if "t" in names_in(argument):
+            return Call(function, add(argument, letter))
+    return g

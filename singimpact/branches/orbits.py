@@ -1,0 +1,117 @@
+"""What a periodic orbit is: impacts, complete chatter with rest, or no impact at all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from singimpact.flights.impact_map import impact_map
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicOrbit:
+    """An orbit that closes after k periods of the forcing.
+
+    Parameters
+    ----------
+    tau, v : states just after its n impacts, the first phase in [0, period). Of chatter the lift-off, with v = 0; of an
+        orbit without impacts one time, with x' there.
+    multipliers : eigenvalues of the derivative of its return map, the larger first: stable where both are below 1.
+    miss : by how much it misses closing. status : `hit`; `unresolved` when the digits asked for were not reached.
+    oscillator : the model. n, k : impacts (inf for chatter) in k periods.
+    kind : "impacts"; "chatter", which completes, rests and lifts off; "free", without impact.
+    visible : whether no flight is below the wall and every v >= 0; a virtual orbit solves the equations alone.
+    x : of an orbit without impacts, x at the time `tau`.
+
+    Notes
+    -----
+    A graze has v = 0 and an infinite multiplier.
+    """
+
+    tau: Any
+    v: Any
+    multipliers: Any
+    miss: Any
+    status: Any = Status.hit
+    oscillator: Any = None
+    n: float = 1
+    k: int = 1
+    kind: str = "impacts"
+    visible: bool = True
+    x: Any = None
+
+    @property
+    def stable(self) -> bool:
+        """Whether both multipliers are below 1 in size."""
+        return bool(np.all([abs(complex(each)) < 1 for each in self.multipliers]))
+
+    def __repr__(self) -> str:
+        words = {"chatter": f"(inf, {self.k}) orbit: chatter and rest", "free": "orbit without impact"}.get(
+            self.kind, f"({self.n:.0f}, {self.k}) orbit"
+        )
+        kind = ("stable" if self.stable else "unstable") if self.visible else "virtual"
+        states = ", ".join(f"({float(t):.6g}, {float(v):.6g})" for t, v in zip(self.tau[:4], self.v[:4], strict=True))
+        more = ", ..." if len(self.tau) > 4 else ""
+        return f"<{words}, {kind}: (tau, v) = {states}{more}>"
+
+
+class PeriodicOrbits(list[PeriodicOrbit]):
+    """Periodic orbits, with whether they are all there are.
+
+    Parameters
+    ----------
+    complete : whether it is shown that there are no others. notes : how they were found, and what may be missing.
+    """
+
+    def __init__(
+        self, orbits: Iterable[PeriodicOrbit] = (), complete: bool = False, notes: tuple[str, ...] = ()
+    ) -> None:
+        super().__init__(orbits)
+        self.complete, self.notes = complete, notes
+
+
+@dataclass(frozen=True)
+class VisibleSettings:
+    """When the next impact of the true map is the one of a closed orbit."""
+
+    # flight times that differ by less than this, relative: a graze next to the hit moves it by a square root
+    near: float = 1e-6
+
+
+SETTINGS = VisibleSettings()
+
+
+def visible(osc: Oscillator, tau: Array, v: Array, times: Array) -> Array:
+    """Whether flights from states with v >= 0 first meet the wall after these times.
+
+    Examples
+    --------
+    >>> visible(Oscillator("0", "-2", 0, "1/2"), np.zeros(2), np.ones(2), np.array([1.0, 1.5])).tolist()
+    [True, False]
+    """
+    found = np.zeros(tau.shape, dtype=bool)
+    chosen = (v >= 0) & (times > 0)
+    if chosen.any():
+        step = impact_map(osc, tau[chosen], v[chosen])
+        with np.errstate(invalid="ignore"):
+            same = np.abs(step.flight_time - times[chosen]) <= SETTINGS.near * times[chosen]
+        found[chosen] = same & np.isin(step.status, (Status.hit, Status.graze))
+    return found
+
+
+@dataclass
+class Notes:
+    """What is to be said beside a result, each sentence once."""
+
+    sentences: dict[str, None] = field(default_factory=dict)
+
+    def add(self, sentence: str) -> None:
+        """One sentence more."""
+        self.sentences[sentence] = None

@@ -1,0 +1,190 @@
+"""Periodic orbits of a model: n impacts in k periods of the forcing.
+
+One impact in k periods of a linear model is found in closed form.  All else by Newton's method on the closing
+conditions, from many starts, grazes among them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.expressions import names_in
+from singimpact.algebra.numbers import as_float
+from singimpact.branches.closing import Closing
+from singimpact.branches.digits import in_digits
+from singimpact.branches.one_impact import phases_and_speeds
+from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits
+from singimpact.branches.resting import chatter_orbits, free_orbits
+from singimpact.branches.solutions import orbit_at
+from singimpact.branches.starts import closed_from, grid_of_starts
+from singimpact.flights.family import family
+from singimpact.flights.impact_map import checked_digits
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.linear import linear_form
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class PeriodicSettings:
+    """When orbits are one, and when one is real."""
+
+    # two states nearer than this are one, relative to a period and to the largest velocity of the orbit
+    apart: float = 1e-7
+    # an orbit of smaller v is a graze and is not listed
+    least: float = 1e-13
+    # k, n up to this
+    most: int = 1000
+
+
+SETTINGS = PeriodicSettings()
+
+
+def periodic(osc: Oscillator, n: Any, k: int, start: Any = None, *, digits: int | None = None) -> PeriodicOrbits:
+    """The orbits of n impacts in k periods of the forcing.
+
+    Parameters
+    ----------
+    osc : the model; g must have a period.
+    n : impacts, a whole number; `math.inf` for orbits that chatter to rest and lift off; 0 for orbits without impact.
+    k : periods, a whole number >= 1.
+    start : states to start from in place of a grid: (tau, v), or a sequence of n of them, or a `PeriodicOrbit`.
+    digits : decimal digits; the orbits then hold mpmath numbers.
+
+    Returns
+    -------
+    list of `PeriodicOrbit` in the order of the first phase, with `.complete` (whether there are shown to be no others)
+        and `.notes`. Orbits that close sooner, and grazes, are not among them.
+
+    Raises
+    ------
+    InputError : a count that is none, a model without a period, a start that no orbit is found from.
+
+    Examples
+    --------
+    >>> found = periodic(Oscillator("x", "cos(4*t)", 0, "0.5"), 1, 2)
+    >>> print([f"{orbit.v[0]:.12f}" for orbit in found], found.complete)
+    ['0.533333333333'] True
+    """
+    if osc.period is None:
+        raise InputError("the forcing has no period: a periodic orbit needs one")
+    k = _count("k", k, 1)
+    if n == np.inf:
+        return chatter_orbits(osc, k)
+    n = _count("n", n, 0)
+    if n == 0:
+        return free_orbits(osc, k)
+    notes = Notes()
+    if start is not None:
+        found, complete = _from_start(osc, n, k, start), False
+        notes.add("found from the start given")
+    else:
+        found, complete = _all(osc, n, k, notes)
+    orbits = _judged(osc, n, k, found)
+    if start is None:
+        orbits = [orbit for orbit in orbits if orbit.visible]
+    elif not orbits:
+        raise refuse("start", start, f"a state near an orbit of {n} impacts in {k} periods; Newton's method finds none")
+    if digits is not None:
+        orbits = [in_digits(osc, orbit, checked_digits(digits)) for orbit in orbits]
+    return PeriodicOrbits(orbits, complete, tuple(notes.sentences))
+
+
+def _count(name: str, value: Any, least: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not least <= value <= SETTINGS.most:
+        more = ", or math.inf" if name == "n" else ""
+        raise refuse(name, value, f"a whole number from {least} to {SETTINGS.most}{more}")
+    return int(value)
+
+
+def _all(osc: Oscillator, n: int, k: int, notes: Notes) -> tuple[list[Array], bool]:
+    """Points of all solutions that are found, and whether there are no others."""
+    constant = not names_in(osc.restitution)
+    if n == 1 and constant and linear_form(osc) is not None:
+        solutions = phases_and_speeds(osc, k)
+        if solutions is not None:
+            return [np.array(pair) for pair in zip(*solutions, strict=True)], True
+        notes.add(
+            f"every phase closes after one impact in {k} periods with its own velocity: a continuum of orbits, none is "
+            "listed"
+        )
+        return [], False
+    closing = Closing(family(osc), n, k)
+    notes.add("found from a grid of starts and from grazes: it is not shown that there are no others")
+    return closed_from(closing, grid_of_starts(closing)), False
+
+
+def _from_start(osc: Oscillator, n: int, k: int, start: Any) -> list[Array]:
+    """Points of the solutions that Newton's method finds from states that the caller gives."""
+    closing = Closing(family(osc), n, k)
+    if isinstance(start, PeriodicOrbit):
+        start = list(zip(np.asarray(start.tau, dtype=float), np.asarray(start.v, dtype=float), strict=True))
+    try:
+        states = np.array([[as_float(_exact(part)) for part in state] for state in _pairs(start)])
+    except (TypeError, ValueError):
+        raise refuse("start", start, "(tau, v), or n such pairs, or a PeriodicOrbit") from None
+    if states.ndim != 2 or states.shape[1:] != (2,) or len(states) not in (1, n):
+        raise refuse("start", start, f"(tau, v), or {n} such pairs, or a PeriodicOrbit")
+    if len(states) == n:
+        found = closing.newton(np.concatenate(states.T))
+        return [] if found is None else [found[0]]
+    return closed_from(closing, grid_of_starts(closing, states[:, 0], states[:, 1]))
+
+
+def _pairs(start: Any) -> list[Any]:
+    rows = list(start)
+    return [rows] if len(rows) == 2 and not np.ndim(rows[0]) else rows
+
+
+def _exact(value: Any) -> Any:
+    from singimpact.algebra.numbers import constant
+
+    return constant("start", value)
+
+
+def _judged(osc: Oscillator, n: int, k: int, points: list[Array]) -> list[PeriodicOrbit]:
+    """Orbits of closed points, each once, in the order of the first phase; those that close sooner are left out."""
+    closing = Closing(family(osc), n, k)
+    kept: list[PeriodicOrbit] = []
+    for point in points:
+        if not point[n : 2 * n].max() > SETTINGS.least or point[n : 2 * n].min() < -SETTINGS.least:
+            continue
+        orbit = orbit_at(closing, point, osc)
+        if not _sooner(orbit, closing) and not any(_same(orbit, other, closing) for other in kept):
+            kept.append(orbit)
+    return sorted(kept, key=lambda orbit: (float(orbit.tau[0]), float(orbit.v[0])))
+
+
+def _phases(orbit: PeriodicOrbit, period: float) -> Array:
+    return np.asarray(np.mod(orbit.tau, period))
+
+
+def _same(one: PeriodicOrbit, other: PeriodicOrbit, closing: Closing) -> bool:
+    """Whether two orbits have the same states, wherever they begin."""
+    period = closing.family.period({}).value
+    fast = max(float(np.max(other.v)), 1e-300)
+    for shift in range(closing.n):
+        gaps = np.abs(np.roll(_phases(one, period), shift) - _phases(other, period))
+        speeds = np.abs(np.roll(one.v, shift) - other.v)
+        if np.minimum(gaps, period - gaps).max() < SETTINGS.apart * period and speeds.max() < SETTINGS.apart * fast:
+            return True
+    return False
+
+
+def _sooner(orbit: PeriodicOrbit, closing: Closing) -> bool:
+    """Whether an orbit closes after fewer impacts."""
+    n, k, period = closing.n, closing.k, closing.family.period({}).value
+    fast = max(float(np.max(orbit.v)), 1e-300)
+    for part in range(1, n):
+        if n % part or (k * part) % n:
+            continue
+        gaps = np.abs(np.roll(orbit.tau, -part)[: n - part] - orbit.tau[: n - part] - k * part / n * period)
+        if gaps.max(initial=0.0) < SETTINGS.apart * period and (
+            np.abs(np.roll(orbit.v, -part) - orbit.v).max() < SETTINGS.apart * fast
+        ):
+            return True
+    return False

@@ -1,0 +1,139 @@
+"""Periodic orbits without impacts, and those that chatter to rest and lift off again."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.branches.closing import lowest
+from singimpact.branches.free import FreeClosing
+from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits
+from singimpact.dynamics.long_run import lift_offs
+from singimpact.dynamics.orbit import orbit
+from singimpact.flights.family import CLEARANCE, Family, family
+from singimpact.oscillator.linear import linear_form
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+Array = np.ndarray[Any, Any]
+ROUNDS = 40
+"""Steps of Newton's method at most."""
+FLOWN = 4000
+"""Impacts after which a lift-off is said not to come back."""
+
+
+def free_orbits(osc: Oscillator, k: int, lowest_only: bool = False) -> PeriodicOrbits:
+    """The orbits of k periods that do not meet the wall, each given by its lowest place.
+
+    Parameters
+    ----------
+    osc : a model with a period. lowest_only : also those that are below the wall there, which are virtual.
+
+    Examples
+    --------
+    >>> (found,) = free_orbits(Oscillator("x + 0.1*xdot", "cos(0.8*t)", -3, "0.8"), 1)
+    >>> round(float(found.x[0]), 12), found.visible
+    (-2.711630722733, True)
+    """
+    moving = family(osc, (CLEARANCE,))
+    period = moving.period({CLEARANCE: as_float(osc.clearance)}).value
+    found: list[PeriodicOrbit] = []
+    linear = linear_form(osc) is not None
+    wall, span = as_float(osc.clearance), k * period
+    size = max(abs(wall), 1.0)
+    starts = [(0.0, 0.0)] if linear else [(x, u) for x in size * np.array([-1.5, 0, 1.5]) for u in (-size, 0.0, size)]
+    for start in starts:
+        state = _closed(moving, start, span)
+        if state is not None:
+            one = _at_its_lowest(moving, osc, state, k)
+            if one is not None and not any(abs(one.x[0] - other.x[0]) < 1e-9 * size for other in found):
+                found.append(one)
+    kept = found if lowest_only else [one for one in found if one.visible]
+    notes = () if linear else ("found from a grid of starts: it is not shown that there are no others",)
+    if linear and not found:
+        notes = ("the free motion is in resonance: there is no periodic motion, or a continuum of them",)
+    return PeriodicOrbits(kept, linear and bool(found), notes)
+
+
+def _closed(moving: Family, start: tuple[float, float], span: float) -> tuple[float, float] | None:
+    """x and x' at time 0 of an orbit that closes after the span."""
+    x, u = start
+    for _ in range(ROUNDS):
+        end = moving.end({CLEARANCE: x}, 0.0, u, span)
+        miss = np.array([end.place[0], end.place[1] - u])
+        slope = np.stack([end.by_numbers[0], end.by_v - np.array([0.0, 1.0])], axis=1)
+        if not np.isfinite(miss).all() or not np.isfinite(slope).all() or abs(np.linalg.det(slope)) < 1e-12:
+            return None
+        step = np.linalg.solve(slope, miss)
+        x, u = x - float(step[0]), u - float(step[1])
+        if np.abs(step).max() <= 1e-14 * max(abs(x), abs(u), 1e-3):
+            return x, u
+    return None
+
+
+def _at_its_lowest(moving: Family, osc: Oscillator, state: tuple[float, float], k: int) -> PeriodicOrbit | None:
+    """The orbit with its lowest place; of one that moves up and down once a period that is a turning point."""
+    x, u = state
+    period = moving.period({CLEARANCE: x}).value
+    # a turn and a half shows every turning point inside
+    time, height = lowest(moving, {CLEARANCE: x}, (0.0, u, 1.5 * k * period))
+    if not np.isfinite(height):
+        return None
+    span = k * period
+    end = moving.end({CLEARANCE: x}, 0.0, u, time)
+    across = moving.end({CLEARANCE: x + height}, float(np.mod(time, period)), float(end.place[1]), span)
+    multipliers = np.linalg.eigvals(np.stack([across.by_numbers[0] + np.array([1.0, 0.0]), across.by_v], axis=1))
+    miss = float(np.abs(across.place - np.array([0.0, end.place[1]])).max())
+    order = np.argsort(-np.abs(multipliers))
+    at, speed, place = (np.array([each]) for each in (np.mod(time, period), float(end.place[1]), x + height))
+    seen = height + x >= as_float(osc.clearance)
+    return PeriodicOrbit(at, speed, multipliers[order], miss, np.int8(Status.hit), osc, 0, k, "free", seen, place)
+
+
+def free_orbit_at(closing: FreeClosing, point: Array) -> PeriodicOrbit:
+    """The orbit of a closed point x, x' at time 0 and numbers."""
+    values = closing.values(point)
+    osc = closing.family.oscillator(values)
+    moving = family(osc, (CLEARANCE,))
+    found = _at_its_lowest(moving, osc, (float(point[0]), float(point[1])), closing.k)
+    if found is None:
+        raise ArithmeticError("an orbit without a lowest place")
+    return found
+
+
+def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
+    """The orbits of k periods in which chatter completes and the mass rests until it lifts off.
+
+    Notes
+    -----
+    The mass lifts off at finitely many phases, and what follows each is fixed: each is flown until it lifts off again.
+
+    Examples
+    --------
+    >>> [found] = chatter_orbits(Oscillator("x", "cos(2*t)", "0.7", "1/2"), 1)
+    >>> round(float(found.tau[0]), 6), found.stable
+    (2.743893, True)
+    """
+    assert osc.period is not None
+    period, found = as_float(osc.period), list[PeriodicOrbit]()
+    notes: tuple[str, ...] = ()
+    phases = lift_offs(osc)
+    complete = True
+    for phase in phases:
+        flown = orbit(osc, phase, 0, impacts=FLOWN)
+        times = flown.tau[flown.kind == "release"]
+        home = np.abs(times - phase - period * np.rint((times - phase) / period)) < 1e-9 * period
+        if home.any():
+            first = float(times[np.argmax(home)])
+            if round((first - phase) / period) == k and not any(
+                np.abs(np.mod(times[: np.argmax(home) + 1], period) - other.tau[0]).min() < 1e-9 for other in found
+            ):
+                miss = abs(first - phase - k * period)
+                found.append(PeriodicOrbit(np.array([np.mod(phase, period)]), np.zeros(1), np.zeros(2), miss,
+                                           np.int8(Status.hit), osc, np.inf, k, "chatter"))  # fmt: skip
+        elif flown.phases and flown.phases[-1][0] == "unresolved":
+            complete = False
+            notes = ("the orbit released at a zero of a_c is not decided in doubles",)
+    return PeriodicOrbits(found, complete, notes)

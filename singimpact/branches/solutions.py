@@ -1,0 +1,61 @@
+"""The orbit at a point that solves closing conditions, and the conditions that an orbit solves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.branches.closing import Closing
+from singimpact.branches.free import FreeClosing
+from singimpact.branches.orbits import PeriodicOrbit, visible
+from singimpact.branches.resting import free_orbit_at
+from singimpact.flights.family import CLEARANCE, RESTITUTION, family
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+Array = np.ndarray[Any, Any]
+AnyClosing = Closing | FreeClosing
+
+
+def closing_of(osc: Oscillator, n: int, k: int, over: Sequence[str]) -> AnyClosing:
+    """The closing conditions of n impacts, or of none, in k periods."""
+    if n:
+        return Closing(family(osc, tuple(over)), n, k)
+    return FreeClosing(family(osc, (CLEARANCE, *(name for name in over if name not in (CLEARANCE, RESTITUTION)))),
+                       tuple(over), k)  # fmt: skip
+
+
+def orbit_of(closing: AnyClosing, point: Array) -> PeriodicOrbit:
+    """The orbit at a closed point, with its model."""
+    return orbit_at(closing, point) if isinstance(closing, Closing) else free_orbit_at(closing, point)
+
+
+def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None) -> PeriodicOrbit:
+    """The orbit at a closed point, its first impact the one of the least phase."""
+    n, k = closing.n, closing.k
+    osc = osc or closing.family.oscillator(closing.values(point))
+    loop = closing.at(point)
+    flights = closing.flights(point)
+    launches, speeds, times = (np.array([flight[i] for flight in flights]) for i in (0, 2, 3))
+    first = int(np.argmin(launches))
+    order = [(first + i) % n for i in range(n)]
+    tau = launches[first] + np.concatenate([[0.0], np.cumsum(times[order])[:-1]])
+    seen = bool(visible(osc, launches, speeds, times).all())
+    miss = float(np.abs(loop.miss).max())
+    return PeriodicOrbit(
+        tau, speeds[order], _plain(loop.multipliers()), miss, np.int8(Status.hit), osc, n, k, visible=seen
+    )
+
+
+def _plain(multipliers: Array) -> Array:
+    """Real numbers where they are."""
+    return multipliers.real if not multipliers.imag.any() else multipliers
+
+
+def orbit_period(orbit: PeriodicOrbit) -> float:
+    """The period of the forcing of an orbit's model."""
+    assert orbit.oscillator.period is not None
+    return as_float(orbit.oscillator.period)

@@ -1,0 +1,116 @@
+"""Orbits of other branches that meet a branch at an event."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.branches.closing import Closing
+from singimpact.branches.continuation import Curve, Point
+from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, orbit_period
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+APART = 1e-3
+"""Distance from a doubling at which the doubled orbit is given, in scaled unknowns."""
+
+
+def others(kind: str, orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:
+    """Orbits of the other branches at an event: see `events.Event.others`.
+
+    Examples
+    --------
+    >>> from singimpact.branches.resting import free_orbits
+    >>> model = Oscillator("x + 0.1*xdot", "-A*cos(0.8*t)", -1, "0.8", {"A": "sqrt(0.36**2 + 0.08**2)"})
+    >>> [touching] = free_orbits(model, 1, lowest_only=True)
+    >>> [(orbit.n, abs(round(float(orbit.v[0]), 12))) for orbit in others("graze", touching, "A", 0.368781778291)]
+    [(1, 0.0)]
+    """
+    match kind:
+        case "period-doubling":
+            return _doubled(orbit, over, parameter)
+        case "graze" if orbit.n:
+            return [_without_impact(orbit)]
+        case "graze" | "hidden impact":
+            return [_with_impact(orbit)]
+    return []
+
+
+def _point(orbit: PeriodicOrbit) -> Array:
+    return np.concatenate([np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)])
+
+
+def _closed(event: PeriodicOrbit, n: int, point: Array) -> PeriodicOrbit:
+    """The orbit next to a point at the event's model; the event itself closes it already, up to rounding."""
+    closing = closing_of(event.oscillator, n, event.k, ())
+    assert isinstance(closing, Closing)
+    found = closing.newton(point)
+    return orbit_of(closing, point if found is None else found[0])
+
+
+def _without_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
+    n = int(orbit.n)
+    times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
+    at = int(np.argmin(speeds))  # an orbit begins at its least phase, not where its branch did
+    if n == 1:
+        osc = orbit.oscillator
+        closing = closing_of(osc, 0, orbit.k, ())
+        end = closing.family.end({"clearance": _wall(osc)}, float(times[0]), 0.0, -float(times[0]))
+        return orbit_of(closing, np.array([_wall(osc) + end.place[0], end.place[1]]))
+    kept = [(at + 1 + i) % n for i in range(n - 1)]
+    span = orbit.k * orbit_period(orbit)
+    later = [times[i] + (span if i <= at else 0.0) for i in kept]
+    return _closed(orbit, n - 1, np.concatenate([later, speeds[kept]]))
+
+
+def _with_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
+    n = int(orbit.n)
+    times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
+    if n == 0:
+        return _closed(orbit, 1, np.array([times[0], 0.0]))
+    closing = closing_of(orbit.oscillator, n, orbit.k, ())
+    # the flight that touches is the one with the least height, wherever the orbit begins
+    heights = closing.heights(np.concatenate([times, speeds]))
+    flight = int(np.argmin([abs(height) for _, height in heights]))
+    time = heights[flight][0]
+    return _closed(orbit, n + 1, np.concatenate([np.insert(times, flight + 1, times[flight] + time),
+                                                 np.insert(speeds, flight + 1, 0.0)]))  # fmt: skip
+
+
+def _doubled(orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:
+    """The orbit of twice the period next to a doubling, by one step along the vector that -1 belongs to."""
+    n = int(orbit.n)
+    if n == 0:
+        return []
+    once = closing_of(orbit.oscillator, n, orbit.k, ())
+    at = _point(orbit)
+    loop = once.at(at)
+    vector = np.linalg.svd(loop.slope[:, : 2 * n] - 2 * loop.wrap)[2][-1]
+    osc = orbit.oscillator
+    twice: AnyClosing = closing_of(osc, 2 * n, 2 * orbit.k, (over,))
+    span = orbit.k * orbit_period(orbit)
+    point = np.concatenate([at[:n], at[:n] + span, at[n:], at[n:], [parameter]])
+    moved = np.concatenate([vector[:n], -vector[:n], vector[n:], -vector[n:], [0.0]])
+    scales = twice.scales(point)
+    scales[-1] = max(abs(parameter), 1e-3)
+    curve = Curve(_Equations(twice), scales, 10 * APART)
+    tangent = moved / scales
+    start = Point(point, tangent / np.linalg.norm(tangent))
+    found = curve.beyond(start, APART)
+    return [] if found is None else [orbit_of(twice, found[0].at)]
+
+
+class _Equations:
+    def __init__(self, closing: AnyClosing) -> None:
+        self.closing = closing
+
+    def equations(self, point: Array) -> tuple[Array, Array]:
+        loop = self.closing.at(point)
+        return loop.miss, loop.slope
+
+
+def _wall(osc: Oscillator) -> float:
+    return as_float(osc.clearance)

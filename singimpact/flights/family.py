@@ -1,0 +1,358 @@
+"""Flights of a family of models that do not feel the wall: ends at given times, with exact derivatives.
+
+    z = x - c and x' at time T after a launch from x = c, differentiated by T, tau, v and by numbers of the model
+
+A branch of periodic orbits passes a graze smoothly in these coordinates (`branches`).  A linear model is one matrix
+exponential: its state and the cosines and sines of its forcing obey a linear equation, and a block beside its matrix
+gives the derivative by a parameter.  Any other model is flown in Taylor steps, with a third column of the variational
+equation that the parameter drives.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import cos, factorial, frexp, inf, pi, sin
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.expressions import (
+    Expression,
+    Name,
+    add,
+    evaluate,
+    multiply,
+    names_in,
+    negate,
+    substitute,
+    subtract,
+)
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import DOUBLES
+from singimpact.codegen.recurrence import recurrence
+from singimpact.flights.compiled_model import CompiledModel, compiled_model
+from singimpact.flights.kernels import layout
+from singimpact.flights.model_numbers import recurrence_of
+from singimpact.oscillator.linear import LinearForm, form_of
+from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.period import common_period
+from singimpact.oscillator.rebound import rho_of
+
+Array = np.ndarray[Any, Any]
+Values = Mapping[str, float]
+CLEARANCE, RESTITUTION = "clearance", "restitution"
+
+
+@dataclass(frozen=True)
+class FamilySettings:
+    """How a flight is sampled."""
+
+    # places a turn of its fastest motion
+    samples: float = 24.0
+    # the fewest of a flight, and the most
+    least: int = 16
+    most: int = 4000
+
+
+SETTINGS = FamilySettings()
+
+
+class End(NamedTuple):
+    """The end of one flight: (x - c, x') and its derivatives by T, tau, v and by each number, shape (numbers, 2)."""
+
+    place: Array
+    by_time: Array
+    by_tau: Array
+    by_v: Array
+    by_numbers: Array
+
+
+class Number(NamedTuple):
+    """A tree in the numbers that move, as a double with its derivatives by them."""
+
+    value: float
+    slopes: tuple[float, ...]
+
+
+class Family(ABC):
+    """The models that differ from one in some numbers: the clearance, the restitution, parameters.
+
+    Parameters
+    ----------
+    osc : a model. over : names of the numbers that move.
+    """
+
+    def __init__(self, osc: Oscillator, over: Sequence[str] = ()) -> None:
+        self.osc, self.over = osc, tuple(over)
+        self.fixed = {name: tree for name, tree in osc.parameters.items() if name not in over}
+        self.start = {name: as_float(getattr(osc, name) if name in (CLEARANCE, RESTITUTION) else osc.parameters[name])
+                      for name in over}  # fmt: skip
+        self._period = self._tree(common_period(osc.g) if _moves(osc.g, over) else osc.period)
+        self._rho = [self._tree(tree) for tree in _rebound(osc, over)]
+
+    # ---- numbers
+
+    def _tree(self, tree: Expression | None) -> tuple[Expression, tuple[Expression, ...]] | None:
+        """A tree in which the numbers that move are letters, and its derivatives by them."""
+        if tree is None:
+            return None
+        kept = substitute(tree, self.fixed)
+        return kept, tuple(derivative(kept, name) for name in self.over)
+
+    def _number(self, trees: tuple[Expression, tuple[Expression, ...]], values: Values) -> Number:
+        tree, slopes = trees
+        return Number(_float(tree, values), tuple(_float(each, values) for each in slopes))
+
+    def period(self, values: Values) -> Number:
+        """The period of the forcing; of a model without one nan."""
+        if self._period is None:
+            return Number(np.nan, (np.nan,) * len(self.over))
+        found = self._number(self._period, values)
+        return found if found.value >= 0 else Number(-found.value, tuple(-slope for slope in found.slopes))
+
+    def rebound(self, velocity: float, values: Values) -> tuple[float, float, tuple[float, ...]]:
+        """rho at x' before an impact, its derivative, and its derivatives by the numbers."""
+        assert self._rho[0] is not None
+        assert self._rho[1] is not None
+        given = {**values, "v": velocity}
+        tree, slopes = self._rho[0]
+        return (_float(tree, given), _float(self._rho[1][0], given), tuple(_float(each, given) for each in slopes))
+
+    def oscillator(self, values: Values) -> Oscillator:
+        """The model with these numbers, each the double that it is."""
+        return self.osc.replace(**values)
+
+    # ---- flights
+
+    @abstractmethod
+    def end(self, values: Values, tau: float, v: float, time: float) -> End:
+        """The end of a flight; launches in the first period keep what depends on the period smooth."""
+
+    @abstractmethod
+    def path(self, values: Values, tau: float, v: float, time: float) -> Array:
+        """x - c and x' at evenly spaced times after the launch, the last of them `time`, shape (samples, 2)."""
+
+    def samples(self, time: float) -> int:
+        """How many places show the shape of a flight."""
+        turns = min(abs(time) * self.fastest / (2 * pi), SETTINGS.most)
+        return int(min(max(SETTINGS.samples * turns, SETTINGS.least), SETTINGS.most))
+
+    fastest: float = 1.0
+
+
+def family(osc: Oscillator, over: Sequence[str] = ()) -> Family:
+    """The family of a model over some of its numbers.
+
+    Parameters
+    ----------
+    osc : the model. over : "clearance", "restitution" or parameters.
+
+    Examples
+    --------
+    >>> moving = family(Oscillator("x", "A*cos(2*t)", 0, "0.8", {"A": 1}), ("A",))
+    >>> end = moving.end({"A": 3.0}, 0.5, 1.0, 2.0)
+    >>> before, after = (moving.end({"A": 3 + h}, 0.5, 1.0, 2.0).place for h in (-1e-6, 1e-6))
+    >>> bool(abs((after - before) / 2e-6 - end.by_numbers[0]).max() < 1e-9)
+    True
+    """
+    return _family(osc, tuple(over))
+
+
+@lru_cache(maxsize=64)
+def _family(osc: Oscillator, over: tuple[str, ...]) -> Family:
+    form = form_of(osc.f, osc.g)
+    return SteppedFamily(osc, over) if form is None else LinearFamily(osc, over, form)
+
+
+class LinearFamily(Family):
+    """y' = M y for y = (x - c, x', 1, cosine and sine of every wave)."""
+
+    def __init__(self, osc: Oscillator, over: Sequence[str], form: LinearForm) -> None:
+        super().__init__(osc, over)
+        clearance: Any = Name(CLEARANCE) if CLEARANCE in over else osc.clearance
+        steady = add(form.constant, negate(multiply(form.stiffness, clearance)))
+        trees = [form.damping, form.stiffness, steady]
+        for wave in form.harmonics:
+            trees += [wave.rate, wave.phase, wave.cosine, wave.sine]
+        self._trees = [self._tree(tree) for tree in trees]
+        self._known = [self._number(each, {}) if each is not None and not _moves(each[0], over) else None
+                       for each in self._trees]  # fmt: skip
+        self.waves = len(form.harmonics)
+        self.fastest = self._fastest(self.start)
+
+    def numbers(self, values: Values) -> list[Number]:
+        """Damping, stiffness, constant part of a_c; rate, phase, cosine, sine of every wave."""
+        return [known or self._number(trees, values)  # type: ignore[arg-type]
+                for known, trees in zip(self._known, self._trees, strict=True)]  # fmt: skip
+
+    def _fastest(self, values: Values) -> float:
+        p = [each.value for each in self.numbers(values)]
+        root = np.sqrt(complex(p[0] * p[0] / 4 - p[1]))
+        return float(max([abs(root - p[0] / 2), abs(root + p[0] / 2), *np.abs(p[3::4]).tolist(), 1e-3]))
+
+    def end(self, values: Values, tau: float, v: float, time: float) -> End:
+        p, count = self.numbers(values), len(self.over)
+        n = 3 + 2 * self.waves
+        matrix, start = self._matrix([each.value for each in p]), self._start(p, tau, v)
+        blocks = np.zeros(((1 + count) * n,) * 2)
+        for k in range(1 + count):
+            blocks[k * n : (k + 1) * n, k * n : (k + 1) * n] = matrix
+        for k in range(count):
+            blocks[:n, (k + 1) * n : (k + 2) * n] = self._matrix([each.slopes[k] for each in p], flow=False)
+        grown = exponential(blocks * time)
+        flow = grown[:2, :n]
+        place = flow @ start
+        turned = np.zeros(n)
+        for j in range(self.waves):
+            rate = p[3 + 4 * j].value
+            turned[3 + 2 * j], turned[4 + 2 * j] = -rate * start[4 + 2 * j], rate * start[3 + 2 * j]
+        by_numbers = np.zeros((count, 2))
+        for k in range(count):
+            moved = np.zeros(n)
+            for j in range(self.waves):
+                angle = p[3 + 4 * j].slopes[k] * tau + p[4 + 4 * j].slopes[k]
+                moved[3 + 2 * j], moved[4 + 2 * j] = -angle * start[4 + 2 * j], angle * start[3 + 2 * j]
+            by_numbers[k] = grown[:2, (k + 1) * n : (k + 2) * n] @ start + flow @ moved
+        bend = matrix[1] @ (grown[:n, :n] @ start)
+        return End(place, np.array([place[1], bend]), flow @ turned, flow[:, 1].copy(), by_numbers)
+
+    def flow(self, values: Values, time: float) -> Array:
+        """e^{M T}: its first two rows give x - c and x' from v, 1 and the cosines and sines at the launch."""
+        return exponential(self._matrix([each.value for each in self.numbers(values)]) * time)
+
+    def path(self, values: Values, tau: float, v: float, time: float) -> Array:
+        p, count = self.numbers(values), self.samples(time)
+        flow = exponential(self._matrix([each.value for each in p]) * (time / count))
+        states = (flow @ self._start(p, tau, v))[None]
+        while len(states) < count:  # so many places again, as many steps later
+            states = np.concatenate([states, states @ flow.T])
+            flow = flow @ flow
+        return np.asarray(states[:count, :2])
+
+    def _start(self, p: list[Number], tau: float, v: float) -> Array:
+        state = [0.0, v, 1.0]
+        for j in range(self.waves):
+            angle = p[3 + 4 * j].value * tau + p[4 + 4 * j].value
+            state += [cos(angle), sin(angle)]
+        return np.array(state)
+
+    def _matrix(self, p: list[float], flow: bool = True) -> Array:
+        """M of these numbers; linear in them but for the 1 of x - c, which a derivative has not."""
+        matrix = np.zeros((3 + 2 * self.waves,) * 2)
+        matrix[0, 1] = 1.0 if flow else 0.0
+        matrix[1, :3] = -p[1], -p[0], p[2]
+        for j in range(self.waves):
+            at, (rate, _phase, cosine, sine) = 3 + 2 * j, p[3 + 4 * j : 7 + 4 * j]
+            matrix[1, at : at + 2] = cosine, sine
+            matrix[at, at + 1], matrix[at + 1, at] = -rate, rate
+        return matrix
+
+
+class SteppedFamily(Family):
+    """Flights in Taylor steps; the flow of every number has a compiled model of its own."""
+
+    def __init__(self, osc: Oscillator, over: Sequence[str]) -> None:
+        super().__init__(osc, over)
+        allowance = compiled_model(osc).allowance
+        flows = [
+            recurrence_of(osc),
+            *(recurrence(osc.f, osc.g, push_by(osc, name)) for name in over if name != RESTITUTION),
+        ]
+        self.flows, self.models = flows, [CompiledModel(osc, allowance, flow) for flow in flows]
+        for model in self.models:
+            model.flat[layout.TURN : layout.TURN + 5] = 0.0  # launch times are not reduced by a period that moves
+        self.fastest = max(self.models[0]._pace(), 1.0)
+        self._trees = [[substitute(tree, self.fixed) for tree in flow.constants] for flow in flows]
+        self._force, self._forcing = substitute(osc.f, self.fixed), substitute(osc.g, self.fixed)
+        self._at: tuple[float, ...] | None = None
+
+    def _moved(self, values: Values) -> None:
+        at = tuple(values[name] for name in self.over)
+        if at == self._at:
+            return
+        for model, trees in zip(self.models, self._trees, strict=True):
+            clearance = values.get(CLEARANCE, as_float(self.osc.clearance))
+            model.flat[layout.SCALARS :] = [clearance, *(_float(tree, values) for tree in trees)]
+            model.forget_lists()
+        self._at = at
+
+    def end(self, values: Values, tau: float, v: float, time: float) -> End:
+        self._moved(values)
+        place = self.models[0].follow(tau, v, np.array([time]))[0]
+        given = np.array([tau]), np.array([v]), np.array([time])
+        by_v, by_v_dot, by_tau, by_tau_dot = self.models[0].variations(*given)[0]
+        by_numbers, models = np.zeros((len(self.over), 2)), iter(self.models[1:])
+        for k, name in enumerate(self.over):
+            if name != RESTITUTION:
+                by_numbers[k] = next(models).variations(*given)[0, 2:]
+        clearance = values.get(CLEARANCE, as_float(self.osc.clearance))
+        names = {**values, "x": clearance + place[0], "xdot": place[1], "t": tau + time}
+        with np.errstate(all="ignore"):
+            bend = _float(self._forcing, names) - _float(self._force, names)
+        return End(place, np.array([place[1], bend]), np.array([by_tau, by_tau_dot]), np.array([by_v, by_v_dot]),
+                   by_numbers)  # fmt: skip
+
+    def path(self, values: Values, tau: float, v: float, time: float) -> Array:
+        self._moved(values)
+        return self.models[0].follow(tau, v, np.linspace(0.0, time, self.samples(time) + 1)[1:])
+
+
+_ORDER = 19
+_TAYLOR = np.array([1 / factorial(k) for k in range(_ORDER + 1)]).reshape(5, 4)
+
+
+def exponential(matrix: Array) -> Array:
+    """e^M of a small matrix by its Taylor series, scaled and squared; scipy's, through LAPACK, is ten times slower.
+
+    Examples
+    --------
+    >>> exponential(np.array([[0.0, 1.0], [0.0, 0.0]])).tolist()
+    [[1.0, 1.0], [0.0, 1.0]]
+    """
+    n = len(matrix)
+    size = float(np.abs(matrix).sum(axis=0).max())
+    halvings = max(frexp(size)[1], 0) if size < inf else 0
+    A = matrix * 2.0**-halvings
+    powers = np.empty((4, n, n))
+    powers[0], powers[1] = np.eye(n), A
+    np.matmul(A, A, out=powers[2])
+    np.matmul(powers[2], A, out=powers[3])
+    parts = (_TAYLOR @ powers.reshape(4, -1)).reshape(5, n, n)
+    fourth = powers[2] @ powers[2]
+    total = parts[4]
+    for part in parts[3::-1]:
+        total = total @ fourth + part
+    for _ in range(halvings):
+        total = total @ total
+    return np.asarray(total)
+
+
+def push_by(osc: Oscillator, name: str) -> Expression:
+    """What drives the derivative of x - c by a number: g_p - f_p, for the clearance -f_x.
+
+    Examples
+    --------
+    >>> print(push_by(Oscillator("x + b*x**3", "cos(t)", 0, 1, {"b": 2}), "b"))
+    -x**3
+    """
+    if name == CLEARANCE:
+        return negate(derivative(osc.f, "x"))
+    return subtract(derivative(osc.g, name), derivative(osc.f, name))
+
+
+def _rebound(osc: Oscillator, over: Sequence[str]) -> tuple[Expression, Expression]:
+    """rho and its derivative by the velocity."""
+    law = rho_of(Name(RESTITUTION) if RESTITUTION in over else osc.restitution)
+    return law, derivative(law, "v")
+
+
+def _moves(tree: Expression, over: Sequence[str]) -> bool:
+    return not names_in(tree).isdisjoint(over)
+
+
+def _float(tree: Expression, values: Mapping[str, Any]) -> float:
+    return float(evaluate(tree, values, DOUBLES))

@@ -1,0 +1,122 @@
+"""Periodic orbits against closed forms."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+from singimpact.branches.periodic import periodic
+from singimpact.impact_oscillator import ImpactOscillator, linear
+from singimpact.inputs import InputError
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_one_impact_in_n_periods(n: int) -> None:
+    omega, r, c = 2 * n, 0.5, 0.02
+    (found,) = periodic(linear(omega, c, r), 1, n)
+    G = 1 / (1 - omega**2)
+    v = 2 * r * omega * np.sqrt(G * G - c * c) / (1 - r)
+    assert found.v[0] == pytest.approx(v, rel=1e-12)
+    assert G * np.cos(omega * found.tau[0]) == pytest.approx(c, rel=1e-9)
+    assert G * omega * np.sin(omega * found.tau[0]) == pytest.approx(v * (1 / r - 1) / 2, rel=1e-12)
+    assert np.prod(found.multipliers) == pytest.approx(r**2, rel=1e-9)
+
+
+def test_digits() -> None:
+    (found,) = periodic(linear(4, 0, "0.5"), 1, 2, digits=30)
+    with mpmath.workdps(40):
+        assert abs(found.v[0] - mpmath.mpf(8) / 15) < mpmath.mpf(10) ** -29
+        assert abs(found.tau[0] - 3 * mpmath.pi / 8) < mpmath.mpf(10) ** -29
+        assert abs(found.multipliers[0] * found.multipliers[1] - mpmath.mpf(1) / 4) < mpmath.mpf(10) ** -29
+
+
+@pytest.mark.parametrize(("n", "k"), [(-1, 1), (1, 0), (1.5, 1), (True, 1)])
+def test_bad_counts(n: object, k: object) -> None:
+    with pytest.raises(InputError):
+        periodic(linear(4, 0, "0.5"), n, k)
+
+
+def test_no_period() -> None:
+    with pytest.raises(InputError, match="period"):
+        periodic(ImpactOscillator("0", "-1", 0, "0.5"), 1, 1)
+
+
+def closed_form(omega: float, r: float, c: float, k: int) -> list[tuple[float, float]]:
+    """Budd and Dux 1994: the (1, k) orbits of x'' + x = cos(omega t), from c + v r'... solved for the velocity."""
+    T = 2 * np.pi * k / omega
+    G, C, S = 1 / (1 - omega**2), np.cos(T), np.sin(T)
+    # x - G cos(omega t) is a free motion that starts at c - G cos, v + G omega sin: it must come back to c with -v/r
+    found = np.array([_gap(tau, omega, r, c, G, C, S)[0] for tau in np.linspace(0, 2 * np.pi / omega, 4001)[:-1]])
+    orbits = []
+    grid = np.linspace(0, 2 * np.pi / omega, 4001)
+    for i in np.flatnonzero(found * np.roll(found, -1) < 0):
+        low, high = grid[i], grid[i + 1]
+        for _ in range(80):
+            middle = (low + high) / 2
+            same = _gap(middle, omega, r, c, G, C, S)[0] * _gap(low, omega, r, c, G, C, S)[0] > 0
+            low, high = (middle, high) if same else (low, middle)
+        orbits.append((low, _gap(low, omega, r, c, G, C, S)[1]))
+    return orbits
+
+
+def _gap(tau, omega, r, c, G, C, S):
+    a, b = c - G * np.cos(omega * tau), G * omega * np.sin(omega * tau)
+    # a C + (v + b) S = a;  -a S + (v + b) C - b = -v/r
+    v = a * (1 - C) / S - b
+    return -a * S + (v + b) * C - b + v / r, v
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_one_impact_orbits_are_all_found(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    omega, r, c = rng.uniform(1.3, 6.5), rng.uniform(0.3, 0.95), rng.uniform(-0.02, 0.02)
+    for k in (1, 2, 3):
+        osc = linear(float(omega), float(c), float(r))
+        orbits = osc.periodic(1, k)
+        assert orbits.complete
+        expected = []
+        for tau, v in closed_form(omega, r, c, k):
+            step = osc.impact_map(tau, v) if v > 0 else None
+            if step is not None and abs(float(step.flight_time) - 2 * np.pi * k / omega) < 1e-6:
+                expected.append((tau, v))
+        assert [float(orbit.v[0]) for orbit in orbits] == pytest.approx([v for _, v in sorted(expected)], rel=1e-9)
+
+
+@pytest.mark.parametrize("weak", [1e-4, 1e-6, 1e-9])
+def test_orbits_that_nearly_graze(weak: float) -> None:
+    w = 0.8
+    A = np.hypot(1 - w * w, 0.1 * w) * (1 + 1.05 * weak)
+    (orbit,) = linear(w, -1, "0.8", damping="0.1", amplitude=-float(A)).periodic(1, 1)
+    assert 0.1 * weak < orbit.v[0] < 10 * weak
+
+
+def test_orbits_of_other_kinds() -> None:
+    chatter = linear(2, "0.7", "0.5").periodic(np.inf, 1)
+    assert chatter.complete
+    assert [orbit.kind for orbit in chatter] == ["chatter"]
+    (free,) = linear("0.8", -3, "0.8", damping="0.1").periodic(0, 1)
+    assert free.visible
+    assert free.stable
+    assert linear("0.8", "-2.71", "0.8", damping="0.1").periodic(0, 1) == []
+    with pytest.raises(InputError, match=r"or math\.inf"):
+        linear(4, 0, "0.5").periodic(-1, 1)
+
+
+def test_a_start() -> None:
+    osc = linear(omega="2.8", clearance="0.1", restitution="0.8", amplitude=-1)
+    every = osc.periodic(3, 3)
+    assert not every.complete
+    assert every.notes
+    (one,) = osc.periodic(3, 3, start=(0.6, 0.48))
+    assert one.v == pytest.approx(every[0].v, rel=1e-10)
+    (same,) = osc.periodic(3, 3, start=every[1])
+    assert same.v == pytest.approx(every[1].v, rel=1e-12)
+    with pytest.raises(InputError, match="start"):
+        osc.periodic(3, 3, start="here")
+
+
+def test_orbits_that_close_sooner_are_left_out() -> None:
+    osc = linear(omega="2.8", clearance="0.1", restitution="0.8", amplitude=-1)
+    assert len(osc.periodic(1, 1)) == 1
+    assert osc.periodic(2, 2) == []
