@@ -48,8 +48,8 @@ def in_length(coefficient: RationalCoefficients, names: tuple[str, ...], j: int,
     total = []
     for key, (above, below) in coefficient.terms.items():
         power = of_length + sum(w * e for w, e in zip(weights, key, strict=True))
-        jets = sympy.prod(s**e for s, e in zip(symbols, key, strict=True))
-        total.append(factored(above) / factored(below) * jets * unit**power)
+        jets = [s ** int(e) for s, e in zip(symbols, key, strict=True) if e]
+        total.append(sympy.Mul(factored(above) / factored(below), *jets, unit**power))
     return sympy.Add(*total)
 
 
@@ -65,11 +65,24 @@ def factored(poly: Any) -> Any:
     """An fmpq_poly in lambda as a sympy product of its factors."""
     import sympy
 
-    lambda_ = sympy.Symbol("lambda")
-    constant, factors = poly.factor()
-    content = sympy.Rational(int(constant.p), int(constant.q))
-    shown = [sympy.Add(*(int(c.p) * lambda_**n for n, c in enumerate(each.coeffs()))) ** e for each, e in factors]
-    return content * sympy.prod(shown)
+    return _factored(tuple((int(c.p), int(c.q)) for c in poly.coeffs())) if poly else sympy.S.Zero
+
+
+@lru_cache(maxsize=4096)
+def _factored(coefficients: tuple[tuple[int, int], ...]) -> Any:
+    """From the coefficients, as numerators and denominators: denominators come again and again."""
+    import flint
+    import sympy
+
+    from singimpact.algebra.long_sums import Monomials
+
+    in_lambda = Monomials([sympy.Symbol("lambda")])
+    constant, factors = flint.fmpq_poly([flint.fmpq(*pair) for pair in coefficients]).factor()
+    shown = [
+        in_lambda.summed({(n,): sympy.Integer(int(c.p)) for n, c in enumerate(each.coeffs()) if c}) ** int(e)
+        for each, e in factors
+    ]
+    return sympy.Rational(int(constant.p), int(constant.q)) * sympy.prod(shown)
 
 
 def rho_names(j: int, order: int) -> tuple[str, ...]:
