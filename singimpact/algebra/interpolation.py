@@ -80,7 +80,7 @@ def interpolated(
             {key: value * below(flint.fmpq(base)) for key, value in values.items()}
             for values, below in zip(values_at(base), denominators, strict=True)
         ]
-        found = _read(rows, denominators, base)
+        found: list[RationalCoefficients] | None = _read(rows, denominators, base)
         if found is not None:
             checked = checked or [(node, values_at(node)) for node in READING.nodes]
             if all(_agrees(one, node, values[n]) for node, values in checked for n, one in enumerate(found)):
@@ -88,7 +88,9 @@ def interpolated(
     raise ArithmeticError("the denominators given are not those of the values")
 
 
-def _read(rows: Sequence[Mapping[Exponents, Any]], denominators: Sequence[Any], base: int) -> Any:
+def _read(
+    rows: Sequence[Mapping[Exponents, Any]], denominators: Sequence[Any], base: int
+) -> list[RationalCoefficients] | None:
     """The coefficients from the values of their numerators; None when the base is too small for one."""
     import flint
 

@@ -75,6 +75,71 @@ def _number_key(value: Any) -> Key:
     return (-2 if value.q == 1 else -1, value.p, value.q)
 
 
+CLASSES = {"Zero": 0, "One": 1, "Half": 2, "NegativeOne": 5, "Integer": 7, "Rational": 8, "Symbol": 13, "Pow": 15,
+           "Mul": 16, "Add": 17}  # fmt: skip
+"""Places of sympy's classes in the order of its arguments."""
+
+
+def order_key(expression: Any) -> Key:
+    """The key by which sympy sorts expressions of rationals, plain symbols, powers, products and sums.
+
+    Examples
+    --------
+    >>> x, y = sympy.symbols("x y")
+    >>> parts = [y**2 + x, y**3, x, 1 / (x + 1), sympy.Rational(2, 3)]
+    >>> tuple(sorted(parts, key=order_key)) == sympy.Mul(*parts).args
+    True
+    """
+    place = CLASSES[type(expression).__name__]
+    if place < CLASSES["Symbol"]:
+        return place, expression.p, expression.q
+    if place == CLASSES["Symbol"]:
+        return place, expression.name
+    return place, len(expression.args), *(order_key(part) for part in expression.args)
+
+
+class Products:
+    """Sums of products of a rational and of distinct bases to whole powers, equal to what sympy makes of them.
+
+    Examples
+    --------
+    >>> a, x = sympy.symbols("a x")
+    >>> made = Products()
+    >>> made.summed([made.term(sympy.Rational(2, 3), [(1 + x, -2), (a, 1)]), made.term(sympy.S.One, [(a, 2)])])
+    a**2 + 2*a/(3*(x + 1)**2)
+    """
+
+    def __init__(self) -> None:
+        self._powers: dict[tuple[Any, int], tuple[Key, Any]] = {}
+
+    def term(self, coefficient: Any, factors: Sequence[tuple[Any, int]]) -> tuple[Key, Any]:
+        """One product, with the key by which sympy sorts it; the coefficient is not 0."""
+        parts = sorted((self._power(base, exponent) for base, exponent in factors), key=lambda pair: pair[0])
+        if coefficient is not sympy.S.One:
+            parts.insert(0, (order_key(coefficient), coefficient))
+        if len(parts) == 1:
+            return parts[0]
+        if len(parts) == 2 and coefficient is not sympy.S.One and parts[1][1].is_Add:
+            found = coefficient * parts[1][1]  # a rational goes into a sum
+            return order_key(found), found
+        keys, args = zip(*parts, strict=True) if parts else ((), ())
+        return (CLASSES["Mul"], len(args), *keys), sympy.Mul._from_args(args, is_commutative=True)
+
+    def _power(self, base: Any, exponent: int) -> tuple[Key, Any]:
+        found = self._powers.get((base, exponent))
+        if found is None:
+            power = base**exponent
+            found = self._powers[(base, exponent)] = order_key(power), power
+        return found
+
+    def summed(self, terms: Sequence[tuple[Key, Any]]) -> Any:
+        """The sum of different terms."""
+        if any(term.is_Add or term.is_Number for _, term in terms):
+            return sympy.Add(*(term for _, term in terms))
+        found = sorted(terms, key=lambda pair: pair[0])
+        return sympy.Add._from_args([term for _, term in found], is_commutative=True)
+
+
 class LongSum(sympy.Add):
     """A sum whose text is written in one pass, character by character the text that sympy gives, fifty times sooner.
 
@@ -94,20 +159,20 @@ class LongSum(sympy.Add):
     @classmethod
     def of(cls, total: Any) -> Any:
         """The same sum; what is no sum is returned as it is."""
-        return cls._from_args(total.args, is_commutative=True) if type(total) is sympy.Add else total
+        made: Any = cls._from_args
+        return made(total.args, is_commutative=True) if type(total) is sympy.Add else total
 
     @property
     def func(self) -> Any:
         """What sympy builds from changed terms."""
         return sympy.Add
 
-    def __eq__(self, other: object) -> bool:
-        if type(other) is sympy.Add:
-            return bool(self._args == other._args)
-        return bool(super().__eq__(other))
+    def __eq__(self, other: object) -> Any:
+        return self._args == other._args if type(other) is sympy.Add else Basic.__eq__(self, other)
 
-    def __ne__(self, other: object) -> bool:
-        return not self == other
+    def __ne__(self, other: object) -> Any:
+        equal = self.__eq__(other)
+        return equal if equal is NotImplemented else not equal
 
     def __hash__(self) -> int:
         return Basic.__hash__(self)
@@ -134,7 +199,7 @@ def _written(total: Any) -> str | None:
     shown, seen = [], set()
     for term in total.args:
         coefficient, factors = term.as_coeff_Mul()
-        plain = []
+        plain: list[Any] = []
         for factor in sympy.Mul.make_args(factors):
             text = _polynomial_written(factor) if factor.is_Add else None
             if text is not None:

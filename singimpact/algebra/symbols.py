@@ -76,8 +76,7 @@ class SymbolRing:
         """A polynomial of the ring as a sympy expression."""
         import sympy
 
-        rational = _sympy_rational
-        terms = {key: rational(int(c.p), int(c.q)) for key, c in value.to_dict().items()}
+        terms = {key: sympy_rational(int(c.p), int(c.q)) for key, c in value.to_dict().items()}
         if self._monomials is not None:
             return self._monomials.summed(terms)
         letters = self.letters()
@@ -102,7 +101,8 @@ class SymbolRing:
 
 
 @lru_cache(maxsize=65_536)
-def _sympy_rational(above: int, below: int) -> Any:
+def sympy_rational(above: int, below: int) -> Any:
+    """A rational of sympy; the same few come again and again."""
     import sympy
 
     return sympy.Rational(above, below)
