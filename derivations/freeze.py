@@ -13,7 +13,8 @@ from singimpact.documents.formats import as_files
 from singimpact.documents.rendering import Marks
 from singimpact.documents.steps import Section, equations_of
 from singimpact.paper.claims.index import PLACE, reread, written_index
-from singimpact.paper.sections.derivations import marks_of, sections
+from singimpact.paper.sections.derivations import sections
+from singimpact.paper.sections.marks import marks_of
 from singimpact.store import folder, written
 
 HERE = Path(__file__).parent

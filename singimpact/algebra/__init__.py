@@ -3,7 +3,8 @@
 Not here: germs of maps (`germs`), source code from an expression (`codegen`), anything with an oscillator in it.
 Files, numbers: `numbers` (what a caller wrote, to any digits), `rings` (kinds of number: rationals, doubles, mpmath,
 sympy), `balls` (enclosures), `precision` (the
-one place that sets one), `certified` (a number with its radius), `symbols` (polynomials in symbols as numbers).
+one place that sets one), `certified` (a number with its radius), `symbols` (polynomials in symbols as numbers),
+`long_sums` (these as sympy objects).
 Trees: `expressions` (evaluated over a ring, so one tree serves all kinds of number), `parsing` (a user's text into a
 tree), `derivatives` (of a tree by a name), `taylor` (elementary functions at a point).
 Jets: `jets`, `polynomials` (what they are made of), `jet_maps` (inverses,

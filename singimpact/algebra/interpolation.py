@@ -1,24 +1,42 @@
-"""Polynomials whose coefficients are rational functions of one letter, from their values at whole numbers.
+"""Polynomials whose coefficients are rational functions of one letter, from their values at one large prime.
 
-The denominators are known beforehand, so a numerator is interpolated; its degree is not known, so nodes are added until
-the last divided differences vanish, and every coefficient must agree with two nodes more.
+The denominators are known beforehand.  A numerator with small whole coefficients is read from its value at a prime B:
+they are its digits to the base B.  A fraction among them is a large digit, from which Euclid's algorithm finds its
+denominator.  How large the coefficients are is not known, so B grows until every digit is far below it, and each
+coefficient must agree at two nodes more.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from math import lcm
 from typing import Any
 
 from singimpact.algebra.polynomials import Exponents
 
 Value = dict[Exponents, Any]
 
-BATCH = 6  # nodes added at a time
-CHECKS = 2  # nodes that are not used for the interpolation and must agree
-WEIGHTS = (1 << 61) - 1  # a prime: powers modulo it have no pattern
-MOST_NODES = 600  # more than order 12 takes; a wrong denominator would go on for ever
+
+@dataclass(frozen=True)
+class ReadingSettings:
+    """How coefficients are read.
+
+    Parameters
+    ----------
+    bases : primes; coefficients of gamma to sigma^8 have 66 bits. A wrong denominator would go on for ever.
+    spare : bits of a base that a digit leaves unused: a chance agreement has the probability 2^-spare.
+    nodes : numbers that are not used for reading, and at which every coefficient must agree.
+    """
+
+    bases: tuple[int, ...] = (
+        2**127 - 1, 2**192 - 237, 2**256 - 189, 2**384 - 317, 2**521 - 1, 2**1279 - 1, 2**2203 - 1,
+    )  # fmt: skip
+    spare: int = 24
+    nodes: tuple[int, ...] = (97, 1009)
+
+
+READING = ReadingSettings()
 
 
 @dataclass(frozen=True)
@@ -35,7 +53,7 @@ class RationalCoefficients:
 def interpolated(
     values_at: Callable[[int], Sequence[Value]], denominators: Sequence[Any]
 ) -> list[RationalCoefficients]:
-    """Polynomials in the letter from their values at 2, 3, 4, ...
+    """Polynomials in the letter from their values at a large whole number.
 
     Parameters
     ----------
@@ -54,90 +72,110 @@ def interpolated(
     >>> found[0].terms[(1,)]
     (x^2, x + 1)
     """
-    nodes: list[int] = []
-    seen: list[Sequence[Value]] = []
-    while len(nodes) < MOST_NODES:
-        for _ in range(BATCH):
-            nodes.append(2 + len(nodes))
-            seen.append(values_at(nodes[-1]))
-        columns = [[values[index] for values in seen] for index in range(len(denominators))]
-        sizes = _sizes(nodes, columns, denominators)
-        if sizes is not None:
-            made = zip(sizes, columns, denominators, strict=True)
-            found = [_one(nodes[:size], column[:size], below) for size, column, below in made]
-            if all(_agrees(one, nodes, column) for one, column in zip(found, columns, strict=True)):
+    import flint
+
+    checked: list[tuple[int, Sequence[Value]]] = []
+    for base in READING.bases:
+        rows = [
+            {key: value * below(flint.fmpq(base)) for key, value in values.items()}
+            for values, below in zip(values_at(base), denominators, strict=True)
+        ]
+        found: list[RationalCoefficients] | None = _read(rows, denominators, base)
+        if found is not None:
+            checked = checked or [(node, values_at(node)) for node in READING.nodes]
+            if all(_agrees(one, node, values[n]) for node, values in checked for n, one in enumerate(found)):
                 return found
     raise ArithmeticError("the denominators given are not those of the values")
 
 
-def _sizes(nodes: Sequence[int], columns: Sequence[Sequence[Value]], denominators: Sequence[Any]) -> list[int] | None:
-    """How many nodes each polynomial takes, or None when there are too few for one; the last takes the most."""
-    sizes: list[int] = []
-    for column, below in zip(reversed(columns), reversed(denominators), strict=True):
-        row = [sum(value * _weight(key) for key, value in values.items()) for values in column]
-        differences = _differences(nodes, _scaled(nodes, row, below))
-        if any(value != 0 for value in differences[-CHECKS:]):
+def _read(
+    rows: Sequence[Mapping[Exponents, Any]], denominators: Sequence[Any], base: int
+) -> list[RationalCoefficients] | None:
+    """The coefficients from the values of their numerators; None when the base is too small for one."""
+    import flint
+
+    below, found = 1, []
+    for row, denominator in zip(rows, denominators, strict=True):
+        terms = {}
+        for key in sorted(row):
+            read = _fractions(int(row[key].p), lcm(below, int(row[key].q)) // int(row[key].q), base)
+            if read is None:
+                return None
+            digits, factor = read
+            below = factor * int(row[key].q)
+            if digits:
+                terms[key] = in_lowest_terms(flint.fmpq_poly(digits, below), denominator)
+        found.append(RationalCoefficients(terms))
+    return found
+
+
+def _fractions(value: int, factor: int, base: int) -> tuple[list[int], int] | None:
+    """The digits of a multiple of a whole number, by a factor that makes all of them small; None without such a one."""
+    small = base >> READING.spare
+    while factor < small:
+        digits = _digits(value * factor, base)
+        large = next((digit for digit in digits if abs(digit) > small), None)
+        if large is None:
+            return digits, factor
+        more = _denominator(large, base)
+        if more == 1:
             return None
-        sizes.append(max((n for n, value in enumerate(differences) if value != 0), default=0) + 1)
-    return sizes[::-1]
+        factor *= more
+    return None
 
 
-def _agrees(found: RationalCoefficients, nodes: Sequence[int], values: Sequence[Value]) -> bool:
-    """Whether every monomial has its value at the last nodes, which the interpolation did not use."""
-    import flint
+def _digits(value: int, base: int) -> list[int]:
+    """The digits of a whole number, from the last one on, each of size at most base/2.
 
-    for node, value in zip(nodes[-CHECKS:], values[-CHECKS:], strict=True):
-        shown = found.at(flint.fmpq(node))
-        if any(shown.get(key, 0) != value.get(key, 0) for key in shown.keys() | value.keys()):
-            return False
-    return True
-
-
-@lru_cache(maxsize=4096)
-def _weight(key: Exponents) -> int:
-    """One combination of all monomials shows the highest degree, unless it cancels: weights without a pattern."""
-    powers = (pow(2 * place + 3, 40 * int(exponent) + 17, WEIGHTS) for place, exponent in enumerate(key) if exponent)
-    return 1 + sum(powers)
-
-
-def _scaled(nodes: Sequence[int], row: Sequence[Any], below: Any) -> list[Any]:
-    import flint
-
-    return [value * below(flint.fmpq(node)) for node, value in zip(nodes, row, strict=True)]
+    Examples
+    --------
+    >>> _digits(97, 10), _digits(-97, 10)
+    ([-3, 0, 1], [3, 0, -1])
+    """
+    digits = []
+    while value:
+        value, digit = divmod(value, base)
+        if 2 * digit > base:
+            value, digit = value + 1, digit - base
+        digits.append(digit)
+    return digits
 
 
-def _one(nodes: Sequence[int], values: Sequence[Value], below: Any) -> RationalCoefficients:
-    """One polynomial from the nodes that it takes."""
-    import flint
+def _denominator(residue: int, base: int) -> int:
+    """The denominator of the fraction with this residue whose terms have the smallest product: Euclid's longest step.
 
-    zero, found = flint.fmpq(0), {}
-    for key in sorted({key for value in values for key in value}):
-        row = _scaled(nodes, [value.get(key, zero) for value in values], below)
-        above = _newton(nodes, _differences(nodes, row))
-        common = above.gcd(below)
-        found[key] = _whole(above // common, below // common)
-    return RationalCoefficients(found)
+    Examples
+    --------
+    >>> _denominator(pow(35, -1, 2**127 - 1) * 22, 2**127 - 1)
+    35
+    """
+    above, below, longest, found = (base, residue % base), (0, 1), 0, 1
+    while above[1]:
+        step = above[0] // above[1]
+        if step > longest:
+            longest, found = step, abs(below[1])
+        above, below = (above[1], above[0] - step * above[1]), (below[1], below[0] - step * below[1])
+    return found
 
 
-def _whole(above: Any, below: Any) -> tuple[Any, Any]:
-    """The same quotient with a denominator whose coefficients are whole numbers without common factor."""
+def in_lowest_terms(above: Any, below: Any) -> tuple[Any, Any]:
+    """The same quotient without common factor; the coefficients of the denominator are whole and have none either.
+
+    Examples
+    --------
+    >>> import flint
+    >>> in_lowest_terms(flint.fmpq_poly([0, 2, 2]), flint.fmpq_poly([2, 4, 2]))
+    (x, x + 1)
+    """
+    common = above.gcd(below)
+    above, below = above // common, below // common
     factor = (below / below.leading_coefficient()).denom() / below.leading_coefficient()
     return above * factor, below * factor
 
 
-def _differences(nodes: Sequence[int], row: Sequence[Any]) -> list[Any]:
-    used = list(row)
-    for step in range(1, len(nodes)):
-        for place in range(len(nodes) - 1, step - 1, -1):
-            used[place] = (used[place] - used[place - 1]) / (nodes[place] - nodes[place - step])
-    return used
-
-
-def _newton(nodes: Sequence[int], differences: Sequence[Any]) -> Any:
-    """The polynomial of these divided differences."""
+def _agrees(found: RationalCoefficients, node: int, values: Value) -> bool:
+    """Whether every monomial has its value at a node that was not used for reading."""
     import flint
 
-    total = flint.fmpq_poly([differences[-1]])
-    for place in range(len(nodes) - 2, -1, -1):
-        total = total * flint.fmpq_poly([-nodes[place], 1]) + differences[place]
-    return total
+    shown = found.at(flint.fmpq(node))
+    return not any(shown.get(key, 0) != values.get(key, 0) for key in shown.keys() | values.keys())

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 from singimpact.algebra.polynomials import PackedPolynomials
+from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT
 
 
@@ -74,17 +76,33 @@ class SymbolRing:
         """A polynomial of the ring as a sympy expression."""
         import sympy
 
-        symbols = self.letters()
-        terms = []
-        for exponents, coefficient in value.to_dict().items():
-            term = sympy.Rational(int(coefficient.p), int(coefficient.q))
-            for symbol, exponent in zip(symbols, exponents, strict=True):
-                term *= symbol ** int(exponent)
-            terms.append(term)
-        return sympy.Add(*terms)
+        terms = {key: sympy_rational(int(c.p), int(c.q)) for key, c in value.to_dict().items()}
+        if self._monomials is not None:
+            return self._monomials.summed(terms)
+        letters = self.letters()
+        return sympy.Add(*(c * sympy.prod(s ** int(e) for s, e in zip(letters, key, strict=True))
+                           for key, c in terms.items()))  # fmt: skip
+
+    @kept_property
+    def _monomials(self) -> Any:
+        """The sums that need no sympy to put in order; None when a name stands for more than a symbol."""
+        import sympy
+
+        from singimpact.algebra.long_sums import Monomials
+
+        letters = self.letters()
+        return Monomials(letters) if all(type(letter) is sympy.Symbol for letter in letters) else None
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, SymbolRing) and self.names == other.names
 
     def __hash__(self) -> int:
         return hash(self.names)
+
+
+@lru_cache(maxsize=65_536)
+def sympy_rational(above: int, below: int) -> Any:
+    """A rational of sympy; the same few come again and again."""
+    import sympy
+
+    return sympy.Rational(above, below)

@@ -13,7 +13,10 @@ from singimpact.bench.measuring import Row
 
 @dataclass(frozen=True)
 class Exponent:
-    """microseconds ~ size^exponent, fitted over sizes `least` to `most`; `error` is the standard error."""
+    """microseconds ~ size^exponent, fitted over sizes `least` to `most`; `error` is the standard error.
+
+    `work` is the exponent of what there is to compute, e.g. of the number of terms: what explains the growth.
+    """
 
     case: str
     method: str
@@ -22,6 +25,7 @@ class Exponent:
     least: float
     most: float
     points: int
+    work: float
 
 
 def fitted(sizes: Sequence[float], times: Sequence[float]) -> tuple[float, float]:
@@ -49,10 +53,11 @@ def exponents(rows: Sequence[Row]) -> list[Exponent]:
     """An exponent for each method of each case that was measured at three sizes or more."""
     found = []
     for case, method in dict.fromkeys((row.case, row.method) for row in rows if row.size is not None):
-        line = [(row.size, row.microseconds) for row in rows
+        line = [(row.size, row.microseconds, row.work or row.size) for row in rows
                 if (row.case, row.method) == (case, method) and row.size is not None]  # fmt: skip
-        sizes = [size for size, _ in line]
+        sizes = [size for size, _, _ in line]
         if len(set(sizes)) >= 3:
-            slope, error = fitted(sizes, [spent for _, spent in line])
-            found.append(Exponent(case, method, slope, error, min(sizes), max(sizes), len(line)))
+            slope, error = fitted(sizes, [spent for _, spent, _ in line])
+            work, _ = fitted(sizes, [work for _, _, work in line])
+            found.append(Exponent(case, method, slope, error, min(sizes), max(sizes), len(line), work))
     return found

@@ -130,7 +130,7 @@ class Method:
     problems : by which the time of a run is divided; without it by its answers.
     first : the first round is what is asked: what is computed then is kept.
     draw : makes other problems for every timed call, outside the clock; `run` takes them. The first ones are judged.
-    aim : what is to be reached.
+    aim : what is to be reached. counts : the answer is how much work there was: terms of a series.
     """
 
     name: str
@@ -142,6 +142,7 @@ class Method:
     first: bool = False
     draw: Callable[[], Any] | None = None
     aim: Aim = NO_AIM
+    counts: bool = False
 
 
 @dataclass(frozen=True)
@@ -176,6 +177,7 @@ class Row:
         absent or off by more than a hundredth: another impact. of : problems.
     ratio, spread : time over that of the first method of the case, median and quartiles. rounds : timings.
     aim : what is to be reached. reached : whether it is, with no answer wrong; None without an aim.
+    work : what there was to compute, in units that the method counts; its size without such.
     """
 
     group: str
@@ -193,6 +195,7 @@ class Row:
     rounds: int
     aim: Aim
     reached: bool | None
+    work: float | None = None
 
 
 @dataclass
@@ -306,7 +309,8 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
     low, middle, high = np.quantile(ratios, [0.25, 0.5, 0.75]).tolist()
     microseconds = float(np.median(spent)) * 1e6
     return Row(group, case.name, method.name, method.setting, method.size, microseconds, error, wrong, missed, of,
-               middle, (low, high), rounds, method.aim, method.aim.reached(microseconds, middle, wrong))  # fmt: skip
+               middle, (low, high), rounds, method.aim, method.aim.reached(microseconds, middle, wrong),
+               float(answers[0]) if method.counts else method.size)  # fmt: skip
 
 
 def _least(method: Method) -> float:

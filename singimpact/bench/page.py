@@ -35,6 +35,7 @@ TITLES = {
     "emitted": "Emitted code",
     "figures": "Figures",
     "growth": "How cost grows",
+    "commands": "Series in symbols and commands",
     "start": "A new process",
 }
 

@@ -10,7 +10,7 @@ from singimpact.bench.measuring import Measured, Row
 
 HEADER = ("case", "method", "setting", "time", "to reach", "error", "wrong", "missed", "times the first",
           "quartiles")  # fmt: skip
-GROWTH = ("case", "method", "time grows with the power", "+-", "from", "to")
+GROWTH = ("case", "method", "time grows with the power", "+-", "the work with", "from", "to")
 Table = tuple[tuple[str, ...], list[list[str]]]
 
 NOTE = (
@@ -28,7 +28,8 @@ def tables(found: Measured) -> list[Table]:
     made: list[Table] = [(HEADER, [_cells(row) for row in found.rows])]
     fits = exponents(found.rows)
     if fits:
-        cells = [[fit.case, fit.method, f"{fit.exponent:.2f}", f"{fit.error:.2f}", f"{fit.least:g}", f"{fit.most:g}"]
+        cells = [[fit.case, fit.method, f"{fit.exponent:.2f}", f"{fit.error:.2f}", f"{fit.work:.2f}",
+                  f"{fit.least:g}", f"{fit.most:g}"]
                  for fit in fits]  # fmt: skip
         made.append((GROWTH, cells))
     return made

@@ -66,9 +66,10 @@ def command(
 
 def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
     from singimpact.documents.formats import as_text
-    from singimpact.paper.sections.derivations import marks_of, sections
+    from singimpact.paper.sections.cached import kept_sections
+    from singimpact.paper.sections.marks import marks_of
 
-    told = sections(names)
+    told = kept_sections(names)
     with ProgressLine() as line:
         done = iter(range(1, sys.maxsize))
         marks = marks_of(told, lambda claim, _, total: line.show(next(done), total, claim.id))

@@ -11,18 +11,18 @@ The level sets of K are the stable fibres.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from math import comb
 from typing import Any
 
-from singimpact.algebra.interpolation import RationalCoefficients, interpolated
+from singimpact.algebra.interpolation import RationalCoefficients, in_lowest_terms
 from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.algebra.polynomials import Exponents
-from singimpact.contact.contact import Contact
+from singimpact.contact.contact import Contact, derivative_name
 from singimpact.theory.sheet import Sheet, sheet
-from singimpact.theory.symbolic_curve import in_length, rho_names
+from singimpact.theory.symbolic_curve import in_length, length_weight, rho_names
 
 
 def foliation(
@@ -111,32 +111,121 @@ class SymbolicCompletion:
 
 @lru_cache(maxsize=8)
 def symbolic_completion(order: int) -> SymbolicCompletion:
-    """tau_inf - tau to v^order for generic jets: at whole r, interpolated over powers of 1 - r^n.
+    """tau_inf - tau to v^order for generic jets, one coefficient after the other.
+
+    The coefficient c_n of v^n is a function of the phase tau, so one launch at sigma = 0 fixes it:
+
+        sum_n c_n(tau) v_c(0, t)^n = t + sum_n c_n(tau + t) rho(xdot(0, t))^n.
 
     Examples
     --------
     >>> symbolic_completion(1).to_sympy(1)
     2/(a*(lambda - 1))
     """
-    rho = rho_names(0, order)
-    contact = Contact.generic(0, order, unit=True, more=rho)
-    ring, made = contact.ring, sheet(contact, order)
-    bent = {int(name[4:]): ring.symbol(name) for name in rho}
-
-    def values_at(node: int) -> list[Any]:
-        r = Fraction(node)
-        found = leaves(made, ring.rational(r), lambda n: ring.rational(1 / (1 - r**n)), bent)
-        return [found[(0, n)].to_dict() for n in range(1, order + 1)]
-
-    found = interpolated(values_at, [_denominator(n) for n in range(1, order + 1)])
-    return SymbolicCompletion(order, ring.names, dict(enumerate(found, 1)))
+    jets = _LaunchJets(order)
+    found: list[_Numerator] = []
+    for power in range(1, order + 1):
+        total = jets.one if power == 1 else jets.zero
+        for n, known in enumerate(found, 1):  # Horner: what stands for c_n is divided by the gaps up to n alone
+            total = total * jets.gap(n) if n > 1 else total
+            total = total + known.later(power) - known.value * jets.launch[n][power]
+        found.append(_Numerator(jets, power, total * (-2) ** power))  # v_c(0, t) = -t/2 + ... in units of a
+    coefficients = {n: jets.over_gaps(numerator.value, n) for n, numerator in enumerate(found, 1)}
+    return SymbolicCompletion(order, jets.names, coefficients)
 
 
-def _denominator(power: int) -> Any:
-    """A multiple of the denominator of the coefficient of v^power: roots of unity of order n count every n levels."""
-    import flint
+class _LaunchJets:
+    """The launch from sigma = 0: polynomials in the jets, in units of a = 1, and in lambda.
 
-    total = flint.fmpq_poly([1])
-    for n in range(1, power + 1):
-        total = total * flint.fmpq_poly(flint.fmpz_poly.cyclotomic(n)) ** (power // n)
-    return total
+    Attributes
+    ----------
+    names : of the jets. launch, rebound : n -> coefficients in t of the n-th power of either velocity.
+    """
+
+    def __init__(self, order: int) -> None:
+        rho = rho_names(0, order)
+        contact = Contact.generic(0, order, unit=True, more=(*rho, "lambda"))
+        self.ring, self.order = contact.ring, order
+        self.names = self.ring.names[:-1]
+        self.zero, self.one = (self.ring.rational(Fraction(n)) for n in (0, 1))
+        self.lambda_ = self.ring.symbol("lambda")
+        made = sheet(contact, order)
+        launch, impact = (self._in_t(jet) for jet in (made.v, made.xdot))
+        rebound, power = [-self.lambda_ * value for value in impact], impact
+        for name in rho:
+            power = self._product(power, impact)
+            rebound = [x + self.ring.symbol(name) * y for x, y in zip(rebound, power, strict=True)]
+        self.launch, self.rebound = self._powers_of(launch), self._powers_of(rebound)
+
+    def _in_t(self, jet: Jet) -> list[Any]:
+        start = jet.at("sigma", 0)
+        return [start.coefficient((0, k)) for k in range(self.order + 1)]
+
+    def _product(self, left: list[Any], right: list[Any]) -> list[Any]:
+        found = [self.zero] * (self.order + 1)
+        for i, value in enumerate(left):
+            for k in range(self.order + 1 - i if value else 0):
+                found[i + k] = found[i + k] + value * right[k]
+        return found
+
+    def _powers_of(self, line: list[Any]) -> dict[int, list[Any]]:
+        found = {1: line}
+        for n in range(2, self.order + 1):
+            found[n] = self._product(found[n - 1], line)
+        return found
+
+    def gap(self, n: int) -> Any:
+        """1 - lambda^n."""
+        return self.one - self.lambda_**n
+
+    def derivative(self, value: Any, power: int) -> Any:
+        """By the phase of a coefficient of v^power that was written for a = 1."""
+        moved, length = self.zero, value * -power
+        for name in self.names:
+            slope = value.derivative(name)
+            if not slope:
+                continue
+            length = length + slope * self.ring.symbol(name) * length_weight(name)
+            if name.startswith("a_d"):
+                moved = moved + slope * self.ring.symbol(derivative_name(int(name[3:]) + 1))
+        return moved + length * self.ring.symbol(derivative_name(1))
+
+    def over_gaps(self, value: Any, power: int) -> RationalCoefficients:
+        """A polynomial over (1 - lambda)(1 - lambda^2) ... (1 - lambda^power), by monomials of the jets."""
+        import flint
+
+        numerators: dict[Exponents, list[Any]] = {}
+        size = value.degrees()[-1] + 1
+        for key, coefficient in value.to_dict().items():
+            jets = key[:-1]
+            if jets not in numerators:
+                numerators[jets] = [0] * size
+            numerators[jets][key[-1]] = coefficient
+        below = flint.fmpq_poly([1])
+        for n in range(1, power + 1):
+            below *= flint.fmpq_poly([1] + [0] * (n - 1) + [-1])
+        return RationalCoefficients({
+            key: in_lowest_terms(flint.fmpq_poly(numerators[key]), below) for key in sorted(numerators)
+        })  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Numerator:
+    """c_power times (1 - lambda) ... (1 - lambda^power), and its derivatives by the phase over their factorials."""
+
+    jets: _LaunchJets
+    power: int
+    value: Any
+    derivatives: list[Any] = field(default_factory=list)
+
+    def later(self, power: int) -> Any:
+        """The coefficient of t^power in c(tau + t) times the power of the rebound velocity."""
+        known = self.derivatives
+        if not known:
+            known.append(self.value)
+        total = self.jets.zero
+        for k in range(power - self.power + 1):
+            if k == len(known):
+                known.append(self.jets.derivative(known[-1], self.power) / k)
+            total = total + known[k] * self.jets.rebound[self.power][power - k]
+        return total

@@ -8,11 +8,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from math import factorial
 from typing import Any
 
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.horner import Horner
+from singimpact.algebra.jets import Jet
 from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
@@ -97,7 +99,7 @@ def v_c(
     lettered = _lettered(model, tau, keep, j)
     if lettered is not None or model is None:
         _checked("order", order, 1, LIMITS.sheet)
-        return (generic_sheet(j, order) if lettered is None else sheet(lettered.contact(order), order)).v.to_sympy()
+        return _symbolic_v_c(j, order) if lettered is None else _long(sheet(lettered.contact(order), order).v)
     _checked("order", order, 1, LIMITS.sheet_numbers)
     where = place(model, j, tau)
     exact = exact_contact(where, order)
@@ -110,6 +112,18 @@ def v_c(
         lambda jet, digits: jet.to_sympy(lambda ball: sympy_digits(ball, digits)),
         lambda jet: jet.terms.values(),
     )
+
+
+@lru_cache(maxsize=32)
+def _symbolic_v_c(j: int, order: int) -> Any:
+    """v_c for symbols; sympy objects do not change, so one serves all who ask."""
+    return _long(generic_sheet(j, order).v)
+
+
+def _long(jet: Jet) -> Any:
+    from singimpact.algebra.long_sums import LongSum
+
+    return LongSum.of(jet.to_sympy())
 
 
 def v_c_on_arrays(
@@ -235,8 +249,7 @@ def chatter_limit(
     """
     lettered = _lettered(model, tau, keep, 0)
     if lettered is not None or model is None:
-        found = symbolic_completion(_checked("order", order, 1, LIMITS.completion))
-        return _with_letters("v", order, {n: found.to_sympy(n) for n in range(1, order + 1)}, lettered)
+        return _with_letters("v", order, _symbolic_chatter(_checked("order", order, 1, LIMITS.completion)), lettered)
     _checked("order", order, 1, LIMITS.completion_numbers)
     if tau is None:
         raise InputError("tau is needed: give the time at which the first flight starts")
@@ -252,6 +265,12 @@ def chatter_limit(
     except ArithmeticError:
         numbers = with_digits(lambda ring: _completed(where, order, ring), digits, all_digits)
     return PowerSeries("v", order, numbers, digits, further, enclosures=enclosures)
+
+
+@lru_cache(maxsize=16)
+def _symbolic_chatter(order: int) -> Mapping[int, Any]:
+    found = symbolic_completion(order)
+    return {n: found.to_sympy(n) for n in range(1, order + 1)}
 
 
 def _completed(where: Place, order: int, ring: Any) -> dict[int, Any]:
@@ -276,7 +295,7 @@ def _with_letters(
 ) -> PowerSeries:
     """A series in the generic symbols, or in the letters of a model."""
     if lettered is None:
-        return PowerSeries(variable, order, coefficients)
+        return PowerSeries(variable, order, dict(coefficients))  # a copy: whoever changes it changes no other
     put_in = lettered.put_in(order + lettered.j)
     return PowerSeries(variable, order, {n: put_in(value) for n, value in coefficients.items()})
 
@@ -288,10 +307,7 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
     lettered = _lettered(model, tau, keep, j)
     if lettered is not None or model is None:
         _checked("order", order, least, LIMITS.curve - (part == "motion") * j)
-        symbolic = symbolic_curve(j, top)
-        known, length = getattr(symbolic, part), int(part == "graph")
-        shown = {n: symbolic.to_sympy(value, length) for n, value in known.items()}
-        return _with_letters("sigma", order, shown, lettered)
+        return _with_letters("sigma", order, _symbolic_part(part, j, top), lettered)
     _checked("order", order, least, LIMITS.curve_numbers)
     where = ending_gamma(place(model, j, tau)) if j else place(model, j, tau)
     rough = getattr(curve_at(where, top + TRUST.further, DOUBLES), part)
@@ -307,6 +323,13 @@ def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: i
     if exact is not None:
         return PowerSeries("sigma", order, exact, digits, further, numbers, enclosures)
     return PowerSeries("sigma", order, numbers(), digits, further, enclosures=enclosures)
+
+
+@lru_cache(maxsize=32)
+def _symbolic_part(part: str, j: int, order: int) -> Mapping[int, Any]:
+    """The graph or the motion in lambda and the jets, from gamma to sigma^order."""
+    symbolic = symbolic_curve(j, order)
+    return {n: symbolic.to_sympy(value, int(part == "graph")) for n, value in getattr(symbolic, part).items()}
 
 
 def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[PowerSeries, PowerSeries]:

@@ -7,32 +7,57 @@ The denominators are known beforehand: powers of the divisors that the solver me
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import comb, factorial
 from typing import Any
 
 from singimpact.algebra.interpolation import RationalCoefficients, interpolated
+from singimpact.algebra.precision import kept_property
+from singimpact.algebra.symbols import sympy_rational
 from singimpact.contact.contact import Contact, derivative_name
-from singimpact.theory.invariant_curve import invariant_curve
+from singimpact.theory.invariant_curve import InvariantCurve, invariant_curve
 
 
-@dataclass(frozen=True)
 class SymbolicCurve:
-    """gamma (the fibre for j = 0) for all jets and all r at once.
+    """gamma (the fibre for j = 0) for all jets and all r at once, to sigma^order in v.
 
     Attributes
     ----------
     j : contact order. order : last power of sigma in v. names : symbols of the jets, without that of a_j.
-    graph : n -> coefficient of sigma^n in v. motion : the same for sigma + T(sigma).
     """
 
-    j: int
-    order: int
-    names: tuple[str, ...]
-    graph: Mapping[int, RationalCoefficients]
-    motion: Mapping[int, RationalCoefficients]
+    def __init__(self, j: int, order: int) -> None:
+        self.j, self.order = j, order
+        self._contact = Contact.generic(j, order, unit=True, more=rho_names(j, order))
+        self._rho = {int(name[4:]): self._contact.ring.symbol(name) for name in rho_names(j, order)}
+        self._solved: dict[int, InvariantCurve] = {}
+        self.names: tuple[str, ...] = self._contact.ring.names
+
+    @kept_property
+    def graph(self) -> Mapping[int, RationalCoefficients]:
+        """n -> coefficient of sigma^n in v."""
+        return self._read("graph", self.j + 1)
+
+    @kept_property
+    def motion(self) -> Mapping[int, RationalCoefficients]:
+        """n -> coefficient of sigma^n in sigma + T(sigma)."""
+        return self._read("motion", 1)
+
+    def _read(self, part: str, first: int) -> Mapping[int, RationalCoefficients]:
+        levels = range(self.order - self.j)
+
+        def values_at(node: int) -> list[Any]:
+            coefficients = getattr(self._at(node), part)
+            return [coefficients[first + n].to_dict() for n in levels]
+
+        found = interpolated(values_at, [_denominator(self.j, level) for level in levels])
+        return dict(enumerate(found, first))
+
+    def _at(self, node: int) -> InvariantCurve:
+        if node not in self._solved:
+            self._solved[node] = invariant_curve(self._contact, Fraction(node), self.order, self._rho)
+        return self._solved[node]
 
     def to_sympy(self, coefficient: RationalCoefficients, of_length: int) -> Any:
         """A coefficient as a sympy expression in lambda and the jets; `of_length` 1 in the graph, 0 in the motion."""
@@ -43,14 +68,23 @@ def in_length(coefficient: RationalCoefficients, names: tuple[str, ...], j: int,
     """A coefficient found with a_j = 1 as a sympy expression, for any a_j: it scales as a length to `of_length`."""
     import sympy
 
+    from singimpact.algebra.long_sums import Products
+
+    products, unit = Products(), sympy.Symbol(derivative_name(j))
     symbols, weights = [sympy.Symbol(name) for name in names], [length_weight(name) for name in names]
-    unit = sympy.Symbol(derivative_name(j)) / factorial(j)
-    total = []
+    total, known = [], {}
     for key, (above, below) in coefficient.terms.items():
+        content, factors = factored(above)
+        text = str(below)  # the same few denominators come again and again
+        if text not in known:
+            known[text] = factored(below)
+        under, divisors = known[text]
         power = of_length + sum(w * e for w, e in zip(weights, key, strict=True))
-        jets = sympy.prod(s**e for s, e in zip(symbols, key, strict=True))
-        total.append(factored(above) / factored(below) * jets * unit**power)
-    return sympy.Add(*total)
+        jets = [(symbol, int(e)) for symbol, e in zip(symbols, key, strict=True) if e]
+        jets += [(unit, power)] if power else []
+        bases = [*factors, *((base, -e) for base, e in divisors), *jets]
+        total.append(products.term(content / under / sympy.Integer(factorial(j)) ** power, bases))
+    return products.summed(total)
 
 
 def length_weight(name: str) -> int:
@@ -61,15 +95,31 @@ def length_weight(name: str) -> int:
     return int(digits) - 1 if head == "rho" else int(digits[0]) + int(digits[1]) - 1
 
 
-def factored(poly: Any) -> Any:
-    """An fmpq_poly in lambda as a sympy product of its factors."""
+def factored(poly: Any) -> tuple[Any, list[tuple[Any, int]]]:
+    """An fmpq_poly in lambda as a rational and powers of its factors, in sympy."""
     import sympy
 
-    lambda_ = sympy.Symbol("lambda")
     constant, factors = poly.factor()
-    content = sympy.Rational(int(constant.p), int(constant.q))
-    shown = [sympy.Add(*(int(c.p) * lambda_**n for n, c in enumerate(each.coeffs()))) ** e for each, e in factors]
-    return content * sympy.prod(shown)
+    single = len(factors) == 1 and factors[0][1] == 1
+    if single and any(factors[0][0].coeffs()[:-1]):  # as in sympy, a rational goes into a sum
+        return sympy.S.One, [(_in_lambda(tuple((int(c.p), int(c.q)) for c in poly.coeffs())), 1)]
+    shown = [(_in_lambda(tuple((int(c.p), 1) for c in each.coeffs())), int(e)) for each, e in factors]
+    return sympy_rational(int(constant.p), int(constant.q)), shown
+
+
+@lru_cache(maxsize=4096)
+def _in_lambda(coefficients: tuple[tuple[int, int], ...]) -> Any:
+    """The polynomial in lambda with these coefficients, as numerators and denominators."""
+    return _letter().summed({(n,): sympy_rational(*pair) for n, pair in enumerate(coefficients) if pair[0]})
+
+
+@lru_cache(maxsize=1)
+def _letter() -> Any:
+    import sympy
+
+    from singimpact.algebra.long_sums import Monomials
+
+    return Monomials([sympy.Symbol("lambda")])
 
 
 def rho_names(j: int, order: int) -> tuple[str, ...]:
@@ -121,15 +171,4 @@ def symbolic_curve(j: int, order: int) -> SymbolicCurve:
     >>> curve.to_sympy(curve.graph[2], 1)
     -a_d1*(lambda - 1)*(lambda + 2)/6
     """
-    contact = Contact.generic(j, order, unit=True, more=rho_names(j, order))
-    rho = {int(name[4:]): contact.ring.symbol(name) for name in rho_names(j, order)}
-    levels = range(order - j)
-
-    def values_at(node: int) -> list[Any]:
-        curve = invariant_curve(contact, Fraction(node), order, rho)
-        return [curve.graph[j + 1 + n].to_dict() for n in levels] + [curve.motion[1 + n].to_dict() for n in levels]
-
-    denominators = [_denominator(j, level) for level in levels]
-    found = interpolated(values_at, denominators * 2)
-    graph = {j + 1 + n: found[n] for n in levels}
-    return SymbolicCurve(j, order, contact.ring.names, graph, {1 + n: found[len(levels) + n] for n in levels})
+    return SymbolicCurve(j, order)

@@ -10,11 +10,12 @@ import pytest
 
 from singimpact.bench import page
 from singimpact.bench.drawn import KINDS, RESTITUTIONS, Draws, Fed
+from singimpact.bench.exponents import exponents, fitted
 from singimpact.bench.groups import GROUPS, impact_map, measured, regimes, series, usual
 from singimpact.bench.measuring import FULL, QUICK, Effort, measure
 
 SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)
-COSTLY = ("series", "figures", "start")
+COSTLY = ("series", "figures", "commands", "start")
 EVENTS = {"scipy DOP853, terminal event", "heyoka, terminal event"}
 PEERS = {
     "map": EVENTS,
@@ -27,6 +28,7 @@ PEERS = {
     "emitted": {"sympy lambdify", "sympy lambdify, cse", "sympy subs"},
     "figures": {"contour of a grid"},
     "growth": {"mpmath findroot", "scipy DOP853, 1e-9", "heyoka, 1e-9"},
+    "commands": set(),
     "start": EVENTS,
 }
 CUT = ("order", "tolerance")  # settings at which an answer is not meant to have all digits
@@ -43,8 +45,17 @@ def test_group_at_its_smallest_size(name):
     assert all(row.microseconds > 0 for row in found.rows)
     judged = [row for row in ours if row.wrong is not None and (name == "emitted" or not row.setting.startswith(CUT))]
     assert [row for row in judged if row.wrong] == []
-    assert judged or name in ("series", "growth", "start")
+    assert judged or name in ("series", "growth", "commands", "start")
     assert not found.skipped
+
+
+def test_growth_is_shown_beside_that_of_the_work():
+    found = measured("growth", SMALL)
+    fits = {(fit.case, fit.method): fit for fit in exponents(found.rows)}
+    assert {case.split()[0] for case, _ in fits} >= {"order", "digits", "states", "impacts", "pixels"}
+    terms = fits[("order of gamma and of chatter_limit, symbols for the jets", "singimpact, chatter_limit")]
+    assert terms.work == pytest.approx(fitted((4, 5, 6), (40, 106, 257))[0])
+    assert fits[("pixels of basins", "kernel")].work == pytest.approx(1)
 
 
 def test_duffing_too():
@@ -135,7 +146,7 @@ def test_command_writes_table_data_and_pictures(singimpact, tmp_path):
     )
     assert told.exit_code == 0, told.output
     data = json.loads((tmp_path / "b.json").read_text())
-    named = "group case method setting size microseconds error wrong missed of ratio spread rounds aim reached"
+    named = "group case method setting size microseconds error wrong missed of ratio spread rounds aim reached work"
     assert list(data["rows"][0]) == named.split()
     assert data["quick"] is True
     assert all(row["spread"][0] <= row["ratio"] <= row["spread"][1] for row in data["rows"])

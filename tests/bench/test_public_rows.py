@@ -12,8 +12,9 @@ import pytest
 
 import singimpact as si
 from singimpact.bench import fresh
-from singimpact.bench.groups import GROUPS, series, start
+from singimpact.bench.groups import GROUPS, commands, series, start
 from singimpact.bench.measuring import Case, Effort, Method, cpu_seconds
+from singimpact.cli.group import COMMANDS
 
 PACKAGE = str(Path(si.__file__).parent)
 BENCH = str(Path(PACKAGE) / "bench")
@@ -100,6 +101,14 @@ def _executed(text: str, before: str) -> tuple[list[str], list[str]]:
     space: dict[str, object] = {}
     exec(compile(before, "<before>", "exec"), space)
     return calls(lambda: exec(compile(text, "<row>", "exec"), space), text="<row>")
+
+
+def test_commands_and_series_in_new_processes_call_public_names_only():
+    for each in commands.SERIES:
+        public, private = _executed(each.made, commands.PUBLIC + each.before)
+        assert len(public) == 1
+        assert private == []
+    assert all(command.line.split()[0] in COMMANDS for command in commands.COMMANDS)
 
 
 def test_series_named_for_the_package_call_public_names_only():

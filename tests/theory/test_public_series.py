@@ -3,14 +3,19 @@
 import itertools
 from fractions import Fraction
 
+import flint
 import mpmath
 import pytest
 import sympy
 
 import singimpact as si
+from singimpact.contact.contact import Contact
 from singimpact.inputs import InputError
+from singimpact.theory.completion import leaves, symbolic_completion
 from singimpact.theory.contact_points import multiplier
 from singimpact.theory.invariant_curve import restitution_of
+from singimpact.theory.sheet import sheet
+from singimpact.theory.symbolic_curve import rho_names
 
 DUFFING = ("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 
@@ -212,3 +217,27 @@ def test_where_gamma_is_it_is_positive(at, g):
 def test_a_swan_is_no_tangency():
     with pytest.raises(InputError, match="contact order is above 1"):
         si.theory.gamma(at="tangency", model=si.linear(2, 1, "0.5"), tau=0)
+
+
+def test_a_series_in_symbols_that_was_made_is_given_again():
+    assert si.theory.v_c(5) is si.theory.v_c(5, at=0)
+    first = si.theory.gamma(5)
+    first.coefficients[2] = 0
+    again = si.theory.gamma(5)
+    assert again[2] != 0
+    assert again[3] is first[3]
+    assert si.theory.chatter_limit(4)[3] is si.theory.chatter_limit(4)[3]
+
+
+@pytest.mark.parametrize("r", [Fraction(1, 2), Fraction(4, 5)])
+def test_chatter_in_symbols_is_the_foliation_at_a_number(r):
+    """One recurrence in symbols, one by the level sets of tau_inf at a number, which share the sheet alone."""
+    order = 5
+    found = symbolic_completion(order)
+    contact = Contact.generic(0, order, unit=True, more=rho_names(0, order))
+    ring = contact.ring
+    rho = {int(name[4:]): ring.symbol(name) for name in rho_names(0, order)}
+    known = leaves(sheet(contact, order), ring.rational(r), lambda n: ring.rational(1 / (1 - r**n)), rho)
+    assert ring.names == found.names
+    for n in range(1, order + 1):
+        assert found.coefficients[n].at(flint.fmpq(r.numerator, r.denominator)) == known[(0, n)].to_dict()

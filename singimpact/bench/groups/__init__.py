@@ -1,7 +1,8 @@
 """The groups of `singimpact bench`: each a function from an effort to its cases, found when it is asked for.
 
 Files: `impact_map` (`bench map`), `orbit`, `regimes` (hard states), `chatter`, `threshold`, `fixed_points`, `series`,
-`emitted`, `figures`, `growth` (how cost grows), `start` (a new process, a new cache folder).
+`emitted`, `figures`, `growth` (how cost grows), `commands` (the command line and series in symbols), `start` (a new
+process, a new cache folder).
 A new group: a file with a function `cases`, and its name here.
 """
 
@@ -11,6 +12,7 @@ from collections.abc import Callable, Iterator
 
 from singimpact.bench.groups import (
     chatter,
+    commands,
     emitted,
     figures,
     fixed_points,
@@ -35,6 +37,7 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "emitted": emitted.cases,
     "figures": figures.cases,
     "growth": growth.cases,
+    "commands": commands.cases,
     "start": start.cases,
 }
 SLOW = ("start",)  # compiles in new cache folders, again and again

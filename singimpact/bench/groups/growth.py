@@ -1,6 +1,7 @@
-"""`bench growth`: how cost grows with the order, with digits, with the number of states and of impacts.
+"""`bench growth`: how cost grows with the order, with digits, with the number of states, of impacts and of pixels.
 
-Times alone, without a truth: each case ends in an exponent for each method.
+Times alone, without a truth: each case ends in an exponent for each method, beside that of the work: the terms of a
+series in symbols, else the size itself.
 """
 
 from __future__ import annotations
@@ -38,13 +39,19 @@ def cases(effort: Effort) -> Iterator[Case]:
     symbols = (6, 8, 10) if short else (6, 8, 10, 12, 14)
     theory.v_c(2, at="tangency")  # loads sympy, which `bench start` times
     yield _grown("order of v_c, symbols for the jets", "kernel", symbols, lambda n: sheet(Contact.generic(1, n), n),
-                 _first("singimpact", symbols[:4], lambda n: theory.v_c(n, at="tangency")))  # fmt: skip
+                 _first("singimpact", symbols[:4], lambda n: _terms([theory.v_c(n, at="tangency")])))  # fmt: skip
+    few = (4, 5, 6) if short else (4, 5, 6, 7, 8)
+    yield Case("order of gamma and of chatter_limit, symbols for the jets", [
+        *_first("singimpact, chatter_limit", few, lambda n: _terms(theory.chatter_limit(n).coefficients.values())),
+        *_first("singimpact, gamma", few, lambda n: _terms(theory.gamma(n).coefficients.values())),
+    ])  # fmt: skip
     numbers = (8, 12, 16) if short else (8, 12, 16, 24, 32)
     yield _grown("order of v_c, cubic model", "kernel", numbers, lambda n: sheet(_contact(n), n),
-                 _first("singimpact", numbers[:3], lambda n: theory.v_c(n, "tangency", DUFFING, 0)))  # fmt: skip
+                 _first("singimpact", numbers[:3],
+                        lambda n: _terms([theory.v_c(n, "tangency", DUFFING, 0)])))  # fmt: skip
     yield _grown("order of gamma, cubic model", "kernel", numbers,
                  lambda n: invariant_curve(_contact(n), Fraction(3, 5), n),
-                 _first("singimpact", numbers[:3], lambda n: theory.gamma(n, "tangency", DUFFING, 0)))  # fmt: skip
+                 _first("singimpact", numbers[:3], lambda n: len(theory.gamma(n, "tangency", DUFFING, 0))))  # fmt: skip
     digits = (100, 300, 1000) if short else (100, 300, 1000, 3000, 10_000)
     yield _grown("digits of fixed points", "singimpact, certified", digits, lambda n: tangency("1/2", n),
                  _line("mpmath findroot", digits[:4], _findroot))  # fmt: skip
@@ -56,6 +63,8 @@ def cases(effort: Effort) -> Iterator[Case]:
     yield _grown("states of an array", "singimpact", states, _flown_array,
                  _line("singimpact, in 1000 periods", states, partial(_flown_array, periods=1000)))  # fmt: skip
     yield _impacts(effort)
+    sides = (8, 16, 32) if short else (16, 32, 64, 128)
+    yield Case("pixels of basins", [Method("kernel", f"{n} x {n}", partial(_alone, _pixels, n), n * n) for n in sides])
     yield Case("impacts of a chatter", [_chatter(lost) for lost in (LOST[1:4] if short else LOST)])
 
 
@@ -69,8 +78,32 @@ def _line(name: str, sizes: Sequence[int], run: Callable[[int], Any]) -> list[Me
 
 
 def _first(name: str, sizes: Sequence[int], run: Callable[[int], Any]) -> list[Method]:
-    """The same, timed once: what a public function has computed it keeps."""
-    return [replace(method, first=True) for method in _line(name, sizes, run)]
+    """The same, timed once, for what a public function has computed it keeps; `run` gives the number of terms."""
+    return [Method(name, str(n), partial(_counted, run, n), n, first=True, counts=True) for n in sizes]
+
+
+def _counted(run: Callable[[int], Any], size: int) -> list[Any]:
+    return [run(size)]
+
+
+def _terms(parts: Any) -> int:
+    """Terms of sums of products, each with one sum at most."""
+    import sympy
+
+    factors = [sympy.Mul.make_args(term) for part in parts for term in sympy.Add.make_args(part)]
+    lambda_ = sympy.Symbol("lambda")  # polynomials in it are coefficients
+    return sum(max(len(factor.args) if factor.is_Add and not factor.has(lambda_) else 1 for factor in each)
+               for each in factors)  # fmt: skip
+
+
+def _pixels(side: int) -> None:
+    """In this process: a pool costs more than the smallest picture."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    from singimpact.dynamics.basins import basins
+
+    with ThreadPoolExecutor(1) as pool:
+        basins(LINEAR, size=side, executor=pool)
 
 
 def _alone(run: Callable[[int], Any], size: int) -> list[None]:

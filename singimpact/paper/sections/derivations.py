@@ -1,13 +1,13 @@
-"""The derivations by name, with the verdicts of what they show.
+"""The derivations by name.
 
 `SECTIONS` names them in the paper's order, `OTHER_NAMES` by number and by subject; `NOTATION` goes before them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 
-from singimpact.documents.steps import Mark, Section, claims_of
+from singimpact.documents.steps import Section
 from singimpact.inputs import unknown
 from singimpact.paper.sections import section2, section3, section4, section5, section6
 from singimpact.paper.sections.notation import NOTATION
@@ -42,16 +42,3 @@ def sections(names: Sequence[str] = ()) -> list[Section]:
         if name not in SECTIONS:
             raise unknown("section", given, [*SECTIONS, *OTHER_NAMES])
     return [NOTATION, *(build() for name, build in SECTIONS.items() if not wanted or name in wanted)]
-
-
-def marks_of(shown: Iterable[Section], on_start: Callable[..., None] | None = None) -> dict[str, Mark]:
-    """Claim id -> its mark, for every claim that sections show; a kept verdict is not computed again."""
-    ids = claims_of(shown)
-    if not ids:
-        return {}
-    from singimpact.paper.claims import run, select
-
-    return {
-        found.id: Mark(found.kind, found.effective, found.printed if found.corrected else "")
-        for found in run(select(ids), on_start=on_start, kept=True)
-    }

@@ -36,8 +36,8 @@ def no_jumps() -> Steps:
     """Neighbouring flight times on a grid with |sigma| <= 0.05 and v up to 4 |k| sigma^2 at its corner."""
     states, largest = 0, 0.0
     for _, model, tau, k in places():
-        sigma = np.linspace(-0.05, 0.05, 161)
-        v = np.linspace(0, 4 * abs(k) * 0.05**2, 161)[1:]
+        sigma = np.linspace(-0.05, 0.05, 81)
+        v = np.linspace(0, 4 * abs(k) * 0.05**2, 61)[1:]
         times = np.asarray(model.impact_map((tau + sigma)[:, None], v[None, :]).flight_time)
         states += times.size
         largest = max(largest, float(np.abs(np.diff(times, axis=0)).max()), float(np.abs(np.diff(times, axis=1)).max()))

@@ -11,9 +11,7 @@ import sympy
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float
-from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.solving import halved, secant
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.trials import true_orbits
@@ -29,11 +27,10 @@ def models() -> list[tuple[str, ImpactOscillator]]:
 
 def path(model: Any, tau: float, x: float, v: float, times: Any) -> Any:
     """(x, x-dot) of a free flight at increasing or decreasing times after tau, by DOP853; shape (2, len(times))."""
-    force, forcing = model.force(), model.forcing()
+    force, forcing = true_orbits.force_and_forcing(model)
 
     def field(time: float, state: Any) -> list[float]:
-        pull = evaluate(force, {"x": state[0], "xdot": state[1]}, DOUBLES)
-        return [state[1], float(evaluate(forcing, {"t": tau + time}, DOUBLES) - pull)]
+        return [state[1], float(forcing(tau + time) - force(state[0], state[1]))]
 
     steps = np.atleast_1d(np.asarray(times, dtype=float))
     found = solve_ivp(field, (0.0, steps[-1]), [x, v], method="DOP853", t_eval=steps, rtol=1e-13, atol=1e-14)
@@ -201,12 +198,23 @@ def jumps_are_grazes() -> Jumps:
     for _, model in models():
         for tau in np.linspace(0.2, 3.0, 12):
             lines += 1
-            v = np.linspace(0.05, 2.5, 1500)
-            times = np.asarray(model.impact_map(float(tau), v).flight_time)
-            for at in np.flatnonzero(np.abs(np.diff(times)) > 0.3):
+            for low, high in _jumps(model, float(tau)):
                 count += 1
-                worst = max(worst, _touch(model, float(tau), float(v[at]), float(v[at + 1])))
+                worst = max(worst, _touch(model, float(tau), low, high))
     return Jumps(count, lines, worst)
+
+
+def _jumps(model: Any, tau: float, coarse: int = 151, fine: int = 10, least: float = 0.3) -> list[tuple[float, float]]:
+    """Neighbours between which the flight time jumps, of coarse * fine velocities: looked for where it changes much."""
+    v = np.linspace(0.05, 2.5, coarse)
+    times = np.asarray(model.impact_map(tau, v).flight_time)
+    found = []
+    for at in np.flatnonzero(np.abs(np.diff(times)) > least):
+        between = np.linspace(v[at], v[at + 1], fine + 1)
+        times_between = np.asarray(model.impact_map(tau, between).flight_time)
+        places = np.flatnonzero(np.abs(np.diff(times_between)) > least)
+        found += [(float(between[place]), float(between[place + 1])) for place in places]
+    return found
 
 
 def _touch(model: Any, tau: float, low: float, high: float) -> float:
@@ -236,11 +244,14 @@ def _touching(model: Any, tau: float) -> float | None:
     """|x-dot| at (tau, c) of the flight from the last crossing before tau of the orbit that rests there."""
     at, c = flow(model), clearance(model)
     times = np.linspace(0.05, 6, 200)
-    sign = _crossings(path(model, tau, c, 0.0, -times)[0] - c)
+    flown = path(model, tau, c, 0.0, -times)
+    sign = _crossings(flown[0] - c)
     if not len(sign):
         return None
-    t = brentq(lambda u: float(at(tau, c, 0.0, -u)[0]) - c, times[sign[0]], times[sign[0] + 1], xtol=1e-13)
-    v = float(at(tau, c, 0.0, -t)[1])
+    (x, xdot), begun = flown[:, sign[0]], times[sign[0]]  # the rest of the way is one step of DOP853
+    t = brentq(lambda u: float(at(tau - begun, x, xdot, begun - u)[0]) - c if u > begun else x - c, begun,
+               times[sign[0] + 1], xtol=1e-13)  # fmt: skip
+    v = float(at(tau - begun, x, xdot, begun - t)[1])
     return abs(float(at(tau - t, c, v, t)[1]))
 
 

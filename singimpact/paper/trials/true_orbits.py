@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.expressions import function_of
 from singimpact.algebra.numbers import as_float, as_fraction
 from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.solving import halved
@@ -56,18 +56,19 @@ class WitnessTolerances:
 SETTINGS = WitnessTolerances()
 
 
+def force_and_forcing(model: Oscillator) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """f(x, x') and g(t) in doubles."""
+    return function_of(model.force(), ("x", "xdot"), DOUBLES), function_of(model.forcing(), ("t",), DOUBLES)
+
+
 def scipy_flow(model: Oscillator, origin: float) -> Flow:
     """The flow with launch times counted from `origin`, by DOP853 on z = x - c."""
     from scipy.integrate import solve_ivp
 
-    clearance, force, forcing = as_float(model.clearance), model.force(), model.forcing()
+    clearance, (force, forcing) = as_float(model.clearance), force_and_forcing(model)
 
     def field(s: float) -> Callable[[float, Any], list[float]]:
-        return lambda u, z: [
-            z[1],
-            float(evaluate(forcing, {"t": origin + (s + u)}, DOUBLES))
-            - float(evaluate(force, {"x": clearance + z[0], "xdot": z[1]}, DOUBLES)),
-        ]
+        return lambda u, z: [z[1], float(forcing(origin + (s + u))) - float(force(clearance + z[0], z[1]))]
 
     def flow(s: float, v: float, t: float) -> tuple[float, float]:
         place = max(SETTINGS.relative * abs(v * t), SETTINGS.noise * t * t)
@@ -132,12 +133,8 @@ def _chatter_sum(flow: Flow, acceleration_at: Callable[[float], float], s: float
 
 
 def _regular(model: Oscillator, tau: float) -> tuple[Flow, Callable[[float], float], float]:
-    tree = acceleration(model)
-    return (
-        scipy_flow(model, tau),
-        lambda s: float(evaluate(tree, {"t": tau + s}, DOUBLES)),
-        as_float(model.restitution),
-    )
+    at_rest = function_of(acceleration(model), ("t",), DOUBLES)
+    return scipy_flow(model, tau), lambda s: float(at_rest(tau + s)), as_float(model.restitution)
 
 
 @lru_cache(maxsize=1)

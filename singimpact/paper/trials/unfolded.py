@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
@@ -16,6 +17,7 @@ from singimpact.impact_oscillator import ImpactOscillator, universal
 from singimpact.paper.trials import true_orbits
 
 SEED = 20072
+NEAR = 0.01  # of the way to A or B: chatter that ends so soon ends before either
 
 
 def negative(r: str) -> ImpactOscillator:
@@ -106,13 +108,15 @@ def gamma_end(r: str, v: float = 0.0, narrow: float = 1e-12) -> float:
 
 def completes(r: str, sigma: float, v: float = 0.0) -> bool:
     """Whether chatter from (sigma, v) in the positive swan is complete before B."""
-    osc, tau = universal(1, r), sigma
+    osc, tau, rate = universal(1, r), sigma, float(Fraction(r))
     for _ in range(400):
         step = osc.impact_map(tau, v)
         tau, v = float(step.tau), float(step.v)
         if not np.isfinite(tau) or tau > 1:
             return False
-        if v < 1e-12:
+        # with the acceleration that presses here chatter ends after 2v/(|a|(1 - r)); over a hundredth of the way to A
+        # or B that acceleration changes by 2 %, and each impact still takes the velocity down
+        if v < NEAR * 6 * (1 - tau * tau) * (1 - abs(tau)) * (1 - rate):
             return True
     return False
 
@@ -230,17 +234,33 @@ def _outline(sigma: float) -> float:
     return flight * (6 * (sigma**2 - 1) + 4 * sigma * flight + flight**2)
 
 
-def _crossings(sigma: float, low: float, high: float, points: int = 1500) -> int:
-    """How often foot - X changes sign, without a jump, for v between two multiples of the outline's."""
-    v = _outline(sigma) * np.linspace(low, high, points)[1:-1]
-    feet = _feet(negative("1/2"), np.full_like(v, sigma), v)
-    off = feet - foot("1/2")
-    return int(np.count_nonzero((np.sign(off[1:]) != np.sign(off[:-1])) & (np.abs(np.diff(feet)) < 0.5)))
+def _crossings(sigma: float, low: float, high: float, coarse: int = 76, fine: int = 20) -> int:
+    """How often foot - X changes sign, without a jump, for v between two multiples of the outline's.
+
+    Looked for between neighbours of a coarse grid whose signs differ: a jump may stand beside a crossing.
+    """
+    count, unit = 0, _outline(sigma)
+    v = unit * np.linspace(low, high, coarse * fine)[1:-1]
+    places = [*range(0, len(v) - 1, fine), len(v) - 1]
+    off = _off(sigma, v[places])
+    for at in np.flatnonzero(np.sign(off[1:]) != np.sign(off[:-1])):
+        near = _off(sigma, v[places[at] : places[at + 1] + 1])
+        count += int(np.count_nonzero((np.sign(near[1:]) != np.sign(near[:-1])) & (np.abs(np.diff(near)) < 0.5)))
+    return count
+
+
+def _off(sigma: float, v: Any) -> Any:
+    """foot - X over one phase."""
+    return _feet(negative("1/2"), np.full_like(v, sigma), v) - foot("1/2")
 
 
 def _feet(osc: ImpactOscillator, tau: Any, v: Any) -> Any:
-    """Where chatter from arrays of states comes to rest, r = 1/2."""
+    """Where chatter from arrays of states comes to rest, r = 1/2; what is left at v < 1e-7 is 4v/|a|, to 1e-13."""
+    tau, v = np.array(tau), np.array(v)
     for _ in range(120):
-        step = osc.impact_map(tau, v)
-        tau, v = np.asarray(step.tau), np.asarray(step.v)
+        flying = np.flatnonzero(v > 1e-7)
+        if not flying.size:
+            break
+        step = osc.impact_map(tau[flying], v[flying])
+        tau[flying], v[flying] = step.tau, step.v
     return tau - 2 * v / (osc.acceleration(tau) * 0.5)

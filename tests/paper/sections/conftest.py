@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from singimpact.paper.sections.derivations import marks_of, sections
+from singimpact.paper.sections.derivations import sections
+from singimpact.paper.sections.marks import marks_of
 
 
 @pytest.fixture(scope="session")

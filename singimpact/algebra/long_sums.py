@@ -1,0 +1,253 @@
+"""Long sums of monomials as sympy objects, built and written without sympy's own passes over every term.
+
+sympy multiplies a term together factor by factor and sorts sums by comparing trees, which takes 0.3 ms a term; here the
+factors come sorted and the terms are sorted by keys that give sympy's order.  Loads sympy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import sympy
+from sympy.core.basic import Basic
+
+Exponents = tuple[int, ...]
+Key = tuple[Any, ...]
+
+MULTIPLE = 2  # sums sort symbols first, then powers, then products
+
+
+class Monomials:
+    """Sums of monomials in distinct symbols, equal to what sympy makes of them.
+
+    Examples
+    --------
+    >>> a, b = sympy.symbols("a b")
+    >>> made = Monomials([a, b]).summed({(1, 2): sympy.Rational(1, 2), (0, 1): sympy.Integer(3)})
+    >>> made, made == a * b**2 / 2 + 3 * b
+    (a*b**2/2 + 3*b, True)
+    """
+
+    def __init__(self, symbols: Sequence[Any]) -> None:
+        self._symbols = list(symbols)
+        places = sorted(range(len(symbols)), key=lambda n: symbols[n].name)
+        self._rank = {n: rank for rank, n in enumerate(places)}
+        self._factors: dict[tuple[int, int], tuple[Key, Any]] = {}
+
+    def summed(self, terms: Mapping[Exponents, Any]) -> Any:
+        """The sum of the terms: exponents, all >= 0 -> sympy rational, not 0."""
+        constant = [value for key, value in terms.items() if not any(key)]
+        made = [self._term(key, value) for key, value in terms.items() if any(key)]
+        if not made:
+            return constant[0] if constant else sympy.S.Zero
+        made.sort(key=lambda pair: pair[0])
+        parts = [*constant, *(term for _, term in made)]
+        return sympy.Add._from_args(parts, is_commutative=True)
+
+    def _factor(self, place: int, exponent: int) -> tuple[Key, Any]:
+        """A power of a symbol, with the key by which sympy sorts it among others."""
+        found = self._factors.get((place, exponent))
+        if found is None:
+            symbol = self._symbols[place]
+            power = symbol if exponent == 1 else sympy.Pow(symbol, exponent)
+            found = ((int(exponent > 1), self._rank[place], exponent), power)
+            self._factors[(place, exponent)] = found
+        return found
+
+    def _term(self, exponents: Exponents, value: Any) -> tuple[Key, Any]:
+        factors = sorted(self._factor(place, exponent) for place, exponent in enumerate(exponents) if exponent)
+        keys, args = [key for key, _ in factors], [factor for _, factor in factors]
+        if value is sympy.S.One:
+            if len(args) == 1:
+                return keys[0], args[0]
+        else:
+            keys, args = [_number_key(value), *keys], [value, *args]
+        return (MULTIPLE, len(args), keys), sympy.Mul._from_args(args, is_commutative=True)
+
+
+def _number_key(value: Any) -> Key:
+    """The key of a rational: sympy sorts by its classes first, and numbers before symbols."""
+    if value is sympy.S.Half:
+        return (-4,)
+    if value is sympy.S.NegativeOne:
+        return (-3,)
+    return (-2 if value.q == 1 else -1, value.p, value.q)
+
+
+CLASSES = {"Zero": 0, "One": 1, "Half": 2, "NegativeOne": 5, "Integer": 7, "Rational": 8, "Symbol": 13, "Pow": 15,
+           "Mul": 16, "Add": 17}  # fmt: skip
+"""Places of sympy's classes in the order of its arguments."""
+
+
+def order_key(expression: Any) -> Key:
+    """The key by which sympy sorts expressions of rationals, plain symbols, powers, products and sums.
+
+    Examples
+    --------
+    >>> x, y = sympy.symbols("x y")
+    >>> parts = [y**2 + x, y**3, x, 1 / (x + 1), sympy.Rational(2, 3)]
+    >>> tuple(sorted(parts, key=order_key)) == sympy.Mul(*parts).args
+    True
+    """
+    place = CLASSES[type(expression).__name__]
+    if place < CLASSES["Symbol"]:
+        return place, expression.p, expression.q
+    if place == CLASSES["Symbol"]:
+        return place, expression.name
+    return place, len(expression.args), *(order_key(part) for part in expression.args)
+
+
+class Products:
+    """Sums of products of a rational and of distinct bases to whole powers, equal to what sympy makes of them.
+
+    Examples
+    --------
+    >>> a, x = sympy.symbols("a x")
+    >>> made = Products()
+    >>> made.summed([made.term(sympy.Rational(2, 3), [(1 + x, -2), (a, 1)]), made.term(sympy.S.One, [(a, 2)])])
+    a**2 + 2*a/(3*(x + 1)**2)
+    """
+
+    def __init__(self) -> None:
+        self._powers: dict[tuple[Any, int], tuple[Key, Any]] = {}
+
+    def term(self, coefficient: Any, factors: Sequence[tuple[Any, int]]) -> tuple[Key, Any]:
+        """One product, with the key by which sympy sorts it; the coefficient is not 0."""
+        parts = sorted((self._power(base, exponent) for base, exponent in factors), key=lambda pair: pair[0])
+        if coefficient is not sympy.S.One:
+            parts.insert(0, (order_key(coefficient), coefficient))
+        if len(parts) == 1:
+            return parts[0]
+        if len(parts) == 2 and coefficient is not sympy.S.One and parts[1][1].is_Add:
+            found = coefficient * parts[1][1]  # a rational goes into a sum
+            return order_key(found), found
+        keys, args = zip(*parts, strict=True) if parts else ((), ())
+        return (CLASSES["Mul"], len(args), *keys), sympy.Mul._from_args(args, is_commutative=True)
+
+    def _power(self, base: Any, exponent: int) -> tuple[Key, Any]:
+        found = self._powers.get((base, exponent))
+        if found is None:
+            power = base**exponent
+            found = self._powers[(base, exponent)] = order_key(power), power
+        return found
+
+    def summed(self, terms: Sequence[tuple[Key, Any]]) -> Any:
+        """The sum of different terms."""
+        if any(term.is_Add or term.is_Number for _, term in terms):
+            return sympy.Add(*(term for _, term in terms))
+        found = sorted(terms, key=lambda pair: pair[0])
+        return sympy.Add._from_args([term for _, term in found], is_commutative=True)
+
+
+class LongSum(sympy.Add):
+    """A sum whose text is written in one pass, character by character the text that sympy gives, fifty times sooner.
+
+    It is equal to the plain sum of the same terms, hashes like it, and whatever is computed from it is plain.
+
+    Examples
+    --------
+    >>> x, y = sympy.symbols("x y")
+    >>> plain = x * y + y * (x**2 - x / 3)
+    >>> long = LongSum.of(plain)
+    >>> long == plain, plain == long, str(long) == str(plain), type(long + 1) is sympy.Add
+    (True, True, True, True)
+    """
+
+    __slots__ = ()
+
+    @classmethod
+    def of(cls, total: Any) -> Any:
+        """The same sum; what is no sum is returned as it is."""
+        made: Any = cls._from_args
+        return made(total.args, is_commutative=True) if type(total) is sympy.Add else total
+
+    @property
+    def func(self) -> Any:
+        """What sympy builds from changed terms."""
+        return sympy.Add
+
+    def __eq__(self, other: object) -> Any:
+        return self._args == other._args if type(other) is sympy.Add else Basic.__eq__(self, other)
+
+    def __ne__(self, other: object) -> Any:
+        equal = self.__eq__(other)
+        return equal if equal is NotImplemented else not equal
+
+    def __hash__(self) -> int:
+        return Basic.__hash__(self)
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        return sympy.Add._from_args, (self.args,)
+
+    def __str__(self) -> str:
+        text = _written(self)
+        return sympy.sstr(sympy.Add._from_args(self.args)) if text is None else text
+
+    __repr__ = __str__
+
+
+LongSum.__name__ = "Add"  # sympy sorts, hashes and prints an object by the name of its class
+
+
+MARK = chr(0x10FFFF)  # a name that begins with it sorts behind all others
+
+
+def _written(total: Any) -> str | None:
+    """The text of a sum of products of powers of symbols, each with at most one sum of such products; else None."""
+    texts: list[str] = []
+    shown, seen = [], set()
+    for term in total.args:
+        coefficient, factors = term.as_coeff_Mul()
+        plain: list[Any] = []
+        for factor in sympy.Mul.make_args(factors):
+            text = _polynomial_written(factor) if factor.is_Add else None
+            if text is not None:
+                plain.append(sympy.Symbol(f"{MARK}{len(texts)}{MARK}"))
+                texts.append(text)
+            elif _power_of(factor) is None:
+                return None
+            else:
+                plain.append(factor)
+        seen.add(tuple(factor for factor in plain if factor.is_Pow or not factor.name.startswith(MARK)))
+        shown.append(sympy.Mul(coefficient, *plain))
+    if len(seen) < len(total.args):  # sympy would order these terms by their sums
+        return None
+    frame = sympy.sstr(sympy.Add(*shown)).split(MARK)
+    return "".join(f"({texts[int(part)]})" if n % 2 else part for n, part in enumerate(frame))
+
+
+def _polynomial_written(total: Any) -> str | None:
+    """The text of a sum of rational multiples of monomials in symbols, highest powers of the first letter first."""
+    terms = []
+    for term in total.args:
+        coefficient, factors = term.as_coeff_Mul()
+        powers = [_power_of(factor) for factor in sympy.Mul.make_args(factors)]
+        if not coefficient.is_Rational or any(power is None for power in powers):
+            return None
+        terms.append((coefficient, dict(powers)))  # type: ignore[arg-type]
+    names = sorted({name for _, powers in terms for name in powers})
+    terms.sort(key=lambda pair: [-pair[1].get(name, 0) for name in names])
+    parts = [(int(c.p), int(c.q), _monomial_written(powers)) for c, powers in terms]
+    first = _term_written(*parts[0])
+    return ("-" if parts[0][0] < 0 else "") + first + "".join(
+        f" {'-' if part[0] < 0 else '+'} {_term_written(*part)}" for part in parts[1:]
+    )  # fmt: skip
+
+
+def _power_of(factor: Any) -> tuple[str, int] | None:
+    """The name and the exponent of a positive whole power of a symbol."""
+    if type(factor) is sympy.Symbol:
+        return factor.name, 1
+    if factor.is_Pow and type(factor.base) is sympy.Symbol and factor.exp.is_Integer and factor.exp > 0:
+        return factor.base.name, int(factor.exp)
+    return None
+
+
+def _monomial_written(powers: Mapping[str, int]) -> str:
+    return "*".join(name if powers[name] == 1 else f"{name}**{powers[name]}" for name in sorted(powers))
+
+
+def _term_written(above: int, below: int, monomial: str) -> str:
+    size = abs(above)
+    return (monomial if size == 1 else f"{size}*{monomial}") + ("" if below == 1 else f"/{below}")

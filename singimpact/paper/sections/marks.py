@@ -1,0 +1,20 @@
+"""The verdicts of what sections show, as marks beside their equations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from singimpact.documents.steps import Mark, Section, claims_of
+
+
+def marks_of(shown: Iterable[Section], on_start: Callable[..., None] | None = None) -> dict[str, Mark]:
+    """Claim id -> its mark, for every claim that sections show; a kept verdict is not computed again."""
+    ids = claims_of(shown)
+    if not ids:
+        return {}
+    from singimpact.paper.claims import run, select
+
+    return {
+        found.id: Mark(found.kind, found.effective, found.printed if found.corrected else "")
+        for found in run(select(ids), on_start=on_start, kept=True)
+    }
