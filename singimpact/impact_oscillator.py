@@ -13,7 +13,6 @@ from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
     from pathlib import Path as FilePath
 
     from singimpact.contact.points import TangencyPoints
@@ -307,7 +306,7 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     return threshold(osc, tau, digits=digits, impacts=impacts)
 
 
-def sweep(function: Any, cases: Any, executor: Executor | None = None, output: str | FilePath | None = None) -> Any:
+def sweep(function: Any, cases: Any, executor: Any = None, output: str | FilePath | None = None) -> Any:
     """function(case) for every case, on an executor, kept in a file: see `singimpact.cases.sweep`."""
     from singimpact.cases import sweep
 

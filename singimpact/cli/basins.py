@@ -38,7 +38,7 @@ def command(
     require_writable(output)
     keep = options.pop("keep")
     model = take_model(options)
-    from singimpact.cases import WorkerPool
+    from singimpact.case_pools import WorkerPool
     from singimpact.dynamics.basins import basins
     from singimpact.scenes.basins import draw_basins, draw_first_chatter
 

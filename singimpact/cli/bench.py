@@ -134,7 +134,7 @@ def _states(states: int, seed: int, workers: int | None, keep: str | None) -> tu
     from dataclasses import asdict
 
     from singimpact.bench.states import check
-    from singimpact.cases import WorkerPool
+    from singimpact.case_pools import WorkerPool
 
     with WorkerPool(workers) as pool:
         rows = check(states, seed, pool, keep)

@@ -36,7 +36,7 @@ def command(
     suffix_of(output)
     require_writable(output)
     model = take_model(options)
-    from singimpact.cases import WorkerPool
+    from singimpact.case_pools import WorkerPool
     from singimpact.dynamics.bifurcation import bifurcation
     from singimpact.scenes.basins import draw_bifurcation
 

@@ -37,7 +37,7 @@ def command(
     import numpy as np
 
     from singimpact.algebra.numbers import as_float, constant
-    from singimpact.cases import WorkerPool
+    from singimpact.case_pools import WorkerPool
     from singimpact.impact_oscillator import sweep
 
     oscillator = take_model(options)
