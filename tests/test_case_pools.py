@@ -51,6 +51,15 @@ PLAIN = {
         "print(si.sweep(operator.attrgetter('real'), [1, 3, C()]).tolist())",
         "[1, 3, 2]\n",
     ),
+    "basins": (
+        "import singimpact as si\nprint(si.basins(si.linear(2, '0.7', '0.5'), ((0, 3), (0, 1)), 8))",
+        "Basins(8 x 8 states: (inf, 1) chatter for ever 100 %)\n",
+    ),
+    "a bifurcation diagram": (
+        "import singimpact as si\n"
+        "print(si.bifurcation(si.linear(2, 0, '0.5'), 'clearance', (0.2, 0.3), 2, impacts=10, kept=2))",
+        "Bifurcation(over clearance: 2 values from 0.2 to 0.3, 2 events of each)\n",
+    ),
     "an output": (
         "import singimpact as si\ndef f(x):\n    return x * x\n"
         "print(si.sweep(f, range(3), output='kept.npz').tolist())",
@@ -132,7 +141,9 @@ GUARDS = {
     "for _ in range(1):\n    call()": False,
     "def main():\n    call()\nmain()": False,
     "import threading\nthread = threading.Thread(target=call)\nthread.start()\nthread.join()": False,
-    "import threading\nif __name__ == '__main__':\n    t = threading.Thread(target=call)\n    t.start()\n    t.join()": True,
+    "import threading\nif __name__ == '__main__':\n    t = threading.Thread(None, call)\n    t.start()\n    t.join()": (
+        True
+    ),
 }
 
 

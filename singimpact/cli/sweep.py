@@ -24,7 +24,7 @@ from singimpact.status import Status
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
 @click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Impacts flown.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
-@click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
+@click.option("--keep", metavar="FILE", help="Keep results there (.npz or .zarr) as they come, and resume from it.")
 @output_options
 def command(
     over: str, low: str, high: str, points: int, tau: str, v: str, impacts: int, workers: int | None,
