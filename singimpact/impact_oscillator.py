@@ -311,9 +311,7 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     return threshold(osc, tau, digits=digits, impacts=impacts)
 
 
-def basins(
-    osc: Oscillator, window: Any = None, size: int = 600, *, executor: Any = None, output: Any = None
-) -> Basins:
+def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: Any = None, output: Any = None) -> Basins:
     """What the orbits of a grid of launches do for ever: n impacts in k periods, chatter, rest, chaos.
 
     Parameters

@@ -35,6 +35,7 @@ TITLES = {
     "emitted": "Emitted code",
     "figures": "Figures",
     "growth": "How cost grows",
+    "sweep": "A sweep of many cases",
     "start": "A new process",
 }
 

@@ -1,7 +1,7 @@
 """The groups of `singimpact bench`: each a function from an effort to its cases, found when it is asked for.
 
 Files: `impact_map` (`bench map`), `orbit`, `regimes` (hard states), `chatter`, `threshold`, `fixed_points`, `series`,
-`emitted`, `figures`, `growth` (how cost grows), `start` (a new process, a new cache folder).
+`emitted`, `figures`, `growth` (how cost grows), `sweep` (many cases), `start` (a new process, a new cache folder).
 A new group: a file with a function `cases`, and its name here.
 """
 
@@ -20,6 +20,7 @@ from singimpact.bench.groups import (
     regimes,
     series,
     start,
+    sweep,
     threshold,
 )
 from singimpact.bench.measuring import Case, Effort, Measured, measure
@@ -35,6 +36,7 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "emitted": emitted.cases,
     "figures": figures.cases,
     "growth": growth.cases,
+    "sweep": sweep.cases,
     "start": start.cases,
 }
 SLOW = ("start",)  # compiles in new cache folders, again and again
