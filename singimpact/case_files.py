@@ -231,14 +231,23 @@ class ZarrStore(InMemory):
             raise InputError(told) from None
         self.shape, self.dtype = self.array.shape[1:], self.array.dtype
 
+    def _reopen(self) -> None:
+        """Go on with a store that was whole; its journal is there before it loses its name."""
+        inside = self.path / "journal"
+        inside.unlink(missing_ok=True)
+        journal = Journal(inside, self.key, self.path)
+        for start in sorted(self.records):
+            journal.append(self.records[start])
+        journal.close()
+        os.rename(self.path, self.part)
+        self.whole = False
+        list(self.journal.read())  # to its end, where the next record goes
+        self._open()
+
     def _begin(self, values: Array) -> None:
         """Make the store, or go on with one that was whole and is given more cases."""
         if self.whole:
-            os.rename(self.path, self.part)
-            self.whole = False
-            for start in sorted(self.records):
-                self.journal.append(self.records[start])
-            self._open()
+            self._reopen()
             return
         row = max(1, values.nbytes // max(1, len(values)))
         rows = max(1, min(FILES.rows, FILES.bytes // row))

@@ -315,6 +315,21 @@ def test_longer_cases_are_continued(name, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
+def test_a_store_that_is_continued_and_interrupted_again_loses_nothing(tmp_path):
+    require("kept.zarr")
+    output = tmp_path / "kept.zarr"
+    with ThreadPoolExecutor(1) as pool:
+        sweep(fails_late, range(5), pool, output)
+        CALLS.clear()
+        with pytest.raises(KeyboardInterrupt):
+            sweep(fails_late, range(40), pool, output)
+        assert [path.name for path in tmp_path.iterdir()] == ["kept.zarr.part"]
+        assert min(CALLS) == 5
+        CALLS[:] = [None] * 30
+        assert sweep(fails_late, range(40), pool, output)[:].tolist() == list(range(40))
+    assert min(CALLS[30:]) > 5
+
+
 @pytest.mark.parametrize("name", ["kept.npz", "kept.zarr"])
 def test_what_was_done_is_not_computed_again(name, tmp_path):
     require(name)

@@ -48,7 +48,7 @@ def command(
     values = np.linspace(first, last, points).tolist()
     ask = partial(last_state, oscillator.to_dict(), over, tau, v, impacts)
     with WorkerPool(workers) as pool:
-        found = sweep(ask, values, pool, keep)
+        found = np.array(sweep(ask, values, pool, keep))
     rows = [[value, *map(float, row[:2]), Status(int(row[2])).name] for value, row in zip(values, found, strict=True)]
     if as_json:
         told = [dict(zip((over, "tau", "v", "status"), row, strict=True)) for row in rows]

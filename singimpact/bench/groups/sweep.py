@@ -33,6 +33,7 @@ def cases(effort: Effort) -> Iterator[Case]:
 
 def _methods(count: int) -> tuple[list[Method], list[str]]:
     aim = AIM if count == MANY else Aim()  # of a few, the time of starting the processes is left
+
     def row(name: str, setting: str, run: Callable[[], Any], aim: Aim = Aim()) -> Method:  # noqa: B008
         return Method(name, setting, partial(_timed, run), problems=count, aim=aim)
 
