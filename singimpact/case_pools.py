@@ -29,6 +29,16 @@ THREADS = "executor=concurrent.futures.ThreadPoolExecutor()"
 
 
 @dataclass(frozen=True)
+class ChunkSettings:
+    """When a worker sends back what it has, before all cases of its chunk are done."""
+
+    bytes: int = 1 << 24  # of results: some chunks a worker are in the memory of the process that keeps them
+
+
+CHUNK = ChunkSettings()
+
+
+@dataclass(frozen=True)
 class ClusterSettings:
     """How often a cluster is asked for its size."""
 
@@ -40,12 +50,13 @@ _OURS: list[bool] = []  # holds an entry in a worker of `WorkerPool`
 
 
 def computed(function: Function, items: Sequence[Any], seconds: float) -> tuple[Array, float]:
-    """Results of the first items, as many as begin within the seconds, at least one; and the seconds spent.
+    """Results of the first items, and the seconds spent: as many as begin within the time and size of a chunk.
 
-    Where a case raises, the results of those before it are returned; the first case alone raises.
+    At least one.  Where a case raises, the results of those before it are returned; the first case alone raises.
     """
     start = time.monotonic()
     values: list[Any] = []
+    size = 0
     for item in items:
         try:
             values.append(function(item))
@@ -53,7 +64,8 @@ def computed(function: Function, items: Sequence[Any], seconds: float) -> tuple[
             if not values:
                 raise
             break
-        if time.monotonic() - start > seconds:
+        size += getattr(values[-1], "nbytes", 0)
+        if time.monotonic() - start > seconds or size > CHUNK.bytes:
             break
     return _stacked(function, values), time.monotonic() - start
 
@@ -224,7 +236,7 @@ def _usual(function: Function, items: Sequence[Any]) -> Place:
         return Here()
     of_script = b"__main__" in _packed(function, items, pickle.dumps)
     if of_script and not script_can_be_imported():
-        return Here('its function belongs to a script without `if __name__ == "__main__":`, or to no file')
+        return Here('the function belongs to a script without `if __name__ == "__main__":`, or to no file')
     return Processes(WorkerPool(script=of_script), own=True)
 
 

@@ -14,6 +14,7 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 
+import singimpact as si
 from singimpact import case_pools
 from singimpact.case_pools import Here, Place, WorkerPool, place_of, script_can_be_imported
 from singimpact.cases import sweep
@@ -326,3 +327,15 @@ def test_cases_that_look_like_tasks_of_the_cluster_are_cases(cluster):
 def test_a_case_that_ends_its_workers_ends_the_sweep_in_one_line(cluster):
     with pytest.raises(Unfinished, match="workers of the cluster were lost with case 0 = 3"):
         sweep(os._exit, [3], cluster)
+
+
+def test_basins_and_diagrams_on_a_cluster(cluster):
+    osc = si.linear(2, "0.7", "0.5")
+    assert np.array_equal(
+        si.basins(osc, ((0, 3), (0, 1)), 4, executor=cluster).codes, si.basins(osc, ((0, 3), (0, 1)), 4).codes
+    )
+    found, alone = (
+        si.bifurcation(osc, "clearance", ("0.2", "0.3"), 2, impacts=10, kept=2, executor=executor)
+        for executor in (cluster.get_executor(), None)
+    )
+    assert np.array_equal(found.events, alone.events, equal_nan=True)

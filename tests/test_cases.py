@@ -470,6 +470,26 @@ def test_chunks_end_after_a_time_and_not_after_a_count():
     assert max(sizes[-3:]) <= 5
 
 
+def test_memory_holds_a_few_chunks_of_large_results(tmp_path, monkeypatch):
+    """Of 160 MB, written to a store, no more than chunks of a megabyte are in memory."""
+    require("kept.zarr")
+    import tracemalloc
+
+    from singimpact import case_pools
+
+    monkeypatch.setattr(case_pools, "CHUNK", case_pools.ChunkSettings(bytes=1 << 20))
+    output = tmp_path / "kept.zarr"
+    with ThreadPoolExecutor(1) as pool:
+        sweep(partial(np.full, 10_000), (float(n) for n in range(10)), pool, output)  # imports are no results
+        tracemalloc.start()
+        found = sweep(partial(np.full, 10_000), (float(n) for n in range(2000)), pool, output)
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    assert found.shape == (2000, 10_000)
+    assert np.array_equal(found[:, 0], np.arange(2000.0))
+    assert peak < 30e6
+
+
 def test_types_of_results_are_kept(tmp_path):
     zarr = pytest.importorskip("zarr", reason="needs zarr, of the extra `cluster`")
     with ThreadPoolExecutor(1) as pool:
