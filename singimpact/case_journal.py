@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import zlib
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -77,7 +78,8 @@ class Journal:
     def close(self) -> None:
         """Let another process have it."""
         if self._stream is not None:
-            self._stream.close()
+            with suppress(OSError):  # of a full disk, which was told when the record was appended
+                self._stream.close()
             self._stream = None
 
     def _opened(self) -> BinaryIO:

@@ -1,4 +1,4 @@
-"""Where cases are computed: a pool of processes, threads, a cluster, or this process, each behind the same calls.
+"""Where cases are computed: a pool of processes, threads, a cluster, or this process, with one interface.
 
 Not here: which cases are computed, and what becomes of their results (`cases`).
 """
@@ -100,7 +100,7 @@ def named(function: Any) -> str:
 
 
 class Place:
-    """Threads, or any executor that needs no special care.
+    """Threads, or any other executor that takes functions as they are.
 
     Parameters
     ----------
@@ -363,7 +363,7 @@ class _WithoutScript(context.SpawnContext):
 
 
 def _begin() -> None:
-    """A worker ends when the process it works for is gone; an interruption from the terminal is that one's affair."""
+    """A worker ends when the process it works for is gone; Ctrl-C in the terminal is handled by that process."""
     import signal
     from multiprocessing.connection import wait
 

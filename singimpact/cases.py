@@ -1,8 +1,9 @@
 """`sweep`: a function of many cases on any executor, kept in chunks as they are done, resumed after an interruption.
 
 Cases are read as they are needed, so that they may come from a generator.  Not here: where they are computed
-(`case_pools`), where results go (`case_files`), what tells whether these are of the same cases (`case_keys`).  The file
-is not called `sweep`: a module of that name would take the place of `singimpact.sweep`, the function.
+(`case_pools`), where results are written (`case_files`), the key by which a file is recognised (`case_keys`).
+
+This file is not called `sweep`: importing a module of that name would replace the function `singimpact.sweep` by it.
 """
 
 from __future__ import annotations
@@ -35,16 +36,16 @@ class PoolSettings:
     """How cases are handed out."""
 
     seconds: float = 0.2  # of work in a chunk; it ends with the case that is then begun: what a killed worker loses
-    served: int = 32  # workers that this process can serve so often; more of them get longer chunks
+    served: int = 32  # workers that can be sent chunks that often; with more of them chunks are longer
     most: int = 8192  # cases in a chunk, which memory holds a few of for each worker
     ahead: int = 2  # chunks a worker: one that it computes, and one that waits
-    awake: float = 0.1  # seconds between two looks at the keyboard and the line of progress
+    awake: float = 0.1  # seconds between two updates of the progress line; Ctrl-C is handled meanwhile
     losses: int = 2  # of workers with a chunk among their work; its cases are then tried in a pool of one
     deaths: int = (
         2  # of a worker alone with one case; then the case is at fault. A worker killed from outside dies once
     )
     guilty: int = 16  # cases that end their process, after which the rest is not tried
-    patience: float = 10.0  # seconds of cases one after another in this process, after which the reason is told
+    patience: float = 10.0  # seconds after which a line says why cases are computed one after another in this process
 
 
 PORTIONS = PoolSettings()
@@ -242,7 +243,7 @@ class _Work:
         return bool(self.running)
 
     def _next(self) -> Future[Any]:
-        """The next future that has ended, in whatever order; in the meantime the keyboard is heard."""
+        """The next future that has ended, in any order; the wait is interrupted by Ctrl-C."""
         while True:
             try:
                 future = self.ended.get(timeout=PORTIONS.awake)

@@ -545,3 +545,20 @@ def test_cases_of_one_kind_have_the_key_of_cases_one_by_one():
         for item in items:
             digest.value(item, 0)
         assert cases_key(items) == digest.hash.hexdigest()
+
+
+def test_a_full_disk_ends_a_sweep_in_one_line(tmp_path, monkeypatch):
+    import errno
+    import io
+
+    class Full(io.BytesIO):
+        def flush(self):
+            if self.tell():
+                raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Journal, "_opened", lambda _: Full())
+    with (
+        ThreadPoolExecutor(1) as pool,
+        pytest.raises(InputError, match=r"cannot be written .No space left on device.: give a place"),
+    ):
+        sweep(abs, [1.0], pool, tmp_path / "kept.npz")
