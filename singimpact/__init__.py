@@ -13,14 +13,19 @@ if TYPE_CHECKING:
     from singimpact import theory as theory
     from singimpact.bench.selftest.run import selftest as selftest
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
+    from singimpact.impact_oscillator import basins as basins
+    from singimpact.impact_oscillator import bifurcation as bifurcation
     from singimpact.impact_oscillator import branch as branch
+    from singimpact.impact_oscillator import classify as classify
     from singimpact.impact_oscillator import event_curve as event_curve
+    from singimpact.impact_oscillator import grown_gamma as grown_gamma
     from singimpact.impact_oscillator import linear as linear
     from singimpact.impact_oscillator import read_model as read_model
     from singimpact.impact_oscillator import swan_points as swan_points
     from singimpact.impact_oscillator import sweep as sweep
     from singimpact.impact_oscillator import tangency_points as tangency_points
     from singimpact.impact_oscillator import threshold as threshold
+    from singimpact.impact_oscillator import transitions as transitions
     from singimpact.impact_oscillator import universal as universal
     from singimpact.paper.claims import Claims as _Claims
     from singimpact.paper.claims.verdicts import verify as verify
@@ -28,6 +33,8 @@ if TYPE_CHECKING:
     from singimpact.paper.sections.errata import errata as errata
     from singimpact.scenes import Scene as Scene
     from singimpact.scenes import plot as plot
+    from singimpact.scenes.explore import explore as explore
+    from singimpact.surface.impact_surface import ImpactSurface as ImpactSurface
     from singimpact.theory import fixed_points as fixed_points
 
     claims: _Claims
@@ -49,8 +56,15 @@ _HOMES = {
     "tangency_points": "singimpact.impact_oscillator",
     "swan_points": "singimpact.impact_oscillator",
     "sweep": "singimpact.impact_oscillator",
+    "basins": "singimpact.impact_oscillator",
+    "bifurcation": "singimpact.impact_oscillator",
+    "classify": "singimpact.impact_oscillator",
+    "grown_gamma": "singimpact.impact_oscillator",
+    "transitions": "singimpact.impact_oscillator",
     "threshold": "singimpact.impact_oscillator",
+    "ImpactSurface": "singimpact.surface.impact_surface",
     "plot": "singimpact.scenes",
+    "explore": "singimpact.scenes.explore",
     "Scene": "singimpact.scenes",
     "figure": "singimpact.paper.figures",
     "verify": "singimpact.paper.claims.verdicts",

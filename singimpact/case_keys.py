@@ -10,7 +10,7 @@ import functools
 import hashlib
 import sys
 import types
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -19,11 +19,33 @@ import numpy as np
 from singimpact.inputs import InputError, shown
 
 DEEPEST = 40  # containers and functions inside one another; a loop of references ends here too
+PLAIN = {int, float, str, bool}
 WAY_OUT = "leave output= out, or give a function of a module and cases of numbers, text, arrays or dataclasses"
 
 
-def key(function: Callable[[Any], Any], cases: Iterable[Any]) -> str:
-    """The digest of a function and its cases.
+def function_key(function: Callable[[Any], Any]) -> str:
+    """The digest of a function and of the version of the package.
+
+    Raises
+    ------
+    InputError : something in it has no lasting text, as an open file or a lock.
+
+    Examples
+    --------
+    >>> def times(n):
+    ...     return lambda x: n * x
+    >>> function_key(times(2)) == function_key(times(2)), function_key(times(2)) == function_key(times(3))
+    (True, False)
+    """
+    version = sys.modules[__name__.partition(".")[0]].__version__  # of the root, which is there before its rooms
+    digest = _Digest()
+    digest.add("version", version.encode())
+    digest.function(function, 0)
+    return digest.hash.hexdigest()
+
+
+def cases_key(cases: Sequence[Any]) -> str:
+    """The digest of consecutive cases.
 
     Raises
     ------
@@ -31,17 +53,17 @@ def key(function: Callable[[Any], Any], cases: Iterable[Any]) -> str:
 
     Examples
     --------
-    >>> def times(n):
-    ...     return lambda x: n * x
-    >>> key(times(2), [1.0]) == key(times(2), [1.0]), key(times(2), [1.0]) == key(times(3), [1.0])
+    >>> cases_key([1.0, 2.0]) == cases_key([1.0, 2.0]), cases_key([1, 2]) == cases_key([1.0, 2.0])
     (True, False)
     """
-    version = sys.modules[__name__.partition(".")[0]].__version__  # of the root, which is there before its rooms
     digest = _Digest()
-    digest.add("version", version.encode())
-    digest.function(function, 0)
-    for case in cases:
-        digest.value(case, 0)
+    kinds = set(map(type, cases))
+    if kinds <= PLAIN:  # the bytes that they give one by one, four times as fast
+        parts = [(type(case).__name__.encode(), repr(case).encode("utf-8", "surrogatepass")) for case in cases]
+        digest.hash.update(b"".join(b"%b %d %b" % (kind, len(text), text) for kind, text in parts))
+    else:
+        for case in cases:
+            digest.value(case, 0)
     return digest.hash.hexdigest()
 
 

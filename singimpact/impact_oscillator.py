@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, as_fraction, compare, constant, float_array
-from singimpact.inputs import InputError, refuse, whole
+from singimpact.inputs import InputError, refuse, unknown, whole
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
     from pathlib import Path as FilePath
 
     from singimpact.branches.branch import Branch
@@ -22,12 +21,17 @@ if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits
     from singimpact.contact.points import TangencyPoints
     from singimpact.contact.swans import SwanPoint
+    from singimpact.dynamics.basins import Basins
+    from singimpact.dynamics.bifurcation import Bifurcation
     from singimpact.dynamics.chatter import ChatterLimit
     from singimpact.dynamics.orbit import Orbit
     from singimpact.dynamics.threshold import Threshold
     from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.path import Path
     from singimpact.flights.results import Derivative, Flight, Step
+    from singimpact.surface.classification import Classification
+    from singimpact.surface.curve import Curve
+    from singimpact.surface.transitions import Transitions
 
 
 class ImpactOscillator(Oscillator):
@@ -344,8 +348,185 @@ def event_curve(
     return event_curve(event, over, between, points=points, step=step)
 
 
-def sweep(function: Any, cases: Any, executor: Executor | None = None, output: str | FilePath | None = None) -> Any:
-    """function(case) for every case, on an executor, kept in a file: see `singimpact.cases.sweep`."""
+def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: Any = None, output: Any = None) -> Basins:
+    """What the orbits of a grid of launches do for ever: n impacts in k periods, chatter, rest, chaos.
+
+    Parameters
+    ----------
+    osc : a model with a period. window : ((tau_low, tau_high), (v_low, v_high)); one period and (0, 2) without it.
+    size : states a side, from 2 to 10000. executor, output : as for `sweep`, where some rows of the grid are a case;
+        without an executor threads, as many as there are cores.
+
+    Returns
+    -------
+    Basins : `.codes`, shape (size, size), numbers of the classes in `.attractors`; `.classes` has their names and
+        shares, `.first_chatter_completes` is an array of bool. `si.plot` draws it, `.to_csv(file)` writes it.
+
+    Raises
+    ------
+    InputError : a model without a period, or a window or a size that is none.
+
+    Examples
+    --------
+    >>> basins(linear(2, "0.7", "0.5"), ((0, 3), (0, 1)), 8)
+    Basins(8 x 8 states: (inf, 1) chatter for ever 100 %)
+    """
+    from singimpact.dynamics.basins import basins
+
+    whole("size", size, 2, 10_000)
+    tau, v = (None, (0, 2)) if window is None else _two_ends(window, "((tau_low, tau_high), (v_low, v_high))")
+    return basins(osc, tau, v, size, executor, output)
+
+
+def bifurcation(
+    osc: Oscillator, over: str, between: Any, points: int = 300, *, start: Any = (0, "0.1"), impacts: int = 200,
+    kept: int = 60, **sweeping: Any,
+) -> Bifurcation:  # fmt: skip
+    """Where orbits settle as a number of the model moves: the last events of one orbit for each value.
+
+    Parameters
+    ----------
+    osc : a model with a period. over : "clearance", "restitution" or a parameter. between : its ends.
+    points : values, evenly spaced. start : the first state (tau, v) of each orbit. impacts : flown for each value.
+    kept : events of the end of an orbit that are returned. sweeping : `executor` and `output` of `sweep`.
+
+    Returns
+    -------
+    Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v and 1 where chatter has
+        ended; nan where an orbit had fewer. `si.plot` draws it, `.to_csv(file)` writes it.
+
+    Raises
+    ------
+    InputError : a model without a period, a number it does not have, ends that are none.
+
+    Examples
+    --------
+    >>> found = bifurcation(linear(2, 0, "0.5"), "clearance", ("0.2", "0.3"), 2, impacts=60, kept=4)
+    >>> found
+    Bifurcation(over clearance: 2 values from 0.2 to 0.3, 4 events of each)
+    >>> found.events[0, :, 1].round(6).tolist()
+    [1.066667, 1.066667, 1.066667, 1.066667]
+    """
+    from singimpact.dynamics.bifurcation import bifurcation
+
+    for name in sweeping:
+        if name not in ("executor", "output"):
+            raise unknown("argument of bifurcation", name, ["executor", "output", "start", "impacts", "kept"])
+    return bifurcation(osc, over, between, points, start, impacts, kept, **sweeping)
+
+
+def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classification:
+    """The singular points of p and phi on V_c': tangencies, swans, cusps, and the fold lines between them.
+
+    Parameters
+    ----------
+    osc : the model. window : ((tau_low, tau_high), (t_low, t_high)); without it one period of tau and as much on both
+        sides of t = 0, or what holds all zeros of a_c when g is a polynomial.
+    between : two clearances to look for swans between; all where they can be isolated, when it is not given.
+
+    Returns
+    -------
+    Classification : `.points`, `.folds`, `.swans`, and `.notes` on what was not decided.
+
+    Examples
+    --------
+    >>> classify(universal(-1, "0.5"))
+    Classification(cusp 4, tangency 2; fold lines 4; swans over the clearance 0)
+    """
+    from singimpact.surface.classification import classify
+
+    tau, t = (None, None) if window is None else _two_ends(window, "((tau_low, tau_high), (t_low, t_high))")
+    return classify(osc, tau, t, None if between is None else clearances(between))
+
+
+def transitions(osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None) -> Transitions:
+    """Where P changes its kind as a number of the model moves: swans, swallowtails, lips and beaks.
+
+    Parameters
+    ----------
+    osc : the model. over : "clearance" or a parameter. between : its ends. t : ends of the flight times; as for
+        `classify` when they are not given.
+
+    Returns
+    -------
+    Transitions : a tuple in order of the number, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` says whether it
+        is proved that no swan is missing, `.notes` why one may be.
+
+    Raises
+    ------
+    InputError : no number of the model, or ends that are no two numbers in rising order.
+
+    Examples
+    --------
+    >>> [(each.kind, each.value) for each in transitions(linear(2, 0, "0.5"), between=("0.9", "1.1"), t=(-1, 1))]
+    [('swan, negative', 1.0)]
+    """
+    from singimpact.surface.classification import default_window
+    from singimpact.surface.transitions import transitions
+
+    _require_model(osc)
+    return transitions(osc, over, between, default_window(osc)[1] if t is None else t)
+
+
+def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Curve]:
+    """gamma from its series at a tangency or swan point to the edge of a window of the plane of states.
+
+    Parameters
+    ----------
+    osc : the model. window : ((tau_low, tau_high), (v_low, v_high)); without it a period on both sides of tau = 0 (the
+        zeros of a_c with room about them, when g is a polynomial) and (0, 2).
+    tau : the point; without one the first that has an invariant curve.
+
+    Returns
+    -------
+    list of Curve : in (tau, v), in order of hit history, the first from (tau_*, 0) on. `si.plot` draws it.
+
+    Raises
+    ------
+    InputError : no such point, or a window that is none.
+
+    Examples
+    --------
+    >>> curve = grown_gamma(universal(1, "0.5"), ((-2, 1), (0, 20)), 1)[0]
+    >>> curve.points[0].tolist(), curve.points[-1].round(3).tolist()
+    ([1.0, 0.0], [-1.385, 0.0])
+    """
+    from singimpact.dynamics.invariant_arcs import grown_gamma
+    from singimpact.surface.classification import default_window
+    from singimpact.surface.curve import STATES, Window
+
+    _require_model(osc)
+    if not isinstance(window, Window):
+        low, high = default_window(osc)[0]
+        usual = ((low - high if osc.period is not None else low, high), (0, 2))
+        named = "((tau_low, tau_high), (v_low, v_high))"
+        tau_ends, v_ends = usual if window is None else _two_ends(window, named)
+        window = Window.read(tau_ends, v_ends, axes=STATES)
+    return grown_gamma(osc, window, tau)
+
+
+def _require_model(osc: Any) -> None:
+    if not isinstance(osc, Oscillator):
+        raise refuse("osc", osc, "an ImpactOscillator")
+
+
+def _two_ends(window: Any, accepted: str) -> tuple[Any, Any]:
+    """The ranges of both axes."""
+    ranges = (window.x, window.y) if hasattr(window, "x") and hasattr(window, "y") else window
+    if not isinstance(ranges, tuple | list) or len(ranges) != 2:
+        raise refuse("window", window, accepted)
+    return ranges[0], ranges[1]
+
+
+def sweep(function: Any, cases: Any, executor: Any = None, output: str | FilePath | None = None) -> Any:
+    """function(case) for every case, on an executor, kept in a file: see `singimpact.cases.sweep`.
+
+    Examples
+    --------
+    >>> import math
+    >>> sweep(math.sqrt, [1.0, 4.0]).tolist()
+    [1.0, 2.0]
+    """
     from singimpact.cases import sweep
 
     return sweep(function, cases, executor, output)

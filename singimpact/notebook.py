@@ -50,17 +50,18 @@ class CellLine:
         self._html: Any = HTML
         self._handle: Any = display(HTML(""), display_id=True)
 
-    def add_task(self, description: str, total: int) -> tuple[str, int]:
+    def add_task(self, description: str, total: int | None) -> tuple[str, int | None]:
         """What is counted."""
         return description, total
 
     def start(self) -> None:
         """Nothing to start: the line is there."""
 
-    def update(self, _: Any, completed: int, total: int, description: str) -> None:
+    def update(self, _: Any, completed: int, total: int | None, description: str) -> None:
         """Rewrite the line."""
-        bar = f'<progress value="{completed}" max="{total}"></progress>'
-        self._handle.update(self._html(f"{bar} {completed}/{total} {escape(description)}"))
+        bar = "" if total is None else f'<progress value="{completed}" max="{total}"></progress>'
+        told = completed if total is None else f"{completed}/{total}"
+        self._handle.update(self._html(f"{bar} {told} {escape(description)}"))
 
     def stop(self) -> None:
         """The line goes when the work ends."""

@@ -53,8 +53,8 @@ class ProgressLine:
         if self._bar is not None:
             self._bar.stop()
 
-    def show(self, done: int, total: int, text: str) -> None:
-        """Say what is being done now."""
+    def show(self, done: int, total: int | None, text: str) -> None:
+        """Say what is being done now; total is None where nobody knows it."""
         if not self._watched or (self._bar is None and time.monotonic() < self._after):
             return
         if self._bar is None:

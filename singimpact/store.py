@@ -6,10 +6,11 @@ import os
 import stat
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from singimpact.inputs import InputError, shown
 
@@ -47,6 +48,26 @@ def write_text(path: str | Path, text: str) -> None:
     """Put a text under a name, whole or not at all."""
     with written(path) as draft:
         draft.write_text(text, encoding="utf-8", newline="\n")
+
+
+def write_table(path: str | Path, columns: Mapping[str, Iterable[Any]]) -> None:
+    """Put columns of equal length into a file of comma-separated values, under a line with their names.
+
+    Examples
+    --------
+    >>> place = Path(tempfile.mkdtemp()) / "a.csv"
+    >>> write_table(place, {"tau": [0.5, 1.0], "kind": ["impact", "graze"]})
+    >>> print(place.read_text(), end="")
+    tau,kind
+    0.5,impact
+    1.0,graze
+    """
+    import csv
+
+    with written(path) as draft, draft.open("w", encoding="utf-8", newline="") as stream:
+        lines = csv.writer(stream, lineterminator="\n")
+        lines.writerow(columns)
+        lines.writerows(zip(*columns.values(), strict=True))
 
 
 def require_writable(path: str | Path) -> None:

@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from multiprocessing import get_context
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from singimpact.case_keys import key
-from singimpact.cases import sweep
+from singimpact import cases
+from singimpact.case_files import InMemory, NpzFile
+from singimpact.case_journal import Journal, Record
+from singimpact.case_keys import cases_key, function_key
+from singimpact.case_pools import Place, computed
+from singimpact.cases import PORTIONS, _Source, _Work, sweep
 from singimpact.impact_oscillator import linear
 from singimpact.inputs import InputError, Unfinished
+from singimpact.progress import ProgressLine
 
 CALLS = []
 
@@ -73,18 +83,6 @@ def test_models_that_differ_in_numbers_compile_once():
     for omega in np.linspace(1, 3, 7):
         linear(float(omega), 0.2, 0.7, damping=0.01).impact_map(0.2, 0.3)
     assert machine_of.cache_info().misses == before
-
-
-def test_dask_cluster(tmp_path):
-    distributed = pytest.importorskip("distributed")
-    with (
-        distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None, local_directory=str(tmp_path)
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        found = sweep(landing, CASES, client.get_executor())
-    assert np.array_equal(found, [landing(case) for case in CASES])
 
 
 def dies_once(place, case):
@@ -233,6 +231,11 @@ def test_what_has_no_key_is_refused_with_the_way_out(tmp_path):
         assert sweep(lambda x: (lock, x)[1], [1.0], pool).tolist() == [1.0]
 
 
+def archive(path, key, chunks, result):
+    """A file of results with one chunk of cases."""
+    np.savez(path, key=key, chunks=chunks, result=result, cases=np.array([cases_key([1.0])]))
+
+
 def plain_array():
     import io
 
@@ -244,117 +247,318 @@ def plain_array():
 @pytest.mark.parametrize(
     "made",
     [lambda path, _: path.write_bytes(plain_array()),
-     lambda path, key: np.savez(path, key=key, index=np.array(3), result=np.arange(1)),
-     lambda path, key: np.savez(path, key=key, index=np.array([0]), result=np.array(3)),
-     lambda path, key: np.savez(path, key=key, index=np.zeros((1, 2), int), result=np.arange(1)),
-     lambda path, key: np.savez(path, key=key, index=np.array([0]), result=np.array(["a"])),
-     lambda path, key: np.savez(path, key=key, index=np.array([0, 1]), result=np.arange(3))],
+     lambda path, key: np.savez(path, key=key, index=np.arange(1), result=np.arange(1)),
+     lambda path, key: archive(path, key, np.array([0, 1]), np.arange(1)),
+     lambda path, key: archive(path, key, np.array([[0, 1]]), np.array(3)),
+     lambda path, key: archive(path, key, np.array([[0, 0]]), np.zeros(0)),
+     lambda path, key: archive(path, key, np.array([[0, 1]]), np.array(["a"])),
+     lambda path, key: archive(path, key, np.array([[0, 2]]), np.arange(3))],
 )  # fmt: skip
 def test_files_of_another_make_are_refused(made, tmp_path):
     output = tmp_path / "kept.npz"
-    made(output, np.array(key(abs, [1.0, 2.0])))
+    made(output, np.array(function_key(abs)))
     with ThreadPoolExecutor(1) as pool, pytest.raises(InputError, match="is not a file of results"):
         sweep(abs, [1.0, 2.0], pool, output)
 
 
-class Deaths:
-    """Stands for pools: a portion that holds a bad case loses its worker, so many times."""
-
-    def __init__(self, times):
-        self.left = dict(times)
-
-    def __call__(self, function, items, part, _pool, kept, _line):
-        from concurrent.futures import BrokenExecutor
-
-        for index in part:
-            if self.left.get(index, 0):
-                self.left[index] -= 1
-                raise BrokenExecutor
-            kept.results[index] = function(items[index])
-
-
 @pytest.mark.parametrize(("bad", "guilty"), [({3: 99}, [3]), ({3: 1}, []), ({0: 99, 1: 99}, [0, 1]), ({4: 99}, [4])])
 @pytest.mark.parametrize("count", [2, 5, 7])
-def test_the_case_that_kills_its_worker_is_found_and_no_other(bad, guilty, count, monkeypatch):
-    from contextlib import nullcontext
-    from types import SimpleNamespace
+def test_the_case_that_kills_its_worker_is_found_and_no_other(bad, guilty, count):
+    """Stands for pools: a chunk that holds a bad case loses its worker, so many times."""
+    left = dict(bad)
 
-    from singimpact import cases
+    class Pool(Place):
+        replaceable = True
 
-    monkeypatch.setattr(cases, "_run", Deaths(bad))
-    monkeypatch.setattr(cases, "_executor", lambda *_: nullcontext())
-    kept = SimpleNamespace(results={})
-    found = cases._one_by_one(abs, list(range(count)), list(range(count)), kept, None)
-    assert sorted(found) == [index for index in guilty if index < count]
-    assert sorted(kept.results) == [index for index in range(count) if index not in found]
+        def __init__(self):
+            pass
+
+        width = 2
+
+        def submit(self, function, items, seconds):
+            done = Future()
+            for item in items:
+                if left.get(item, 0):
+                    left[item] -= 1
+                    done.set_exception(BrokenExecutor())
+                    return done
+            done.set_result(computed(function, items, seconds))
+            return done
+
+    store = InMemory()
+    work = _Work(abs, _Source(range(count), store), store, ProgressLine(), count, size=count)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cases, "place_of", lambda *_: Pool())
+        work.run(None)
+    assert sorted(number for number, _ in work.guilty) == [index for index in guilty if index < count]
+    assert store.done == count - len(work.guilty)
 
 
-def test_of_a_worker_that_is_killed_once_no_case_is_guilty(monkeypatch):
-    from contextlib import nullcontext
-    from types import SimpleNamespace
-
-    from singimpact import cases
-
-    monkeypatch.setattr(cases, "_run", Deaths({0: 1}))
-    monkeypatch.setattr(cases, "_executor", lambda *_: nullcontext())
-    assert cases._one_by_one(abs, [5], [0], SimpleNamespace(results={}), None) == []
-
-
-def test_results_beyond_the_cases_are_left_out(tmp_path):
+def test_fewer_cases_than_results_are_refused(tmp_path):
     output = tmp_path / "kept.npz"
-    np.savez(output, key=np.array(key(abs, [1.0])), index=np.array([0, 7]), result=np.array([5.0, 6.0]))
     with ThreadPoolExecutor(1) as pool:
-        assert sweep(abs, [1.0], pool, output).tolist() == [5.0]
-    assert cases_kept(output) == {0: 5.0}
+        sweep(abs, [1.0, 2.0], pool, output)
+        with pytest.raises(InputError, match="other cases"):
+            sweep(abs, [1.0], pool, output)
 
 
-def cases_kept(path):
-    from singimpact.cases import _Kept
-
-    return _Kept(path, key(abs, [1.0]), 1).results
-
-
-@pytest.mark.parametrize("count", [400, 1600])
-def test_a_file_is_written_as_often_as_its_results_grow_by_a_quarter(count, tmp_path, monkeypatch):
-    """Portions of one case: all writes together put down a few times the results, not half their square."""
-    from singimpact import cases
-
-    rows = []
-    true = np.savez
-    monkeypatch.setattr(cases, "PORTIONS", cases.PoolSettings(each=count))
-    monkeypatch.setattr(cases, "KEEPING", cases.KeepingSettings(share=0.0))
-    monkeypatch.setattr(np, "savez", lambda stream, **parts: (rows.append(len(parts["index"])), true(stream, **parts)))
+@pytest.mark.parametrize("name", ["kept.npz", "kept.zarr"])
+def test_longer_cases_are_continued(name, tmp_path):
+    require(name)
+    output = tmp_path / name
     with ThreadPoolExecutor(1) as pool:
-        sweep(abs, range(count), pool, tmp_path / "kept.npz")
-    assert rows[0] == 1
-    assert rows[-1] == count
-    assert sum(rows) < 6 * count
+        sweep(fails_late, range(5), pool, output)
+        CALLS.clear()
+        found = sweep(fails_late, (n for n in range(12)), pool, output)
+    assert found[:].tolist() == list(range(12))
+    assert sorted(CALLS) == list(range(5, 12))
+    assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
-def test_slow_cases_are_written_as_they_come(tmp_path):
+def test_a_store_that_is_continued_and_interrupted_again_loses_nothing(tmp_path):
+    require("kept.zarr")
+    output = tmp_path / "kept.zarr"
+    with ThreadPoolExecutor(1) as pool:
+        sweep(fails_late, range(5), pool, output)
+        CALLS.clear()
+        with pytest.raises(KeyboardInterrupt):
+            sweep(fails_late, range(40), pool, output)
+        assert [path.name for path in tmp_path.iterdir()] == ["kept.zarr.part"]
+        assert min(CALLS) == 5
+        CALLS[:] = [None] * 30
+        assert sweep(fails_late, range(40), pool, output)[:].tolist() == list(range(40))
+    assert min(CALLS[30:]) > 5
+
+
+@pytest.mark.parametrize("name", ["kept.npz", "kept.zarr"])
+def test_what_was_done_is_not_computed_again(name, tmp_path):
+    require(name)
+    output = tmp_path / name
+    with ThreadPoolExecutor(2) as pool:
+        first = sweep(landing, CASES, pool, output)
+        CALLS.clear()
+        again = sweep(landing, CASES, pool, output)
+    assert CALLS == []
+    assert np.array_equal(first[:], again[:])
+    assert np.array_equal(again[:], [landing(case) for case in CASES])
+
+
+def require(name):
+    if name.endswith(".zarr"):
+        pytest.importorskip("zarr", reason="needs zarr, of the extra `cluster`")
+
+
+KILLED = """
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from test_cases import slow
+from singimpact.cases import sweep
+with ThreadPoolExecutor(2) as pool:
+    sweep(partial(slow, Path(sys.argv[2])), (n for n in range(300)), pool, sys.argv[3])
+"""
+
+
+def slow(log, case):
     import time
 
-    output, seen = tmp_path / "kept.npz", []
-
-    def slow(case):
-        if output.exists():
-            with np.load(output) as kept:
-                seen.append(len(kept["index"]))
-        time.sleep(0.1)
-        return case
-
-    with ThreadPoolExecutor(1) as pool:
-        sweep(slow, range(12), pool, output)
-    assert max(seen) >= 9
+    time.sleep(0.01)
+    with log.open("a") as stream:
+        stream.write(f"{case}\n")
+    return [case, 0.5 * case]
 
 
-def test_an_error_writes_what_there_is(tmp_path, monkeypatch):
-    from singimpact import cases
+@pytest.mark.parametrize("name", ["kept.npz", "kept.zarr"])
+def test_a_sweep_that_is_killed_goes_on_where_it_was(name, tmp_path):
+    """Nothing that was kept is lost or computed again; beyond that at most a chunk a worker is."""
+    require(name)
+    log, output = tmp_path / "log", tmp_path / name
+    log.touch()
+    child = subprocess.Popen([sys.executable, "-c", KILLED, Path(__file__).parent, log, output])
+    while len(log.read_text().split()) < 120:
+        assert child.poll() is None
+        time.sleep(0.01)
+    child.send_signal(signal.SIGKILL)
+    child.wait()
+    assert not output.exists()
+    before = set(map(int, log.read_text().split()))
+    place = tmp_path / f"{name}.part"
+    journal = Journal(place / "journal" if place.is_dir() else place, function_key(partial(slow, log)), output)
+    kept = {case for record, _ in journal.read() for case in range(record.start, record.start + record.count)}
+    journal.close()
+    assert kept <= before
+    assert kept
+    log.write_text("")
+    with ThreadPoolExecutor(2) as pool:
+        found = sweep(partial(slow, log), range(300), pool, output)
+    assert found[:].tolist() == [[case, 0.5 * case] for case in range(300)]
+    assert sorted(map(int, log.read_text().split())) == sorted(set(range(300)) - kept)
+    chunk = PORTIONS.seconds / 0.01 + 1
+    assert len(before - kept) <= 2 * PORTIONS.ahead * chunk
+    assert {path.name for path in tmp_path.iterdir()} == {"log", name}
 
-    monkeypatch.setattr(cases, "KEEPING", cases.KeepingSettings(grown=1e9, share=0.0))
-    CALLS.clear()
+
+@pytest.mark.parametrize("cut", [1, 40, 90, 300])
+def test_a_journal_that_was_not_written_whole_is_cut_where_it_ends(cut, tmp_path):
     output = tmp_path / "kept.npz"
-    with pytest.raises(KeyboardInterrupt), ThreadPoolExecutor(1) as pool:
-        sweep(fails_late, range(20), pool, output)
+    journal = Journal(tmp_path / "kept.npz.part", function_key(fails_late), output)
+    store = NpzFile(output, function_key(fails_late))
+    for start in (0, 4, 8):
+        items = list(range(start, start + 4))
+        store.add(Record(start, 4, cases_key(items)), np.array(items, dtype=float))
+    store.journal.close()
+    whole = journal.path.read_bytes()
+    journal.path.write_bytes(whole[:-cut])
+    CALLS.clear()
+    with ThreadPoolExecutor(1) as pool:
+        assert sweep(fails_late, range(12), pool, output).tolist() == list(range(12))
+    assert sorted(CALLS) in [list(range(first, 12)) for first in (0, 4, 8)]
+    assert not journal.path.exists()
+
+
+def test_a_changed_byte_in_a_journal_is_not_taken_for_a_result(tmp_path):
+    output = tmp_path / "kept.npz"
+    store = NpzFile(output, function_key(fails_late))
+    store.add(Record(0, 2, cases_key([0, 1])), np.array([0.0, 1.0]))
+    store.journal.close()
+    place = tmp_path / "kept.npz.part"
+    place.write_bytes(place.read_bytes()[:-1] + b"\x7f")
+    with ThreadPoolExecutor(1) as pool:
+        assert sweep(fails_late, range(2), pool, output).tolist() == [0.0, 1.0]
+
+
+def test_two_processes_do_not_write_one_output(tmp_path):
+    output = tmp_path / "kept.npz"
+    store = NpzFile(output, function_key(fails_late))
+    store.add(Record(0, 2, cases_key([0, 1])), np.array([0.0, 1.0]))
+    with ThreadPoolExecutor(1) as pool, pytest.raises(InputError, match="is being written by another process"):
+        sweep(fails_late, range(2), pool, output)
+    store.leave()
+
+
+def test_cases_are_read_as_they_are_needed(monkeypatch):
+    """Of a generator, no more than some chunks a worker are in memory."""
+    monkeypatch.setattr(cases, "PORTIONS", cases.PoolSettings(most=50))
+    done, most = [], []
+
+    def counted():
+        for case in range(5000):
+            most.append(case - len(done))
+            yield case
+
+    with ThreadPoolExecutor(2) as pool:
+        found = sweep(lambda case: (done.append(case), case)[1], counted(), pool)
+    assert found.tolist() == list(range(5000))
+    assert max(most) <= 50 * 2 * PORTIONS.ahead
+
+
+def test_chunks_end_after_a_time_and_not_after_a_count():
+    """Slow cases that follow fast ones: the chunk that was made for fast ones is cut."""
+    sizes = []
+
+    class Pool(ThreadPoolExecutor):
+        def submit(self, function, *args):
+            future = super().submit(function, *args)
+            sizes.append(len(future.result()[0]))
+            return future
+
+    with Pool(1) as pool:
+        sweep(lambda case: time.sleep(0.05 * (case > 400)), range(420), pool)
+    assert max(sizes) > 50
+    assert max(sizes[-3:]) <= 5
+
+
+def test_memory_holds_a_few_chunks_of_large_results(tmp_path, monkeypatch):
+    """Of 160 MB, written to a store, no more than chunks of a megabyte are in memory."""
+    require("kept.zarr")
+    import tracemalloc
+
+    from singimpact import case_pools
+
+    monkeypatch.setattr(case_pools, "CHUNK", case_pools.ChunkSettings(bytes=1 << 20))
+    output = tmp_path / "kept.zarr"
+    with ThreadPoolExecutor(1) as pool:
+        sweep(partial(np.full, 10_000), (float(n) for n in range(10)), pool, output)  # imports are no results
+        tracemalloc.start()
+        found = sweep(partial(np.full, 10_000), (float(n) for n in range(2000)), pool, output)
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    assert found.shape == (2000, 10_000)
+    assert np.array_equal(found[:, 0], np.arange(2000.0))
+    assert peak < 30e6
+
+
+def test_types_of_results_are_kept(tmp_path):
+    zarr = pytest.importorskip("zarr", reason="needs zarr, of the extra `cluster`")
+    with ThreadPoolExecutor(1) as pool:
+        assert sweep(lambda case: case / 2 if case else 0, range(3), pool).tolist() == [0, 0.5, 1]
+        with pytest.raises(InputError, match="results of case 1 are float64, those before int64: give one type"):
+            sweep(lambda case: case / 2 if case else 0, range(3), pool, tmp_path / "kept.zarr")
+        with pytest.raises(InputError, match="function gives results of type <U1, and output= takes numbers"):
+            sweep(str, range(3), pool, tmp_path / "text.npz")
+        assert sweep(abs, [], pool, tmp_path / "none.zarr").shape == (0,)
+        sweep(np.eye, [3, 3], pool, tmp_path / "eyes.zarr")
+        with pytest.raises(InputError, match=r"results of case 1 have shape \(4, 4\), those of others \(3, 3\)"):
+            sweep(np.eye, [3, 4], pool)
+    assert zarr.open_group(tmp_path / "eyes.zarr", mode="r")["result"].shape == (2, 3, 3)
+
+
+def test_a_store_of_something_else_is_refused(tmp_path):
+    pytest.importorskip("zarr", reason="needs zarr, of the extra `cluster`")
+    output = tmp_path / "kept.zarr"
+    with ThreadPoolExecutor(1) as pool:
+        sweep(abs, [1.0, 2.0], pool, output)
+        for function, items in ((abs, [1.0, 3.0]), (np.sqrt, [1.0, 2.0]), (abs, [1.0])):
+            with pytest.raises(InputError, match="other cases, another function or version"):
+                sweep(function, items, pool, output)
+        (tmp_path / "other.zarr").mkdir()
+        with pytest.raises(InputError, match="is not a store of results"):
+            sweep(abs, [1.0], pool, tmp_path / "other.zarr")
+        with pytest.raises(InputError, match="cannot be written"):
+            sweep(abs, [1.0], pool, tmp_path / "nowhere" / "kept.zarr")
+
+
+def test_without_zarr_the_refusal_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "zarr", None)
+    with ThreadPoolExecutor(1) as pool, pytest.raises(InputError, match="needs zarr, which is not installed: python"):
+        sweep(abs, [1.0], pool, tmp_path / "kept.zarr")
+
+
+def test_an_error_names_its_case_and_writes_what_there_is(tmp_path):
+    output = tmp_path / "kept.npz"
+    with ThreadPoolExecutor(1) as pool, pytest.raises(ZeroDivisionError) as caught:
+        sweep(lambda case: 1 / (case - 30), range(40), pool, output)
+    assert caught.value.__notes__[0].startswith("in case 30 = 30 of the sweep of function = ")
     with np.load(output) as kept:
-        assert len(kept["index"]) >= 16
+        assert kept["index"].tolist()[:30] == list(range(30))
+    assert not (tmp_path / "kept.npz.part").exists()
+
+
+def test_cases_of_one_kind_have_the_key_of_cases_one_by_one():
+    """The fast way for plain cases gives the bytes of the other."""
+    from singimpact.case_keys import _Digest
+
+    for items in ([1, 2**70, -3], [0.1, float("nan"), -0.0], ["a", "\ud800"], [True, 1, 1.0, "1"]):
+        digest = _Digest()
+        for item in items:
+            digest.value(item, 0)
+        assert cases_key(items) == digest.hash.hexdigest()
+
+
+def test_a_full_disk_ends_a_sweep_in_one_line(tmp_path, monkeypatch):
+    import errno
+    import io
+
+    class Full(io.BytesIO):
+        def flush(self):
+            if self.tell():
+                raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Journal, "_opened", lambda _: Full())
+    with (
+        ThreadPoolExecutor(1) as pool,
+        pytest.raises(InputError, match=r"cannot be written .No space left on device.: give a place"),
+    ):
+        sweep(abs, [1.0], pool, tmp_path / "kept.npz")

@@ -30,6 +30,10 @@ for verdict in si.verify("e:meq"):
     print(verdict.id, verdict.kind, verdict.corrected)
 scene = si.Scene(osc, ("gamma",), (0, 3), v=(0, 1), pixels=200)
 print(scene.report()["flights"], len(si.errata()), si.claims["e:meq"].printed.latex, si.figure(12))
+print(si.basins(osc, size=4).classes, si.bifurcation(osc, "clearance", (0.2, 0.3), 2).events.shape)
+print(si.classify(osc).points[0].name, si.transitions(osc, between=("0.9", "1.1")).complete)
+print(si.grown_gamma(osc)[0].points, si.explore(osc, steps=3).film.flights, si.sweep(abs, [1.0]).tolist())
+print(si.ImpactSurface(osc, (0, 3), (-3, 3)).horizon)
 print(osc.periodic(1, 1)[0].multipliers, osc.flight(1.2, 0.1, 0.05).x, osc.inverse_map(1.2, 0.1).tau)
 """
 

@@ -36,6 +36,7 @@ TITLES = {
     "figures": "Figures",
     "growth": "How cost grows",
     "commands": "Series in symbols and commands",
+    "sweep": "A sweep of many cases",
     "start": "A new process",
 }
 

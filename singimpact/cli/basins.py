@@ -18,7 +18,7 @@ from singimpact.store import require_writable
 @click.option("--tau", nargs=2, metavar="LOW HIGH", help="Window of launch phases; a period without it.")
 @click.option("--v", nargs=2, metavar="LOW HIGH", default=("0", "2"), show_default=True, help="Window of velocities.")
 @click.option("--size", type=click.IntRange(2, 10_000), default=600, show_default=True, help="States a side.")
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; threads, one a core, without it.")
 @click.option(
     "--layer",
     type=click.Choice(["for-ever", "first-chatter"]),
@@ -26,7 +26,7 @@ from singimpact.store import require_writable
     show_default=True,
     help="What is drawn: what orbits do for ever, or where the first chatter completes.",
 )
-@click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
+@click.option("--keep", metavar="FILE", help="Keep results there (.npz or .zarr) as they come, and resume from it.")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
 def command(
@@ -38,11 +38,13 @@ def command(
     require_writable(output)
     keep = options.pop("keep")
     model = take_model(options)
-    from singimpact.cases import WorkerPool
+    from contextlib import nullcontext
+
+    from singimpact.case_pools import WorkerPool
     from singimpact.dynamics.basins import basins
     from singimpact.scenes.basins import draw_basins, draw_first_chatter
 
-    with WorkerPool(workers) as pool:
+    with nullcontext() if workers is None else WorkerPool(workers) as pool:
         found = basins(model, tau, v, size, pool, keep)
     draw = draw_basins if layer == "for-ever" else draw_first_chatter
     save(draw(found).figure, output)

@@ -22,7 +22,7 @@ from singimpact.store import require_writable
 @click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Flown for each.")
 @click.option("--kept", type=click.IntRange(1, 100_000), default=60, show_default=True, help="Of them, shown.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
-@click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
+@click.option("--keep", metavar="FILE", help="Keep results there (.npz or .zarr) as they come, and resume from it.")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give phase, v and end of chatter for each value as JSON.")
 def command(
@@ -36,7 +36,7 @@ def command(
     suffix_of(output)
     require_writable(output)
     model = take_model(options)
-    from singimpact.cases import WorkerPool
+    from singimpact.case_pools import WorkerPool
     from singimpact.dynamics.bifurcation import bifurcation
     from singimpact.scenes.basins import draw_bifurcation
 

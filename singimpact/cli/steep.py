@@ -42,7 +42,7 @@ def steep_states(
     from singimpact.bench import steep_balls, steep_states
     from singimpact.bench.steep_cost import cost
     from singimpact.bench.steep_families import FAMILIES
-    from singimpact.cases import WorkerPool
+    from singimpact.case_pools import WorkerPool
 
     beside = None if keep is None else Path(keep).with_name(f"{Path(keep).stem}-balls.npz")
     with WorkerPool(workers) as pool:

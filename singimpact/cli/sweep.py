@@ -24,7 +24,7 @@ from singimpact.status import Status
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
 @click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Impacts flown.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
-@click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
+@click.option("--keep", metavar="FILE", help="Keep results there (.npz or .zarr) as they come, and resume from it.")
 @output_options
 def command(
     over: str, low: str, high: str, points: int, tau: str, v: str, impacts: int, workers: int | None,
@@ -37,7 +37,7 @@ def command(
     import numpy as np
 
     from singimpact.algebra.numbers import as_float, constant
-    from singimpact.cases import WorkerPool
+    from singimpact.case_pools import WorkerPool
     from singimpact.impact_oscillator import sweep
 
     oscillator = take_model(options)
@@ -48,7 +48,7 @@ def command(
     values = np.linspace(first, last, points).tolist()
     ask = partial(last_state, oscillator.to_dict(), over, tau, v, impacts)
     with WorkerPool(workers) as pool:
-        found = sweep(ask, values, pool, keep)
+        found = np.array(sweep(ask, values, pool, keep))
     rows = [[value, *map(float, row[:2]), Status(int(row[2])).name] for value, row in zip(values, found, strict=True)]
     if as_json:
         told = [dict(zip((over, "tau", "v", "status"), row, strict=True)) for row in rows]

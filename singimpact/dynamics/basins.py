@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from concurrent.futures import Executor
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from math import ceil, log
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
+from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
 from singimpact.dynamics.attractors import (
     CHAOS,
@@ -32,6 +33,7 @@ from singimpact.inputs import refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
+from singimpact.store import write_table
 from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
@@ -125,9 +127,23 @@ class Basins:
         ]
         return [(int(i), told[i], float(counts[i]) / self.codes.size) for i in order]
 
+    def __repr__(self) -> str:
+        shares = ", ".join(f"{name} {100 * share:.3g} %" for _, name, share in self.classes[:4])
+        more = f", and {len(self.classes) - 4} more" if len(self.classes) > 4 else ""
+        return f"Basins({self.tau.size} x {self.v.size} states: {shares}{more})"
+
+    def to_csv(self, path: Any) -> None:
+        """Write tau, v, the class and whether the first chatter completes, a line a state."""
+        names = {code: name for code, name, _ in self.classes}
+        tau, v = np.meshgrid(self.tau, self.v)
+        write_table(path, {
+            "tau": tau.ravel().tolist(), "v": v.ravel().tolist(), "class": map(names.get, self.codes.ravel().tolist()),
+            "first_chatter_completes": self.first_chatter_completes.ravel().astype(int).tolist(),
+        })  # fmt: skip
+
 
 def basins(
-    model: Oscillator, tau: Any = None, v: Any = (0, 2), size: int = 600, executor: Executor | None = None,
+    model: Oscillator, tau: Any = None, v: Any = (0, 2), size: int = 600, executor: Any = None,
     output: Any = None,
 ) -> Basins:  # fmt: skip
     """Classes of size x size states.
@@ -135,7 +151,8 @@ def basins(
     Parameters
     ----------
     model : periodic. tau, v : ends of the window; one period of tau when it is not given; v > 0 is looked at.
-    size : states a side. executor, output : as for `sweep`; rows are its cases.
+    size : states a side. executor, output : as for `sweep`, where some rows are a case; threads without it, for flights
+        of arrays run side by side in one process.
 
     Raises
     ------
@@ -166,7 +183,8 @@ def basins(
     iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
     phases = lift_offs(model)
     work = partial(classified, dict(model.to_dict()), phases, tuple(times.tolist()), fast)
-    table = sweep(work, blocks, executor, output).reshape(-1, 3)
+    with ThreadPool() if executor is None else nullcontext(executor) as pool:
+        table = np.array(sweep(work, blocks, pool, output)).reshape(-1, 3)
     first = table[:, 0] == CHATTER
     follows = futures(model, phases, partial(classify, model, phases, fast))
     for place in range(len(phases)):

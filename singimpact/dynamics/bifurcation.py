@@ -14,6 +14,7 @@ from singimpact.cases import sweep
 from singimpact.dynamics.orbit import orbit
 from singimpact.inputs import refuse, unknown
 from singimpact.oscillator.model import Oscillator
+from singimpact.store import write_table
 from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
@@ -32,6 +33,19 @@ class Bifurcation:
     over: str
     values: Array
     events: Array
+
+    def __repr__(self) -> str:
+        count, kept = self.events.shape[:2]
+        low, high = self.values[[0, -1]].tolist()
+        return f"Bifurcation(over {self.over}: {count} values from {low:.6g} to {high:.6g}, {kept} events of each)"
+
+    def to_csv(self, path: Any) -> None:
+        """Write value, phase, v and whether chatter ended there, a line an event."""
+        phase, v, ended = self.events.reshape(-1, 3).T
+        there = np.isfinite(phase)
+        values = np.repeat(self.values, self.events.shape[1])[there]
+        write_table(path, {self.over: values.tolist(), "phase": phase[there].tolist(), "v": v[there].tolist(),
+                           "chatter_ended": ended[there].astype(int).tolist()})  # fmt: skip
 
 
 def bifurcation(
@@ -55,6 +69,8 @@ def bifurcation(
     >>> found.events.shape, bool(abs(found.events[0, 0] - found.events[0, 3]).max() < 1e-6)
     ((2, 4, 3), True)
     """
+    if not isinstance(model, Oscillator):
+        raise refuse("model", model, "an ImpactOscillator")
     if over not in ("clearance", "restitution", *model.parameters):
         raise unknown("number of the model", str(over), ["clearance", "restitution", *model.parameters])
     if model.period is None:
@@ -65,7 +81,7 @@ def bifurcation(
     low, high = window_ends(over, between)
     values = np.linspace(low, high, points)
     ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), impacts, kept)
-    return Bifurcation(over, values, sweep(ask, values.tolist(), **sweeping))
+    return Bifurcation(over, values, np.array(sweep(ask, values.tolist(), **sweeping)))
 
 
 def settled(

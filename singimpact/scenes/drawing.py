@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
+from singimpact.dynamics.basins import Basins
+from singimpact.dynamics.bifurcation import Bifurcation
 from singimpact.dynamics.orbit import Orbit
 from singimpact.inputs import refuse
+from singimpact.scenes.basins import draw_basins, draw_bifurcation
 from singimpact.scenes.orbit import draw_orbit
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import PENS
 from singimpact.surface.curve import Curve
+from singimpact.surface.impact_surface import ImpactSurface
 
+WIDE, HIGH = (8.0, 4.0), (7.2, 5.2)  # inches
 LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}
 
 
@@ -19,8 +25,10 @@ def plot(thing: Any, axes: Any = None) -> Any:
 
     Parameters
     ----------
-    thing : an orbit, a scene or a curve. axes : where to draw; those of a new figure of pyplot when it is not given, so
-        that a notebook shows it and `matplotlib.pyplot.show()` does.
+    thing : an orbit, a scene, basins, a bifurcation diagram, a curve or a list of curves of one plane, or an impact
+        surface, of which Z and H are drawn.
+    axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
+        `matplotlib.pyplot.show()` does.
 
     Examples
     --------
@@ -30,14 +38,34 @@ def plot(thing: Any, axes: Any = None) -> Any:
     """
     if isinstance(thing, Scene):
         return thing.draw(axes)
-    if isinstance(thing, Curve):
-        return _curve(thing, _new_axes() if axes is None else axes)
-    if not isinstance(thing, Orbit):
-        raise refuse("thing to plot", type(thing).__name__, "an orbit, a scene or a curve")
-    return draw_orbit(thing, _new_axes() if axes is None else axes)
+    if isinstance(thing, ImpactSurface):
+        thing = [*thing.zero_set, *thing.horizon]
+    curves = [thing] if isinstance(thing, Curve) else thing
+    if isinstance(curves, list | tuple) and curves and all(isinstance(each, Curve) for each in curves):
+        return _curves(curves, _new_axes() if axes is None else axes)
+    if isinstance(thing, Orbit):
+        return draw_orbit(thing, _new_axes() if axes is None else axes)
+    if isinstance(thing, Bifurcation):
+        return draw_bifurcation(thing, _new_axes() if axes is None else axes)
+    if isinstance(thing, Basins):
+        return draw_basins(thing, _new_axes(HIGH) if axes is None else axes)
+    raise refuse("thing to plot", type(thing).__name__, "an orbit, a scene, basins, a bifurcation, or curves")
 
 
-def _curve(curve: Curve, axes: Any) -> Any:
+def _curves(curves: Sequence[Curve], axes: Any) -> Any:
+    """Pieces of one curve share their line in the legend."""
+    planes = sorted({each.axes for each in curves})
+    if len(planes) > 1:
+        raise refuse("curves to plot", " and ".join(map(str, planes)), "curves of one plane")
+    for curve in curves:
+        _curve(curve, axes)
+    handles, labels = axes.get_legend_handles_labels()
+    once = dict(zip(labels, handles, strict=True))
+    axes.legend(once.values(), once.keys(), loc="best")
+    return axes
+
+
+def _curve(curve: Curve, axes: Any) -> None:
     pen = PENS.get(curve.name, PENS["graph"])
     axes.plot(*curve.points.T, **pen.line(), label=f"${curve.name}$" if curve.name in PENS else curve.name)
     for mark in curve.marks:
@@ -46,11 +74,9 @@ def _curve(curve: Curve, axes: Any) -> Any:
         axes.annotate(mark.name, place, (5, 5), textcoords="offset points")
     axes.set_xlabel(LETTERS.get(curve.axes[0], curve.axes[0]))
     axes.set_ylabel(LETTERS.get(curve.axes[1], curve.axes[1]))
-    axes.legend(loc="best")
-    return axes
 
 
-def _new_axes() -> Any:
+def _new_axes(size: tuple[float, float] = WIDE) -> Any:
     import matplotlib.pyplot
 
-    return matplotlib.pyplot.figure(figsize=(8.0, 4.0), dpi=150, layout="constrained").add_subplot()
+    return matplotlib.pyplot.figure(figsize=size, dpi=150, layout="constrained").add_subplot()

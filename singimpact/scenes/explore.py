@@ -12,8 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.inputs import InputError
-from singimpact.scenes.clearance_frames import ClearanceFilm, ClearanceFrame
+from singimpact.inputs import InputError, refuse, whole
+from singimpact.oscillator.model import Oscillator
+from singimpact.progress import ProgressLine
+from singimpact.scenes.clearance_frames import SETTINGS, ClearanceFilm, ClearanceFrame, clearance_film
+from singimpact.store import write_text
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,62 @@ PAGE = """<!DOCTYPE html>
 </body>
 </html>
 """
+
+
+@dataclass(frozen=True)
+class ExplorePage:
+    """A page with a slider for the clearance; a notebook shows it below its cell.
+
+    Attributes
+    ----------
+    film : the curves at each place of the slider. html : the page, one text that needs no network.
+    """
+
+    film: ClearanceFilm
+    html: str
+
+    def __repr__(self) -> str:
+        low, high = self.film.frames[0].clearance, self.film.frames[-1].clearance
+        megabytes = len(self.html) / 1e6
+        return f"ExplorePage({len(self.film.frames)} clearances from {low:.6g} to {high:.6g}, {megabytes:.1f} MB)"
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{escape(self.html)}" width="100%" height="800" frameborder="0"></iframe>'
+
+    def save(self, path: Any) -> None:
+        """Write the page to a file."""
+        write_text(path, self.html)
+
+
+def explore(osc: Oscillator, between: Any = None, steps: int = SETTINGS.steps) -> ExplorePage:
+    """A page on which Z, H, P and gamma change as the clearance moves through the nearest swan.
+
+    Parameters
+    ----------
+    osc : the model. between : two clearances, the ends of the slider; both sides of the swan without them.
+    steps : places of the slider, from 2 to 1001.
+
+    Returns
+    -------
+    ExplorePage : `.save("page.html")` writes it; `.film.frames` has the curves as arrays.
+
+    Raises
+    ------
+    InputError : ends or steps that are none; plotly is not installed (extra `interactive`).
+
+    Examples
+    --------
+    >>> page = explore(Oscillator("x", "cos(2*t)", "0.9", "1/2"), steps=2)
+    >>> print(repr(page).partition(", ")[0])
+    ExplorePage(2 clearances from 1 to 1.13708
+    """
+    if not isinstance(osc, Oscillator):
+        raise refuse("osc", osc, "an ImpactOscillator")
+    whole("steps", steps, 2, 1001)
+    require_plotly()
+    with ProgressLine() as line:
+        film = clearance_film(osc, between, steps, line.show)
+    return ExplorePage(film, explore_page(film))
 
 
 def explore_page(film: ClearanceFilm) -> str:

@@ -7,6 +7,7 @@ H, Z         between these: p is folded along H, phi along Z
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -81,6 +82,11 @@ class Classification:
     swans: tuple[SwanPoint, ...]
     notes: tuple[str, ...]
     flights: int
+
+    def __repr__(self) -> str:
+        kinds = Counter(point.name for point in self.points)
+        told = ", ".join(f"{name} {count}" for name, count in kinds.items()) or "no singular points"
+        return f"Classification({told}; fold lines {len(self.folds)}; swans over the clearance {len(self.swans)})"
 
 
 def classify(model: Oscillator, tau: Any = None, t: Any = None, between: Any = None) -> Classification:

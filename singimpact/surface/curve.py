@@ -139,6 +139,11 @@ class Curve:
     def __len__(self) -> int:
         return len(self.points)
 
+    def __repr__(self) -> str:
+        ends = [", ".join(f"{place:.6g}" for place in self.points[end]) for end in (0, -1)] if len(self) else []
+        where = "closed" if self.closed else f"from ({ends[0]}) to ({ends[1]})" if ends else "empty"
+        return f"Curve({self.name}: {len(self)} points in ({', '.join(self.axes)}), {where})"
+
     def marked(self, name: str) -> Array:
         """The vertices with a mark of this name, shape (m, 2)."""
         return self.points[[mark.index for mark in self.marks if mark.name == name]]

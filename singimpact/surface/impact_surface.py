@@ -82,6 +82,12 @@ class ImpactSurface:
         self.model, self.window = model, Window.read(tau, t, resolution)
         self._rest = RestFlights(model)
 
+    def __repr__(self) -> str:
+        (a, b), (c, d) = self.window.x, self.window.y
+        return (
+            f"ImpactSurface(tau from {a:.6g} to {b:.6g}, t from {c:.6g} to {d:.6g}, clearance {self.model.clearance})"
+        )
+
     def take(self, **found: list[Any]) -> None:
         """Use lines, horizon, ... of the same model and window that were computed before: they are not flown again."""
         vars(self).update(found)

@@ -1,8 +1,8 @@
 """The groups of `singimpact bench`: each a function from an effort to its cases, found when it is asked for.
 
 Files: `impact_map` (`bench map`), `orbit`, `regimes` (hard states), `chatter`, `threshold`, `fixed_points`, `series`,
-`emitted`, `figures`, `growth` (how cost grows), `commands` (the command line and series in symbols), `start` (a new
-process, a new cache folder).
+`emitted`, `figures`, `growth` (how cost grows), `commands` (the command line and series in symbols), `sweep` (many
+cases), `start` (a new process, a new cache folder).
 A new group: a file with a function `cases`, and its name here.
 """
 
@@ -22,6 +22,7 @@ from singimpact.bench.groups import (
     regimes,
     series,
     start,
+    sweep,
     threshold,
 )
 from singimpact.bench.measuring import Case, Effort, Measured, measure
@@ -38,6 +39,7 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "figures": figures.cases,
     "growth": growth.cases,
     "commands": commands.cases,
+    "sweep": sweep.cases,
     "start": start.cases,
 }
 SLOW = ("start",)  # compiles in new cache folders, again and again

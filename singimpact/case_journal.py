@@ -1,0 +1,136 @@
+"""The journal of a sweep: which chunks of cases have results, and these results where no other file holds them.
+
+Each record is appended with its length and checksum.  One that a killed process has not written whole is cut off by the
+next process that reads the journal.
+"""
+
+from __future__ import annotations
+
+import os
+import zlib
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from singimpact.inputs import InputError, shown
+
+HEAD = b"singimpact sweep 1 "
+OTHERS = "holds results of other cases, another function or version"
+
+
+@dataclass(frozen=True)
+class Record:
+    """Consecutive cases whose results are there: the first one, how many, and the key of the cases."""
+
+    start: int
+    count: int
+    cases: str
+
+
+class Journal:
+    """Records with their content, appended one by one.
+
+    Parameters
+    ----------
+    path : of the journal. key : of the function. output : as the refusals name it.
+    """
+
+    def __init__(self, path: Path, key: str, output: Path) -> None:
+        self.path, self.key, self.output = path, key, output
+        self._stream: BinaryIO | None = None
+
+    def read(self) -> Iterator[tuple[Record, bytes]]:
+        """What is there; an end that was not written whole is cut off."""
+        if not self.path.exists():
+            return
+        stream = self._opened()
+        head = stream.readline()
+        if not head.endswith(b"\n"):
+            stream.truncate(0)
+        elif not head.startswith(HEAD):
+            self.close()
+            raise InputError(f"{shown(str(self.path))} is not a journal of a sweep: remove it, or name another output")
+        elif head != HEAD + self.key.encode() + b"\n":
+            self.close()
+            raise InputError(f"output = {shown(str(self.output))} {OTHERS} (in {self.path.name}): name another file")
+        end = stream.seek(0, os.SEEK_CUR) if head.endswith(b"\n") else 0
+        while (found := _record(stream)) is not None:
+            end = stream.tell()
+            yield found
+        stream.seek(end)
+        stream.truncate()
+
+    def append(self, record: Record, content: bytes = b"") -> None:
+        """Write a record; it is there when this returns, whatever becomes of this process."""
+        stream = self._opened()
+        head = f"{record.start} {record.count} {record.cases} {len(content)} ".encode()
+        line = head + f"{zlib.crc32(content, zlib.crc32(head)):08x}\n".encode()
+        try:
+            if not stream.tell():
+                stream.write(HEAD + self.key.encode() + b"\n")
+            stream.write(line + content)
+            stream.flush()
+        except OSError as error:
+            raise unwritable(self.output, error) from None
+
+    def close(self) -> None:
+        """Let another process have it."""
+        if self._stream is not None:
+            with suppress(OSError):  # of a full disk, which was told when the record was appended
+                self._stream.close()
+            self._stream = None
+
+    def _opened(self) -> BinaryIO:
+        if self._stream is None:
+            try:
+                stream = os.fdopen(
+                    os.open(self.path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+b"
+                )
+            except OSError as error:
+                raise unwritable(self.output, error) from None
+            if not _locked(stream):
+                stream.close()
+                raise InputError(
+                    f"output = {shown(str(self.output))} is being written by another process: name another file"
+                )
+            self._stream = stream
+        return self._stream
+
+
+def _record(stream: BinaryIO) -> tuple[Record, bytes] | None:
+    """The next record, or None at the end and at what is not whole."""
+    line = stream.readline()
+    cells = line.split()
+    if not line.endswith(b"\n") or len(cells) != 5:
+        return None
+    try:
+        start, count, size, check = int(cells[0]), int(cells[1]), int(cells[3]), int(cells[4], 16)
+    except ValueError:
+        return None
+    content = stream.read(size)
+    head = line[: line.rindex(b" ") + 1]
+    if len(content) != size or zlib.crc32(content, zlib.crc32(head)) != check:
+        return None
+    return Record(start, count, cells[2].decode("ascii", "replace")), content
+
+
+def _locked(stream: BinaryIO) -> bool:
+    """Take the lock that ends with this process; where there is none of that kind, do without."""
+    try:
+        import fcntl
+    except ImportError:
+        return True
+    try:
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+def unwritable(path: Path, error: OSError) -> InputError:
+    """The refusal of a disk that is full, or of a place that was taken away."""
+    return InputError(
+        f"output = {shown(str(path))} cannot be written ({error.strerror or error}): give a place that can"
+    )
