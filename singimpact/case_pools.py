@@ -297,10 +297,10 @@ def _done_here(function: Function, items: Sequence[Any], seconds: float) -> Futu
 
 
 class ThreadPool(ThreadPoolExecutor):
-    """Threads, as many as there are cores; left by an error, it drops the cases that wait."""
+    """Threads, as many as there are cores unless it is told; left by an error, it drops the cases that wait."""
 
-    def __init__(self) -> None:
-        super().__init__(os.cpu_count() or 1)
+    def __init__(self, workers: int | None = None) -> None:
+        super().__init__(workers or os.cpu_count() or 1)
 
     def __exit__(self, kind: Any, *rest: Any) -> bool | None:
         if kind is None:

@@ -9,7 +9,7 @@ import click
 from singimpact.cli.columns import columns
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import save, suffix_of
+from singimpact.cli.pictures import save, save_once, suffix_of
 from singimpact.store import require_writable
 
 
@@ -38,20 +38,29 @@ def command(
     require_writable(output)
     keep = options.pop("keep")
     model = take_model(options)
-    from contextlib import nullcontext
 
-    from singimpact.case_pools import WorkerPool
-    from singimpact.dynamics.basins import basins
-    from singimpact.scenes.basins import draw_basins, draw_first_chatter
+    def make() -> tuple[Any, Any]:
+        from contextlib import nullcontext
 
-    with nullcontext() if workers is None else WorkerPool(workers) as pool:
-        found = basins(model, tau, v, size, pool, keep)
-    draw = draw_basins if layer == "for-ever" else draw_first_chatter
-    save(draw(found).figure, output)
-    told = [{"class": name, "share": share} for _, name, share in found.classes]
-    if as_json:
-        click.echo(as_json_text({"model": model.to_dict(), "output": output, "classes": told} | {
-            "first_chatter_completes": float(found.first_chatter_completes.mean())}))  # fmt: skip
+        from singimpact.case_pools import WorkerPool
+        from singimpact.dynamics.basins import basins
+        from singimpact.scenes.basins import draw_basins, draw_first_chatter
+
+        with nullcontext() if workers is None else WorkerPool(workers) as pool:
+            found = basins(model, tau, v, size, pool, keep)
+        draw = draw_basins if layer == "for-ever" else draw_first_chatter
+        classes = [{"class": name, "share": share} for _, name, share in found.classes]
+        first = float(found.first_chatter_completes.mean())
+        return draw(found).figure, {"classes": classes, "first_chatter_completes": first}
+
+    if keep is None:
+        told = save_once(("basins", model, tau, v, size, layer), output, make)
     else:
-        click.echo(columns(["class", "share"], [[str(each["class"]), f"{each['share']:.4f}"] for each in told]))
-        click.echo(f"first chatter completes  {found.first_chatter_completes.mean():.4f}")
+        figure, told = make()
+        save(figure, output)
+    if as_json:
+        click.echo(as_json_text({"model": model.to_dict(), "output": output} | told))
+    else:
+        rows = [[str(each["class"]), f"{each['share']:.4f}"] for each in told["classes"]]
+        click.echo(columns(["class", "share"], rows))
+        click.echo(f"first chatter completes  {told['first_chatter_completes']:.4f}")

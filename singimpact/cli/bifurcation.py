@@ -36,11 +36,13 @@ def command(
     suffix_of(output)
     require_writable(output)
     model = take_model(options)
+    from contextlib import nullcontext
+
     from singimpact.case_pools import WorkerPool
     from singimpact.dynamics.bifurcation import bifurcation
     from singimpact.scenes.basins import draw_bifurcation
 
-    with WorkerPool(workers) as pool:
+    with nullcontext() if workers is None else WorkerPool(workers) as pool:
         found = bifurcation(model, over, (low, high), points, start, impacts, kept, executor=pool, output=keep)
     save(draw_bifurcation(found).figure, output)
     if as_json:

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from singimpact import cache
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text, emit
+from singimpact.cli.pictures import kept_at
 from singimpact.inputs import InputError
 from singimpact.progress import ProgressLine
 from singimpact.store import require_writable, write_text
@@ -35,18 +37,25 @@ def command(
     """
     place = _place(html, output)
     oscillator = take_model(_with_path(options, path))
-    if not as_json:
-        from singimpact.scenes.explore import require_plotly
+    if as_json:
+        emit(as_json_text({"model": oscillator.to_dict(), **_told(_film(oscillator, between, steps))}), place)
+        return
+    kept = kept_at(("explore", oscillator, between, steps), ("plotly", "contourpy"))
+    page = cache.recall(kept)
+    if page is None:
+        from singimpact.scenes.explore import explore_page, require_plotly
 
         require_plotly()
+        page = explore_page(_film(oscillator, between, steps)).encode()
+        cache.keep(kept, page)
+    _show(page.decode(), place)
+
+
+def _film(oscillator: Any, between: tuple[str, str] | None, steps: int) -> ClearanceFilm:
     from singimpact.scenes.clearance_frames import clearance_film
 
     with ProgressLine() as line:
-        film = clearance_film(oscillator, between, steps, line.show)
-    if as_json:
-        emit(as_json_text({"model": oscillator.to_dict(), **_told(film)}), place)
-    else:
-        _show(film, place)
+        return clearance_film(oscillator, between, steps, line.show)
 
 
 def _place(html: str | None, output: str | None) -> str | None:
@@ -65,11 +74,8 @@ def _with_path(options: dict[str, Any], path: str | None) -> dict[str, Any]:
     return options if path is None else {**options, "model": path}
 
 
-def _show(film: ClearanceFilm, place: str | None) -> None:
+def _show(page: str, place: str | None) -> None:
     """Into the file, or into a browser's window."""
-    from singimpact.scenes.explore import explore_page
-
-    page = explore_page(film)
     if place is not None:
         write_text(place, page)
         return

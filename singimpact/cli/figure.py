@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from time import process_time
+from typing import Any
 
 import click
 
 from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import PICTURES, save
+from singimpact.cli.pictures import PICTURES, save_once
 from singimpact.inputs import refuse
+from singimpact.paper.figures import FIGURES
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, require_writable, write_text
 
@@ -26,26 +29,36 @@ def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> No
 
     What a figure shows is kept in the cache as numbers: a run that was cut off goes on where it was.
     """
-    from singimpact.paper.figures import FIGURES
-    from singimpact.paper.figures.cached import kept_picture
-    from singimpact.paper.figures.rendering import drawn
-
     numbers = _numbers(which, list(FIGURES))
     targets, written = _targets(output, numbers, kind), []
     with ProgressLine() as line:
         for done, number in enumerate(numbers):
             line.show(done, len(numbers), f"figure {number}")
-            start, made, target = process_time(), kept_picture(number), targets[done]
-            save(drawn(made), target)
+            start, target = process_time(), targets[done]
+            title, claims = save_once(("figure", number), target, partial(_made, number))
             if data:
-                write_text(target.with_suffix(".json"), as_json_text(made.to_dict()) + "\n")
-            written.append((number, made.title, made.claims, str(target), round(process_time() - start, 3)))
+                write_text(target.with_suffix(".json"), as_json_text(_data(number)) + "\n")
+            written.append((number, title, claims, str(target), round(process_time() - start, 3)))
     if as_json:
         keys = ("figure", "title", "claims", "file", "seconds")
         click.echo(as_json_text({"figures": [dict(zip(keys, each, strict=True)) for each in written]}))
     else:
         for _, title, claims, file, _ in written:
             click.echo(f"{file}  {title} ({', '.join(claims)})")
+
+
+def _made(number: int) -> tuple[Any, Any]:
+    from singimpact.paper.figures.cached import kept_picture
+    from singimpact.paper.figures.rendering import drawn
+
+    picture = kept_picture(number)
+    return drawn(picture), [picture.title, list(picture.claims)]
+
+
+def _data(number: int) -> Any:
+    from singimpact.paper.figures.cached import kept_picture
+
+    return kept_picture(number).to_dict()
 
 
 def _targets(output: str, numbers: list[int], kind: str) -> list[Path]:

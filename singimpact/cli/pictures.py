@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from singimpact import cache
 from singimpact.inputs import refuse
-from singimpact.store import written
+from singimpact.store import cache_folder, written
 
 PICTURES = (".png", ".pdf", ".svg")
 
@@ -32,3 +36,34 @@ def save(figure: Any, output: str | Path, dpi: int = 150) -> None:
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(kind)
     with written(output) as draft, matplotlib.rc_context({"svg.hashsalt": "singimpact"}):
         figure.savefig(draft, format=kind, dpi=dpi, metadata=dated)
+
+
+def save_once(asked: tuple[Any, ...], output: str | Path, make: Callable[[], tuple[Any, Any]], dpi: int = 150) -> Any:
+    """Write a picture, from the cache when it was drawn before; what is to be said of it is returned.
+
+    Parameters
+    ----------
+    asked : all that the picture depends on beside the package, as texts and numbers.
+    make : gives a matplotlib figure and what is to be said of it, which JSON holds.
+    """
+    place = kept_at((*asked, suffix_of(str(output)), dpi), ("matplotlib", "contourpy"))
+    content = cache.recall(place)
+    if content is None:
+        figure, told = make()
+        save(figure, output, dpi)
+        cache.keep(place, json.dumps(told).encode() + b"\n" + Path(output).read_bytes())
+        return json.loads(json.dumps(told))
+    told, _, picture = content.partition(b"\n")
+    with written(output) as draft:
+        draft.write_bytes(picture)
+    return json.loads(told)
+
+
+def kept_at(asked: tuple[Any, ...], libraries: tuple[str, ...]) -> Path:
+    """Where the cache keeps what was drawn: under what was asked, the package, and the libraries that draw."""
+    from importlib.metadata import version
+
+    versions = [version(name) for name in ("numpy", *libraries)]
+    source = cache.source_digest(Path(__file__).parents[1])
+    key = hashlib.sha256(json.dumps([source, versions, *map(repr, asked)]).encode()).hexdigest()
+    return cache_folder() / "pictures" / f"{key}.picture"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from math import ceil
 from typing import Any
 
@@ -125,16 +126,21 @@ def tangency_points(oscillator: Oscillator, digits: int = 30) -> TangencyPoints:
     >>> points.kind, points.tau.round(6).tolist()
     (('foliation', 'gamma'), [0.633052, 2.508541])
     """
+    found = TangencyPoints(_points(oscillator))
+    found.digits = _checked(digits)
+    return found
+
+
+@lru_cache(maxsize=256)
+def _points(oscillator: Oscillator) -> tuple[TangencyPoint, ...]:
     function = acceleration(oscillator)
     if "t" not in names_in(function):
-        return TangencyPoints()
+        return ()
     low, high = window(oscillator, function)
     points = []
     for zero in isolate(function, "t", low, high):
         points += [TangencyPoint(function, zero, KINDS[zero.slope])] if zero.slope else _decided(function, zero)
-    found = TangencyPoints(_within(points, oscillator))
-    found.digits = _checked(digits)
-    return found
+    return tuple(_within(points, oscillator))
 
 
 def window(oscillator: Oscillator, function: Expression) -> tuple[Fraction, Fraction]:

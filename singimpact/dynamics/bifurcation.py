@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
+from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
 from singimpact.dynamics.orbit import orbit
 from singimpact.inputs import refuse, unknown
@@ -18,6 +20,8 @@ from singimpact.store import write_table
 from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
+FEW = 200_000
+"""Impacts in all, below which no processes are started: about five seconds."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +62,7 @@ def bifurcation(
     ----------
     over : clearance, restitution or a parameter. between : its ends. points : values. start : the state (tau, v).
     impacts : flown for each value. kept : events of the end that are shown. sweeping : `executor` and `output` of
-        `sweep`.
+        `sweep`; without an executor a few values are flown here, which takes less time than to start processes.
 
     Examples
     --------
@@ -81,7 +85,10 @@ def bifurcation(
     low, high = window_ends(over, between)
     values = np.linspace(low, high, points)
     ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), impacts, kept)
-    return Bifurcation(over, values, np.array(sweep(ask, values.tolist(), **sweeping)))
+    few = sweeping.get("executor") is None and points * impacts <= FEW
+    with ThreadPool(1) if few else nullcontext(sweeping.get("executor")) as pool:
+        events = sweep(ask, values.tolist(), **(sweeping | {"executor": pool}))
+    return Bifurcation(over, values, np.array(events))
 
 
 def settled(

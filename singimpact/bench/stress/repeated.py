@@ -1,13 +1,14 @@
-"""Periodic orbits of one impact a period, of x'' + x = cos(omega t), beside their closed form."""
+"""Periodic orbits of one impact a period beside their closed form; grazes of their branches beside theirs."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
 from singimpact.bench.stress.judging import Function, Trial, moved, powers
-from singimpact.impact_oscillator import linear
+from singimpact.impact_oscillator import branch, event_curve, linear
 
 
 def _periodic(place: str, points: int) -> Iterator[Trial]:
@@ -39,7 +40,41 @@ def _closed_form(near: list[float], omega: Any, c: Any, r: Any) -> list[Any]:
     return [phase + turn * mpmath.nint((near[0] - phase) / turn), v]
 
 
+def _grazes(place: str, curve: bool, points: int) -> Iterator[Trial]:
+    """The graze on the branch of (1, 1) orbits of x'' + x'/10 + x = A cos(omega t): A = |1 - omega^2 + i omega/10|."""
+    for off in powers(max(points // 3, 2), 6):
+        omega, r, near = {
+            "v -> 0": (0.8, 0.8, off), "omega -> 1": (1 + off / 8, 0.8, 1e-3), "r -> 1": (0.8, 1 - off, 1e-3),
+            "r -> 0": (0.8, off, 1e-3)}[place]  # fmt: skip
+        touching = -math.hypot(1 - omega**2, 0.1 * omega)
+        orbits = linear(omega, -1, r, damping=0.1, amplitude=touching * (1 + near)).periodic(1, 1)
+        for orbit in orbits:
+            found = branch(orbit, "amplitude", (1.2 * touching, 0.8 * touching))
+            for event in found.events:
+                if event.kind != "graze":
+                    continue
+                place_of = f"omega = {omega!r}, restitution = {r!r}"
+                given, value = omega, event.parameter
+                if curve:
+                    spread = ((1.2 * touching, 0.8 * touching), (omega - 0.02, omega + 0.02))
+                    at = event_curve(event, ("amplitude", "omega"), spread).parameters[-1]
+                    given, value = float(at[1]), float(at[0])
+                values, rounding = moved(_touching, [given, 0.1])
+                yield Trial(place_of, [value], values, rounding)
+
+
+def _touching(omega: Any, damping: Any) -> list[Any]:
+    import mpmath
+
+    return [-mpmath.sqrt((1 - omega**2) ** 2 + (damping * omega) ** 2)]
+
+
+BRANCHES = ("v -> 0", "omega -> 1", "r -> 0", "r -> 1")
+GRAZES = "its grazes are judged, which have no other states"
 FUNCTIONS = (
     Function("periodic", {place: partial(_periodic, place) for place in ("omega -> 1", "r -> 1")}, "closed form",
              "its states are answers, not given"),
+    Function("branch", {place: partial(_grazes, place, False) for place in BRANCHES}, "closed form", GRAZES),
+    Function("event_curve", {place: partial(_grazes, place, True) for place in BRANCHES if place != "omega -> 1"},
+             "closed form", GRAZES),
 )  # fmt: skip

@@ -6,28 +6,35 @@ from collections.abc import Callable
 from typing import Any
 
 from singimpact.inputs import refuse
-from singimpact.paper.figures import contact, outlines, sections, swans, unfolded
 from singimpact.paper.figures.panel import Picture
 
-FIGURES: dict[int, Callable[[], Picture]] = {
-    1: outlines.figure_1,
-    2: outlines.figure_2,
-    3: contact.figure_3,
-    4: contact.figure_4,
-    5: contact.figure_5,
-    6: contact.figure_6,
-    7: contact.figure_7,
-    8: contact.figure_8,
-    9: sections.figure_9,
-    10: sections.figure_10,
-    11: swans.figure_11,
-    12: swans.figure_12,
-    13: unfolded.figure_13,
-    14: swans.figure_14,
-    15: swans.figure_15,
-    16: unfolded.figure_16,
-    17: unfolded.figure_17,
-}
+FIGURES = tuple(range(1, 18))
+"""The numbers of the figures."""
+
+
+def _function(number: int) -> Callable[[], Picture]:
+    from singimpact.paper.figures import contact, outlines, sections, swans, unfolded  # they load what computes
+
+    functions: dict[int, Callable[[], Picture]] = {
+        1: outlines.figure_1,
+        2: outlines.figure_2,
+        3: contact.figure_3,
+        4: contact.figure_4,
+        5: contact.figure_5,
+        6: contact.figure_6,
+        7: contact.figure_7,
+        8: contact.figure_8,
+        9: sections.figure_9,
+        10: sections.figure_10,
+        11: swans.figure_11,
+        12: swans.figure_12,
+        13: unfolded.figure_13,
+        14: swans.figure_14,
+        15: swans.figure_15,
+        16: unfolded.figure_16,
+        17: unfolded.figure_17,
+    }
+    return functions[number]
 
 
 def picture(number: Any) -> Picture:
@@ -39,7 +46,7 @@ def picture(number: Any) -> Picture:
     """
     if isinstance(number, bool) or not isinstance(number, int) or number not in FIGURES:
         raise refuse("figure", number, f"a number from {min(FIGURES)} to {max(FIGURES)}")
-    return FIGURES[number]()
+    return _function(number)()
 
 
 def figure(number: Any) -> Any:
