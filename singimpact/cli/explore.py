@@ -40,12 +40,14 @@ def command(
     if as_json:
         emit(as_json_text({"model": oscillator.to_dict(), **_told(_film(oscillator, between, steps))}), place)
         return
+    from singimpact.scenes.explore import require_plotly
+
+    require_plotly()
     kept = kept_at(("explore", oscillator, between, steps), ("plotly", "contourpy"))
     page = cache.recall(kept)
     if page is None:
-        from singimpact.scenes.explore import explore_page, require_plotly
+        from singimpact.scenes.explore import explore_page
 
-        require_plotly()
         page = explore_page(_film(oscillator, between, steps)).encode()
         cache.keep(kept, page)
     _show(page.decode(), place)
