@@ -37,6 +37,7 @@ TITLES = {
     "growth": "How cost grows",
     "commands": "Series in symbols and commands",
     "sweep": "A sweep of many cases",
+    "scale": "Large arrays",
     "start": "A new process",
 }
 

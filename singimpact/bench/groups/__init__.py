@@ -2,7 +2,7 @@
 
 Files: `impact_map` (`bench map`), `orbit`, `regimes` (hard states), `chatter`, `threshold`, `fixed_points`, `series`,
 `emitted`, `figures`, `growth` (how cost grows), `commands` (the command line and series in symbols), `sweep` (many
-cases), `start` (a new process, a new cache folder).
+cases), `scale` (large arrays), `start` (a new process, a new cache folder).
 A new group: a file with a function `cases`, and its name here.
 """
 
@@ -20,6 +20,7 @@ from singimpact.bench.groups import (
     impact_map,
     orbit,
     regimes,
+    scale,
     series,
     start,
     sweep,
@@ -40,6 +41,7 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "growth": growth.cases,
     "commands": commands.cases,
     "sweep": sweep.cases,
+    "scale": scale.cases,
     "start": start.cases,
 }
 SLOW = ("start",)  # compiles in new cache folders, again and again
