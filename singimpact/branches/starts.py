@@ -35,6 +35,8 @@ class StartSettings:
     # a start is flown when its n impacts take this part of the time in which it must close
     span: tuple[float, float] = (0.4, 1.8)
     rounds: int = 25
+    # after so many rounds, points whose steps are larger than this, relative, are given up
+    slow: tuple[int, float] = (9, 0.1)
     # the largest change of a phase in one round, of a period
     longest: float = 0.15
     # arrived, relative
@@ -137,7 +139,7 @@ def closed_from(closing: Closing, points: Array) -> list[Array]:
     n, period = closing.n, closing.family.period({}).value
     found: list[Array] = []
     at = points
-    for _ in range(SETTINGS.rounds):
+    for count in range(SETTINGS.rounds):
         if not len(at):
             break
         miss, slope = conditions(closing, at)
@@ -151,7 +153,7 @@ def closed_from(closing: Closing, points: Array) -> list[Array]:
         at = at - step * np.minimum(1.0, SETTINGS.longest / np.maximum(longest, 1e-300))[:, None]
         arrived = size < SETTINGS.arrived
         found += list(at[arrived])
-        at = at[~arrived & (size < 1e6)]
+        at = at[~arrived & (size < (1e6 if count < SETTINGS.slow[0] else SETTINGS.slow[1]))]
     return _distinct(found, n, period)
 
 
