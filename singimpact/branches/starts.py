@@ -28,8 +28,10 @@ class StartSettings:
     # phases of the grid, and velocities from 1e-3 of the fastest to the fastest
     phases: int = 48
     speeds: int = 16
-    # the same of a model without a closed form, whose flights may be interpreted still
+    # the same of a model without a closed form, whose flights may be interpreted still; and how many starts, those of
+    # the shortest first steps, are followed
     fewer: tuple[int, int] = (20, 8)
+    kept: int = 80
     # velocities below, for orbits that nearly graze
     weak: tuple[float, ...] = (1e-12, 1e-8, 1e-5)
     # a start is flown when its n impacts take this part of the time in which it must close
@@ -149,6 +151,9 @@ def closed_from(closing: Closing, points: Array) -> list[Array]:
         at, step = at[regular], step[regular]
         fast = np.maximum(np.abs(at[:, n:]).max(axis=1, initial=0.0), 1e-300)
         size = np.maximum(np.abs(step[:, :n]).max(axis=1) / period, np.abs(step[:, n:]).max(axis=1) / fast)
+        if count == 0 and hasattr(closing.family, "models") and len(at) > SETTINGS.kept:
+            best = np.argsort(size, kind="stable")[: SETTINGS.kept]
+            at, step, size = at[best], step[best], size[best]
         longest = np.abs(step[:, :n]).max(axis=1) / period
         at = at - step * np.minimum(1.0, SETTINGS.longest / np.maximum(longest, 1e-300))[:, None]
         arrived = size < SETTINGS.arrived
