@@ -35,6 +35,8 @@ class BranchSettings:
     shortest: float = 1e-9
     # a height above the wall that is rounding
     touching: float = 1e-12
+    # multipliers whose product differs from 1 by less conserve area
+    conserved: float = 1e-11
 
 
 SETTINGS = BranchSettings()
@@ -306,7 +308,8 @@ class _Walk:
 
     def _row(self, point: Point) -> tuple[Point, Array, bool]:
         loop = self.closing.at(point.at)
-        return point, loop.multipliers(), self._visible(point)
+        with np.errstate(all="ignore"):
+            return point, loop.multipliers(), self._visible(point)
 
     def _visible(self, point: Point, rounding: float = SETTINGS.touching) -> bool:
         n = self.closing.n
@@ -328,8 +331,10 @@ class _Walk:
         """Numbers that change sign at events."""
         zero, one, two = self.closing.at(point.at).characteristic()
         tests = {("fold", 0): float(point.tangent[-1]), ("period-doubling", 0): zero - one + two}
-        if one * one < 4 * zero * two:
-            tests["torus", 0] = zero - two
+        size = abs(zero) + abs(two)
+        # of an elastic model without damping the product of the multipliers is 1 everywhere
+        if one * one < 4 * zero * two and abs(zero - two) > SETTINGS.conserved * size:
+            tests["torus", 0] = (zero - two) / size
         n = self.closing.n
         for i in range(n):
             tests["graze", i] = float(point.at[n + i])
@@ -349,6 +354,8 @@ class _Walk:
             if later is None or value == 0 or not value * later <= 0:
                 continue
             located = self._located(curve, here, length, key, (value, later))
+            if located is None and key[0] == "torus":
+                continue  # the multipliers have become real before their product is 1
             if located is None:
                 notes.append(f"a {key[0]} near {here.at[-1]:.9g} could not be located")
                 continue

@@ -38,6 +38,8 @@ class Loop:
     def determinant(self, multiplier: float) -> float:
         """det(J(mu)), which vanishes where mu is a multiplier of the orbit; J(1) is the slope."""
         square = self.slope[:, : len(self.miss)]
+        if not np.isfinite(square).all():
+            return np.nan
         return float(np.linalg.det(square + (multiplier - 1) * self.wrap))
 
     def characteristic(self) -> tuple[float, float, float]:
@@ -49,6 +51,8 @@ class Loop:
         """The two multipliers, the larger first; inf at a graze."""
         zero, one, two = self.characteristic()
         size = max(abs(zero), abs(one), abs(two))
+        if not np.isfinite(size):
+            return np.full(2, np.nan, dtype=complex)
         if abs(two) <= 1e-14 * size:
             return np.array([np.inf, -zero / one if one else np.nan], dtype=complex)
         root = np.sqrt(complex(one * one - 4 * zero * two))

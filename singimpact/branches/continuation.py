@@ -138,7 +138,7 @@ class Curve:
     def _ended(self, here: Point, length: float) -> str:
         values, slopes = self._scaled(here.at + length * here.tangent * self.scales)
         if not _finite(values, slopes):
-            return "f, g or the flight has no value just beyond the last point"
+            return "just beyond the last point a flight leaves the domain of f or g, or a number that the model accepts"
         return "steps shrink to nothing at the last point: the equations are singular there"
 
 

@@ -195,3 +195,29 @@ def test_event_prints_words() -> None:
     text = repr(si.branch(free, "amplitude", (-0.5, -0.2)))
     assert "<graze at amplitude = -0.368781778292>" in text
     assert isinstance(si.branch(free, "amplitude", (-0.5, -0.2)).events[0], Event)
+
+
+def test_an_elastic_model_without_damping_has_no_torus_by_rounding() -> None:
+    osc = si.linear("2.3", "0.05", 1)
+    (orbit,) = osc.periodic(1, 1)
+    assert set(kinds(si.branch(orbit, "clearance", (-0.3, 0.3)))) == {"graze", "period-doubling"}
+
+
+def test_an_end_says_why() -> None:
+    osc = si.ImpactOscillator("x + 0.2*xdot + 0.1*log(3 - x)", "A*cos(1.7*t)", "-0.3", "0.6", {"A": 1})
+    (orbit,) = osc.periodic(1, 1, start=(2.42642, 1.27769))
+    found = si.branch(orbit, "A", (0.9, 3), step=0.05)
+    assert "leaves the domain of f or g" in found.notes[-1]
+    chatter = si.linear(2, "0.7", "0.5").periodic(np.inf, 1)[0]
+    with pytest.raises(InputError, match="an orbit with chatter is not followed"):
+        si.branch(chatter)
+
+
+def test_a_fold_a_graze_and_a_doubling_at_one_place() -> None:
+    # at resonance of the forcing with the free motion they meet: c = 1/3 is where the free orbit touches
+    (orbit,) = si.linear(2, "0.3", "0.5").periodic(1, 1)
+    found = si.branch(orbit, "clearance", (-1.5, 1.5))
+    assert found.notes[-1] == "closed: the branch comes back to where it began"
+    for kind in ("fold", "graze", "period-doubling"):
+        places = sorted(event.parameter for event in found.events if event.kind == kind)
+        assert places == pytest.approx([-1 / 3, 1 / 3], rel=1e-12)
