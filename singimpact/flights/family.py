@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import cos, factorial, frexp, inf, pi, sin
 from typing import Any, NamedTuple
@@ -56,6 +56,8 @@ class FamilySettings:
     # the fewest of a flight, and the most
     least: int = 16
     most: int = 4000
+    # Taylor steps of a flight
+    steps: int = 1000
 
 
 SETTINGS = FamilySettings()
@@ -257,7 +259,8 @@ class SteppedFamily(Family):
 
     def __init__(self, osc: Oscillator, over: Sequence[str]) -> None:
         super().__init__(osc, over)
-        allowance = compiled_model(osc).allowance
+        # next to a singularity a flight is given up: a branch would halve its steps for minutes there
+        allowance = replace(compiled_model(osc).allowance, steps=SETTINGS.steps)
         flows = [
             recurrence_of(osc),
             *(recurrence(osc.f, osc.g, push_by(osc, name)) for name in over if name != RESTITUTION),
@@ -282,9 +285,12 @@ class SteppedFamily(Family):
 
     def end(self, values: Values, tau: float, v: float, time: float) -> End:
         self._moved(values)
-        place = self.models[0].follow(tau, v, np.array([time]))[0]
         given = np.array([tau]), np.array([v]), np.array([time])
         by_v, by_v_dot, by_tau, by_tau_dot = self.models[0].variations(*given)[0]
+        if not np.isfinite(by_v):  # it does not get there
+            nothing = np.full(2, np.nan)
+            return End(nothing, nothing, nothing, nothing, np.full((len(self.over), 2), np.nan))
+        place = self.models[0].follow(tau, v, np.array([time]))[0]
         by_numbers, models = np.zeros((len(self.over), 2)), iter(self.models[1:])
         for k, name in enumerate(self.over):
             if name != RESTITUTION:
