@@ -38,6 +38,7 @@ TITLES = {
     "commands": "Series in symbols and commands",
     "sweep": "A sweep of many cases",
     "scale": "Large arrays",
+    "branches": "Periodic orbits and their branches",
     "start": "A new process",
 }
 

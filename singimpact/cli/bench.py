@@ -44,8 +44,8 @@ def command(
     output: str | None,
 ) -> None:  # fmt: skip
     """Measure in one run, in CPU time, beside other tools: map, orbit, regimes, chatter, threshold, series,
-    fixed-points, emitted, figures, growth, commands, sweep, scale, start; all of them without a GROUP (with --quick all
-    but the last).
+    fixed-points, emitted, figures, growth, commands, sweep, scale, branches, start; all of them without a GROUP (with
+    --quick all but the last).
 
     The group `states` flies random states and the same ones by a slow solver of 60 digits; --states, --seed, --workers
     and --keep are its own. With `--family steep` it flies 20 families with steep layers beside a solver of small fixed

@@ -2,7 +2,8 @@
 
 Files: `impact_map` (`bench map`), `orbit`, `regimes` (hard states), `chatter`, `threshold`, `fixed_points`, `series`,
 `emitted`, `figures`, `growth` (how cost grows), `commands` (the command line and series in symbols), `sweep` (many
-cases), `scale` (large arrays), `start` (a new process, a new cache folder).
+cases), `scale` (large arrays), `branches`
+(periodic orbits), `start` (a new process, a new cache folder).
 A new group: a file with a function `cases`, and its name here.
 """
 
@@ -11,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from singimpact.bench.groups import (
+    branches,
     chatter,
     commands,
     emitted,
@@ -42,6 +44,7 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "commands": commands.cases,
     "sweep": sweep.cases,
     "scale": scale.cases,
+    "branches": branches.cases,
     "start": start.cases,
 }
 SLOW = ("start",)  # compiles in new cache folders, again and again
