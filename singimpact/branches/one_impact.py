@@ -54,14 +54,24 @@ def phases_and_speeds(osc: Oscillator, k: int) -> tuple[Array, Array] | None:
     scale = np.abs(series).max() * np.abs(by_v).max()
     if np.abs(total).max() <= 1e-13 * scale:
         return None
-    roots = np.roots(np.trim_zeros(np.where(np.abs(total) < 1e-15 * np.abs(total).max(), 0, total))[::-1])
-    on_circle = np.abs(np.abs(roots) - 1) < 1e-6
-    angles = _refined(np.angle(roots[on_circle]), total, size)
+    angles = _refined(_near(total), total, size)
     tau = np.mod(angles, 2 * np.pi) * period / (2 * np.pi)
     powers = np.exp(1j * np.outer(angles, np.arange(-size, size + 1)))
     parts = (powers @ series.T).real
     row = int(np.argmax(np.abs(by_v)))
     return tau, -parts[:, row] / by_v[row]
+
+
+def _near(total: Array) -> Array:
+    """Real roots of a real trigonometric polynomial and near them, from its coefficients of e^{i m angle}."""
+    if len(total) == 3:  # a + b cos(angle + shift)
+        share = -total[1].real / (2 * abs(total[2])) if total[2] else np.inf
+        if abs(share) > 1 + 1e-9:
+            return np.zeros(0)
+        turn = np.arccos(np.clip(share, -1, 1))
+        return np.array([turn, -turn]) - np.angle(total[2])
+    roots = np.roots(np.trim_zeros(np.where(np.abs(total) < 1e-15 * np.abs(total).max(), 0, total))[::-1])
+    return np.asarray(np.angle(roots[np.abs(np.abs(roots) - 1) < 1e-6]))
 
 
 def _refined(angles: Array, total: Array, size: int) -> Array:
@@ -73,6 +83,8 @@ def _refined(angles: Array, total: Array, size: int) -> Array:
             waves = np.exp(np.outer(at, orders))
             step = (waves @ total).real / (waves @ (orders * total)).real
             at = at - np.clip(step, -0.1, 0.1)
+            if not (np.abs(step) > 1e-15).any():
+                break
     waves = np.exp(np.outer(at, orders))
     good = np.abs((waves @ total).real) <= 1e-13 * np.abs(total).sum()
     found: list[float] = []

@@ -99,7 +99,8 @@ def visible(osc: Oscillator, tau: Array, v: Array, times: Array) -> Array:
     found = np.zeros(tau.shape, dtype=bool)
     chosen = (v >= 0) & (times > 0)
     if chosen.any():
-        step = impact_map(osc, tau[chosen], v[chosen])
+        given = (float(tau[0]), float(v[0])) if tau.size == 1 else (tau[chosen], v[chosen])  # two floats are faster
+        step = impact_map(osc, *given)
         with np.errstate(invalid="ignore"):
             same = np.abs(step.flight_time - times[chosen]) <= SETTINGS.near * times[chosen]
         found[chosen] = same & np.isin(step.status, (Status.hit, Status.graze))

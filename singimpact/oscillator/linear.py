@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 from singimpact.algebra.expressions import (
     Call,
@@ -45,6 +46,7 @@ class LinearForm:
     harmonics: tuple[Harmonic, ...]
 
 
+@lru_cache(maxsize=256)
 def linear_form(osc: Oscillator) -> LinearForm | None:
     """The linear form of a model, or None when f or g is not seen to be linear.
 
