@@ -69,7 +69,7 @@ def _near(total: Array) -> Array:
         if abs(share) > 1 + 1e-9:
             return np.zeros(0)
         turn = np.arccos(np.clip(share, -1, 1))
-        return np.array([turn, -turn]) - np.angle(total[2])
+        return np.asarray(np.array([turn, -turn]) - np.angle(total[2]))
     roots = np.roots(np.trim_zeros(np.where(np.abs(total) < 1e-15 * np.abs(total).max(), 0, total))[::-1])
     return np.asarray(np.angle(roots[np.abs(np.abs(roots) - 1) < 1e-6]))
 

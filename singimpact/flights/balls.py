@@ -16,6 +16,7 @@ from typing import Any
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.precision import balls_at, kept_property
+from singimpact.algebra.solving import newton_in_balls
 from singimpact.flights.short_balls import ShortFlights
 from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
@@ -119,7 +120,7 @@ class LinearFlow:
             if found is None:
                 return None
             if found:
-                time = _newton(y, slope, found[0], found[1])
+                time = newton_in_balls(y, slope, found[0].union(found[1]))
                 return BallHit(time, slope(time) * time**removed)
             if not top < end:
                 return BallHit(None, None) if limit is not None and end < longest else None
@@ -259,15 +260,3 @@ def _first_sign_change(y: Any, slope: Any, low: Any, high: Any) -> tuple[Any, ..
         middle = ((a + b) / 2).mid()
         stack += [(middle, b, depth + 1), (a, middle, depth + 1)]
     return ()
-
-
-def _newton(y: Any, slope: Any, low: Any, high: Any) -> Any:
-    """The zero of y on a piece where its slope is negative, by interval Newton steps."""
-    root = low.union(high)
-    for _ in range(200):
-        middle = root.mid()
-        closer = (middle - y(middle) / slope(root)).intersection(root)
-        if not closer.rad() * 10 < root.rad() * 9:
-            return closer
-        root = closer
-    return root
