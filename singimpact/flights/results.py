@@ -16,7 +16,7 @@ JUDGED = ("condition", "velocity_condition", "time_error", "velocity_error")
 SCALAR_STATUS = tuple(np.int8(code) for code in range(len(Status)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Flight:
     """First hits.
 
@@ -91,6 +91,27 @@ class Flight:
         texts = np.array([_sentence(*each, self.notes.get(at)) for at, each in enumerate(flat)] + [None], dtype=object)
         return texts[:-1].reshape(np.shape(self.status))[()]
 
+    def __repr__(self) -> str:
+        """One state with its numbers, arrays by how many ended how.
+
+        Examples
+        --------
+        >>> from singimpact.flights.impact_map import impact_map
+        >>> from singimpact.oscillator.model import Oscillator
+        >>> impact_map(Oscillator("0", "-2", 0, "1/2"), 1.0, 3.0)
+        Step(tau=4.0, v=1.5, flight_time=3.0, velocity=-3.0, status=hit)
+        >>> impact_map(Oscillator("0", "-2", 0, "1/2"), 1.0, [0, 3])
+        Step of 2 states, shape (2,): 1 hit, 1 sticks
+        """
+        statuses = np.asarray(self.__dict__["status"])
+        if not statuses.shape:
+            names = [name for name in ("tau", "v", "flight_time", "velocity") if name in self.__dict__]
+            numbers = [f"{name}={_plain(self.__dict__[name])}" for name in names]
+            return f"{type(self).__name__}({', '.join(numbers)}, status={Status(int(statuses)).name})"
+        counts = zip(*np.unique(statuses, return_counts=True), strict=True)
+        ends = ", ".join(f"{count} {Status(int(value)).name}" for value, count in counts)
+        return f"{type(self).__name__} of {statuses.size} states, shape {statuses.shape}: {ends}"
+
     def _repr_html_(self) -> str:
         names = [name for name in ("flight_time", "velocity", "tau", "v") if hasattr(self, name)]
         columns = [np.ravel(getattr(self, name)) for name in names]
@@ -99,7 +120,7 @@ class Flight:
         return table([*names, "status"], rows, f"{type(self).__name__} of {len(rows)}")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Step(Flight):
     """A hit and the state just after it; `tau` and `v` are the next ones."""
 
@@ -122,6 +143,10 @@ def _sentence(status: int, cause: int, note: str | None) -> str:
     if status != Status.unresolved or not cause:
         return Status(status).sentence
     return Cause(cause).sentence if note is None else f"{note}; {Cause(cause).sentence}"
+
+
+def _plain(number: Any) -> str:
+    return repr(float(number)) if isinstance(number, float | np.floating) else str(number)
 
 
 def _shown(number: Any) -> str:
