@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from singimpact.dynamics.basins import Basins
     from singimpact.dynamics.bifurcation import Bifurcation
     from singimpact.dynamics.chatter import ChatterLimit
+    from singimpact.dynamics.lyapunov import Lyapunov
     from singimpact.dynamics.orbit import Orbit
     from singimpact.dynamics.threshold import Threshold
     from singimpact.flights.orbits import Ends as Iterates
@@ -319,6 +320,20 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     from singimpact.dynamics.threshold import threshold
 
     return threshold(osc, tau, digits=digits, impacts=impacts)
+
+
+def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int = 0) -> Lyapunov:
+    """Both Lyapunov exponents of an orbit, with standard errors: see `singimpact.dynamics.lyapunov.lyapunov`.
+
+    Examples
+    --------
+    >>> lyapunov(linear("0.9", "0.2", "0.4"), "0.3", "0.4")
+    Lyapunov(superstable: the orbit comes to rest, 10 impacts)
+    """
+    from singimpact.dynamics.lyapunov import lyapunov
+
+    _require_model(osc)
+    return lyapunov(osc, tau, v, impacts, transient=transient)
 
 
 def branch(

@@ -38,8 +38,12 @@ class OrbitSettings:
 
 
 SETTINGS = OrbitSettings()
-ENDINGS = {"": "all flights asked for were flown", "sticking": "at rest from there on", "no_return": "no impact follows",
-           "unresolved": "the next flight is not resolved"}  # fmt: skip
+ENDINGS = {
+    "": "all flights asked for were flown",
+    "sticking": "at rest from there on",
+    "no_return": "no impact follows",
+    "unresolved": "the next flight is not resolved",
+}
 """What follows the last event, by the kind of the phase after it."""
 
 
@@ -138,8 +142,8 @@ class Orbit:
         names = {"impact": "impacts", "graze": "grazes", "complete": "chatters that end", "release": "lift-offs"}
         counts = {word: int(np.count_nonzero(self.kind == name)) for name, word in names.items()}
         told = ", ".join(f"{count} {word}" for word, count in counts.items() if count or word == "impacts")
-        return (f"Orbit from tau = {self.tau[0]:.9g} to {self.tau[-1]:.9g}: {told}\n"
-                f"  last state tau = {self.tau[-1]:.17g}, v = {self.v[-1]:.17g}; {ENDINGS[self._last_kind]}")  # fmt: skip
+        last = f"tau = {self.tau[-1]:.17g}, v = {self.v[-1]:.17g}; {ENDINGS[self._last_kind]}"
+        return f"Orbit from tau = {self.tau[0]:.9g} to {self.tau[-1]:.9g}: {told}\n  last state {last}"
 
 
 def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None) -> Orbit:
