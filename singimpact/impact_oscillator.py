@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from singimpact.dynamics.lyapunov import Lyapunov
     from singimpact.dynamics.orbit import Orbit
     from singimpact.dynamics.threshold import Threshold
+    from singimpact.flights.off_wall import Launched
     from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.path import Path
     from singimpact.flights.results import Derivative, Flight, Step
@@ -164,11 +165,33 @@ class ImpactOscillator(Oscillator):
 
         return periodic(self, n, k, start, digits=digits)
 
-    def orbit(self, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None) -> Orbit:
-        """Impacts, chatter and rest in order: see `singimpact.dynamics.orbit.orbit`."""
-        from singimpact.dynamics.orbit import orbit
+    def orbit(
+        self, tau: Any = None, v: Any = None, impacts: int = 200, *, horizon: Any = None, x: Any = None,
+        xdot: Any = None, t: Any = None,
+    ) -> Orbit:  # fmt: skip
+        """Impacts, chatter and rest in order, from (tau, v) or off the wall: see `singimpact.dynamics.orbit.orbit`."""
+        from singimpact.dynamics.orbit import dropped_orbit, orbit
 
-        return orbit(self, tau, v, impacts, horizon=horizon)
+        if x is xdot is t is None:
+            return orbit(self, tau, v, impacts, horizon=horizon)
+        if tau is not None or v is not None or x is None or xdot is None or t is None:
+            raise InputError(
+                "an orbit starts from tau and v, or off the wall from x=, xdot= and t=: give either, whole"
+            )
+        return dropped_orbit(self, (x, xdot, t), impacts, horizon=horizon)
+
+    def launch(self, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -> Launched:
+        """The first impact of flights that start off the wall: see `singimpact.flights.off_wall.launch`.
+
+        Examples
+        --------
+        >>> first = ImpactOscillator("0", "-9.81", "0.1", "0.9").launch(x=1, xdot=0, t=0)
+        >>> float(first.tau), float(first.v)
+        (0.4283529368781193, 3.7819280796969155)
+        """
+        from singimpact.flights.off_wall import launch
+
+        return launch(self, x, xdot, t, horizon=horizon)
 
     def to_toml(self) -> str:
         """The model as the text of a model file.

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.expressions import subtract
 from singimpact.algebra.numbers import as_float, constant, float_array
 from singimpact.dynamics.chatter import ENDING, chatter_left, impacts_until
 from singimpact.dynamics.release import release
@@ -15,8 +16,10 @@ from singimpact.dynamics.sampling import Section, sampled
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.model_numbers import horizon_of
+from singimpact.flights.off_wall import Launched, launch
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.path import Path
+from singimpact.flights.results import Step
 from singimpact.flights.states import States
 from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
@@ -61,6 +64,7 @@ class Orbit:
         `no_return`, `sticking` (tau_end inf) or `unresolved` (tau_end nan).
     end : the time up to which x(t) is known: of the last event; the horizon of a flight that does not return, or inf
         where it is proved never to; inf for a rest for ever.
+    height : x - c at the start; 0 but for an orbit that starts off the wall, whose first v is x' there.
     """
 
     oscillator: Oscillator
@@ -69,6 +73,7 @@ class Orbit:
     kind: np.ndarray[Any, Any]
     phases: list[tuple[str, float, float]]
     end: float
+    height: float = 0.0
 
     def sample(self, t: Any) -> Path:
         """x and x' at times, through flights, chatter and rest.
@@ -97,7 +102,8 @@ class Orbit:
         flat = times.ravel()
         order = np.argsort(flat, kind="stable")
         out = np.full((flat.size, 2), np.nan)
-        out[order] = sampled(self.oscillator, (self.tau, self.v, self.kind), self._last_kind, self.end, flat[order])
+        events = self.tau, self.v, self.kind
+        out[order] = sampled(self.oscillator, events, self._last_kind, self.end, self.height, flat[order])
         return Path(out[:, 0].reshape(times.shape)[()], out[:, 1].reshape(times.shape)[()])
 
     def section(self, phase: Any = 0) -> Section:
@@ -173,20 +179,40 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     states = States.read(tau, v)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
-    run = _Run(osc, states, horizon, whole("impacts", impacts, 0, 10**7))
-    while run.flown < run.most and not run.over:
-        run.advance()
-    times, velocities = np.concatenate(run.times), np.concatenate(run.velocities)
-    run.known = max(run.known, float(times[-1]))
-    return Orbit(osc, times, velocities, np.concatenate(run.kinds), run.phases, run.known)
+    run = _Run(osc, (float(states.tau[0]), float(states.v[0])), horizon, whole("impacts", impacts, 0, 10**7))
+    run.given = states.given(0)
+    return run.orbit()
+
+
+def dropped_orbit(osc: Oscillator, start: tuple[Any, Any, Any], impacts: int = 200, *, horizon: Any = None) -> Orbit:
+    """The orbit of a start off the wall: (x, x', t), x at or above the clearance; the rest as for `orbit`.
+
+    Examples
+    --------
+    >>> ball = dropped_orbit(Oscillator("0", "-2", 0, "1/2"), (4, 0, 0))
+    >>> ball.kind.tolist(), ball.tau.tolist(), ball.sample([0, 1]).x.tolist()
+    (['start', 'impact', 'complete'], [0.0, 2.0, 6.0], [4.0, 3.0])
+    """
+    x, xdot, t = start
+    first = launch(osc, x, xdot, t, horizon=horizon)
+    if np.ndim(first.status):
+        shape = np.shape(first.status)
+        raise InputError(f"x, xdot and t have shape {shape}: an orbit starts from one state, give three numbers")
+    begin = as_float(constant("t", t)), as_float(constant("xdot", xdot))
+    run = _Run(osc, begin, horizon, whole("impacts", impacts, 0, 10**7))
+    if run.most:
+        run.ended(first)
+    return replace(run.orbit(), height=as_float(subtract(constant("x", x), osc.clearance)))
 
 
 class _Run:
     """An orbit that is being flown: its events in blocks, its phases."""
 
-    def __init__(self, osc: Oscillator, states: States, horizon: Any, most: int) -> None:
-        self.osc, self.horizon, self.most, self.given = osc, horizon, most, states.given(0)
-        self.tau, self.v = float(states.tau[0]), float(states.v[0])
+    def __init__(self, osc: Oscillator, start: tuple[float, float], horizon: Any, most: int) -> None:
+        self.osc, self.horizon, self.most = osc, horizon, most
+        # the first state as it was written
+        self.given: tuple[Any, Any] = start
+        self.tau, self.v = start
         self.begun, self.flown, self.over = self.tau, 0, False
         # the time up to which x(t) is known
         self.known = self.tau
@@ -197,6 +223,14 @@ class _Run:
         self.short, self.more = False, 0
         # time of every lift-off, and how many blocks of events there were
         self.lifted: list[tuple[float, int]] = []
+
+    def orbit(self) -> Orbit:
+        """All flights that are left, and what came of them."""
+        while self.flown < self.most and not self.over:
+            self.advance()
+        times, velocities = np.concatenate(self.times), np.concatenate(self.velocities)
+        known = max(self.known, float(times[-1]))
+        return Orbit(self.osc, times, velocities, np.concatenate(self.kinds), self.phases, known)
 
     def advance(self) -> None:
         """At least one flight, or the end of a chatter."""
@@ -254,7 +288,10 @@ class _Run:
     def _mapped(self) -> None:
         """One flight by the impact map, which says what became of it."""
         given = self.given if len(self.times) == 1 else (self.tau, self.v)
-        step = impact_map(self.osc, *given, horizon=self.horizon)
+        self.ended(impact_map(self.osc, *given, horizon=self.horizon))
+
+    def ended(self, step: Step | Launched) -> None:
+        """The end of one flight."""
         self.flown, self.short = self.flown + 1, False
         match step.status:
             case Status.hit | Status.graze:

@@ -10,7 +10,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float
 from singimpact.flights.orbits import orbit_segment
-from singimpact.flights.path import along
+from singimpact.flights.path import along, dropped
 from singimpact.oscillator.model import Oscillator
 from singimpact.store import write_table
 
@@ -51,18 +51,21 @@ class Section:
         write_table(path, {"t": self.t.tolist(), "x": self.x.tolist(), "xdot": self.xdot.tolist()})
 
 
-def sampled(osc: Oscillator, events: tuple[Array, Array, Array], last: str, end: float, times: Array) -> Array:
+def sampled(
+    osc: Oscillator, events: tuple[Array, Array, Array], last: str, end: float, height: float, times: Array
+) -> Array:
     """x and x' at rising times, shape (n, 2); nan before the first event and after `end`.
 
     Parameters
     ----------
     osc : the model. events : tau, v and kind of every event. last : the kind of the phase after the last event.
+    height : x - c at the first event.
 
     Examples
     --------
     >>> osc = Oscillator("0", "-2", "0.5", "1/2")
     >>> events = np.array([0.0, 1.0]), np.array([1.0, 0.5]), np.array(["start", "impact"])
-    >>> sampled(osc, events, "", 1.0, np.array([0.5, 1.0, 1.5])).tolist()
+    >>> sampled(osc, events, "", 1.0, 0.0, np.array([0.5, 1.0, 1.5])).tolist()
     [[0.75, 0.0], [0.5, 0.5], [nan, nan]]
     """
     tau, v, kind = events
@@ -77,6 +80,10 @@ def sampled(osc: Oscillator, events: tuple[Array, Array, Array], last: str, end:
         inside = np.flatnonzero(known & (which == at))
         out[inside] = _in_chatter(osc, float(tau[at]), float(v[at]), times[inside], SETTINGS.slow * float(v.max()))
     flying = np.flatnonzero(known & flights[which])
+    if height > 0:
+        first = flying[which[flying] == 0]
+        out[first] = dropped(osc, (float(tau[0]), float(v[0]), height), times[first] - tau[0])
+        flying = flying[which[flying] > 0]
     launch = which[flying]
     out[flying] = along(osc, tau, v, launch, times[flying] - tau[launch])
     # rounding next to an impact would place the mass behind the obstacle

@@ -114,6 +114,34 @@ def along(osc: Oscillator, tau: Array, v: Array, which: Array, times: Array) -> 
     return out
 
 
+def dropped(osc: Oscillator, start: tuple[float, float, float], times: Array) -> Array:
+    """x - c and x' at rising times >= 0 after a start off the wall, shape (n, 2); the obstacle is not felt.
+
+    Parameters
+    ----------
+    start : t, x', x - c.
+
+    Examples
+    --------
+    >>> dropped(Oscillator("0", "-2", 0, 1), (0.0, 0.0, 4.0), np.array([1.0, 2.0])).tolist()
+    [[3.0, -2.0], [0.0, -4.0]]
+    """
+    tau, v, height = start
+    if linear_form(osc) is None:
+        model = compiled_model(osc)
+        return model.follow(float(model.near(np.array([tau]))[0]), v, times, height)
+    numbers = numbers_of(osc)[0]
+    found = many_paths(osc, np.array([tau]), np.array([v]), [times])[0]
+    # the free motion from (1, 0) is the derivative of the one from (0, 1), and d times that one
+    d, k = numbers[1], numbers[2]
+    root = np.sqrt(complex(d * d / 4 - k))
+    a, b = complex(-d / 2 + root), complex(-d / 2 - root)
+    with np.errstate(all="ignore"):
+        free = pair(a, b, times)
+        slope = turning(a, times) + b * free
+        return found + height * np.stack([slope.real + d * free.real, -k * free.real], axis=1)
+
+
 def turning(a: Any, t: Any) -> Array:
     """e^{a t}; the rounding of the angle is made good."""
     angle, rest = product_twice(np.imag(a), 0.0, t, 0.0)

@@ -76,7 +76,9 @@ def _curve(orbit: Orbit, end: float, style: OrbitStyle) -> tuple[Any, Any]:
         count = max(style.fewest, int(style.points * (stop - start) / (end - orbit.tau[0])))
         inside = np.linspace(0.0, stop - start, count)
         times += [start + inside, [np.nan]]
-        places += [path(orbit.oscillator, start, begin[start], inside).x, [np.nan]]
+        off_wall = orbit.height > 0 and start == orbit.tau[0]
+        flight = orbit.sample(start + inside) if off_wall else path(orbit.oscillator, start, begin[start], inside)
+        places += [flight.x, [np.nan]]
     return (np.concatenate(times), np.concatenate(places)) if times else ([], [])
 
 
