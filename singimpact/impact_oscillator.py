@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.path import Path
     from singimpact.flights.results import Derivative, Flight, Step
+    from singimpact.oscillator.shaken_wall import ShakenWall
     from singimpact.surface.classification import Classification
     from singimpact.surface.curve import Curve
     from singimpact.surface.transitions import Transitions
@@ -254,6 +255,23 @@ def universal(kappa: Any, restitution: Any) -> ImpactOscillator:
     if not compare(constant("kappa", kappa), 0):
         raise refuse("kappa", kappa, "a number other than 0")
     return ImpactOscillator("0", "12*kappa*(t**2 - 1)", 0, restitution, {"kappa": kappa})
+
+
+def shaken_wall(
+    f: Any, g: Any, wall: Any, restitution: Any, parameters: Mapping[str, Any] | None = None, period: Any = None
+) -> ShakenWall:
+    """x'' + f(x, x') = g(t), x >= wall(t), in the wall's frame: see `singimpact.oscillator.shaken_wall.shaken_wall`.
+
+    Examples
+    --------
+    >>> table = shaken_wall("0", "-9.81", "sin(7*t)/5", "1/2")  # a ball on a shaken table
+    >>> step = table.oscillator.impact_map(0.1, 1.0)
+    >>> [round(float(part), 9) for part in table.back(step.tau, 0, step.v)]
+    [-0.195800568, 1.20422441]
+    """
+    from singimpact.oscillator.shaken_wall import shaken_wall
+
+    return shaken_wall(f, g, wall, restitution, parameters, period, kind=ImpactOscillator)
 
 
 def read_model(path: str | FilePath) -> ImpactOscillator:
