@@ -436,15 +436,17 @@ def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: An
 
 def bifurcation(
     osc: Oscillator, over: str, between: Any, points: int = 300, *, start: Any = (0, "0.1"), impacts: int = 200,
-    kept: int = 60, **sweeping: Any,
+    kept: int = 60, direction: str | None = None, **sweeping: Any,
 ) -> Bifurcation:  # fmt: skip
     """Where orbits settle as a number of the model moves: the last events of one orbit for each value.
 
     Parameters
     ----------
-    osc : a model with a period. over : "clearance", "restitution" or a parameter. between : its ends.
-    points : values, evenly spaced. start : the first state (tau, v) of each orbit. impacts : flown for each value.
+    osc : a model with a period. over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or
+        "phase" (the model need not name them). between : its ends. points : values, evenly spaced.
+    start : the first state (tau, v) of each orbit. impacts : flown for each value.
     kept : events of the end of an orbit that are returned. sweeping : `executor` and `output` of `sweep`.
+    direction : "up", "down", "both": each orbit starts from the last state of the one before, so hysteresis shows.
 
     Returns
     -------
@@ -467,8 +469,10 @@ def bifurcation(
 
     for name in sweeping:
         if name not in ("executor", "output"):
-            raise unknown("argument of bifurcation", name, ["executor", "output", "start", "impacts", "kept"])
-    return bifurcation(osc, over, between, points, start, impacts, kept, **sweeping)
+            raise unknown(
+                "argument of bifurcation", name, ["executor", "output", "start", "impacts", "kept", "direction"]
+            )
+    return bifurcation(osc, over, between, points, start, impacts, kept, direction, **sweeping)
 
 
 def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classification:
