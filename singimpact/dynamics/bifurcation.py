@@ -127,7 +127,7 @@ def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tup
     last: Orbit | None = None
     for value in values.tolist():
         moved = model.replace(**{over: value})
-        last = orbit(moved, *start, flown[0]) if last is None else _continued(moved, last, flown[0])
+        last = orbit(moved, start[0], start[1], flown[0]) if last is None else _continued(moved, last, flown[0])
         rows.append(_last_events(last, *flown))
     return np.array(rows)
 

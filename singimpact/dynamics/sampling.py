@@ -46,6 +46,10 @@ class Section:
     def __repr__(self) -> str:
         return f"Section({self.t.size} states, one a period)"
 
+    def after(self, states: int) -> Section:
+        """The section without its first states, such as those of a transient."""
+        return Section(self.t[states:], self.x[states:], self.xdot[states:])
+
     def to_csv(self, path: Any) -> None:
         """Write t, x, xdot, a line a state. The file appears when it is complete."""
         write_table(path, {"t": self.t.tolist(), "x": self.x.tolist(), "xdot": self.xdot.tolist()})

@@ -9,6 +9,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float
 from singimpact.dynamics.orbit import Orbit
+from singimpact.dynamics.sampling import Section
 from singimpact.flights.path import path
 
 
@@ -20,7 +21,7 @@ class OrbitStyle:
     ----------
     points : points of a whole picture, shared out by length; a flight gets at least `fewest`.
     tail : how far a last flight without return, or a rest for ever, is drawn, as a part of what came before.
-    many : above this number of impacts their marks get small.
+    many : above this number of impacts, or of states of a section, their marks get small.
     """
 
     flight: str = "#0072B2"
@@ -51,6 +52,15 @@ def draw_orbit(orbit: Orbit, axes: Any, style: OrbitStyle = STYLE) -> Any:
     axes.set_ylim(clearance - 0.12 * (high - clearance), high)
     axes.axhspan(axes.get_ylim()[0], clearance, facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0, zorder=0)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize="small")
+    return axes
+
+
+def draw_section(section: Section, axes: Any, style: OrbitStyle = STYLE) -> Any:
+    """Draw the states of a section in the plane of x and x'."""
+    size = 4.0 if section.t.size <= style.many else 1.2
+    axes.plot(section.x, section.xdot, "o", color=style.flight, markersize=size, markeredgewidth=0, rasterized=True)
+    axes.set_xlabel("displacement $x$")
+    axes.set_ylabel("velocity $\\dot x$")
     return axes
 
 
