@@ -25,7 +25,7 @@ from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.state import Rules
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, has_table, horizon_of, recurrence_of
-from singimpact.flights.path import dropped
+from singimpact.flights.path import off_wall_places
 from singimpact.flights.rebound_law import rebound
 from singimpact.flights.states import States
 from singimpact.flights.undecided import Fates, escapes
@@ -172,8 +172,7 @@ class _Flown:
         escapes(self.osc, model, States(tau, u, tau.shape, (tau, u)), fates)
         hit = fates.status == Status.hit
         if has_table(self.osc):
-            for index in np.flatnonzero(hit).tolist():
-                self._place(rows, index, (float(tau[index]), float(u[index]), float(heights[at[index]])))
+            self._place(rows, (tau, u, heights[at]), hit)
         graze = fates.status == Status.graze
         self.status[at], self.cause[at] = fates.status, fates.cause
         gone = (fates.status == Status.no_return) | (fates.status == Status.escaped)
@@ -186,13 +185,16 @@ class _Flown:
             place = told if near else f"the flight came to {where(self.osc, tau[index], rows[:4, index])}"
             self.notes[int(at[index])] = place
 
-    def _place(self, rows: Array, index: int, start: tuple[float, float, float]) -> None:
-        """One Newton step of the closed form at a hit."""
-        time = rows[0, index]
-        z, u = dropped(self.osc, start, np.array([time]))[0]
-        if u < 0 and abs(z / u) <= SETTINGS.step * time:
-            rows[0, index] = time - z / u
-            rows[1, index] = dropped(self.osc, start, rows[:1, index])[0, 1]
+    def _place(self, rows: Array, starts: tuple[Array, Array, Array], hit: Array) -> None:
+        """One Newton step of the closed form at hits."""
+        tau, v, heights = (part[hit] for part in starts)
+        time = rows[0, hit]
+        z, u = off_wall_places(self.osc, tau, v, heights, time).T
+        with np.errstate(all="ignore"):
+            near = (u < 0) & (np.abs(z / u) <= SETTINGS.step * time)
+            time = np.where(near, time - z / u, time)
+        rows[0, hit] = time
+        rows[1, hit] = np.where(near, off_wall_places(self.osc, tau, v, heights, time)[:, 1], rows[1, hit])
 
     def _settle(self, fates: Fates, index: int, exact: list[Expression], limit: float) -> None:
         """A flight that doubles leave open near a graze, in many digits."""

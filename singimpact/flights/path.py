@@ -130,8 +130,14 @@ def dropped(osc: Oscillator, start: tuple[float, float, float], times: Array) ->
     if linear_form(osc) is None:
         model = compiled_model(osc)
         return model.follow(float(model.near(np.array([tau]))[0]), v, times, height)
+    one = np.ones(times.shape)
+    return off_wall_places(osc, tau * one, v * one, height * one, times)
+
+
+def off_wall_places(osc: Oscillator, tau: Array, v: Array, height: Array, times: Array) -> Array:
+    """x - c and x' of a linear model at times[i] after the start i off the wall, shape (n, 2)."""
     numbers = numbers_of(osc)[0]
-    found = many_paths(osc, np.array([tau]), np.array([v]), [times])[0]
+    found = places(forcing_phases(osc, tau), v, acceleration(osc, tau), times, numbers)
     # the free motion from (1, 0) is the derivative of the one from (0, 1), and d times that one
     d, k = numbers[1], numbers[2]
     root = np.sqrt(complex(d * d / 4 - k))
@@ -139,7 +145,7 @@ def dropped(osc: Oscillator, start: tuple[float, float, float], times: Array) ->
     with np.errstate(all="ignore"):
         free = pair(a, b, times)
         slope = turning(a, times) + b * free
-        return found + height * np.stack([slope.real + d * free.real, -k * free.real], axis=1)
+        return np.asarray(found + height[:, None] * np.stack([slope.real + d * free.real, -k * free.real], axis=1))
 
 
 def turning(a: Any, t: Any) -> Array:
