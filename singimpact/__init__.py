@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from singimpact.impact_oscillator import event_curve as event_curve
     from singimpact.impact_oscillator import grown_gamma as grown_gamma
     from singimpact.impact_oscillator import linear as linear
+    from singimpact.impact_oscillator import lyapunov as lyapunov
     from singimpact.impact_oscillator import read_model as read_model
+    from singimpact.impact_oscillator import shaken_wall as shaken_wall
     from singimpact.impact_oscillator import swan_points as swan_points
     from singimpact.impact_oscillator import sweep as sweep
     from singimpact.impact_oscillator import tangency_points as tangency_points
@@ -52,8 +54,10 @@ _HOMES = {
     "event_curve": "singimpact.impact_oscillator",
     "linear": "singimpact.impact_oscillator",
     "universal": "singimpact.impact_oscillator",
+    "lyapunov": "singimpact.impact_oscillator",
     "read_model": "singimpact.impact_oscillator",
     "tangency_points": "singimpact.impact_oscillator",
+    "shaken_wall": "singimpact.impact_oscillator",
     "swan_points": "singimpact.impact_oscillator",
     "sweep": "singimpact.impact_oscillator",
     "basins": "singimpact.impact_oscillator",

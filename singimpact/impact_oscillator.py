@@ -24,11 +24,14 @@ if TYPE_CHECKING:
     from singimpact.dynamics.basins import Basins
     from singimpact.dynamics.bifurcation import Bifurcation
     from singimpact.dynamics.chatter import ChatterLimit
+    from singimpact.dynamics.lyapunov import Lyapunov
     from singimpact.dynamics.orbit import Orbit
     from singimpact.dynamics.threshold import Threshold
+    from singimpact.flights.off_wall import Launched
     from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.path import Path
     from singimpact.flights.results import Derivative, Flight, Step
+    from singimpact.oscillator.shaken_wall import ShakenWall
     from singimpact.surface.classification import Classification
     from singimpact.surface.curve import Curve
     from singimpact.surface.transitions import Transitions
@@ -163,11 +166,33 @@ class ImpactOscillator(Oscillator):
 
         return periodic(self, n, k, start, digits=digits)
 
-    def orbit(self, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None) -> Orbit:
-        """Impacts, chatter and rest in order: see `singimpact.dynamics.orbit.orbit`."""
-        from singimpact.dynamics.orbit import orbit
+    def orbit(
+        self, tau: Any = None, v: Any = None, impacts: int = 200, *, horizon: Any = None, x: Any = None,
+        xdot: Any = None, t: Any = None,
+    ) -> Orbit:  # fmt: skip
+        """Impacts, chatter and rest in order, from (tau, v) or off the wall: see `singimpact.dynamics.orbit.orbit`."""
+        from singimpact.dynamics.orbit import dropped_orbit, orbit
 
-        return orbit(self, tau, v, impacts, horizon=horizon)
+        if x is xdot is t is None:
+            return orbit(self, tau, v, impacts, horizon=horizon)
+        if tau is not None or v is not None or x is None or xdot is None or t is None:
+            raise InputError(
+                "an orbit starts from tau and v, or off the wall from x=, xdot= and t=: give either, whole"
+            )
+        return dropped_orbit(self, (x, xdot, t), impacts, horizon=horizon)
+
+    def launch(self, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -> Launched:
+        """The first impact of flights that start off the wall: see `singimpact.flights.off_wall.launch`.
+
+        Examples
+        --------
+        >>> first = ImpactOscillator("0", "-9.81", "0.1", "0.9").launch(x=1, xdot=0, t=0)
+        >>> float(first.tau), float(first.v)
+        (0.4283529368781193, 3.7819280796969155)
+        """
+        from singimpact.flights.off_wall import launch
+
+        return launch(self, x, xdot, t, horizon=horizon)
 
     def to_toml(self) -> str:
         """The model as the text of a model file.
@@ -230,6 +255,23 @@ def universal(kappa: Any, restitution: Any) -> ImpactOscillator:
     if not compare(constant("kappa", kappa), 0):
         raise refuse("kappa", kappa, "a number other than 0")
     return ImpactOscillator("0", "12*kappa*(t**2 - 1)", 0, restitution, {"kappa": kappa})
+
+
+def shaken_wall(
+    f: Any, g: Any, wall: Any, restitution: Any, parameters: Mapping[str, Any] | None = None, period: Any = None
+) -> ShakenWall:
+    """x'' + f(x, x') = g(t), x >= wall(t), in the wall's frame: see `singimpact.oscillator.shaken_wall.shaken_wall`.
+
+    Examples
+    --------
+    >>> table = shaken_wall("0", "-9.81", "sin(7*t)/5", "1/2")  # a ball on a shaken table
+    >>> step = table.oscillator.impact_map(0.1, 1.0)
+    >>> [round(float(part), 9) for part in table.back(step.tau, 0, step.v)]
+    [-0.195800568, 1.20422441]
+    """
+    from singimpact.oscillator.shaken_wall import shaken_wall
+
+    return shaken_wall(f, g, wall, restitution, parameters, period, kind=ImpactOscillator)
 
 
 def read_model(path: str | FilePath) -> ImpactOscillator:
@@ -321,6 +363,20 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     return threshold(osc, tau, digits=digits, impacts=impacts)
 
 
+def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int = 0) -> Lyapunov:
+    """Both Lyapunov exponents of an orbit, with standard errors: see `singimpact.dynamics.lyapunov.lyapunov`.
+
+    Examples
+    --------
+    >>> lyapunov(linear("0.9", "0.2", "0.4"), "0.3", "0.4")
+    Lyapunov(superstable: the orbit comes to rest, 10 impacts)
+    """
+    from singimpact.dynamics.lyapunov import lyapunov
+
+    _require_model(osc)
+    return lyapunov(osc, tau, v, impacts, transient=transient)
+
+
 def branch(
     orbit: PeriodicOrbit, over: str = "clearance", between: Any = None, *, points: int = 2000, step: float | None = None
 ) -> Branch:
@@ -380,15 +436,17 @@ def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: An
 
 def bifurcation(
     osc: Oscillator, over: str, between: Any, points: int = 300, *, start: Any = (0, "0.1"), impacts: int = 200,
-    kept: int = 60, **sweeping: Any,
+    kept: int = 60, direction: str | None = None, **sweeping: Any,
 ) -> Bifurcation:  # fmt: skip
     """Where orbits settle as a number of the model moves: the last events of one orbit for each value.
 
     Parameters
     ----------
-    osc : a model with a period. over : "clearance", "restitution" or a parameter. between : its ends.
-    points : values, evenly spaced. start : the first state (tau, v) of each orbit. impacts : flown for each value.
+    osc : a model with a period. over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or
+        "phase" (the model need not name them). between : its ends. points : values, evenly spaced.
+    start : the first state (tau, v) of each orbit. impacts : flown for each value.
     kept : events of the end of an orbit that are returned. sweeping : `executor` and `output` of `sweep`.
+    direction : "up", "down", "both": each orbit starts from the last state of the one before, so hysteresis shows.
 
     Returns
     -------
@@ -411,8 +469,10 @@ def bifurcation(
 
     for name in sweeping:
         if name not in ("executor", "output"):
-            raise unknown("argument of bifurcation", name, ["executor", "output", "start", "impacts", "kept"])
-    return bifurcation(osc, over, between, points, start, impacts, kept, **sweeping)
+            raise unknown(
+                "argument of bifurcation", name, ["executor", "output", "start", "impacts", "kept", "direction"]
+            )
+    return bifurcation(osc, over, between, points, start, impacts, kept, direction, **sweeping)
 
 
 def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classification:

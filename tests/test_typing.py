@@ -34,6 +34,11 @@ print(si.basins(osc, size=4).classes, si.bifurcation(osc, "clearance", (0.2, 0.3
 print(si.classify(osc).points[0].name, si.transitions(osc, between=("0.9", "1.1")).complete)
 print(si.grown_gamma(osc)[0].points, si.explore(osc, steps=3).film.flights, si.sweep(abs, [1.0]).tolist())
 print(si.ImpactSurface(osc, (0, 3), (-3, 3)).horizon)
+found = osc.orbit(x=1.0, xdot=0, t=0)
+print(found.sample([0.1]).x, found.section("pi/4").xdot, found.end, osc.launch(1, [0.0, 1.0], 0).status)
+print(si.lyapunov(osc, 1.2, 0.1, impacts=10).exponents, si.lyapunov(osc, 1.2, 0.1).superstable)
+print(si.shaken_wall("0", "-9.81", "sin(7*t)/5", "1/2").back(0.1).xdot)
+print(si.bifurcation(osc, "damping", (0.2, 0.3), 2, direction="both").direction)
 print(osc.periodic(1, 1)[0].multipliers, osc.flight(1.2, 0.1, 0.05).x, osc.inverse_map(1.2, 0.1).tau)
 """
 

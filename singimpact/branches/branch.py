@@ -12,13 +12,13 @@ from singimpact.algebra.numbers import as_float, constant
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point, root_between
 from singimpact.branches.events import Event
-from singimpact.branches.numbers import with_number
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, orbit_period
 from singimpact.flights.family import CLEARANCE, RESTITUTION
 from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import with_number
 
 Array = np.ndarray[Any, Any]
 

@@ -14,11 +14,11 @@ from singimpact.branches.branch import SETTINGS, interval
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point, root_between
 from singimpact.branches.events import Event
-from singimpact.branches.numbers import with_number
 from singimpact.branches.solutions import AnyClosing, closing_of
 from singimpact.flights.family import CLEARANCE, RESTITUTION
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import with_number
 
 Array = np.ndarray[Any, Any]
 NUDGE = 1e-6

@@ -21,17 +21,20 @@ from singimpact.store import require_writable
 @click.option("--start", nargs=2, metavar="TAU V", default=("0", "0.1"), show_default=True, help="The first state.")
 @click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Flown for each.")
 @click.option("--kept", type=click.IntRange(1, 100_000), default=60, show_default=True, help="Of them, shown.")
+@click.option(
+    "--direction", type=click.Choice(["up", "down", "both"]), help="Carry the last state over, one value after another."
+)
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
 @click.option("--keep", metavar="FILE", help="Keep results there (.npz or .zarr) as they come, and resume from it.")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give phase, v and end of chatter for each value as JSON.")
 def command(
-    over: str, low: str, high: str, points: int, start: tuple[str, str], impacts: int, kept: int, workers: int | None,
-    keep: str | None, output: str, as_json: bool, **options: Any,
+    over: str, low: str, high: str, points: int, start: tuple[str, str], impacts: int, kept: int,
+    direction: str | None, workers: int | None, keep: str | None, output: str, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
     """The last impacts of an orbit for values of a number of the model, the clearance if no other is named.
 
-    A model named by options needs the option of the number that moves too.
+    amplitude, damping, stiffness and phase move without being named before.
     """
     suffix_of(output)
     require_writable(output)
@@ -42,8 +45,11 @@ def command(
     from singimpact.dynamics.bifurcation import bifurcation
     from singimpact.scenes.basins import draw_bifurcation
 
-    with nullcontext() if workers is None else WorkerPool(workers) as pool:
-        found = bifurcation(model, over, (low, high), points, start, impacts, kept, executor=pool, output=keep)
+    if direction is not None:
+        found = bifurcation(model, over, (low, high), points, start, impacts, kept, direction, output=keep)
+    else:
+        with nullcontext() if workers is None else WorkerPool(workers) as pool:
+            found = bifurcation(model, over, (low, high), points, start, impacts, kept, executor=pool, output=keep)
     save(draw_bifurcation(found).figure, output)
     if as_json:
         rows = zip(found.values.tolist(), found.events.tolist(), strict=True)

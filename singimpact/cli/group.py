@@ -19,6 +19,8 @@ COMMANDS = {
     "derive": "write the derivations as LaTeX, PDF, Markdown or JSON",
     "map": "fly from an impact to the next one",
     "orbit": "fly many impacts; -o draws x(t)",
+    "section": "the states of an orbit once a period; -o draws them",
+    "lyapunov": "both Lyapunov exponents of an orbit",
     "chatter": "when infinitely many impacts accumulate",
     "figure": "the paper's figures, from computed data",
     "scene": "draw the layers that a scene file names",

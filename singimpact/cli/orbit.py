@@ -29,7 +29,7 @@ def command(
 
     With -o FILE.png (or .pdf, .svg) the orbit is drawn. Numbers may be expressions such as pi/2.8.
     """
-    _check_ending(output, as_json)
+    check_ending(output, as_json)
     oscillator = take_model(options)
     orbit = oscillator.orbit(tau, v, impacts=impacts, horizon=horizon)
     if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
@@ -40,7 +40,7 @@ def command(
         emit(_table(orbit), output)
 
 
-def _check_ending(output: str | None, as_json: bool) -> None:
+def check_ending(output: str | None, as_json: bool) -> None:
     """A file's ending says what is in it: a table is not put under the name of a picture of another format."""
     known = (".json", "") if as_json else (*PICTURES, ".txt", "")
     if output is not None and Path(output).suffix.lower() not in known:
@@ -48,15 +48,15 @@ def _check_ending(output: str | None, as_json: bool) -> None:
         raise refuse("output", output, f"a file name ending in {what}")
 
 
-def draw(orbit: Any, output: str) -> None:
-    """The picture of an orbit, in the format its file name ends in."""
+def draw(thing: Any, output: str) -> None:
+    """The picture of an orbit or of a section, in the format its file name ends in."""
     import matplotlib
 
     matplotlib.use("Agg")
     from singimpact.scenes import plot
 
     with written(output) as draft:
-        plot(orbit).figure.savefig(draft, format=Path(output).suffix[1:].lower())
+        plot(thing).figure.savefig(draft, format=Path(output).suffix[1:].lower())
 
 
 def _name(kind: Any) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -13,9 +13,10 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
-from singimpact.dynamics.orbit import orbit
-from singimpact.inputs import refuse, unknown
+from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
+from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import with_number
 from singimpact.store import write_table
 from singimpact.surface.curve import window_ends
 
@@ -25,23 +26,39 @@ FEW = 200_000
 
 
 @dataclass(frozen=True)
+class CarrySettings:
+    """How the last state of an orbit is carried over."""
+
+    # periods after which a motion without impact is taken as settled
+    free: int = 200
+
+
+SETTINGS = CarrySettings()
+WAYS = {"up": ("up",), "down": ("down",), "both": ("up", "down")}
+
+
+@dataclass(frozen=True)
 class Bifurcation:
     """Events of settled orbits.
 
     Attributes
     ----------
-    over : the number that moves. values : of it. events : shape (values, kept, 3): phase, v, 1 where chatter ended; nan
-        where an orbit had fewer.
+    over : the number that moves. values : of it, in the order in which they were taken. events : shape (values, kept,
+        3): phase, v, 1 where chatter ended; nan where an orbit had fewer.
+    direction : "up", "down" or "both" where each orbit starts from the last state of the one before: with "both" the
+        values go up, then down. Empty where each starts from one state.
     """
 
     over: str
     values: Array
     events: Array
+    direction: str = ""
 
     def __repr__(self) -> str:
         count, kept = self.events.shape[:2]
-        low, high = self.values[[0, -1]].tolist()
-        return f"Bifurcation(over {self.over}: {count} values from {low:.6g} to {high:.6g}, {kept} events of each)"
+        ends = f"{self.values.min():.6g} to {self.values.max():.6g}"
+        carried = {"": "", "both": ", up and down"}.get(self.direction, f", {self.direction}")
+        return f"Bifurcation(over {self.over}: {count} values from {ends}{carried}, {kept} events of each)"
 
     def to_csv(self, path: Any) -> None:
         """Write value, phase, v and whether chatter ended there, a line an event."""
@@ -54,15 +71,17 @@ class Bifurcation:
 
 def bifurcation(
     model: Oscillator, over: str, between: Any, points: int = 300, start: Any = (0, "0.1"), impacts: int = 200,
-    kept: int = 60, **sweeping: Any,
+    kept: int = 60, direction: str | None = None, **sweeping: Any,
 ) -> Bifurcation:  # fmt: skip
     """The last events of an orbit for evenly spaced values of a number of the model.
 
     Parameters
     ----------
-    over : clearance, restitution or a parameter. between : its ends. points : values. start : the state (tau, v).
-    impacts : flown for each value. kept : events of the end that are shown. sweeping : `executor` and `output` of
-        `sweep`; without an executor a few values are flown here, which takes less time than to start processes.
+    over : clearance, restitution, a parameter, or another number that `with_number` puts in. between : its ends.
+    points : values. start : the state (tau, v). impacts : flown for each value. kept : events of its end.
+    direction : "up", "down" or "both": each orbit starts from the last state of the value before, in a row, so that a
+        branch is followed to where it ends. sweeping : `executor` and `output` of `sweep`, without a direction;
+        without an executor a few values are flown here, which takes less time than to start processes.
 
     Examples
     --------
@@ -75,8 +94,7 @@ def bifurcation(
     """
     if not isinstance(model, Oscillator):
         raise refuse("model", model, "an ImpactOscillator")
-    if over not in ("clearance", "restitution", *model.parameters):
-        raise unknown("number of the model", str(over), ["clearance", "restitution", *model.parameters])
+    model = with_number(model, over)
     if model.period is None:
         raise refuse("model", model, "one with a period: phases are shown")
     for name, value, least in (("points", points, 2), ("impacts", impacts, 1), ("kept", kept, 1)):
@@ -84,6 +102,13 @@ def bifurcation(
             raise refuse(name, value, f"a whole number from {least}")
     low, high = window_ends(over, between)
     values = np.linspace(low, high, points)
+    if direction is not None:
+        if direction not in WAYS:
+            raise refuse("direction", direction, "'up', 'down' or 'both'")
+        if any(value is not None for value in sweeping.values()):
+            raise refuse("direction", direction, "it without executor= and output=: its orbits are flown in a row")
+        values = np.concatenate([values[:: 1 if way == "up" else -1] for way in WAYS[direction]])
+        return Bifurcation(over, values, _carried(model, over, values, start, (impacts, kept)), direction)
     ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), impacts, kept)
     few = sweeping.get("executor") is None and points * impacts <= FEW
     with ThreadPool(1) if few else nullcontext(sweeping.get("executor")) as pool:
@@ -96,16 +121,46 @@ def settled(
 ) -> Array:
     """The last events of one orbit; a function of this module, so that another process can be sent it."""
     model = Oscillator(**fields).replace(**{over: value})
-    assert model.period is not None
-    flown = list(_events(model, start[0], start[1], impacts))
-    last = flown[max(impacts - kept, 0) :][-kept:] or flown[-1:]  # one that has come to rest for ever shows only that
-    events = np.array(last).reshape(-1, 3)
-    events[:, 0] = np.mod(events[:, 0], as_float(model.period))
-    return np.vstack([events, np.full((kept - len(events), 3), np.nan)])
+    return _last_events(orbit(model, start[0], start[1], impacts), impacts, kept)
 
 
-def _events(model: Oscillator, tau: Any, v: Any, impacts: int) -> Iterator[tuple[float, float, float]]:
-    """Impacts, grazes and ends of chatter (1 in the last column) of an orbit."""
-    found = orbit(model, tau, v, impacts)
+def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tuple[int, int]) -> Array:
+    """The last events of orbits each of which starts from the last state of the one before.
+
+    Parameters
+    ----------
+    flown : impacts of an orbit, and events of its end.
+    """
+    rows: list[Array] = []
+    last: Orbit | None = None
+    for value in values.tolist():
+        moved = model.replace(**{over: value})
+        last = orbit(moved, start[0], start[1], flown[0]) if last is None else _continued(moved, last, flown[0])
+        rows.append(_last_events(last, *flown))
+    return np.array(rows)
+
+
+def _continued(moved: Oscillator, last: Orbit, impacts: int) -> Orbit:
+    """The orbit of a model from the last state of another one; where the period moves, the phase is carried over."""
+    assert moved.period is not None and last.oscillator.period is not None  # noqa: PT018
+    period, before = as_float(moved.period), as_float(last.oscillator.period)
+    away = bool(last.phases) and last.phases[-1][0] == "no_return"
+    time = min(last.end, float(last.tau[-1]) + SETTINGS.free * before) if away else float(last.tau[-1])
+    tau = float(np.mod(time, before)) / before * period
+    if not away:
+        return orbit(moved, tau, float(last.v[-1]), impacts)
+    # off the wall: the motion without impact is carried on
+    place = last.sample(time)
+    x = max(float(place.x), as_float(moved.clearance))
+    return dropped_orbit(moved, (x, float(place.xdot), tau), impacts)
+
+
+def _last_events(found: Orbit, impacts: int, kept: int) -> Array:
+    """Impacts, grazes and ends of chatter (1 in the last column) of the end of an orbit, shape (kept, 3)."""
+    assert found.oscillator.period is not None
     shown = np.isin(found.kind, ("impact", "graze", "complete"))
-    yield from zip(found.tau[shown], found.v[shown], 1.0 * (found.kind[shown] == "complete"), strict=True)
+    flown = np.stack([found.tau, found.v, found.kind == "complete"], axis=1)[shown]
+    last = flown[max(impacts - kept, 0) :][-kept:]
+    events = last if len(last) else flown[-1:]  # one that has come to rest for ever shows only that
+    events[:, 0] = np.mod(events[:, 0], as_float(found.oscillator.period))
+    return np.vstack([events, np.full((kept - len(events), 3), np.nan)])

@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.expressions import subtract
+from singimpact.algebra.numbers import as_float, constant, float_array
 from singimpact.dynamics.chatter import ENDING, chatter_left, impacts_until
 from singimpact.dynamics.release import release
+from singimpact.dynamics.sampling import Section, sampled
 from singimpact.flights.impact_map import impact_map
+from singimpact.flights.limits import LIMITS
+from singimpact.flights.model_numbers import horizon_of
+from singimpact.flights.off_wall import Launched, launch
 from singimpact.flights.orbits import orbit_segment
+from singimpact.flights.path import Path
+from singimpact.flights.results import Step
 from singimpact.flights.states import States
-from singimpact.inputs import InputError, whole
+from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
+from singimpact.store import write_table
 
 EPSILON = 2.0**-52
 Array = np.ndarray[Any, Any]
@@ -33,9 +41,16 @@ class OrbitSettings:
 
 
 SETTINGS = OrbitSettings()
+ENDINGS = {
+    "": "all flights asked for were flown",
+    "sticking": "at rest from there on",
+    "no_return": "no impact follows",
+    "unresolved": "the next flight is not resolved",
+}
+"""What follows the last event, by the kind of the phase after it."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Orbit:
     """The states of an orbit just after its events.
 
@@ -47,6 +62,9 @@ class Orbit:
         of what was too short to fly), `release` (the mass at rest lifts off).
     phases : (kind, tau_start, tau_end), in order: `flight`, `chatter` (summed up), `sticking`; the last one may be
         `no_return`, `sticking` (tau_end inf) or `unresolved` (tau_end nan).
+    end : the time up to which x(t) is known: of the last event; the horizon of a flight that does not return, or inf
+        where it is proved never to; inf for a rest for ever.
+    height : x - c at the start; 0 but for an orbit that starts off the wall, whose first v is x' there.
     """
 
     oscillator: Oscillator
@@ -54,6 +72,84 @@ class Orbit:
     v: np.ndarray[Any, Any]
     kind: np.ndarray[Any, Any]
     phases: list[tuple[str, float, float]]
+    end: float
+    height: float = 0.0
+
+    def sample(self, t: Any) -> Path:
+        """x and x' at times, through flights, chatter and rest.
+
+        Parameters
+        ----------
+        t : times, any shape.
+
+        Returns
+        -------
+        Path : `.x`, `.xdot` of the shape of t; nan before the start and after `end`. At an impact x' is the velocity
+            just after it; at rest x is the clearance and x' is 0.
+
+        Notes
+        -----
+        The impacts of a chatter that was summed up are flown for the times asked, until their velocity is below a
+        rounding of the largest one of the orbit; from there on x is the clearance and x' is 0.
+
+        Examples
+        --------
+        >>> ball = orbit(Oscillator("0", "-2", 0, "1/2"), 0, 1)
+        >>> ball.sample([-1, 0.5, 1, 1.25, 3]).x.tolist()
+        [nan, 0.25, 0.0, 0.0625, 0.0]
+        """
+        times = float_array("t", t)
+        flat = times.ravel()
+        order = np.argsort(flat, kind="stable")
+        out = np.full((flat.size, 2), np.nan)
+        events = self.tau, self.v, self.kind
+        out[order] = sampled(self.oscillator, events, self._last_kind, self.end, self.height, flat[order])
+        return Path(out[:, 0].reshape(times.shape)[()], out[:, 1].reshape(times.shape)[()])
+
+    def section(self, phase: Any = 0) -> Section:
+        """The states once a period of the forcing, from the start to the last event.
+
+        Parameters
+        ----------
+        phase : the time after the start of each period, such as 0 or "pi/2.8".
+
+        Returns
+        -------
+        Section : `.t`, the times phase + k period; `.x`, `.xdot` there. `si.plot` draws it, `.to_csv(file)` writes it.
+
+        Raises
+        ------
+        InputError : the model has no period.
+
+        Examples
+        --------
+        >>> found = orbit(Oscillator("x", "cos(4*t)", 0, "1/2"), 0, 1, impacts=60).section("pi/8")
+        >>> found, bool(abs(found.x[-1] - found.x[-3]) < 1e-12)  # two periods an impact
+        (Section(120 states, one a period), True)
+        """
+        if self.oscillator.period is None:
+            raise refuse("model", self.oscillator, "one with a period: a section has one state a period")
+        period, first = as_float(self.oscillator.period), as_float(constant("phase", phase))
+        numbers = np.arange(np.ceil((self.tau[0] - first) / period), np.floor((self.tau[-1] - first) / period) + 1)
+        times = first + period * numbers
+        times = times[(times >= self.tau[0]) & (times <= self.tau[-1])]
+        return Section(times, *self.sample(times))
+
+    def to_csv(self, path: Any) -> None:
+        """Write the events, a line each: tau, v, kind. The file appears when it is complete."""
+        write_table(path, {"tau": self.tau.tolist(), "v": self.v.tolist(), "kind": self.kind.tolist()})
+
+    @property
+    def _last_kind(self) -> str:
+        """The kind of the phase after the last event; empty where there is none."""
+        return self.phases[-1][0] if len(self.phases) == self.tau.size else ""
+
+    def __repr__(self) -> str:
+        names = {"impact": "impacts", "graze": "grazes", "complete": "chatters that end", "release": "lift-offs"}
+        counts = {word: int(np.count_nonzero(self.kind == name)) for name, word in names.items()}
+        told = ", ".join(f"{count} {word}" for word, count in counts.items() if count or word == "impacts")
+        last = f"tau = {self.tau[-1]:.17g}, v = {self.v[-1]:.17g}; {ENDINGS[self._last_kind]}"
+        return f"Orbit from tau = {self.tau[0]:.9g} to {self.tau[-1]:.9g}: {told}\n  last state {last}"
 
 
 def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None) -> Orbit:
@@ -83,20 +179,43 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     states = States.read(tau, v)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
-    run = _Run(osc, states, horizon, whole("impacts", impacts, 0, 10**7))
-    while run.flown < run.most and not run.over:
-        run.advance()
-    times, velocities = np.concatenate(run.times), np.concatenate(run.velocities)
-    return Orbit(osc, times, velocities, np.concatenate(run.kinds), run.phases)
+    run = _Run(osc, (float(states.tau[0]), float(states.v[0])), horizon, whole("impacts", impacts, 0, 10**7))
+    run.given = states.given(0)
+    return run.orbit()
+
+
+def dropped_orbit(osc: Oscillator, start: tuple[Any, Any, Any], impacts: int = 200, *, horizon: Any = None) -> Orbit:
+    """The orbit of a start off the wall: (x, x', t), x at or above the clearance; the rest as for `orbit`.
+
+    Examples
+    --------
+    >>> ball = dropped_orbit(Oscillator("0", "-2", 0, "1/2"), (4, 0, 0))
+    >>> ball.kind.tolist(), ball.tau.tolist(), ball.sample([0, 1]).x.tolist()
+    (['start', 'impact', 'complete'], [0.0, 2.0, 6.0], [4.0, 3.0])
+    """
+    x, xdot, t = start
+    first = launch(osc, x, xdot, t, horizon=horizon)
+    if np.ndim(first.status):
+        shape = np.shape(first.status)
+        raise InputError(f"x, xdot and t have shape {shape}: an orbit starts from one state, give three numbers")
+    begin = as_float(constant("t", t)), as_float(constant("xdot", xdot))
+    run = _Run(osc, begin, horizon, whole("impacts", impacts, 0, 10**7))
+    if run.most:
+        run.ended(first)
+    return replace(run.orbit(), height=as_float(subtract(constant("x", x), osc.clearance)))
 
 
 class _Run:
     """An orbit that is being flown: its events in blocks, its phases."""
 
-    def __init__(self, osc: Oscillator, states: States, horizon: Any, most: int) -> None:
-        self.osc, self.horizon, self.most, self.given = osc, horizon, most, states.given(0)
-        self.tau, self.v = float(states.tau[0]), float(states.v[0])
+    def __init__(self, osc: Oscillator, start: tuple[float, float], horizon: Any, most: int) -> None:
+        self.osc, self.horizon, self.most = osc, horizon, most
+        # the first state as it was written
+        self.given: tuple[Any, Any] = start
+        self.tau, self.v = start
         self.begun, self.flown, self.over = self.tau, 0, False
+        # the time up to which x(t) is known
+        self.known = self.tau
         self.times, self.velocities = [np.array([self.tau])], [np.array([self.v])]
         self.kinds: list[Array] = [np.array(["start"], dtype="U8")]
         self.phases: list[tuple[str, float, float]] = []
@@ -104,6 +223,14 @@ class _Run:
         self.short, self.more = False, 0
         # time of every lift-off, and how many blocks of events there were
         self.lifted: list[tuple[float, int]] = []
+
+    def orbit(self) -> Orbit:
+        """All flights that are left, and what came of them."""
+        while self.flown < self.most and not self.over:
+            self.advance()
+        times, velocities = np.concatenate(self.times), np.concatenate(self.velocities)
+        known = max(self.known, float(times[-1]))
+        return Orbit(self.osc, times, velocities, np.concatenate(self.kinds), self.phases, known)
 
     def advance(self) -> None:
         """At least one flight, or the end of a chatter."""
@@ -161,7 +288,10 @@ class _Run:
     def _mapped(self) -> None:
         """One flight by the impact map, which says what became of it."""
         given = self.given if len(self.times) == 1 else (self.tau, self.v)
-        step = impact_map(self.osc, *given, horizon=self.horizon)
+        self.ended(impact_map(self.osc, *given, horizon=self.horizon))
+
+    def ended(self, step: Step | Launched) -> None:
+        """The end of one flight."""
         self.flown, self.short = self.flown + 1, False
         match step.status:
             case Status.hit | Status.graze:
@@ -171,6 +301,8 @@ class _Run:
                 self._rest()
             case Status.no_return | Status.escaped:
                 self._end("no_return", np.inf)
+                escaped = step.status == Status.escaped
+                self.known = np.inf if escaped else self.tau + horizon_of(self.osc, self.horizon)
             case _:
                 self._end("unresolved", np.nan)
 
@@ -178,6 +310,8 @@ class _Run:
         lifted = release(self.osc, self.tau)
         if not np.isfinite(lifted):
             self._end("sticking" if np.isinf(lifted) else "unresolved", lifted)
+            if np.isinf(lifted):
+                self.known = np.inf if self.osc.period is not None else self.tau + LIMITS.horizon_time
             return
         self._go("sticking", lifted, 0.0, "release")
         period = 0.0 if self.osc.period is None else as_float(self.osc.period)

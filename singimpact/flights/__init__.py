@@ -1,11 +1,12 @@
 """One flight: first hit F, impact map G, x and x' along the way; statuses, conditions, any number of digits.
 
-`impact_map` (F and G), `derivative` (D G), `inverse_map`, `path`, `orbits` (impacts in a row; many orbits) are asked by
-users; `states` are read once, `results` come back. `compiled_model` holds all that a model needs and is the one caller
-of the kernels: `kernels/` are plain modules, `bind` puts them over numbers, `machine` compiles and keeps them,
-`interpreted` runs them until then; `model_numbers`, `phase`, `limits` are what it is made from. `undecided` decides
-flights that end in no plain hit: `no_return/` proves that none returns, `closing` that one touches, `causes` says why
-one is open, `multiprecision`, `balls` and `short_balls` fly it with many digits; `in_digits` does so with all states.
+`impact_map` (F and G), `off_wall` (starts above the wall), `derivative` (D G), `inverse_map`, `path`, `orbits` (impacts
+in a row; many orbits) are asked by users; `states` are read once, `results` come back. `compiled_model` holds all that
+a model needs and is the one caller of the kernels: `kernels/` are plain modules, `bind` puts them over numbers,
+`machine` compiles and keeps them, `interpreted` runs them until then; `model_numbers`, `phase`, `limits` are what it is
+made from. `undecided` decides flights that end in no plain hit: `no_return/` proves that none returns, `closing` that
+one touches, `causes` says why one is open, `multiprecision`, `balls` and `short_balls` fly it with many digits;
+`in_digits` does so with all states.
 `response` and `rebound_law` are derivatives at a hit and what the impact makes of them; `counted` counts flights,
 `family` flies models with derivatives by their numbers, `blocks` cuts large arrays, `interruptible` makes long calls
 hear Ctrl-C.

@@ -391,6 +391,20 @@ class CompiledModel:
         self._call(entry, (entries.RELEASES, tau.size, 0), (tau, tau, orders), out, status)
         return status, out
 
+    def drops(self, tau: Array, v: Array, heights: Array) -> tuple[Array, Array]:
+        """Codes and flight time, velocity, depth and bound, shape (10, n), of starts off the wall; for Taylor flows."""
+        counted.add(tau.size)
+        status, out = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan)
+        entry = self._compiled("judge_entry", self.price * tau.size)
+        if entry is None:
+            try:
+                self.interpreter.drops(tau, v, heights, out, status)
+                return status, out
+            except LEFT_OPEN:
+                entry = self._here("judge_entry")
+        self._call(entry, (entries.DROPS, tau.size, 0), (tau, v, heights), out, status)
+        return status, out
+
     def segment(self, tau: float, v: float, count: int, near: float = 0.0) -> tuple[Array, int]:
         """Rows of the impacts of one orbit, see `kernels.orbits`, and the code of the flight that ended it."""
         out, status = np.empty((count, 11)), np.zeros(1, np.int8)
@@ -500,17 +514,22 @@ class CompiledModel:
         self._call(entry, (entries.VARIATIONS, tau.size, 0), (tau, v, times), out)
         return out
 
-    def follow(self, tau: float, v: float, times: Array) -> Array:
-        """x - c and x' at times that run away from 0 in one direction, shape (n, 2); for Taylor flows."""
+    def follow(self, tau: float, v: float, times: Array, height: float = 0.0) -> Array:
+        """x - c and x' at times that run away from 0 in one direction, shape (n, 2); for Taylor flows.
+
+        Parameters
+        ----------
+        height : x - c at the launch.
+        """
         out = np.full((times.size, 2), np.nan)
         entry = self._compiled("judge_entry", self.price)
         if entry is None:
             try:
-                self.interpreter.follow(tau, v, times, out)
+                self.interpreter.follow(tau, v, height, times, out)
                 return out
             except LEFT_OPEN:
                 entry = self._here("judge_entry")
-        given = np.array([tau]), np.array([v]), times
+        given = np.array([tau]), np.array([v, height]), times
         self._call(entry, (entries.FOLLOW, times.size, 0), given, out)
         return out
 

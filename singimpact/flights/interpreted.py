@@ -63,6 +63,10 @@ class Interpreter:
         """First hits of masses released at rest."""
         self._rows("releases", (tau, removed), out, status)
 
+    def drops(self, tau: Array, v: Array, heights: Array, out: Array, status: Array) -> None:
+        """First hits of flights that start off the wall."""
+        self._rows("drops", (tau, v, heights), out, status)
+
     def _rows(self, name: str, given: tuple[Array, ...], out: Array, status: Array) -> None:
         work, _ = self.work()
         rows, codes = np.full(out.shape, np.nan).tolist(), [0] * status.size
@@ -95,12 +99,12 @@ class Interpreter:
             self.space["taylor_variations"](*given, columns, rows)
         out[...] = rows
 
-    def follow(self, tau: float, v: float, times: Array, out: Array) -> None:
+    def follow(self, tau: float, v: float, height: float, times: Array, out: Array) -> None:
         """`follow` of a Taylor flow."""
         work, _ = self.work()
         t, t_low = self.space["reduced_twice"](tau, self.model.turn)
         self.space["placed"](t, t_low, self.model, work)
-        rows = out.tolist()
+        rows, work.flight.q[0] = out.tolist(), height
         self.space["follow"](work.launch, v, times.tolist(), self.model.numbers, self.model.rules, work.flight, rows)
         out[...] = rows
 

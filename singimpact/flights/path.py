@@ -12,6 +12,7 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float, float_array
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights import counted
+from singimpact.flights.blocks import BLOCKS
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.kernels.double_double import product_twice
 from singimpact.flights.model_numbers import forcing_phases, numbers_of
@@ -84,6 +85,67 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[Array]) -> lis
     model = compiled_model(osc)
     starts = model.near(np.asarray(tau, dtype=float))
     return [model.follow(start, speed, at) for start, speed, at in zip(starts.tolist(), v.tolist(), times, strict=True)]
+
+
+def along(osc: Oscillator, tau: Array, v: Array, which: Array, times: Array) -> Array:
+    """x - c and x' at times[i] >= 0 after the launch which[i] of many, shape (n, 2).
+
+    Parameters
+    ----------
+    osc : the model. tau, v : launches. which : indices of launches, in rising order; `times` rise within each launch.
+
+    Examples
+    --------
+    >>> along(Oscillator("0", "-2", 0, 1), np.zeros(2), np.array([3.0, 1.0]), np.array([0, 1]), np.ones(2)).tolist()
+    [[2.0, 1.0], [0.0, -1.0]]
+    """
+    used, at = np.unique(which, return_inverse=True)
+    launches, speeds = tau[used], v[used]
+    if linear_form(osc) is None:
+        cuts = np.flatnonzero(np.diff(at)) + 1
+        parts = many_paths(osc, launches, speeds, np.split(times, cuts) if times.size else [])
+        return np.concatenate([*parts, np.zeros((0, 2))])
+    counted.add(used.size)
+    phases, pushes, numbers = forcing_phases(osc, launches), acceleration(osc, launches), numbers_of(osc)[0]
+    out = np.empty((times.size, 2))
+    for begin in range(0, times.size, BLOCKS.states):
+        part = slice(begin, begin + BLOCKS.states)
+        out[part] = places(phases[at[part]], speeds[at[part]], pushes[at[part]], times[part], numbers)
+    return out
+
+
+def dropped(osc: Oscillator, start: tuple[float, float, float], times: Array) -> Array:
+    """x - c and x' at rising times >= 0 after a start off the wall, shape (n, 2); the obstacle is not felt.
+
+    Parameters
+    ----------
+    start : t, x', x - c.
+
+    Examples
+    --------
+    >>> dropped(Oscillator("0", "-2", 0, 1), (0.0, 0.0, 4.0), np.array([1.0, 2.0])).tolist()
+    [[3.0, -2.0], [0.0, -4.0]]
+    """
+    tau, v, height = start
+    if linear_form(osc) is None:
+        model = compiled_model(osc)
+        return model.follow(float(model.near(np.array([tau]))[0]), v, times, height)
+    one = np.ones(times.shape)
+    return off_wall_places(osc, tau * one, v * one, height * one, times)
+
+
+def off_wall_places(osc: Oscillator, tau: Array, v: Array, height: Array, times: Array) -> Array:
+    """x - c and x' of a linear model at times[i] after the start i off the wall, shape (n, 2)."""
+    numbers = numbers_of(osc)[0]
+    found = places(forcing_phases(osc, tau), v, acceleration(osc, tau), times, numbers)
+    # the free motion from (1, 0) is the derivative of the one from (0, 1), and d times that one
+    d, k = numbers[1], numbers[2]
+    root = np.sqrt(complex(d * d / 4 - k))
+    a, b = complex(-d / 2 + root), complex(-d / 2 - root)
+    with np.errstate(all="ignore"):
+        free = pair(a, b, times)
+        slope = turning(a, times) + b * free
+        return np.asarray(found + height[:, None] * np.stack([slope.real + d * free.real, -k * free.real], axis=1))
 
 
 def turning(a: Any, t: Any) -> Array:

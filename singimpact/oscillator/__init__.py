@@ -2,5 +2,6 @@
 
 Not here: points of the tau-axis (`contact`), motion (`flights`), a user's methods (`impact_oscillator`).
 Files: `model` (the data), `period` (of g), `rebound` (rho), `linear` (linear models), `acceleration` (a_c),
-`nearest_zero` (the zero of a_c that a double stands for), `files` (TOML), `equation` (the model in LaTeX).
+`nearest_zero` (the zero of a_c that a double stands for), `files` (TOML), `equation` (the model in LaTeX),
+`shaken_wall` (a wall that moves), `moving_number` (a number that a model does not name, put in).
 """

@@ -64,12 +64,17 @@ def draw_bifurcation(found: Bifurcation, axes: Any = None) -> Any:
     resting = ended == 1.0
     axes.plot(values[~resting], v[~resting], ",", color=BLACK, label="impacts", rasterized=True)
     axes.plot(values[~resting], v[~resting], "o", color=BLACK, markersize=0.7, markeredgewidth=0, rasterized=True)
+    if found.direction == "both":
+        back = np.arange(values.size) >= values.size // 2
+        down = back & ~resting
+        axes.plot(values[down], v[down], "o", color=BLUE, markersize=0.7, markeredgewidth=0, label="on the way down",
+                  rasterized=True)  # fmt: skip
     if resting.any():
         axes.plot(values[resting], v[resting], "|", color=VERMILLION, markersize=7, label="end of complete chatter",
                   clip_on=False, rasterized=True)  # fmt: skip
     axes.set_xlabel(LETTERS.get(found.over, found.over))
     axes.set_ylabel("velocity $v$ after an impact")
-    axes.set_xlim(found.values[0], found.values[-1])
+    axes.set_xlim(found.values.min(), found.values.max())
     axes.set_ylim(bottom=0)
     if not np.isfinite(v).any():
         axes.text(0.5, 0.5, "no orbit of this window has an impact", transform=axes.transAxes, ha="center")

@@ -8,9 +8,10 @@ from typing import Any
 from singimpact.dynamics.basins import Basins
 from singimpact.dynamics.bifurcation import Bifurcation
 from singimpact.dynamics.orbit import Orbit
+from singimpact.dynamics.sampling import Section
 from singimpact.inputs import refuse
 from singimpact.scenes.basins import draw_basins, draw_bifurcation
-from singimpact.scenes.orbit import draw_orbit
+from singimpact.scenes.orbit import draw_orbit, draw_section
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import PENS
 from singimpact.surface.curve import Curve
@@ -25,8 +26,8 @@ def plot(thing: Any, axes: Any = None) -> Any:
 
     Parameters
     ----------
-    thing : an orbit, a scene, basins, a bifurcation diagram, a curve or a list of curves of one plane, or an impact
-        surface, of which Z and H are drawn.
+    thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a curve or a list of curves of one
+        plane, or an impact surface, of which Z and H are drawn.
     axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does.
 
@@ -45,6 +46,8 @@ def plot(thing: Any, axes: Any = None) -> Any:
         return _curves(curves, _new_axes() if axes is None else axes)
     if isinstance(thing, Orbit):
         return draw_orbit(thing, _new_axes() if axes is None else axes)
+    if isinstance(thing, Section):
+        return draw_section(thing, _new_axes(HIGH) if axes is None else axes)
     if isinstance(thing, Bifurcation):
         return draw_bifurcation(thing, _new_axes() if axes is None else axes)
     if isinstance(thing, Basins):

@@ -9,6 +9,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float
 from singimpact.dynamics.orbit import Orbit
+from singimpact.dynamics.sampling import Section
 from singimpact.flights.path import path
 
 
@@ -20,7 +21,7 @@ class OrbitStyle:
     ----------
     points : points of a whole picture, shared out by length; a flight gets at least `fewest`.
     tail : how far a last flight without return, or a rest for ever, is drawn, as a part of what came before.
-    many : above this number of impacts their marks get small.
+    many : above this number of impacts, or of states of a section, their marks get small.
     """
 
     flight: str = "#0072B2"
@@ -54,6 +55,15 @@ def draw_orbit(orbit: Orbit, axes: Any, style: OrbitStyle = STYLE) -> Any:
     return axes
 
 
+def draw_section(section: Section, axes: Any, style: OrbitStyle = STYLE) -> Any:
+    """Draw the states of a section in the plane of x and x'."""
+    size = 4.0 if section.t.size <= style.many else 1.2
+    axes.plot(section.x, section.xdot, "o", color=style.flight, markersize=size, markeredgewidth=0, rasterized=True)
+    axes.set_xlabel("displacement $x$")
+    axes.set_ylabel("velocity $\\dot x$")
+    return axes
+
+
 def _end(orbit: Orbit, style: OrbitStyle) -> float:
     """The right edge: the last event, and a tail when something goes on after it."""
     first, last = float(orbit.tau[0]), float(orbit.tau[-1])
@@ -76,7 +86,9 @@ def _curve(orbit: Orbit, end: float, style: OrbitStyle) -> tuple[Any, Any]:
         count = max(style.fewest, int(style.points * (stop - start) / (end - orbit.tau[0])))
         inside = np.linspace(0.0, stop - start, count)
         times += [start + inside, [np.nan]]
-        places += [path(orbit.oscillator, start, begin[start], inside).x, [np.nan]]
+        off_wall = orbit.height > 0 and start == orbit.tau[0]
+        flight = orbit.sample(start + inside) if off_wall else path(orbit.oscillator, start, begin[start], inside)
+        places += [flight.x, [np.nan]]
     return (np.concatenate(times), np.concatenate(places)) if times else ([], [])
 
 

@@ -1,11 +1,11 @@
-"""`bench orbit`: what an impact costs in orbits of one state and in iterates of many, by restitution.
+"""`bench orbit`: what an impact costs in orbits and iterates, by restitution; samples of an orbit, its exponents.
 
 Every timed call has other states; the times of some impacts of the first call are judged by balls.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain as joined
@@ -14,17 +14,19 @@ from typing import Any
 import numpy as np
 
 from singimpact.bench.compiled import compiled
-from singimpact.bench.drawn import CHATTERING, RESTITUTIONS, Draws, States, counted
+from singimpact.bench.drawn import CHATTERING, CLEARANCES, RESTITUTIONS, Draws, States, counted
 from singimpact.bench.groups.impact_map import ACCURACY, HEYOKA, SCIPY, taylor_stepper
-from singimpact.bench.measuring import Aim, Case, Counted, Effort, Method, with_peers
+from singimpact.bench.measuring import NO_AIM, Aim, Case, Counted, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta
 from singimpact.bench.peers.impacts import chain
 from singimpact.bench.truth import drawn_flights
+from singimpact.impact_oscillator import lyapunov
 
 FIRST = (1, 2, 3, 4, 5)
 """Impacts of each orbit that are judged."""
 ITERATED = 30
-AIMS = {"linear": Aim(1.2), "duffing": Aim(8.0), CHATTERING: Aim(1.2)}
+AIMS = {"linear": Aim(1.2), "duffing": Aim(8.0), CHATTERING: Aim(1.2), "sample": Aim(5.0), "lyapunov": Aim(3.0),
+        "launch": Aim(60.0)}  # fmt: skip
 NAMES = {"linear": "linear", "duffing": "Duffing", CHATTERING: "linear, chatter again and again"}
 
 
@@ -39,6 +41,7 @@ def cases(effort: Effort) -> Iterator[Case]:
     for restitution in rates:
         yield _iterate("linear", restitution, effort)
     yield _iterate("duffing", 0.9, effort)
+    yield from _asked_of_orbits(effort)
 
 
 def _orbit(family: str, restitution: float, effort: Effort) -> Case:
@@ -86,6 +89,41 @@ def _iterate(family: str, restitution: float, effort: Effort) -> Case:
     judged = min(effort.judged // 10, 20) if family == "linear" else 1 if effort.quick else 2
     truth, kappas = drawn_flights.impacts(draw(states)(), judged, (ITERATED,))
     return Case(f"{NAMES[family]}, an impact of iterates, r = {restitution:g}", methods, truth, kappas, skipped)
+
+
+def _asked_of_orbits(effort: Effort) -> Iterator[Case]:
+    """x and x' of an orbit at times, Lyapunov exponents, and starts off the wall; only their time is measured."""
+    times, impacts, starts = (1000, 1000, 100) if effort.quick else (100_000, 1_000_000, 10_000)
+    draw = partial(Draws, "linear", "generic", restitution=0.9)
+    sample = partial(_sampled, times)
+    rows: list[tuple[str, str, str, Callable[..., Any], Draws, Aim]] = [
+        ("x and x' of an orbit of 1000 impacts, a time", "sample", f"{times} times", sample, draw(1), AIMS["sample"]),
+        ("Lyapunov exponents, linear, an impact", "lyapunov", f"{impacts} impacts", partial(_exponents, impacts),
+         draw(1), AIMS["lyapunov"]),
+        ("starts off the wall, linear, a start", "launch", counted(starts, "start"), _launched, draw(starts),
+         AIMS["launch"]),
+    ]  # fmt: skip
+    for name, method, setting, run, states, aim in rows:
+        yield Case(
+            name, [Method(f"singimpact, {method}", setting, run, draw=states, aim=NO_AIM if effort.quick else aim)]
+        )
+
+
+def _sampled(count: int, states: States) -> Counted:
+    """With the orbit, which is flown first."""
+    orbit = states.osc.orbit(float(states.tau[0]), float(states.v[0]), 1000)
+    found = orbit.sample(np.linspace(orbit.tau[0], orbit.tau[-1], count))
+    return Counted(count, found.x[:1].tolist())
+
+
+def _exponents(count: int, states: States) -> Counted:
+    found = lyapunov(states.osc, float(states.tau[0]), float(states.v[0]), count)
+    return Counted(count, found.exponents[:1].tolist())
+
+
+def _launched(states: States) -> Counted:
+    found = states.osc.launch(CLEARANCES["linear"] + states.v, -states.v, states.tau)
+    return Counted(states.tau.size, found.tau[:1].tolist())
 
 
 def _iterates(states: States) -> Counted:

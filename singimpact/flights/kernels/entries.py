@@ -42,10 +42,10 @@ from singimpact.flights.kernels.taylor import follow, taylor_flight
 from singimpact.flights.kernels.variational import derivatives_at, judge
 from singimpact.flights.kernels.waves import reduced_twice
 
-PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET, LIMIT = range(11)
+PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET, LIMIT, DROPS = range(12)
 """Kinds of work: fill the tables of a model, of its batches; first hits of many states; impacts of one orbit; the last
 states of many orbits; derivatives of x and x' at given times; x and x' along one flight; errors and conditions of hits
-of a Taylor flow; flights from rest; brackets of gamma; ends of chatter."""
+of a Taylor flow; flights from rest; brackets of gamma; ends of chatter; flights that start off the wall."""
 AT_REST = 40
 """The code of a state with v = 0 among `HITS`: it is not flown."""
 
@@ -167,6 +167,20 @@ def releases(tau: Any, removed: Any, model: Any, work: Any, out: Any, status: An
     return others
 
 
+def drops(tau: Any, v: Any, heights: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+    """First hits of flights in Taylor steps that start off the wall: x - c = heights > 0, x' = v of either sign."""
+    others, none = 0, model.rules.order - model.rules.order
+    for i in range(len(tau)):
+        t, t_low = reduced_twice(tau[i], model.turn)
+        placed(t, t_low, model, work)
+        work.flight.q[0] = heights[i]
+        status[i], out[0, i], out[1, i], out[2, i], out[3, i] = taylor_flight(
+            work.launch, v[i], none, nan, model.numbers, model.rules, work.flight, work.flight.W[:0]
+        )
+        others += 1 if status[i] != 0 else 0
+    return others
+
+
 def taylor_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
     """HITS, SEGMENT or ITERATE of a model flown in Taylor steps; as `linear_entry` and `batch_entry`."""
     count, kind = sizes[COUNT], sizes[KIND]
@@ -185,11 +199,12 @@ def taylor_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
 
 
 def judge_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
-    """FOLLOW, RELEASES, VARIATIONS or JUDGE of a model flown in Taylor steps.
+    """FOLLOW, RELEASES, DROPS, VARIATIONS or JUDGE of a model flown in Taylor steps.
 
     Parameters
     ----------
-    w : times; orders of the roots removed at a launch. sizes : IMPACTS are the rows of a trace, behind all scratch.
+    v : velocities; of FOLLOW a velocity and x - c at the start. w : times; orders of the roots removed at a launch; of
+        DROPS x - c at the start. sizes : IMPACTS are the rows of a trace, behind all scratch.
     """
     count, kind = sizes[COUNT], sizes[KIND]
     model, work = taylor_model(flat, sizes), scratch_of(scratch, sizes)
@@ -197,11 +212,15 @@ def judge_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, o
     if kind == FOLLOW:
         t, t_low = reduced_twice(tau[0], model.turn)
         placed(t, t_low, model, work)
+        work.flight.q[0] = v[1]
         follow(work.launch, v[0], given, model.numbers, model.rules, work.flight, block(out, 0, (count, 2)))
         return 0
     if kind == RELEASES:
         codes = block(status, 0, (count,))
         return releases(states, given, model, work, block(out, 0, (10, count)), codes)
+    if kind == DROPS:
+        codes = block(status, 0, (count,))
+        return drops(states, speeds, given, model, work, block(out, 0, (10, count)), codes)
     columns = columns_of(scratch, sizes)
     if kind == VARIATIONS:
         return taylor_variations(states, speeds, given, model, work, columns, block(out, 0, (count, 4)))

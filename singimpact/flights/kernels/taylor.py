@@ -20,12 +20,13 @@ from singimpact.flights.kernels.roots import first_root
 def taylor_flight(
     launch: Any, v: Any, removed: int, acceleration: Any, p: Any, rules: Any, work: Any, trace: Any
 ) -> Any:  # fmt: skip
-    """(status, flight time, velocity, depth, bound) of the flight from x = c with velocity v.
+    """(status, flight time, velocity, depth, bound) of the flight from x = c, or from above, with velocity v.
 
     Parameters
     ----------
     launch : cosine and sine of every wave, or the time of the launch. v : velocity >= 0.
-    removed : how often t = 0 is a root of x - c: 1 for v > 0, more for a mass that lifts off at rest.
+    removed : how often t = 0 is a root of x - c: 1 for v > 0, more for a mass that lifts off at rest; 0 for a start off
+        the wall with any v, whose x - c is work.q[0]. Closed forms restart from the wall: not for linear models.
     acceleration : a_c at the launch when it is known better than the flow computes it, else nan.
     p : numbers of the model. rules : `state.Rules`. work : `state.Work`.
     trace : where its rows suffice, row i becomes time, x - c, x' at the start of step i and x'' there by the polynomial
@@ -34,6 +35,8 @@ def taylor_flight(
     X, W, q, order, ulp, horizon = work.X, work.W, work.q, rules.order, rules.ulp, rules.horizon
     zero = 0 * v
     time, z, u, noise, shift, z_lost, u_lost = zero, zero, v, zero, zero, zero, zero
+    if removed == 0:
+        z = q[0]
     if acceleration == acceleration:
         coefficients(launch, time, z, zero, zero, order - order + 2, p, work)  # a literal 2 is compiled for itself
         shift = acceleration / 2 - X[2]
@@ -119,10 +122,10 @@ def curvature(X: Any, n: int, s: Any) -> Any:
 
 
 def follow(launch: Any, v: Any, times: Any, p: Any, rules: Any, work: Any, out: Any) -> None:
-    """x - c and x' at `times`, which run away from 0 in one direction; the obstacle is not felt."""
+    """x - c and x' at `times`, which run away from 0 in one direction, from x - c = work.q[0]; no obstacle is felt."""
     X, W, order, ulp = work.X, work.W, rules.order, rules.ulp
     zero = 0 * v
-    time, z, u = zero, zero, v
+    time, z, u = zero, work.q[0], v
     longest, pace = p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0)
     i = 0
     while i < len(times):

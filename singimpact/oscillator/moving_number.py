@@ -1,14 +1,14 @@
-"""Numbers of a model that a branch can move, also those that the model does not name."""
+"""Numbers of a model that can move, also those that the model does not name."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from singimpact.algebra.expressions import Name, add, multiply, names_in, number
-from singimpact.flights.family import CLEARANCE, RESTITUTION
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
 
+CLEARANCE, RESTITUTION = "clearance", "restitution"
 LINEAR = {"amplitude": 1, "damping": 0, "stiffness": 1, "phase": 0}
 """Numbers of `si.linear` that a model leaves out at these values."""
 

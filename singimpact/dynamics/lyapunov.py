@@ -1,0 +1,260 @@
+"""Lyapunov exponents of an orbit of the impact map, from D G along it.
+
+    det D G = -rho'(u) (v/|u|) exp(-int f_v dt) = r^2 (v/v') exp(-int f_v dt)   for rho = -r u
+
+so both exponents together are the mean rate at which areas shrink. D G comes with the flights of linear models and
+from the variational equation of others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import compare
+from singimpact.dynamics.chatter import ENDING, chatter_limit
+from singimpact.dynamics.release import release
+from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.derivative import derivative
+from singimpact.flights.impact_map import impact_map
+from singimpact.flights.orbits import Segment, orbit_segment
+from singimpact.flights.rebound_law import rebound_slope
+from singimpact.flights.states import States
+from singimpact.inputs import InputError, whole
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class LyapunovSettings:
+    """How growth along an orbit is summed."""
+
+    # impacts of one call into compiled code; their slopes take 6 MB
+    block: int = 65_536
+    # stretches of one block whose products are formed side by side
+    stretches: int = 256
+    # groups of stretches whose spread gives the standard error
+    groups: int = 32
+    # times an orbit comes to rest before its exponent is called -inf: the first may belong to the way there
+    rests: int = 2
+
+
+SETTINGS = LyapunovSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class Lyapunov:
+    """Both Lyapunov exponents of an orbit.
+
+    Parameters
+    ----------
+    exponents : per unit of time, the larger first, shape (2,); -inf where the orbit comes to rest again and again, for
+        what follows a rest does not depend on what was before; nan where no impact was flown.
+    error : standard errors of `exponents`, from the spread of groups of impacts; nan with fewer than two groups.
+    impacts, time : how many impacts the exponents are taken over, and how long they last.
+    start, last : the states (tau, v) before and after these impacts.
+    status : `hit` where all impacts were flown, `sticks` of an orbit that comes to rest, else the status of the flight
+        that ended the orbit. The exponents are those of the impacts before it.
+    superstable : whether the orbit comes to rest again and again, or for ever.
+    """
+
+    exponents: Array
+    error: Array
+    impacts: int
+    time: float
+    start: tuple[float, float]
+    last: tuple[float, float]
+    status: Any
+    superstable: bool
+
+    @property
+    def per_impact(self) -> Array:
+        """The exponents per impact."""
+        return self.exponents * (self.time / self.impacts if self.impacts else 1.0)
+
+    def __repr__(self) -> str:
+        if self.superstable:
+            return f"Lyapunov(superstable: the orbit comes to rest, {self.impacts} impacts)"
+        each = ", ".join(f"{value:.6g} +- {error:.2g}" for value, error in zip(self.exponents, self.error, strict=True))
+        ended = "" if self.status == Status.hit else f", ended by {Status(int(self.status)).name}"
+        return f"Lyapunov({each} per unit of time, {self.impacts} impacts{ended})"
+
+
+def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int = 0) -> Lyapunov:
+    """The Lyapunov exponents of the orbit of a state.
+
+    Parameters
+    ----------
+    osc : the model. tau, v : the state, v >= 0. impacts : flown, with D G, after `transient` others.
+
+    Returns
+    -------
+    Lyapunov : `.exponents` per unit of time, `.per_impact`, `.error`, `.status`, `.superstable`.
+
+    Notes
+    -----
+    After a rest the sums begin anew at the lift-off. The exponents are those of the flow in x, x' and the phase,
+    without the one that is 0.
+
+    Examples
+    --------
+    >>> found = lyapunov(Oscillator("x", "cos(4*t)", 0, "1/2"), 0, 1, 1000, transient=100)
+    >>> found.exponents.round(6).tolist()  # ln(1/2) an impact, every two periods
+    [-0.220636, -0.220636]
+    """
+    states = States.read(tau, v)
+    if states.shape:
+        raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
+    flown, before = whole("impacts", impacts, 1, 10**8), whole("transient", transient, 0, 10**8)
+    run = _Run(osc, states)
+    run.fly(before, keep=False)
+    run.begin()
+    run.fly(flown, keep=True)
+    return run.result()
+
+
+@dataclass
+class _Sums:
+    """Growth over stretches of impacts: impacts, time, ln of the first diagonal entry of R, ln |det|."""
+
+    direction: Array = field(default_factory=lambda: np.array([1.0, 0.0]))
+    rows: list[Array] = field(default_factory=list)
+
+    def add(self, matrices: Array, times: Array) -> None:
+        """D G of impacts, shape (n, 2, 2), and their flight times."""
+        n = times.size
+        length = -(-n // SETTINGS.stretches)
+        count = -(-n // length)
+        padded = np.broadcast_to(np.eye(2), (count * length, 2, 2)).copy()
+        padded[:n] = matrices
+        # entry by entry, a row of stretches each: products of 2 x 2 matrices as sums of arrays
+        a, b, c, d = (np.ascontiguousarray(padded[:, i, j].reshape(count, length).T) for i in (0, 1) for j in (0, 1))
+        with np.errstate(divide="ignore"):
+            areas = np.log(np.abs(a * d - b * c)).sum(axis=0)
+        p, q, r, s, size = np.ones(count), np.zeros(count), np.zeros(count), np.ones(count), np.zeros(count)
+        for k in range(length):
+            p, q, r, s = a[k] * p + b[k] * r, a[k] * q + b[k] * s, c[k] * p + d[k] * r, c[k] * q + d[k] * s
+            scale = np.sqrt(p * p + q * q + r * r + s * s)
+            p, q, r, s = p / scale, q / scale, r / scale, s / scale
+            size += np.log(scale)
+        starts = np.arange(0, n, length)
+        lasting = np.add.reduceat(times, starts)
+        for k, product in enumerate(np.stack([p, q, r, s], axis=1).reshape(-1, 2, 2)):
+            moved = product @ self.direction
+            length_of = float(np.hypot(*moved))
+            self.direction = moved / length_of
+            row = min(length, n - starts[k]), lasting[k], size[k] + np.log(length_of), areas[k]
+            self.rows.append(np.array(row))
+
+
+class _Run:
+    """An orbit that is being flown, and the growth along it."""
+
+    def __init__(self, osc: Oscillator, states: States) -> None:
+        self.osc, self.given = osc, states.given(0)
+        self.tau, self.v = float(states.tau[0]), float(states.v[0])
+        self.first, self.rests, self.status = True, 0, Status.hit
+        self.near = 0.0 if compare(osc.slope_at_rest(), 1) == 0 else ENDING.near
+        self.begin()
+
+    def begin(self) -> None:
+        """Sums from the present state on."""
+        self.sums, self.start, self.flown = _Sums(), (self.tau, self.v), 0
+
+    def fly(self, most: int, keep: bool) -> None:
+        """So many impacts, fewer where the orbit ends or is seen to come to rest again and again."""
+        done, near, block = 0, self.near, SETTINGS.block
+        while done < most and self.status == Status.hit:
+            if not self.v > 0:
+                done += self._mapped(keep)
+                continue
+            found = orbit_segment(self.osc, self.tau, self.v, min(most - done, block), near)
+            done += self._flew(found, keep)
+            near, block = self.near, SETTINGS.block
+            if done == most:
+                return
+            if found.short:
+                end = chatter_limit(self.osc, self.tau, self.v)
+                if end.status == Status.complete:
+                    self._rest(float(end.tau))
+                else:  # contact is lost before the impacts accumulate: they are flown
+                    near, block = 0.0, int(end.impacts) + 1
+            elif found.status:
+                done += self._mapped(keep)
+
+    def _flew(self, found: Segment, keep: bool) -> int:
+        count = found.tau.size
+        if not count:
+            return 0
+        launches = np.append(self.tau, found.tau[:-1]), np.append(self.v, found.v[:-1])
+        self.tau, self.v, self.first = float(found.tau[-1]), float(found.v[-1]), False
+        if not keep:
+            return count
+        self.sums.add(_matrices(self.osc, found, *launches), found.flight_time)
+        self.flown += count
+        return count
+
+    def _mapped(self, keep: bool) -> int:
+        """One flight by the impact map, which decides what an orbit leaves open: a rest, a flight near a graze."""
+        given = self.given if self.first else (self.tau, self.v)
+        step = impact_map(self.osc, *given)
+        self.first = False
+        if step.status == Status.sticks:
+            self._rest(self.tau)
+            return 0
+        self.status = Status(int(step.status))
+        if self.status != Status.hit:
+            return 1
+        rest, before = self.v == 0, (self.tau, self.v)
+        self.tau, self.v = float(step.tau), float(step.v)
+        if rest:  # the impact after a lift-off does not depend on the orbit before: the sums begin there
+            self.begin()
+        elif keep:
+            self.sums.add(derivative(self.osc, *before).matrix[None], np.array([float(step.flight_time)]))
+            self.flown += 1
+        return 1
+
+    def _rest(self, at: float) -> None:
+        self.rests += 1
+        lifted = release(self.osc, at)
+        if not np.isfinite(lifted) or self.rests >= SETTINGS.rests:
+            self.status = Status.unresolved if np.isnan(lifted) else Status.sticks
+        self.tau, self.v = (lifted if np.isfinite(lifted) else at), 0.0
+        self.first = False
+
+    def result(self) -> Lyapunov:
+        superstable = self.status == Status.sticks
+        time, last = self.tau - self.start[0], (self.tau, self.v)
+        nothing = np.full(2, -np.inf if superstable else np.nan)
+        exponents, error = nothing, np.full(2, 0.0 if superstable else np.nan)
+        if self.sums.rows and not superstable:
+            exponents, error = _exponents(np.array(self.sums.rows), time)
+        return Lyapunov(exponents, error, self.flown, time, self.start, last, np.int8(self.status), superstable)
+
+
+def _matrices(osc: Oscillator, found: Segment, tau: Array, v: Array) -> Array:
+    """D G of the impacts of a segment, shape (n, 2, 2)."""
+    if not compiled_model(osc).linear:
+        return np.asarray(derivative(osc, tau, v).matrix)
+    slope = rebound_slope(osc, found.velocity)
+    by_tau, by_v, speed_by_tau, speed_by_v = found.slopes
+    return np.stack([1 + by_tau, by_v, slope * speed_by_tau, slope * speed_by_v], axis=-1).reshape(-1, 2, 2)
+
+
+def _exponents(rows: Array, time: float) -> tuple[Array, Array]:
+    """Exponents per unit of time and their standard errors, by groups of stretches of equal number."""
+    groups = min(SETTINGS.groups, len(rows))
+    parts = np.array([part.sum(axis=0) for part in np.array_split(rows, groups)])
+    growth = np.stack([parts[:, 2], parts[:, 3] - parts[:, 2]], axis=1)
+    found = growth.sum(axis=0) / time
+    error = np.full(2, np.nan)
+    if groups > 1:
+        # of a ratio of sums: what the growth of a group differs by from its time at the mean rate
+        off = growth - np.outer(parts[:, 1], found)
+        error = np.sqrt((off**2).sum(axis=0) * groups / (groups - 1)) / time
+    order = np.argsort(-found, kind="stable")
+    return found[order], error[order]

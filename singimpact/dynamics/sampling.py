@@ -1,0 +1,113 @@
+"""x and x' of an orbit at given times: within flights, in chatter that was summed up, at rest; its sections."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, log
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.flights.orbits import orbit_segment
+from singimpact.flights.path import along, dropped
+from singimpact.oscillator.model import Oscillator
+from singimpact.store import write_table
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class SamplingSettings:
+    """How chatter that was summed up is flown for the times asked."""
+
+    # velocities below this part of the largest of the orbit are 0: heights are then below its square
+    slow: float = 2.0**-52
+    # impacts of one call into compiled code
+    block: int = 4096
+
+
+SETTINGS = SamplingSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """States of an orbit once a period.
+
+    Parameters
+    ----------
+    t : times, one a period. x, xdot : the state at each.
+    """
+
+    t: Array
+    x: Array
+    xdot: Array
+
+    def __repr__(self) -> str:
+        return f"Section({self.t.size} states, one a period)"
+
+    def after(self, states: int) -> Section:
+        """The section without its first states, such as those of a transient."""
+        return Section(self.t[states:], self.x[states:], self.xdot[states:])
+
+    def to_csv(self, path: Any) -> None:
+        """Write t, x, xdot, a line a state. The file appears when it is complete."""
+        write_table(path, {"t": self.t.tolist(), "x": self.x.tolist(), "xdot": self.xdot.tolist()})
+
+
+def sampled(
+    osc: Oscillator, events: tuple[Array, Array, Array], last: str, end: float, height: float, times: Array
+) -> Array:
+    """x and x' at rising times, shape (n, 2); nan before the first event and after `end`.
+
+    Parameters
+    ----------
+    osc : the model. events : tau, v and kind of every event. last : the kind of the phase after the last event.
+    height : x - c at the first event.
+
+    Examples
+    --------
+    >>> osc = Oscillator("0", "-2", "0.5", "1/2")
+    >>> events = np.array([0.0, 1.0]), np.array([1.0, 0.5]), np.array(["start", "impact"])
+    >>> sampled(osc, events, "", 1.0, 0.0, np.array([0.5, 1.0, 1.5])).tolist()
+    [[0.75, 0.0], [0.5, 0.5], [nan, nan]]
+    """
+    tau, v, kind = events
+    out = np.full((times.size, 2), np.nan)
+    which = np.searchsorted(tau, times, side="right") - 1
+    known = (which >= 0) & (times <= end)
+    # a phase ends in the event after it; the last event itself is a state, of which a flight of no time is sampled
+    flights = np.append((kind[1:] == "impact") | (kind[1:] == "graze"), last in ("", "no_return", "unresolved"))
+    sums = np.append(kind[1:] == "complete", False)
+    out[known] = 0.0
+    for at in np.unique(which[known & sums[which]]).tolist():
+        inside = np.flatnonzero(known & (which == at))
+        out[inside] = _in_chatter(osc, float(tau[at]), float(v[at]), times[inside], SETTINGS.slow * float(v.max()))
+    flying = np.flatnonzero(known & flights[which])
+    if height > 0:
+        first = flying[which[flying] == 0]
+        out[first] = dropped(osc, (float(tau[0]), float(v[0]), height), times[first] - tau[0])
+        flying = flying[which[flying] > 0]
+    launch = which[flying]
+    out[flying] = along(osc, tau, v, launch, times[flying] - tau[launch])
+    # rounding next to an impact would place the mass behind the obstacle
+    out[:, 0] = np.maximum(out[:, 0], 0.0) + as_float(osc.clearance)
+    return out
+
+
+def _in_chatter(osc: Oscillator, tau: float, v: float, times: Array, slow: float) -> Array:
+    """x - c and x' at rising times after a state whose impacts accumulate."""
+    out, done = np.zeros((times.size, 2)), 0
+    rate = -log(as_float(osc.slope_at_rest()))
+    while done < times.size and v > slow:
+        count = min(SETTINGS.block, ceil(log(v / slow) / rate) + 1)
+        found = orbit_segment(osc, tau, v, count)
+        starts, speeds = np.append(tau, found.tau), np.append(v, found.v)
+        inside = np.arange(done, np.searchsorted(times, starts[-1]))
+        launch = np.searchsorted(starts, times[inside], side="right") - 1
+        out[inside] = along(osc, starts, speeds, launch, times[inside] - starts[launch])
+        done += inside.size
+        if found.status or not starts[-1] > tau:  # doubles do not tell the impacts left apart
+            break
+        tau, v = float(starts[-1]), float(speeds[-1])
+    return out
