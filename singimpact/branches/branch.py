@@ -19,6 +19,7 @@ from singimpact.flights.family import CLEARANCE, RESTITUTION
 from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.store import write_text
 
 Array = np.ndarray[Any, Any]
 
@@ -79,10 +80,8 @@ class Branch:
         at = np.concatenate([self.tau[index], self.v[index], self.parameter[index : index + 1 or None][:1]])
         return orbit_of(closing, at)
 
-    def to_csv(self, file: str | Path) -> None:
-        """Write a line a point: the number, the states, multipliers, stable and visible."""
-        from singimpact.store import written
-
+    def csv_lines(self) -> list[str]:
+        """The names of the columns, then a line a point: the number, the states, multipliers, stable and visible."""
         names = [self.over, *(f"{name}_{i + 1}" for name in ("tau", "v") for i in range(self.tau.shape[1]))]
         names += ["multiplier_1_re", "multiplier_1_im", "multiplier_2_re", "multiplier_2_im", "stable", "visible"]
         lines = [",".join(names)]
@@ -91,8 +90,11 @@ class Branch:
             numbers += [part for each in self.multipliers[i] for part in (np.real(each), np.imag(each))]
             flags = [str(int(self.stable[i])), str(int(self.visible[i]))]
             lines.append(",".join([*(repr(float(each)) for each in numbers), *flags]))
-        with written(file) as draft:
-            draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return lines
+
+    def to_csv(self, file: str | Path) -> None:
+        """Write `csv_lines` to a file, which is whole or absent."""
+        write_text(file, "\n".join(self.csv_lines()) + "\n")
 
     def __repr__(self) -> str:
         low, high = (float(end) for end in (self.parameter.min(), self.parameter.max()))
@@ -284,7 +286,10 @@ class _Walk:
         ends = past(0.0), float(after.at[-1] - goal)
         if ends[0] == 0:
             return None
-        part = root_between(past, 0.0, length, ends)
+        try:
+            part = root_between(past, 0.0, length, ends)
+        except ArithmeticError:
+            return None
         found = curve.beyond(here, part)
         if found is None:
             return None

@@ -19,6 +19,7 @@ from singimpact.branches.solutions import AnyClosing, closing_of
 from singimpact.flights.family import CLEARANCE, RESTITUTION
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
+from singimpact.store import write_text
 
 Array = np.ndarray[Any, Any]
 NUDGE = 1e-6
@@ -66,17 +67,18 @@ class EventCurve:
     def __len__(self) -> int:
         return len(self.parameters)
 
-    def to_csv(self, file: str | Path) -> None:
-        """Write a line a point: the two numbers, the states, visible."""
-        from singimpact.store import written
-
+    def csv_lines(self) -> list[str]:
+        """The names of the columns, then a line a point: the two numbers, the states, visible."""
         names = [*self.over, *(f"{name}_{i + 1}" for name in ("tau", "v") for i in range(self.tau.shape[1])), "visible"]
         rows = zip(self.parameters, self.tau, self.v, self.visible, strict=True)
         lines = [
             ",".join([*(repr(float(each)) for part in row[:3] for each in part), str(int(row[3]))]) for row in rows
         ]
-        with written(file) as draft:
-            draft.write_text("\n".join([",".join(names), *lines]) + "\n", encoding="utf-8")
+        return [",".join(names), *lines]
+
+    def to_csv(self, file: str | Path) -> None:
+        """Write `csv_lines` to a file, which is whole or absent."""
+        write_text(file, "\n".join(self.csv_lines()) + "\n")
 
     def __repr__(self) -> str:
         lines = [f"<curve of {self.kind} events of ({self.n}, {self.k}) orbits in {' and '.join(self.over)}, "
@@ -276,7 +278,10 @@ class _Walk:
         ends = past(0.0), past(length)
         if not ends[0] * ends[1] < 0:
             return None
-        found = curve.beyond(here, root_between(past, 0.0, length, ends))
+        try:
+            found = curve.beyond(here, root_between(past, 0.0, length, ends))
+        except ArithmeticError:
+            return None
         return None if found is None else found[0]
 
     # ---- points of codimension two
