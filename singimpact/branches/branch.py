@@ -248,7 +248,8 @@ class _Walk:
             if outside:
                 end = self._end(curve, here, length, after)
                 if end is None:
-                    break
+                    notes.append(f"ends at {over} = {here.at[-1]:.12g}, next to the end of the interval")
+                    return rows, events
                 length, after = end
             tests = self._tests(after)
             events += self._events(curve, (here, length), (before, tests), len(rows), notes)
@@ -394,7 +395,7 @@ class _Walk:
 
     def _event(self, key: tuple[str, int], point: Point, index: int, notes: list[str]) -> Event:
         kind, impact = key
-        orbit = replace(orbit_of(self.closing, point.at), visible=self._visible(point, 1e-9))
+        orbit = orbit_of(self.closing, point.at, self._visible(point, 1e-9))
         time = np.nan
         if kind == "hidden impact":
             time = self._heights(point)[impact][0]
