@@ -32,3 +32,10 @@ def save(figure: Any, output: str | Path, dpi: int = 150) -> None:
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(kind)
     with written(output) as draft, matplotlib.rc_context({"svg.hashsalt": "singimpact"}):
         figure.savefig(draft, format=kind, dpi=dpi, metadata=dated)
+
+
+def blank_axes() -> Any:
+    """Axes of a figure that no window shows, of the size of a picture of branches."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(7.2, 4.8), dpi=150, layout="constrained").add_subplot()
