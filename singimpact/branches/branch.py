@@ -36,6 +36,8 @@ class BranchSettings:
     shortest: float = 1e-9
     # a height above the wall that is rounding
     touching: float = 1e-12
+    # |product of the multipliers| - 1 that is rounding: with r = 1 and no damping it is 0 all along
+    neutral: float = 1e-9
 
 
 SETTINGS = BranchSettings()
@@ -70,9 +72,9 @@ class Branch:
 
     @property
     def stable(self) -> Array:
-        """Whether both multipliers are below 1 in size, shape (m,)."""
+        """Whether both multipliers are below 1 in size, by more than rounding, shape (m,)."""
         with np.errstate(invalid="ignore"):
-            return np.asarray((np.abs(self.multipliers) < 1).all(axis=1))
+            return np.asarray((np.abs(self.multipliers) < 1 - SETTINGS.neutral).all(axis=1))
 
     def orbit(self, index: int) -> PeriodicOrbit:
         """The orbit at a point."""
@@ -335,7 +337,7 @@ class _Walk:
         zero, one, two = self.closing.at(point.at).characteristic()
         tests = {("fold", 0): float(point.tangent[-1]), ("period-doubling", 0): zero - one + two}
         if one * one < 4 * zero * two:
-            tests["torus", 0] = zero - two
+            tests["torus", 0] = (zero - two) / (abs(zero) + abs(two))
         n = self.closing.n
         for i in range(n):
             tests["graze", i] = float(point.at[n + i])
@@ -353,6 +355,8 @@ class _Walk:
         for key, value in before.items():
             later = after.get(key)
             if later is None or value == 0 or not value * later <= 0:
+                continue
+            if key[0] == "torus" and min(abs(value), abs(later)) < SETTINGS.neutral:
                 continue
             located = self._located(curve, here, length, key, (value, later))
             if located is None:

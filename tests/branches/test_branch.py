@@ -128,6 +128,14 @@ def test_a_torus_needs_negative_damping() -> None:
     assert np.linalg.det(slope) == pytest.approx(1, abs=1e-9)
 
 
+def test_areas_that_are_kept_make_no_tori() -> None:
+    # r = 1 without damping: the product of the multipliers is 1 all along, up to rounding
+    found = si.branch(si.linear("2.6", "0.01", 1).periodic(1, 1)[0], "clearance", (-0.3, 0.3))
+    assert kinds(found) == ["graze", "period-doubling"]
+    assert not found.stable.any()
+    assert np.isclose(np.abs(found.multipliers), 1, rtol=1e-9).all(axis=1).any()
+
+
 def test_multipliers_are_those_of_the_map() -> None:
     osc = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "-0.3", "0.6")
     for orbit in osc.periodic(1, 1, start=(2.12, 1.17)):
