@@ -28,7 +28,7 @@ class BranchPictureSettings:
     """What a picture of branches shows."""
 
     # more events than this are named in the legend, not beside their points
-    named: int = 12
+    named: int = 8
     # virtual parts are shown so far beyond the visible ones, of their height
     beyond: float = 0.35
     # free space around the curves
@@ -43,7 +43,7 @@ def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> A
 
     Parameters
     ----------
-    branches : over one number. axes : of matplotlib; limits that a picture there already has are kept.
+    branches : over one number. axes : of matplotlib; limits that a picture there already has, or that were set, are kept.
     height : "v", velocities after the impacts, or "phase", their phases in periods. Branches of orbits without impact
         lie at v = 0; where there are no others the lowest x - c is shown.
     """
@@ -170,7 +170,10 @@ def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
     """What the mass does fills the picture; virtual parts are shown next to it."""
     numbers = np.concatenate([each.number for each in drawn])
     pad = SETTINGS.space / 2 * (np.ptp(numbers) or 1.0)
-    axes.set_xlim(numbers.min() - pad, numbers.max() + pad)
+    if axes.get_autoscalex_on():
+        axes.set_xlim(numbers.min() - pad, numbers.max() + pad)
+    if not axes.get_autoscaley_on():
+        return
     if shown == "phase":
         axes.set_ylim(-0.02, 1.02)
         return

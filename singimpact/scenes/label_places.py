@@ -76,6 +76,9 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
             name, (x, y), tuple(offset / pixel), textcoords="offset points", fontsize=size, color=BLACK, zorder=8,
             ha="center", va="center", arrowprops=line if length > SETTINGS.joined * pixel else None))  # fmt: skip
         middle = point + offset
+        if length > SETTINGS.joined * pixel:
+            shares = np.linspace(0, 1, 2 + int(length / (SETTINGS.sample * pixel)))[:, None]
+            obstacles.append(point + shares * offset * (length / np.hypot(*offset)))
         taken.append(np.concatenate([middle - half, middle + half]))
     return written
 
