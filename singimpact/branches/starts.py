@@ -146,7 +146,8 @@ def closed_from(closing: Closing, points: Array) -> list[Array]:
         step, regular = _solved(slope, miss)
         at, step = at[regular], step[regular]
         fast = np.maximum(np.abs(at[:, n:]).max(axis=1, initial=0.0), 1e-300)
-        size = np.maximum(np.abs(step[:, :n]).max(axis=1) / period, np.abs(step[:, n:]).max(axis=1) / fast)
+        with np.errstate(over="ignore"):  # a start of no velocity
+            size = np.maximum(np.abs(step[:, :n]).max(axis=1) / period, np.abs(step[:, n:]).max(axis=1) / fast)
         longest = np.abs(step[:, :n]).max(axis=1) / period
         at = at - step * np.minimum(1.0, SETTINGS.longest / np.maximum(longest, 1e-300))[:, None]
         arrived = size < SETTINGS.arrived
