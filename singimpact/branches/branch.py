@@ -215,13 +215,17 @@ class _Walk:
         upwards = np.zeros(len(guess))
         upwards[-1] = scales[-1]
         notes: list[str] = []
-        curve = Curve(self, scales, self.step)
+        n = self.closing.n
+        speeds = slice(n, 2 * n) if n else slice(0, 2)
+        curve = Curve(self, scales, self.step, speeds)
         start = curve.begin(guess, upwards)
         if start is None:
             raise InputError("the orbit does not solve its closing conditions: give one of osc.periodic(n, k)")
         rows, events = [self._row(start)], []
         for sign in (-1.0, 1.0):
-            side, met = self._side(Curve(self, scales, self.step), Point(start.at, sign * start.tangent), notes, over)
+            side, met = self._side(
+                Curve(self, scales, self.step, speeds), Point(start.at, sign * start.tangent), notes, over
+            )
             if sign < 0:
                 rows = side[::-1] + rows
                 events = [replace(event, index=-event.index - 1) for event in met[::-1]]
@@ -232,7 +236,7 @@ class _Walk:
                 break
         before = next(i for i, row in enumerate(rows) if row[0] is start)
         events = [replace(event, index=event.index + before, over=over) for event in events]
-        n = max(self.closing.n, 1)
+        n = max(n, 1)
         at = np.array([row[0].at for row in rows])
         seen = self._confirmed(np.array([row[2] for row in rows]), at, notes)
         return Branch(osc, over, self.closing.n, self.closing.k, at[:, -1], at[:, :n], at[:, n : 2 * n],
@@ -254,7 +258,7 @@ class _Walk:
                     return rows, events
                 length, after = end
             tests = self._tests(after)
-            events += self._events(curve, (here, length), (before, tests), len(rows), notes)
+            events += self._events(curve, (here, length, after), (before, tests), len(rows), notes)
             rows.append(self._row(after))
             before = tests
             if outside:
@@ -347,16 +351,20 @@ class _Walk:
         return tests
 
     def _events(
-        self, curve: Curve, step: tuple[Point, float], tests: tuple[Any, Any], index: int, notes: list[str]
+        self, curve: Curve, step: tuple[Point, float, Point], tests: tuple[Any, Any], index: int, notes: list[str]
     ) -> list[Event]:
         before, after = tests
-        here, length = step
+        here, length, after_point = step
         found = []
         for key, value in before.items():
             later = after.get(key)
             if later is None or value == 0 or not value * later <= 0:
                 continue
             if key[0] == "torus" and min(abs(value), abs(later)) < SETTINGS.neutral:
+                continue
+            if key[0] == "fold" and self._halves(here.at) @ self._halves(after_point.at) < 0:
+                notes.append(f"meets the ({self.closing.n // 2}, {self.closing.k // 2}) orbits at their doubling, near "
+                             f"{here.at[-1]:.9g}")  # fmt: skip
                 continue
             located = self._located(curve, here, length, key, (value, later))
             if located is None:
@@ -367,6 +375,16 @@ class _Walk:
                 continue
             found.append((part, self._event(key, point, index, notes)))
         return [event for _, event in sorted(found, key=lambda pair: pair[0])]
+
+    def _halves(self, at: Array) -> Array:
+        """The second half of an orbit less the first; it changes sign where a doubled orbit begins."""
+        n, k = self.closing.n, self.closing.k
+        if n < 2 or n % 2 or k % 2:
+            return np.zeros(1)
+        period = self.closing.family.period(self.closing.values(at)).value
+        times, speeds = np.diff(at[:n].reshape(2, -1), axis=0)[0], np.diff(at[n : 2 * n].reshape(2, -1), axis=0)[0]
+        scales = self.closing.scales(at)
+        return np.concatenate([(times - k // 2 * period) / scales[0], speeds / scales[n]])
 
     def _located(
         self, curve: Curve, here: Point, length: float, key: tuple[str, int], ends: tuple[float, float]

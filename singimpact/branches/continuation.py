@@ -57,12 +57,30 @@ class Curve:
     Parameters
     ----------
     conditions : the equations. scales : of the unknowns. step : the largest one.
+    speeds : the place of the velocities, which may grow by orders of magnitude on the way: where they are larger than
+        their scale the largest step is a part of them.
     """
 
     conditions: Conditions
     scales: Array
     step: float
+    speeds: slice = field(default_factory=lambda: slice(0, 0))
     note: str = field(default="", init=False)
+
+    def longest(self, here: Point) -> float:
+        """The largest step from a point.
+
+        Examples
+        --------
+        >>> slow, fast = (Point(np.array([0.0, v]), np.array([0.0, 1.0])) for v in (0.5, 40.0))
+        >>> curve = Curve(None, np.ones(2), 0.02, slice(1, 2))
+        >>> curve.longest(slow), round(curve.longest(fast), 12)
+        (0.02, 0.8)
+        """
+        growth = float(np.abs(here.at[self.speeds] / self.scales[self.speeds]).max(initial=1.0))
+        weights = np.ones(len(here.at))
+        weights[self.speeds] = 1 / growth
+        return self.step / float(np.linalg.norm(here.tangent * weights))
 
     def begin(self, at: Array, towards: Array | None = None) -> Point | None:
         """The point of the curve next to a guess; its tangent points along `towards`."""
@@ -101,7 +119,7 @@ class Curve:
             size = float(np.abs(change).max())
             if size <= SETTINGS.arrived or (count > 2 and size <= 1e-11):
                 return self._with_tangent(point, start.tangent), count
-            if size > 4 * self.step:
+            if size > 4 * max(self.step, abs(length)):
                 return None
         return None
 
@@ -121,7 +139,7 @@ class Curve:
                 after, rounds = found
                 yield here, length, after
                 here = after
-                length = min(length * SETTINGS.longer, self.step) if rounds <= SETTINGS.easy else length
+                length = min(length * (SETTINGS.longer if rounds <= SETTINGS.easy else 1.0), self.longest(here))
         self.note = f"{most} points are spent: the curve goes on (points=)"
 
     def _scaled(self, point: Array) -> tuple[Array, Array]:

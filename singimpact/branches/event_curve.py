@@ -212,7 +212,8 @@ class _Walk:
         """Both ways from a guess."""
         self.scales = self.closing.scales(guess)
         self.scales[-2:] = [high - low for low, high in self.ends]
-        start = Curve(self, self.scales, step).begin(guess)
+        speeds = slice(self.closing.n, 2 * self.closing.n)
+        start = Curve(self, self.scales, step, speeds).begin(guess)
         if start is None:
             raise refuse("event", self.kind, "an event that solves its equations with these two numbers")
         if start.tangent[-2] < 0:
@@ -220,7 +221,8 @@ class _Walk:
         notes: list[str] = []
         rows, special = [start], []
         for sign in (-1.0, 1.0):
-            side, met = self._side(Curve(self, self.scales, step), Point(start.at, sign * start.tangent), most, notes)
+            curve = Curve(self, self.scales, step, speeds)
+            side, met = self._side(curve, Point(start.at, sign * start.tangent), most, notes)
             if sign < 0:
                 rows = side[::-1] + rows
                 special = [Special(each.kind, each.parameters, len(side) - each.index - 1) for each in met[::-1]]

@@ -43,7 +43,7 @@ def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> A
 
     Parameters
     ----------
-    branches : over one number. axes : of matplotlib; limits that a picture there already has, or that were set, are kept.
+    branches : over one number. axes : of matplotlib; limits of a picture that is there, or that were set, are kept.
     height : "v", velocities after the impacts, or "phase", their phases in periods. Branches of orbits without impact
         lie at v = 0; where there are no others the lowest x - c is shown.
     """

@@ -128,6 +128,16 @@ def test_a_torus_needs_negative_damping() -> None:
     assert np.linalg.det(slope) == pytest.approx(1, abs=1e-9)
 
 
+def test_a_doubled_branch_meets_the_one_that_it_left() -> None:
+    (orbit,) = coco(0.8, 0.45 / grazing_amplitude(0.8)).periodic(1, 1)
+    (doubling,) = (event for event in si.branch(orbit, "amplitude", (-0.6, -0.3)).events if "doubling" in event.kind)
+    found = si.branch(doubling.others()[0], "amplitude", (-0.6, -0.3))
+    (note,) = (note for note in found.notes if "meets" in note)
+    assert "the (1, 1) orbits at their doubling" in note
+    assert float(note.rpartition(" ")[2]) == pytest.approx(doubling.parameter, abs=1e-3)
+    assert kinds(found).count("fold") == 2  # none where it meets them
+
+
 def test_areas_that_are_kept_make_no_tori() -> None:
     # r = 1 without damping: the product of the multipliers is 1 all along, up to rounding
     found = si.branch(si.linear("2.6", "0.01", 1).periodic(1, 1)[0], "clearance", (-0.3, 0.3))

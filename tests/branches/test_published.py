@@ -105,7 +105,7 @@ def test_response_ellipse_with_its_folds_and_doublings(w: str, r: str, k: int) -
     W, r_ = float(w), float(r)
     osc = si.linear(w, "0.001", r)
     (orbit, *_) = osc.periodic(1, k)
-    found = si.branch(orbit, "clearance", (-2, 2), step=0.1)
+    found = si.branch(orbit, "clearance", (-2, 2))
     assert found.notes == ("closed: the branch comes back to where it began",)
     c, v = found.parameter, found.v[:, 0]
     assert (c - w1 * v) ** 2 + (w2 * v / W) ** 2 == pytest.approx(np.full(len(c), R * R), rel=1e-11)
