@@ -138,6 +138,16 @@ def test_a_doubled_branch_meets_the_one_that_it_left() -> None:
     assert kinds(found).count("fold") == 2  # none where it meets them
 
 
+def test_an_orbit_that_touches_the_wall_is_visible() -> None:
+    duffing = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "A*cos(1.7*t)", "-0.3", "0.6", {"A": 1})
+    (graze,) = (
+        event for event in si.branch(duffing.periodic(1, 1)[0], "A", (0.2, 1.2)).events if event.kind == "graze"
+    )
+    (free,) = graze.others()
+    assert float(free.x[0]) == pytest.approx(-0.3, abs=1e-12)
+    assert free.visible
+
+
 def test_areas_that_are_kept_make_no_tori() -> None:
     # r = 1 without damping: the product of the multipliers is 1 all along, up to rounding
     found = si.branch(si.linear("2.6", "0.01", 1).periodic(1, 1)[0], "clearance", (-0.3, 0.3))
