@@ -58,6 +58,46 @@ def figures(place: Path) -> str:
     return "\n".join(parts)
 
 
+def branches(place: Path) -> None:
+    """The pictures of the page on branches."""
+    from matplotlib.figure import Figure
+
+    import singimpact as si
+
+    def axes(high: float = 4.8) -> Any:
+        return Figure(figsize=(7.2, high), layout="constrained").add_subplot()
+
+    def save(shown: Any, name: str) -> None:
+        shown.figure.savefig(place / f"{name}.png", dpi=110)
+
+    osc = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45")
+    once = si.branch(osc.periodic(1, 1)[0], "amplitude", (-0.6, -0.3))
+    (doubling, graze) = once.events
+    twice = si.branch(doubling.others()[0], "amplitude", (-0.6, -0.3))
+    free = si.branch(graze.others()[0], "amplitude", (-0.6, -0.3))
+    save(si.plot([once, twice, free], axes()), "branch_graze")
+
+    ellipses = [si.linear("4.3", "0.001", "0.6").periodic(1, k)[0] for k in (1, 2)]
+    save(si.plot([si.branch(each, "clearance", (-2, 2), step=0.05) for each in ellipses], axes()), "branch_ellipses")
+
+    g = "-(1 + 10**q)*sqrt((1 - w**2)**2 + (2.6*w)**2)*cos(w*t)"
+    overdamped = si.ImpactOscillator("x + 2.6*xdot", g, -1, "0.8", {"w": "1.963", "q": 0})
+    found = []
+    for k in range(2, 8):
+        q = -1.155 - 1.3048 * (k - 2)
+        orbit = next(each for each in overdamped.replace(q=q).periodic(1, k) if each.stable)
+        found.append(si.branch(orbit, "q", (max(q - 2.2, -9), q + 1.2)))
+    adding = axes(5.0)
+    adding.set(yscale="log", xlim=(-8.6, 0), ylim=(1e-5, 2))
+    si.plot(found, adding).set_xlabel("$q$: the amplitude is $1 + 10^q$ times that of the graze")
+    save(adding, "branch_periods")
+
+    resonant = si.linear(1, -1, "0.8", damping="0.1", amplitude="-0.12")
+    events = si.branch(resonant.periodic(1, 1)[0], "amplitude", (-0.3, -0.05)).events
+    curves = [si.event_curve(each, ("amplitude", "omega"), ((-0.3, -0.05), (0.9, 1.1))) for each in events]
+    save(si.plot(curves, axes()), "branch_resonance")
+
+
 def build(app: Any) -> None:
     """Write the pages into the folder `computed` beside those that are written by hand."""
     from singimpact.store import folder
@@ -66,6 +106,7 @@ def build(app: Any) -> None:
     pages = {"errata.md": errata, "claims.md": claims, "commands.md": commands, "figures.md": lambda: figures(place)}
     for name, page in pages.items():
         _put(place / name, page())
+    branches(place)
 
 
 def _put(path: Path, text: str) -> None:

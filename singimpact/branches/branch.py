@@ -19,6 +19,7 @@ from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import with_number
+from singimpact.store import write_text
 
 Array = np.ndarray[Any, Any]
 
@@ -81,10 +82,8 @@ class Branch:
         at = np.concatenate([self.tau[index], self.v[index], self.parameter[index : index + 1 or None][:1]])
         return orbit_of(closing, at)
 
-    def to_csv(self, file: str | Path) -> None:
-        """Write a line a point: the number, the states, multipliers, stable and visible."""
-        from singimpact.store import written
-
+    def csv_lines(self) -> list[str]:
+        """The names of the columns, then a line a point: the number, the states, multipliers, stable and visible."""
         names = [self.over, *(f"{name}_{i + 1}" for name in ("tau", "v") for i in range(self.tau.shape[1]))]
         names += ["multiplier_1_re", "multiplier_1_im", "multiplier_2_re", "multiplier_2_im", "stable", "visible"]
         lines = [",".join(names)]
@@ -93,8 +92,11 @@ class Branch:
             numbers += [part for each in self.multipliers[i] for part in (np.real(each), np.imag(each))]
             flags = [str(int(self.stable[i])), str(int(self.visible[i]))]
             lines.append(",".join([*(repr(float(each)) for each in numbers), *flags]))
-        with written(file) as draft:
-            draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return lines
+
+    def to_csv(self, file: str | Path) -> None:
+        """Write `csv_lines` to a file, which is whole or absent."""
+        write_text(file, "\n".join(self.csv_lines()) + "\n")
 
     def __repr__(self) -> str:
         low, high = (float(end) for end in (self.parameter.min(), self.parameter.max()))
@@ -213,13 +215,17 @@ class _Walk:
         upwards = np.zeros(len(guess))
         upwards[-1] = scales[-1]
         notes: list[str] = []
-        curve = Curve(self, scales, self.step)
+        n = self.closing.n
+        speeds = slice(n, 2 * n) if n else slice(0, 2)
+        curve = Curve(self, scales, self.step, speeds)
         start = curve.begin(guess, upwards)
         if start is None:
             raise InputError("the orbit does not solve its closing conditions: give one of osc.periodic(n, k)")
         rows, events = [self._row(start)], []
         for sign in (-1.0, 1.0):
-            side, met = self._side(Curve(self, scales, self.step), Point(start.at, sign * start.tangent), notes, over)
+            side, met = self._side(
+                Curve(self, scales, self.step, speeds), Point(start.at, sign * start.tangent), notes, over
+            )
             if sign < 0:
                 rows = side[::-1] + rows
                 events = [replace(event, index=-event.index - 1) for event in met[::-1]]
@@ -230,7 +236,7 @@ class _Walk:
                 break
         before = next(i for i, row in enumerate(rows) if row[0] is start)
         events = [replace(event, index=event.index + before, over=over) for event in events]
-        n = max(self.closing.n, 1)
+        n = max(n, 1)
         at = np.array([row[0].at for row in rows])
         seen = self._confirmed(np.array([row[2] for row in rows]), at, notes)
         return Branch(osc, over, self.closing.n, self.closing.k, at[:, -1], at[:, :n], at[:, n : 2 * n],
@@ -248,10 +254,11 @@ class _Walk:
             if outside:
                 end = self._end(curve, here, length, after)
                 if end is None:
-                    break
+                    notes.append(f"ends at {over} = {here.at[-1]:.12g}, next to the end of the interval")
+                    return rows, events
                 length, after = end
             tests = self._tests(after)
-            events += self._events(curve, (here, length), (before, tests), len(rows), notes)
+            events += self._events(curve, (here, length, after), (before, tests), len(rows), notes)
             rows.append(self._row(after))
             before = tests
             if outside:
@@ -286,7 +293,10 @@ class _Walk:
         ends = past(0.0), float(after.at[-1] - goal)
         if ends[0] == 0:
             return None
-        part = root_between(past, 0.0, length, ends)
+        try:
+            part = root_between(past, 0.0, length, ends)
+        except ArithmeticError:
+            return None
         found = curve.beyond(here, part)
         if found is None:
             return None
@@ -342,16 +352,20 @@ class _Walk:
         return tests
 
     def _events(
-        self, curve: Curve, step: tuple[Point, float], tests: tuple[Any, Any], index: int, notes: list[str]
+        self, curve: Curve, step: tuple[Point, float, Point], tests: tuple[Any, Any], index: int, notes: list[str]
     ) -> list[Event]:
         before, after = tests
-        here, length = step
+        here, length, after_point = step
         found = []
         for key, value in before.items():
             later = after.get(key)
             if later is None or value == 0 or not value * later <= 0:
                 continue
             if key[0] == "torus" and min(abs(value), abs(later)) < SETTINGS.neutral:
+                continue
+            if key[0] == "fold" and self._halves(here.at) @ self._halves(after_point.at) < 0:
+                notes.append(f"meets the ({self.closing.n // 2}, {self.closing.k // 2}) orbits at their doubling, near "
+                             f"{here.at[-1]:.9g}")  # fmt: skip
                 continue
             located = self._located(curve, here, length, key, (value, later))
             if located is None and key[0] == "torus":
@@ -364,6 +378,16 @@ class _Walk:
                 continue
             found.append((part, self._event(key, point, index, notes)))
         return [event for _, event in sorted(found, key=lambda pair: pair[0])]
+
+    def _halves(self, at: Array) -> Array:
+        """The second half of an orbit less the first; it changes sign where a doubled orbit begins."""
+        n, k = self.closing.n, self.closing.k
+        if n < 2 or n % 2 or k % 2:
+            return np.zeros(1)
+        period = self.closing.family.period(self.closing.values(at)).value
+        times, speeds = np.diff(at[:n].reshape(2, -1), axis=0)[0], np.diff(at[n : 2 * n].reshape(2, -1), axis=0)[0]
+        scales = self.closing.scales(at)
+        return np.concatenate([(times - k // 2 * period) / scales[0], speeds / scales[n]])
 
     def _located(
         self, curve: Curve, here: Point, length: float, key: tuple[str, int], ends: tuple[float, float]
@@ -396,7 +420,7 @@ class _Walk:
 
     def _event(self, key: tuple[str, int], point: Point, index: int, notes: list[str]) -> Event:
         kind, impact = key
-        orbit = replace(orbit_of(self.closing, point.at), visible=self._visible(point, 1e-9))
+        orbit = orbit_of(self.closing, point.at, self._visible(point, 1e-9))
         time = np.nan
         if kind == "hidden impact":
             time = self._heights(point)[impact][0]

@@ -8,6 +8,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from singimpact.progress import ProgressLine
+
 Array = np.ndarray[Any, Any]
 
 
@@ -55,12 +57,30 @@ class Curve:
     Parameters
     ----------
     conditions : the equations. scales : of the unknowns. step : the largest one.
+    speeds : the place of the velocities, which may grow by orders of magnitude on the way: where they are larger than
+        their scale the largest step is a part of them.
     """
 
     conditions: Conditions
     scales: Array
     step: float
+    speeds: slice = field(default_factory=lambda: slice(0, 0))
     note: str = field(default="", init=False)
+
+    def longest(self, here: Point) -> float:
+        """The largest step from a point.
+
+        Examples
+        --------
+        >>> slow, fast = (Point(np.array([0.0, v]), np.array([0.0, 1.0])) for v in (0.5, 40.0))
+        >>> curve = Curve(None, np.ones(2), 0.02, slice(1, 2))
+        >>> curve.longest(slow), round(curve.longest(fast), 12)
+        (0.02, 0.8)
+        """
+        growth = float(np.abs(here.at[self.speeds] / self.scales[self.speeds]).max(initial=1.0))
+        weights = np.ones(len(here.at))
+        weights[self.speeds] = 1 / growth
+        return self.step / float(np.linalg.norm(here.tangent * weights))
 
     def begin(self, at: Array, towards: Array | None = None) -> Point | None:
         """The point of the curve next to a guess; its tangent points along `towards`."""
@@ -99,25 +119,27 @@ class Curve:
             size = float(np.abs(change).max())
             if size <= SETTINGS.arrived or (count > 2 and size <= 1e-11):
                 return self._with_tangent(point, start.tangent), count
-            if size > 4 * self.step:
+            if size > 4 * max(self.step, abs(length)):
                 return None
         return None
 
     def walk(self, start: Point, most: int) -> Iterator[tuple[Point, float, Point]]:
         """Points after a start: the one before, the step from it, the new one; `note` says why it ended."""
         length, here = SETTINGS.first * self.step, start
-        for _ in range(most):
-            found = self.beyond(here, length)
-            while found is None or here.tangent @ found[0].tangent < SETTINGS.turn:
-                length /= 2
-                if length < SETTINGS.least * self.step:
-                    self.note = self._ended(here, length)
-                    return
+        with ProgressLine() as line:
+            for count in range(most):
+                line.show(count, None, "points of a curve")
                 found = self.beyond(here, length)
-            after, rounds = found
-            yield here, length, after
-            here = after
-            length = min(length * SETTINGS.longer, self.step) if rounds <= SETTINGS.easy else length
+                while found is None or here.tangent @ found[0].tangent < SETTINGS.turn:
+                    length /= 2
+                    if length < SETTINGS.least * self.step:
+                        self.note = self._ended(here, length)
+                        return
+                    found = self.beyond(here, length)
+                after, rounds = found
+                yield here, length, after
+                here = after
+                length = min(length * (SETTINGS.longer if rounds <= SETTINGS.easy else 1.0), self.longest(here))
         self.note = f"{most} points are spent: the curve goes on (points=)"
 
     def _scaled(self, point: Array) -> tuple[Array, Array]:
@@ -152,11 +174,31 @@ def null_vector(slopes: Array) -> Array:
 
 
 def root_between(test: Callable[[float], float], low: float, high: float, ends: tuple[float, float]) -> float:
-    """Where a test changes sign between two lengths, by Brent's method."""
+    """Where a test changes sign between two lengths, by Brent's method.
+
+    Raises
+    ------
+    ArithmeticError : the test has no value on the way.
+
+    Examples
+    --------
+    >>> root_between(lambda length: length - 0.25, 0.0, 1.0, (-0.25, 0.75))
+    0.25
+    >>> root_between(lambda length: float("nan"), 0.0, 1.0, (-0.25, 0.75))
+    Traceback (most recent call last):
+    ArithmeticError: no value at 0.25
+    """
     from scipy.optimize import brentq
 
     if ends[0] == 0:
         return low
     if ends[1] == 0:
         return high
-    return float(brentq(test, low, high, xtol=1e-15 * max(high, 1e-300), rtol=8.9e-16, maxiter=100))
+
+    def defined(length: float) -> float:
+        value = ends[0] if length == low else ends[1] if length == high else test(length)
+        if np.isnan(value):
+            raise ArithmeticError(f"no value at {length:.9g}")
+        return value
+
+    return float(brentq(defined, low, high, xtol=1e-15 * max(high, 1e-300), rtol=8.9e-16, maxiter=100))

@@ -19,6 +19,7 @@ from singimpact.flights.family import CLEARANCE, RESTITUTION
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import with_number
+from singimpact.store import write_text
 
 Array = np.ndarray[Any, Any]
 NUDGE = 1e-6
@@ -66,17 +67,18 @@ class EventCurve:
     def __len__(self) -> int:
         return len(self.parameters)
 
-    def to_csv(self, file: str | Path) -> None:
-        """Write a line a point: the two numbers, the states, visible."""
-        from singimpact.store import written
-
+    def csv_lines(self) -> list[str]:
+        """The names of the columns, then a line a point: the two numbers, the states, visible."""
         names = [*self.over, *(f"{name}_{i + 1}" for name in ("tau", "v") for i in range(self.tau.shape[1])), "visible"]
         rows = zip(self.parameters, self.tau, self.v, self.visible, strict=True)
         lines = [
             ",".join([*(repr(float(each)) for part in row[:3] for each in part), str(int(row[3]))]) for row in rows
         ]
-        with written(file) as draft:
-            draft.write_text("\n".join([",".join(names), *lines]) + "\n", encoding="utf-8")
+        return [",".join(names), *lines]
+
+    def to_csv(self, file: str | Path) -> None:
+        """Write `csv_lines` to a file, which is whole or absent."""
+        write_text(file, "\n".join(self.csv_lines()) + "\n")
 
     def __repr__(self) -> str:
         lines = [f"<curve of {self.kind} events of ({self.n}, {self.k}) orbits in {' and '.join(self.over)}, "
@@ -210,7 +212,8 @@ class _Walk:
         """Both ways from a guess."""
         self.scales = self.closing.scales(guess)
         self.scales[-2:] = [high - low for low, high in self.ends]
-        start = Curve(self, self.scales, step).begin(guess)
+        speeds = slice(self.closing.n, 2 * self.closing.n)
+        start = Curve(self, self.scales, step, speeds).begin(guess)
         if start is None:
             raise refuse("event", self.kind, "an event that solves its equations with these two numbers")
         if start.tangent[-2] < 0:
@@ -218,7 +221,8 @@ class _Walk:
         notes: list[str] = []
         rows, special = [start], []
         for sign in (-1.0, 1.0):
-            side, met = self._side(Curve(self, self.scales, step), Point(start.at, sign * start.tangent), most, notes)
+            curve = Curve(self, self.scales, step, speeds)
+            side, met = self._side(curve, Point(start.at, sign * start.tangent), most, notes)
             if sign < 0:
                 rows = side[::-1] + rows
                 special = [Special(each.kind, each.parameters, len(side) - each.index - 1) for each in met[::-1]]
@@ -276,7 +280,10 @@ class _Walk:
         ends = past(0.0), past(length)
         if not ends[0] * ends[1] < 0:
             return None
-        found = curve.beyond(here, root_between(past, 0.0, length, ends))
+        try:
+            found = curve.beyond(here, root_between(past, 0.0, length, ends))
+        except ArithmeticError:
+            return None
         return None if found is None else found[0]
 
     # ---- points of codimension two

@@ -18,6 +18,10 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
+TOUCHING = 1e-12
+"""An orbit that is so little below the wall, of the larger of |c| and 1, touches it."""
+FAR = 30.0
+"""Newton's method is given up there, in units of the starts: flights of a hardening spring cost ever more."""
 ROUNDS = 40
 """Steps of Newton's method at most."""
 FLOWN = 4000
@@ -45,7 +49,7 @@ def free_orbits(osc: Oscillator, k: int, lowest_only: bool = False) -> PeriodicO
     size = max(abs(wall), 1.0)
     starts = [(0.0, 0.0)] if linear else [(x, u) for x in size * np.array([-1.5, 0, 1.5]) for u in (-size, 0.0, size)]
     for start in starts:
-        state = _closed(moving, start, span)
+        state = _closed(moving, start, span, np.inf if linear else FAR * size)
         if state is not None:
             one = _at_its_lowest(moving, osc, state, k)
             if one is not None and not any(abs(one.x[0] - other.x[0]) < 1e-9 * size for other in found):
@@ -57,8 +61,8 @@ def free_orbits(osc: Oscillator, k: int, lowest_only: bool = False) -> PeriodicO
     return PeriodicOrbits(kept, linear and bool(found), notes)
 
 
-def _closed(moving: Family, start: tuple[float, float], span: float) -> tuple[float, float] | None:
-    """x and x' at time 0 of an orbit that closes after the span."""
+def _closed(moving: Family, start: tuple[float, float], span: float, far: float) -> tuple[float, float] | None:
+    """x and x' at time 0 of an orbit that closes after the span; None where Newton's method goes too far away."""
     x, u = start
     for _ in range(ROUNDS):
         end = moving.end({CLEARANCE: x}, 0.0, u, span)
@@ -68,6 +72,8 @@ def _closed(moving: Family, start: tuple[float, float], span: float) -> tuple[fl
             return None
         step = np.linalg.solve(slope, miss)
         x, u = x - float(step[0]), u - float(step[1])
+        if not max(abs(x), abs(u)) <= far:
+            return None
         if np.abs(step).max() <= 1e-14 * max(abs(x), abs(u), 1e-3):
             return x, u
     return None
@@ -88,7 +94,8 @@ def _at_its_lowest(moving: Family, osc: Oscillator, state: tuple[float, float], 
     miss = float(np.abs(across.place - np.array([0.0, end.place[1]])).max())
     order = np.argsort(-np.abs(multipliers))
     at, speed, place = (np.array([each]) for each in (np.mod(time, period), float(end.place[1]), x + height))
-    seen = height + x >= as_float(osc.clearance)
+    wall = as_float(osc.clearance)
+    seen = height + x >= wall - TOUCHING * max(abs(wall), 1.0)
     return PeriodicOrbit(at, speed, multipliers[order], miss, np.int8(Status.hit), osc, 0, k, "free", seen, place)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,13 +29,21 @@ def closing_of(osc: Oscillator, n: int, k: int, over: Sequence[str]) -> AnyClosi
                        tuple(over), k)  # fmt: skip
 
 
-def orbit_of(closing: AnyClosing, point: Array) -> PeriodicOrbit:
-    """The orbit at a closed point, with its model."""
-    return orbit_at(closing, point) if isinstance(closing, Closing) else free_orbit_at(closing, point)
+def orbit_of(closing: AnyClosing, point: Array, seen: bool | None = None) -> PeriodicOrbit:
+    """The orbit at a closed point, with its model; `seen` as in `orbit_at`."""
+    if isinstance(closing, Closing):
+        return orbit_at(closing, point, seen=seen)
+    found = free_orbit_at(closing, point)
+    return found if seen is None else replace(found, visible=seen)
 
 
-def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None) -> PeriodicOrbit:
-    """The orbit at a closed point, its first impact the one of the least phase."""
+def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None, seen: bool | None = None) -> PeriodicOrbit:
+    """The orbit at a closed point, its first impact the one of the least phase.
+
+    Parameters
+    ----------
+    seen : whether it is visible; found from true first hits without it, which takes seconds at some grazes.
+    """
     n, k = closing.n, closing.k
     osc = osc or closing.family.oscillator(closing.values(point))
     loop = closing.at(point)
@@ -43,7 +52,7 @@ def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None) -> P
     first = int(np.argmin(launches))
     order = [(first + i) % n for i in range(n)]
     tau = launches[first] + np.concatenate([[0.0], np.cumsum(times[order])[:-1]])
-    seen = bool(visible(osc, launches, speeds, times).all())
+    seen = bool(visible(osc, launches, speeds, times).all()) if seen is None else seen
     miss = float(np.abs(loop.miss).max())
     return PeriodicOrbit(
         tau, speeds[order], _plain(loop.multipliers()), miss, np.int8(Status.hit), osc, n, k, visible=seen

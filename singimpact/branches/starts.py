@@ -150,7 +150,8 @@ def closed_from(closing: Closing, points: Array) -> list[Array]:
         step, regular = _solved(slope, miss)
         at, step = at[regular], step[regular]
         fast = np.maximum(np.abs(at[:, n:]).max(axis=1, initial=0.0), 1e-300)
-        size = np.maximum(np.abs(step[:, :n]).max(axis=1) / period, np.abs(step[:, n:]).max(axis=1) / fast)
+        with np.errstate(over="ignore"):  # a start of no velocity
+            size = np.maximum(np.abs(step[:, :n]).max(axis=1) / period, np.abs(step[:, n:]).max(axis=1) / fast)
         if count == 0 and hasattr(closing.family, "models") and len(at) > SETTINGS.kept:
             best = np.argsort(size, kind="stable")[: SETTINGS.kept]
             at, step, size = at[best], step[best], size[best]

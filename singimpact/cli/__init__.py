@@ -2,10 +2,11 @@
 
 Not here: anything a Python caller could want too (`impact_oscillator`), nor tables and documents (`documents`).
 Files: `group` (the list of commands, refusals), `model` (the options that name an oscillator), `output` (-o, --json),
-`columns` (rows of text), `pictures` (picture files), `steep` (tables of `bench states --family steep`).
+`columns` (rows of text), `pictures` (picture files), `followed` (orbits and their branches), `steep` (tables of
+`bench states --family steep`).
 Commands on a model: `map`, `orbit`, `section`, `lyapunov`, `chatter`, `threshold`, `sweep`, `basins`, `bifurcation`,
-`classify`, `explore`, `scene`, `selftest`, `fixed_points`; on the paper: `verify`, `claims`, `errata`, `derive`,
-`figure`; on the package: `bench`, `stress`, `cite`.
+`branch`, `events`, `classify`, `explore`, `scene`, `selftest`, `fixed_points`; on the paper: `verify`, `claims`,
+`errata`, `derive`, `figure`; on the package: `bench`, `stress`, `cite`.
 """
 
 from singimpact.cli.group import main as main

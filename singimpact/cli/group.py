@@ -30,6 +30,8 @@ COMMANDS = {
     "sweep": "one question for many values of a number of the model",
     "basins": "where the orbits of a grid of states end, as a picture",
     "bifurcation": "where an orbit settles as a number of the model moves",
+    "branch": "follow periodic orbits through grazes, folds and doublings",
+    "events": "curves of grazes, folds and doublings in two numbers of the model",
     "bench": "run time against error, beside other tools",
     "stress": "errors towards the bad places, in units of rounding",
     "selftest": "random states of your model against independent computations",

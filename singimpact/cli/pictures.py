@@ -67,3 +67,10 @@ def kept_at(asked: tuple[Any, ...], libraries: tuple[str, ...]) -> Path:
     source = cache.source_digest(Path(__file__).parents[1])
     key = hashlib.sha256(json.dumps([source, versions, *map(repr, asked)]).encode()).hexdigest()
     return cache_folder() / "pictures" / f"{key}.picture"
+
+
+def blank_axes() -> Any:
+    """Axes of a figure that no window shows, of the size of a picture of branches."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(7.2, 4.8), dpi=150, layout="constrained").add_subplot()

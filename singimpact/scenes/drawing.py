@@ -5,31 +5,36 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from singimpact.branches.branch import Branch
+from singimpact.branches.event_curve import EventCurve
 from singimpact.dynamics.basins import Basins
 from singimpact.dynamics.bifurcation import Bifurcation
 from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.sampling import Section
 from singimpact.inputs import refuse
 from singimpact.scenes.basins import draw_basins, draw_bifurcation
+from singimpact.scenes.branches import draw_branches, draw_event_curves
 from singimpact.scenes.orbit import draw_orbit, draw_section
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import PENS
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 
-WIDE, HIGH = (8.0, 4.0), (7.2, 5.2)  # inches
+WIDE, HIGH, BRANCHES = (8.0, 4.0), (7.2, 5.2), (7.2, 4.8)  # inches
 LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}
 
 
-def plot(thing: Any, axes: Any = None) -> Any:
+def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     """Draw a thing and return the matplotlib axes.
 
     Parameters
     ----------
-    thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a curve or a list of curves of one
-        plane, or an impact surface, of which Z and H are drawn.
+    thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a branch or an event curve or a list of
+        them, a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
     axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
-        `matplotlib.pyplot.show()` does.
+        `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits.
+    height : of branches: "v", velocities after the impacts, or "phase", their phases in periods. A branch of orbits
+        without impact alone is shown by its lowest x - c, beside others at v = 0.
 
     Examples
     --------
@@ -41,9 +46,13 @@ def plot(thing: Any, axes: Any = None) -> Any:
         return thing.draw(axes)
     if isinstance(thing, ImpactSurface):
         thing = [*thing.zero_set, *thing.horizon]
-    curves = [thing] if isinstance(thing, Curve) else thing
-    if isinstance(curves, list | tuple) and curves and all(isinstance(each, Curve) for each in curves):
-        return _curves(curves, _new_axes() if axes is None else axes)
+    several = list(thing) if isinstance(thing, list | tuple) else [thing]
+    if several and all(isinstance(each, Curve) for each in several):
+        return _curves(several, _new_axes() if axes is None else axes)
+    if several and all(isinstance(each, Branch) for each in several):
+        return draw_branches(several, _new_axes(BRANCHES) if axes is None else axes, height)
+    if several and all(isinstance(each, EventCurve) for each in several):
+        return draw_event_curves(several, _new_axes(BRANCHES) if axes is None else axes)
     if isinstance(thing, Orbit):
         return draw_orbit(thing, _new_axes() if axes is None else axes)
     if isinstance(thing, Section):
@@ -52,7 +61,11 @@ def plot(thing: Any, axes: Any = None) -> Any:
         return draw_bifurcation(thing, _new_axes() if axes is None else axes)
     if isinstance(thing, Basins):
         return draw_basins(thing, _new_axes(HIGH) if axes is None else axes)
-    raise refuse("thing to plot", type(thing).__name__, "an orbit, a scene, basins, a bifurcation, or curves")
+    raise refuse(
+        "thing to plot",
+        type(thing).__name__,
+        "an orbit, a scene, basins, a bifurcation, branches, event curves, or curves",
+    )
 
 
 def _curves(curves: Sequence[Curve], axes: Any) -> Any:

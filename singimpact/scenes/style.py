@@ -41,3 +41,34 @@ PENS = {
     "before": Pen(GREY, DASHES, 1.4),
     "at": Pen(GREY, DASH_DOT, 1.4),
 }
+
+
+LINES: dict[str, tuple[Any, float]] = {"stable": ("solid", 1.8), "unstable": (DASHES, 1.5), "virtual": (DOTS, 1.3)}
+"""Line style and width of a branch of periodic orbits; its colour says how many impacts in how many periods."""
+ORBIT_COLORS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+MARKS = {
+    "fold": "o",
+    "period-doubling": "s",
+    "torus": "D",
+    "graze": "^",
+    "hidden impact": "v",
+}
+"""Markers of the events of a branch."""
+EVENT_PENS = {
+    "fold": Pen(BLUE, width=1.8),
+    "period-doubling": Pen(VERMILLION, DASHES, 1.8),
+    "graze": Pen(BLACK, width=1.4),
+    "hidden impact": Pen(GREEN, DASH_DOT, 1.6),
+}
+"""Curves of events in two numbers, where their orbits are visible; virtual parts are dotted."""
+
+
+def orbit_color(n: int, k: int) -> str:
+    """The colour of orbits of n impacts in k periods, the same in every picture.
+
+    Examples
+    --------
+    >>> orbit_color(1, 1) == BLUE, orbit_color(0, 1) == GREY
+    (True, True)
+    """
+    return ORBIT_COLORS[(4 * (n - 1) + k - 1) % len(ORBIT_COLORS)] if n else GREY

@@ -128,6 +128,34 @@ def test_a_torus_needs_negative_damping() -> None:
     assert np.linalg.det(slope) == pytest.approx(1, abs=1e-9)
 
 
+def test_a_doubled_branch_meets_the_one_that_it_left() -> None:
+    (orbit,) = coco(0.8, 0.45 / grazing_amplitude(0.8)).periodic(1, 1)
+    (doubling,) = (event for event in si.branch(orbit, "amplitude", (-0.6, -0.3)).events if "doubling" in event.kind)
+    found = si.branch(doubling.others()[0], "amplitude", (-0.6, -0.3))
+    (note,) = (note for note in found.notes if "meets" in note)
+    assert "the (1, 1) orbits at their doubling" in note
+    assert float(note.rpartition(" ")[2]) == pytest.approx(doubling.parameter, abs=1e-3)
+    assert kinds(found).count("fold") == 2  # none where it meets them
+
+
+def test_an_orbit_that_touches_the_wall_is_visible() -> None:
+    duffing = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "A*cos(1.7*t)", "-0.3", "0.6", {"A": 1})
+    (graze,) = (
+        event for event in si.branch(duffing.periodic(1, 1)[0], "A", (0.2, 1.2)).events if event.kind == "graze"
+    )
+    (free,) = graze.others()
+    assert float(free.x[0]) == pytest.approx(-0.3, abs=1e-12)
+    assert free.visible
+
+
+def test_areas_that_are_kept_make_no_tori() -> None:
+    # r = 1 without damping: the product of the multipliers is 1 all along, up to rounding
+    found = si.branch(si.linear("2.6", "0.01", 1).periodic(1, 1)[0], "clearance", (-0.3, 0.3))
+    assert kinds(found) == ["graze", "period-doubling"]
+    assert not found.stable.any()
+    assert np.isclose(np.abs(found.multipliers), 1, rtol=1e-9).all(axis=1).any()
+
+
 def test_multipliers_are_those_of_the_map() -> None:
     osc = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "-0.3", "0.6")
     for orbit in osc.periodic(1, 1, start=(2.12, 1.17)):

@@ -273,7 +273,7 @@ def test_the_kinds_of_work_are_told_apart():
 def test_long_calls_hear_an_interruption(compiled):
     osc = compiled["duffing"]
     osc.iterate(0.3, 0.5, 100)
-    Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    Timer(0.05, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         osc.iterate(0.3, 0.5, 1_000_000)
     late = [thread for thread in threading.enumerate() if thread.name == interruptible.NAME]

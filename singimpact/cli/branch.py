@@ -1,0 +1,97 @@
+"""`singimpact branch`: periodic orbits as a number of the model moves, with their events."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.followed import orbit_options, take_branches, take_ends, take_orbits
+from singimpact.cli.model import model_options, take_model
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import blank_axes, save, suffix_of
+from singimpact.store import require_writable, write_text
+
+if TYPE_CHECKING:
+    from singimpact.branches.branch import Branch
+    from singimpact.branches.orbits import PeriodicOrbit
+
+
+@click.command(short_help="follow periodic orbits through grazes, folds and doublings")
+@model_options
+@orbit_options
+@click.option("--over", metavar="NAME", default="clearance", show_default=True, help="What moves: also a parameter.")
+@click.option("--from", "low", metavar="NUMBER", help="Its least value; half of the model's value without it.")
+@click.option("--to", "high", metavar="NUMBER", help="Its largest value; one and a half of the model's without it.")
+@click.option("--points", type=click.IntRange(2, 1_000_000), default=2000, show_default=True, help="At most, each way.")
+@click.option("--height", type=click.Choice(["v", "phase"]), default="v", show_default=True, help="What is drawn.")
+@click.option("--csv", metavar="FILE.csv", help="Write a line a point: branch, number, states, multipliers, ...")
+@click.option("-o", "--output", metavar="FILE.png", help="The picture: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give points and events as JSON.")
+def command(
+    orbit: tuple[int, int], start: tuple[str, str] | None, over: str, height: str, csv: str | None, output: str | None,
+    as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """Orbits of N impacts in K periods, followed as a number of the model moves.
+
+    Printed are folds, period doublings, tori, grazes and hidden impacts, and where each branch ends.
+    """
+    for path in (output, csv):
+        if path is not None:
+            require_writable(path)
+    if output is not None:
+        suffix_of(output)
+    ends, points = take_ends(options.pop("low"), options.pop("high")), options.pop("points")
+    model = take_model(options)
+    found = take_branches(take_orbits(model, orbit, start), over, ends, points)
+    if csv is not None:
+        write_text(csv, table(found))
+    if output is not None:
+        from singimpact.scenes import plot
+
+        save(plot(found, blank_axes(), height=height).figure, output)
+    click.echo(as_json_text({"model": model.to_dict(), "over": over, "branches": [told(each) for each in found]})
+               if as_json else shown(found))  # fmt: skip
+
+
+def table(branches: list[Branch]) -> str:
+    """Lines of a CSV file, the number of the branch first."""
+    lines = [f"branch,{branches[0].csv_lines()[0]}"]
+    lines += [f"{number},{line}" for number, each in enumerate(branches, 1) for line in each.csv_lines()[1:]]
+    return "\n".join(lines) + "\n"
+
+
+def told(branch: Branch) -> dict[str, Any]:
+    """A branch as JSON."""
+    pairs = [[[each.real, each.imag] for each in row] for row in branch.multipliers.tolist()]
+    points = {name: getattr(branch, name).tolist() for name in ("parameter", "tau", "v", "stable", "visible")}
+    events = [
+        {"kind": event.kind, "parameter": event.parameter, "tau": [float(part) for part in event.orbit.tau],
+         "v": [float(part) for part in event.orbit.v], "visible": bool(event.orbit.visible), "after_point": event.index}
+        for event in branch.events
+    ]  # fmt: skip
+    return {"n": branch.n, "k": branch.k, "points": points | {"multipliers": pairs}, "events": events,
+            "notes": list(branch.notes)}  # fmt: skip
+
+
+def shown(branches: list[Branch]) -> str:
+    """Branches for people: events as a table, then how each ends."""
+    parts = []
+    for number, each in enumerate(branches, 1):
+        ends = f"{each.over} from {each.parameter.min():.9g} to {each.parameter.max():.9g}"
+        parts.append(f"branch {number}: ({each.n}, {each.k}) orbits, {len(each)} points, {ends}")
+        rows = [
+            [event.kind, f"{event.parameter:.15g}", *state(event.orbit), "" if event.orbit.visible else "virtual"]
+            for event in each.events
+        ]
+        if rows:
+            parts.append(columns(["event", each.over, "tau", "v", ""], rows))
+        parts += [f"  {note}" for note in each.notes]
+    return "\n".join(parts)
+
+
+def state(orbit: PeriodicOrbit) -> list[str]:
+    """Phase and velocity of the weakest impact of an orbit, 12 digits."""
+    weakest = min(range(len(orbit.v)), key=lambda i: float(orbit.v[i]))
+    return [f"{float(orbit.tau[weakest]):.12g}", f"{float(orbit.v[weakest]):.12g}"]

@@ -1,0 +1,113 @@
+"""The options that name periodic orbits, and the branches through them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from singimpact.inputs import InputError
+
+if TYPE_CHECKING:
+    from singimpact.branches.branch import Branch
+    from singimpact.branches.orbits import PeriodicOrbit
+    from singimpact.impact_oscillator import ImpactOscillator
+    from singimpact.oscillator.model import Oscillator
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+SAME = 1e-6
+"""States that differ by less, of a period and of their velocity, are those of one orbit."""
+
+
+def orbit_options(function: Function) -> Function:
+    """``--orbit N K`` and ``--start TAU V``."""
+    function = click.option(
+        "--start", nargs=2, metavar="TAU V", help="A state near the orbit; every orbit that is found, without it."
+    )(function)
+    return click.option(
+        "--orbit", nargs=2, type=int, metavar="N K", default=(1, 1), show_default=True,
+        help="N impacts in K periods of the forcing; N = 0: no impact.",
+    )(function)  # fmt: skip
+
+
+def take_orbits(model: ImpactOscillator, orbit: tuple[int, int], start: tuple[str, str] | None) -> list[PeriodicOrbit]:
+    """The orbits that the options name.
+
+    Raises
+    ------
+    InputError : there is none.
+    """
+    found = model.periodic(*orbit, start=start)
+    if not found:
+        more = f" ({'; '.join(found.notes)})" if found.notes else ""
+        raise InputError(
+            f"--orbit {orbit[0]} {orbit[1]}: the model has no such orbit{more}: give another N K, another value of a "
+            "number, or --start TAU V"
+        )
+    return list(found)
+
+
+def take_branches(orbits: list[PeriodicOrbit], over: str, ends: tuple[str, str] | None, points: int) -> list[Branch]:
+    """Branches through orbits, each once."""
+    from singimpact.branches.branch import branch
+
+    found: list[Branch] = []
+    for orbit in orbits:
+        if not any(on_branch(orbit, each) for each in found):
+            found.append(branch(orbit, over, ends, points=points))
+    return found
+
+
+def on_branch(orbit: PeriodicOrbit, branch: Branch) -> bool:
+    """Whether an orbit is one of a branch's, with the model where the branch began.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import branch, linear
+    >>> low, high = linear("2.8", "0.1", "0.8", amplitude=-1).periodic(3, 3)  # both sides of a fold
+    >>> on_branch(high, branch(low, "clearance", (-0.2, 0.3)))
+    True
+    """
+    from singimpact.branches.periodic import periodic
+
+    if not branch.n:
+        return False
+    osc = branch.oscillator
+    gap = branch.parameter - value_of(osc, branch.over)
+    for i in (gap[:-1] * gap[1:] <= 0).nonzero()[0].tolist():
+        share = gap[i] / (gap[i] - gap[i + 1]) if gap[i] != gap[i + 1] else 0.0
+        tau, v = ((1 - share) * part[i] + share * part[i + 1] for part in (branch.tau, branch.v))
+        try:
+            near = periodic(osc, branch.n, branch.k, start=list(zip(tau.tolist(), v.tolist(), strict=True)))
+        except InputError:
+            continue
+        for each in near:
+            if abs(each.tau[0] - orbit.tau[0]) < SAME and abs(each.v[0] - orbit.v[0]) <= SAME * abs(orbit.v[0]):
+                return True
+    return False
+
+
+def value_of(osc: Oscillator, name: str) -> float:
+    """A number of a model; nan where it has none of that name."""
+    from singimpact.algebra.numbers import as_float
+
+    fields = {"clearance": osc.clearance, "restitution": osc.restitution, **osc.parameters}
+    return as_float(fields[name]) if name in fields else float("nan")
+
+
+def take_ends(low: Any, high: Any) -> Any:
+    """--from and --to together, or neither.
+
+    Raises
+    ------
+    InputError : one of them alone.
+
+    Examples
+    --------
+    >>> take_ends("1", "2"), take_ends(None, None)
+    (('1', '2'), None)
+    """
+    if (low is None) != (high is None):
+        raise InputError(f"--{'to' if high is None else 'from'} is missing: give --from and --to, or neither")
+    return None if low is None else (low, high)

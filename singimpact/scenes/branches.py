@@ -1,0 +1,272 @@
+"""Pictures of branches of periodic orbits, and of their events in two numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.branches.branch import Branch
+from singimpact.branches.event_curve import EventCurve
+from singimpact.branches.events import Event
+from singimpact.branches.solutions import closing_of, orbit_period
+from singimpact.inputs import refuse
+from singimpact.scenes.basins import LETTERS
+from singimpact.scenes.label_places import place_labels
+from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LINES, MARKS, orbit_color
+
+Array = np.ndarray[Any, Any]
+HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}
+NAMES = {"period-doubling": "doubling"}
+WORDS = {"stable": "stable", "unstable": "unstable", "virtual": "virtual: goes through the wall"}
+
+
+@dataclass(frozen=True)
+class BranchPictureSettings:
+    """What a picture of branches shows."""
+
+    # more events than this are named in the legend, not beside their points
+    named: int = 8
+    # virtual parts are shown so far beyond the visible ones, of their height
+    beyond: float = 0.35
+    # free space around the curves
+    space: float = 0.06
+
+
+SETTINGS = BranchPictureSettings()
+
+
+def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> Any:
+    """Draw branches over the number that moves, with their events.
+
+    Parameters
+    ----------
+    branches : over one number. axes : of matplotlib; limits of a picture that is there, or that were set, are kept.
+    height : "v", velocities after the impacts, or "phase", their phases in periods. Branches of orbits without impact
+        lie at v = 0; where there are no others the lowest x - c is shown.
+    """
+    if height not in ("v", "phase"):
+        raise refuse("height", height, "'v' or 'phase'")
+    names = sorted({branch.over for branch in branches})
+    if len(names) > 1:
+        raise refuse("branches to plot", f"over {' and '.join(names)}", "branches over one number")
+    fresh = not axes.has_data()
+    shown = "x" if fresh and height == "v" and not any(branch.n for branch in branches) else height
+    drawn = [_Drawn(branch, shown) for branch in branches]
+    kinds = {name for each in drawn for name in each.classes.tolist()}
+    for each in drawn:
+        each.lines(axes)
+    if fresh:
+        _limits(axes, drawn, shown)
+        axes.set_xlabel(LETTERS.get(names[0], names[0]))
+        axes.set_ylabel(HEIGHTS[shown])
+        if shown != "phase":
+            axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1)
+    marks = [mark for each in drawn for mark in each.marks()]
+    named = sum(name is not None for _, name in marks) <= SETTINGS.named
+    _draw_marks(axes, marks, named)
+    _legend(axes, drawn, [name for name in LINES if name in kinds], [] if named else marks)
+    return axes
+
+
+class _Drawn:
+    """A branch with its events put between its points."""
+
+    def __init__(self, branch: Branch, shown: str) -> None:
+        self.branch, self.shown = branch, shown
+        heights = self._heights()
+        classes = np.where(branch.visible, np.where(branch.stable, "stable", "unstable"), "virtual")
+        self.events: list[tuple[Event, Array]] = []
+        number, rows, kinds = branch.parameter.tolist(), list(heights), classes.tolist()
+        for event in sorted(branch.events, key=lambda event: event.index, reverse=True):
+            place = self._matched(self._event_heights(event), rows[min(max(event.index, 0), len(rows) - 1)])
+            self.events.append((event, place))
+            at = min(max(event.index + 1, 0), len(number))
+            number.insert(at, event.parameter)
+            rows.insert(at, place)
+            kinds.insert(at, "")
+        self.number, self.heights = np.array(number), np.array(rows)
+        self.classes = np.array(kinds)  # of an event none
+
+    def _periods(self) -> Array:
+        branch = self.branch
+        family = closing_of(branch.oscillator, max(branch.n, 1), branch.k, (branch.over,)).family
+        return np.array([family.period({branch.over: float(value)}).value for value in branch.parameter])
+
+    def _heights(self) -> Array:
+        branch = self.branch
+        if self.shown == "phase":
+            return np.asarray(np.mod(branch.tau / self._periods()[:, None], 1.0)) if branch.n else np.full(
+                (len(branch), 1), np.nan)  # fmt: skip
+        if branch.n:
+            return branch.v
+        if self.shown == "v":
+            return np.zeros((len(branch), 1))
+        closing = closing_of(branch.oscillator, 0, branch.k, (branch.over,))
+        points = np.column_stack([branch.tau, branch.v, branch.parameter])
+        return np.array([[min(height for _, height in closing.heights(point))] for point in points])
+
+    def _event_heights(self, event: Event) -> Array:
+        orbit = event.orbit
+        if not self.branch.n:
+            return np.full(1, np.nan if self.shown == "phase" else 0.0)
+        if self.shown == "v":
+            return np.asarray(orbit.v, dtype=float)
+        return np.asarray(np.mod(np.asarray(orbit.tau, dtype=float) / orbit_period(orbit), 1.0))
+
+    def _matched(self, place: Array, near: Array) -> Array:
+        """The heights of an event's impacts in the order of a point of the branch: an orbit begins where it likes."""
+        turned = [np.roll(place, shift) for shift in range(len(place))]
+        return min(turned, key=lambda each: float(np.nansum(np.abs(each - near))))
+
+    def lines(self, axes: Any) -> None:
+        """One line for each impact and each stretch of one class."""
+        color = orbit_color(self.branch.n, self.branch.k)
+        # the class of a step between points is that of its end that is not an event; of two events that of what follows
+        ends = self.classes.tolist()
+        steps = [ends[i] or ends[i + 1] or self._next(i) for i in range(len(ends) - 1)]
+        first = 0
+        for i in range(1, len(steps) + 1):
+            if i < len(steps) and steps[i] == steps[first]:
+                continue
+            style, width = LINES[steps[first]]
+            part = slice(first, i + 1)
+            for impact in range(self.heights.shape[1]):
+                heights = self.heights[part, impact].copy()
+                numbers = self.number[part]
+                if self.shown == "phase":
+                    numbers, heights = _torn(numbers, heights)
+                axes.plot(
+                    numbers, heights, color=color, linestyle=style, linewidth=width, zorder=3 + (style == "solid")
+                )
+            first = i
+
+    def _next(self, i: int) -> str:
+        return next((str(name) for name in self.classes[i:] if name), "virtual")
+
+    def marks(self) -> list[tuple[tuple[float, float, str], str | None]]:
+        """Places and kinds of events, and the name that is written beside the first impact of each."""
+        found: list[tuple[tuple[float, float, str], str | None]] = []
+        for event, place in self.events[::-1]:
+            # a graze is one impact's; all impacts of the orbit are part of the other events
+            at = int(np.argmin(np.abs(place))) if event.kind == "graze" and self.shown == "v" else 0
+            order = [at] if event.kind == "graze" else [at, *(i for i in range(len(place)) if i != at)]
+            for rank, i in enumerate(order):
+                if np.isfinite(place[i]):
+                    name = NAMES.get(event.kind, event.kind) if rank == 0 else None
+                    found.append(((event.parameter, float(place[i]), event.kind), name))
+        return found
+
+
+def _torn(numbers: Array, heights: Array) -> tuple[Array, Array]:
+    """A line of phases, cut where it leaves one side of a period and comes back on the other."""
+    jumps = np.flatnonzero(np.abs(np.diff(heights)) > 0.5) + 1
+    return np.insert(numbers, jumps, np.nan), np.insert(heights, jumps, np.nan)
+
+
+def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
+    """What the mass does fills the picture; virtual parts are shown next to it."""
+    numbers = np.concatenate([each.number for each in drawn])
+    pad = SETTINGS.space / 2 * (np.ptp(numbers) or 1.0)
+    if axes.get_autoscalex_on():
+        axes.set_xlim(numbers.min() - pad, numbers.max() + pad)
+    if not axes.get_autoscaley_on():
+        return
+    if shown == "phase":
+        axes.set_ylim(-0.02, 1.02)
+        return
+    every = np.concatenate([each.heights.ravel() for each in drawn])
+    seen = np.concatenate([each.heights[each.classes != "virtual"].ravel() for each in drawn])
+    seen = np.append(seen, 0.0) if seen.size else every
+    size = float(np.ptp(seen)) or float(np.abs(every).max()) or 1.0
+    low = max(float(every.min()), float(seen.min()) - SETTINGS.beyond * size)
+    high = min(float(every.max()), float(seen.max()) + SETTINGS.beyond * size)
+    axes.set_ylim(low - SETTINGS.space * size, high + SETTINGS.space * size)
+
+
+def _draw_marks(axes: Any, marks: list[Any], named: bool) -> None:
+    for (number, height, kind), _ in marks:
+        axes.plot(number, height, MARKS[kind], color=BLACK, markerfacecolor="white", markersize=5.5, zorder=6)
+    if named:
+        place_labels(axes, [(number, height, name) for (number, height, _), name in marks if name])
+
+
+def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], marks: list[Any]) -> None:
+    """Colours of orbits, then line styles, then markers that are not named in the picture."""
+    from matplotlib.lines import Line2D
+
+    handles, labels = axes.get_legend_handles_labels()
+    old = axes.get_legend()
+    if old is not None:
+        handles, labels = list(old.legend_handles), [text.get_text() for text in old.get_texts()]
+    entries = dict(zip(labels, handles, strict=True))
+    for each in drawn:
+        n, k = each.branch.n, each.branch.k
+        name = f"({n}, {k}) orbits" if n else "without impact"
+        entries.setdefault(name, Line2D([], [], color=orbit_color(n, k), linewidth=2.4))
+    for kind in kinds:
+        style, width = LINES[kind]
+        entries.setdefault(WORDS[kind], Line2D([], [], color=BLACK, linestyle=style, linewidth=width))
+    for (_, _, kind), _ in marks:
+        entries.setdefault(NAMES.get(kind, kind), _marker(MARKS[kind]))
+    _legend_below(axes, entries)
+
+
+def _marker(shape: str) -> Any:
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], linestyle="none", marker=shape, color=BLACK, markerfacecolor="white", markersize=5.5)
+
+
+def _legend_below(axes: Any, entries: dict[str, Any]) -> None:
+    """Below the axes, where no curve is."""
+    axes.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False,
+                ncols=min(4, len(entries)), fontsize="small")  # fmt: skip
+
+
+def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:
+    """Draw curves of events in the plane of their two numbers, with points of codimension two."""
+    planes = sorted({curve.over for curve in curves})
+    if len(planes) > 1:
+        raise refuse("curves to plot", " and ".join(map(str, planes)), "curves of one plane")
+    fresh, entries = not axes.has_data(), dict[str, Any]()
+    from matplotlib.lines import Line2D
+
+    names = {f"({curve.n}, {curve.k})" for curve in curves}
+    for curve in curves:
+        pen = EVENT_PENS[curve.kind]
+        name = NAMES.get(curve.kind, curve.kind)
+        name = f"{name} of ({curve.n}, {curve.k}) orbits" if len(names) > 1 else name
+        entries.setdefault(name, Line2D([], [], **pen.line()))
+        for seen in (True, False):
+            chosen = curve.visible == seen
+            # a piece begins where the one before it ends
+            joined = chosen | np.append(chosen[1:], False) | np.insert(chosen[:-1], 0, False) if not seen else chosen
+            points = np.where(joined[:, None], curve.parameters, np.nan)
+            line = pen.line() if seen else {"color": pen.color, "linestyle": DOTS, "linewidth": 1.3}
+            axes.plot(*points.T, **line, zorder=4 if seen else 3)
+    if not all(curve.visible.all() for curve in curves):
+        entries[WORDS["virtual"]] = Line2D([], [], color=BLACK, linestyle=DOTS, linewidth=1.3)
+    if fresh:
+        axes.set_xlabel(LETTERS.get(curves[0].over[0], curves[0].over[0]))
+        axes.set_ylabel(LETTERS.get(curves[0].over[1], curves[0].over[1]))
+        axes.margins(SETTINGS.space)
+    marked = _apart([(*each.parameters, each.kind) for curve in curves for each in curve.special], axes)
+    for x, y, _ in marked:
+        axes.plot(x, y, "D", color=BLACK, markerfacecolor="white", markersize=5, zorder=6)
+    place_labels(axes, marked)
+    _legend_below(axes, entries)
+    return axes
+
+
+def _apart(points: list[tuple[float, float, str]], axes: Any) -> list[tuple[float, float, str]]:
+    """Points each once: curves that leave one another at a point all name it."""
+    width, high = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
+    kept: list[tuple[float, float, str]] = []
+    for x, y, name in points:
+        near = [each for each in kept if abs(x - each[0]) < 1e-4 * width and abs(y - each[1]) < 1e-4 * high]
+        if not any(each[2] == name for each in near):
+            kept.append((x, y, name))
+    return kept

@@ -1,0 +1,140 @@
+"""Places for the names of points, clear of curves and of one another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from singimpact.scenes.style import BLACK, GREY
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class LabelSettings:
+    """Where a name may stand, in points of 1/72 inch."""
+
+    distances: tuple[float, ...] = (9.0, 16.0, 26.0, 38.0, 52.0, 70.0, 90.0)
+    directions: int = 16
+    # a name farther away than this is joined to its point by a line
+    joined: float = 12.0
+    # free space around a name
+    margin: float = 2.0
+    # points of one name that are nearer than this are named once
+    together: float = 8.0
+    # curves are sampled so densely
+    sample: float = 2.0
+
+
+SETTINGS = LabelSettings()
+
+
+def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: float = 10.0) -> list[Any]:
+    """Write names beside points and return the annotations.
+
+    Parameters
+    ----------
+    axes : with its curves drawn and its limits set. labels : x, y and the name of each point; a point outside the
+        limits gets none. size : of the letters, in points.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> axes = Figure().add_subplot()
+    >>> _ = axes.plot([0, 1], [0, 1])
+    >>> [label.get_text() for label in place_labels(axes, [(0.5, 0.5, "middle"), (2, 2, "outside")])]
+    ['middle']
+    """
+    axes.figure.draw_without_rendering()  # sets the layout, which the distances in pixels need
+    box = axes.get_window_extent()
+    pixel = axes.figure.dpi / 72
+    inside: list[tuple[float, float, str]] = []
+    for x, y, name in labels:
+        place = axes.transData.transform((x, y))
+        gaps = [axes.transData.transform(each[:2]) - place for each in inside if each[2] == name]
+        if _within(place, box) and not any(np.hypot(*gap) < SETTINGS.together * pixel for gap in gaps):
+            inside.append((x, y, name))
+    obstacles = [_curve_points(axes, SETTINGS.sample * pixel)]
+    points = np.array([axes.transData.transform((x, y)) for x, y, _ in inside]).reshape(-1, 2)
+    obstacles.append(np.repeat(points, 4, axis=0))  # to hide another point is worse than to cross a curve
+    taken: list[Array] = [_extent(text) for text in axes.texts]
+    written = []
+    for (x, y, name), point in zip(inside, points, strict=True):
+        text = axes.annotate(name, (x, y), (0, 0), textcoords="offset points", fontsize=size, color=BLACK, zorder=8,
+                             ha="center", va="center")  # fmt: skip
+        extent = _extent(text)
+        half = (extent[2:] - extent[:2]) / 2
+        offset = _offset(point, half, np.concatenate(obstacles), taken, (box.extents, pixel))
+        text.remove()
+        length = np.hypot(*offset) - _reach(half, offset)
+        line = {"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 4}
+        written.append(axes.annotate(
+            name, (x, y), tuple(offset / pixel), textcoords="offset points", fontsize=size, color=BLACK, zorder=8,
+            ha="center", va="center", arrowprops=line if length > SETTINGS.joined * pixel else None))  # fmt: skip
+        middle = point + offset
+        if length > SETTINGS.joined * pixel:
+            shares = np.linspace(0, 1, 2 + int(length / (SETTINGS.sample * pixel)))[:, None]
+            obstacles.append(point + shares * offset * (length / np.hypot(*offset)))
+        taken.append(np.concatenate([middle - half, middle + half]))
+    return written
+
+
+def _within(place: Array, box: Any) -> bool:
+    x, y = place
+    slack = 3.0
+    return bool(box.x0 - slack <= x <= box.x1 + slack and box.y0 - slack <= y <= box.y1 + slack)
+
+
+def _extent(text: Any) -> Array:
+    from matplotlib.text import Text
+
+    return np.asarray(Text.get_window_extent(text).extents)  # without the line to its point
+
+
+def _reach(half: Array, offset: Array) -> float:
+    """How far the box of a name reaches from its middle back towards the point."""
+    direction = np.abs(offset) / np.hypot(*offset)
+    with np.errstate(divide="ignore"):
+        return float(np.min(half / direction))
+
+
+def _offset(point: Array, half: Array, obstacles: Array, taken: list[Array], space: tuple[Any, float]) -> Array:
+    """The offset, in pixels, of the name's middle that hides least; of those the nearest."""
+    edges, pixel = space
+    margin = SETTINGS.margin * pixel
+    best, least = np.array([0.0, SETTINGS.distances[0]]), np.inf
+    for rank, distance in enumerate(SETTINGS.distances):
+        for angle in np.pi * (0.25 + 2 * np.arange(SETTINGS.directions) / SETTINGS.directions):
+            direction = np.array([np.cos(angle), np.sin(angle)])
+            offset = direction * (distance * pixel + _reach(half, direction))
+            middle = point + offset
+            low, high = middle - half - margin, middle + half + margin
+            hidden = int(((obstacles > low) & (obstacles < high)).all(axis=1).sum())
+            crossed = sum(bool((low < other[2:]).all() and (high > other[:2]).all()) for other in taken)
+            outside = bool((low < edges[:2]).any() or (high > edges[2:]).any())
+            cost = hidden + 50 * crossed + 100 * outside + 0.2 * rank
+            if cost < least:
+                best, least = offset, cost
+        if least < len(SETTINGS.distances) * 0.2:
+            break
+    return best
+
+
+def _curve_points(axes: Any, step: float) -> Array:
+    """Points of all curves and markers of axes in pixels, about `step` apart."""
+    found = [np.empty((0, 2))]
+    for line in axes.lines:
+        data = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
+        if line.get_linestyle() in ("None", "none", ""):
+            found.append(data[np.isfinite(data).all(axis=1)])
+            continue
+        for begin, end in pairwise(data):
+            length = np.hypot(*(end - begin))
+            if np.isfinite(length) and length < 1e5:
+                shares = np.linspace(0, 1, 2 + int(length / step))[:, None]
+                found.append(begin + shares * (end - begin))
+    return np.concatenate(found)
