@@ -6,5 +6,5 @@ Files: `closing` (the conditions, smooth through a graze; the lowest place of a 
 without impact), `orbits` (what an orbit is), `solutions` (the orbit at a point), `one_impact` (one impact, linear:
 closed form), `starts` (Newton's method from many starts), `resting` (orbits without impact, and with rest), `digits`,
 `periodic` (what a user asks), `continuation` (pseudo-arclength), `events`, `switching`
-(the other branches at an event), `branch`, `event_curve` (events in two numbers).
+(the other branches at an event), `branch`, `kept` (on disk), `event_curve` (events in two numbers).
 """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -12,9 +13,10 @@ from singimpact.algebra.numbers import as_float, constant
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point, root_between
 from singimpact.branches.events import Event
+from singimpact.branches.kept import KeptSide
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, orbit_period
-from singimpact.flights.family import CLEARANCE, RESTITUTION
+from singimpact.flights.family import CLEARANCE, RESTITUTION, SteppedFamily
 from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -126,7 +128,8 @@ def branch(
     Notes
     -----
     The branch is followed on the surface of flights that do not feel the wall, where it is smooth through a graze.
-    Beyond the graze it is virtual: `visible` says so.
+    Beyond the graze it is virtual: `visible` says so. Points of a model without a closed form are kept in the cache: a
+    call that was interrupted goes on where it was when it is made again.
 
     Examples
     --------
@@ -245,11 +248,21 @@ class _Walk:
     # ---- one side
 
     def _side(self, curve: Curve, start: Point, notes: list[str], over: str) -> tuple[list[Any], list[Event]]:
+        kept = KeptSide(self._asked(start, over))
+        try:
+            return self._followed(curve, start, notes, over, kept)
+        finally:
+            kept.write()
+
+    def _followed(
+        self, curve: Curve, start: Point, notes: list[str], over: str, kept: KeptSide
+    ) -> tuple[list[Any], list[Event]]:
         rows: list[Any] = []
         events: list[Event] = []
         before = self._tests(start)
         low, high = self.ends
-        for here, length, after in curve.walk(start, self.most):
+        for here, length, after in self._steps(curve, start, kept):
+            known = kept.points[len(rows)] if len(rows) < len(kept.points) else None
             outside = not low <= after.at[-1] <= high
             if outside:
                 end = self._end(curve, here, length, after)
@@ -257,9 +270,11 @@ class _Walk:
                     notes.append(f"ends at {over} = {here.at[-1]:.12g}, next to the end of the interval")
                     return rows, events
                 length, after = end
-            tests = self._tests(after)
+            tests = self._tests(after) if known is None else known.named_tests()
             events += self._events(curve, (here, length, after), (before, tests), len(rows), notes)
-            rows.append(self._row(after))
+            rows.append(self._row(after) if known is None else (after, known.multipliers, known.visible))
+            if known is None and not outside:
+                kept.add((after.at, after.tangent, curve.following), rows[-1], tests)
             before = tests
             if outside:
                 notes.append(f"ends at {over} = {after.at[-1]:.12g}, the end of the interval")
@@ -270,6 +285,24 @@ class _Walk:
         where = rows[-1][0] if rows else start
         notes.append(f"at {over} = {where.at[-1]:.12g}: {self._reason(where) or curve.note}")
         return rows, events
+
+    def _asked(self, start: Point, over: str) -> tuple[Any, ...] | None:
+        """What a side depends on; None of a linear model, whose branches take less than a second."""
+        family = self.closing.family
+        if not isinstance(family, SteppedFamily):
+            return None
+        numbers = (start.at.tolist(), start.tangent.tolist(), self.ends, self.step, self.most)
+        return family.osc, self.closing.n, self.closing.k, over, numbers
+
+    def _steps(self, curve: Curve, start: Point, kept: KeptSide) -> Iterator[tuple[Point, float, Point]]:
+        """The steps that are known, and those after them."""
+        here = start
+        known = list(kept.points)
+        for each in known:
+            after = Point(each.at, each.tangent)
+            yield here, float(here.tangent @ ((after.at - here.at) / curve.scales)), after
+            here = after
+        yield from curve.walk(here, self.most - len(known), known[-1].following if known else None)
 
     def _reason(self, where: Point) -> str:
         """Why flights have no value just beyond a point."""

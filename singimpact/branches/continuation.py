@@ -66,6 +66,7 @@ class Curve:
     step: float
     speeds: slice = field(default_factory=lambda: slice(0, 0))
     note: str = field(default="", init=False)
+    following: float = field(default=0.0, init=False)
 
     def longest(self, here: Point) -> float:
         """The largest step from a point.
@@ -123,9 +124,14 @@ class Curve:
                 return None
         return None
 
-    def walk(self, start: Point, most: int) -> Iterator[tuple[Point, float, Point]]:
-        """Points after a start: the one before, the step from it, the new one; `note` says why it ended."""
-        length, here = SETTINGS.first * self.step, start
+    def walk(self, start: Point, most: int, first: float | None = None) -> Iterator[tuple[Point, float, Point]]:
+        """Points after a start: the one before, the step from it, the new one; `note` says why it ended.
+
+        Parameters
+        ----------
+        most : points. first : the length of the first step; `following` is that of the next one after each point.
+        """
+        length, here = SETTINGS.first * self.step if first is None else first, start
         with ProgressLine() as line:
             for count in range(most):
                 line.show(count, None, "points of a curve")
@@ -137,9 +143,10 @@ class Curve:
                         return
                     found = self.beyond(here, length)
                 after, rounds = found
+                grown = length * (SETTINGS.longer if rounds <= SETTINGS.easy else 1.0)
+                self.following = min(grown, self.longest(after))
                 yield here, length, after
-                here = after
-                length = min(length * (SETTINGS.longer if rounds <= SETTINGS.easy else 1.0), self.longest(here))
+                here, length = after, self.following
         self.note = f"{most} points are spent: the curve goes on (points=)"
 
     def _scaled(self, point: Array) -> tuple[Array, Array]:

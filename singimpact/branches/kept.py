@@ -1,0 +1,87 @@
+"""Points of a branch in the user's cache, so that one that was interrupted goes on where it was."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from singimpact import cache
+from singimpact.store import cache_folder
+
+Array = np.ndarray[Any, Any]
+Tests = dict[tuple[str, int], float]
+EVERY = 1.0
+"""Seconds of work between two writings."""
+
+
+@dataclass(frozen=True)
+class KeptPoint:
+    """A point with what was computed there.
+
+    Parameters
+    ----------
+    following : length of the next step. multipliers, visible : of the orbit.
+    tests : numbers that change sign at events.
+    """
+
+    at: Array
+    tangent: Array
+    following: float
+    multipliers: Array
+    visible: bool
+    tests: dict[str, float]
+
+    def named_tests(self) -> Tests:
+        """The numbers that change sign at events, by kind and impact."""
+        return {(name.rpartition(" ")[0], int(name.rpartition(" ")[2])): value for name, value in self.tests.items()}
+
+
+class KeptSide:
+    """The points of one side of a branch, as far as they are known.
+
+    Parameters
+    ----------
+    asked : texts and numbers that the side depends on; None: nothing is kept.
+    """
+
+    def __init__(self, asked: tuple[Any, ...] | None) -> None:
+        self.place = None if asked is None else cache_folder() / "branches" / f"{_key(asked)}.points"
+        self.points: list[KeptPoint] = []
+        content = None if self.place is None else cache.recall(self.place)
+        if content is not None:
+            self.points = list(cache.unpacked(content, (KeptPoint,)))
+        self._written, self._new = time.monotonic(), False
+
+    def add(self, at: tuple[Array, Array, float], row: tuple[Any, Array, bool], tests: Tests) -> None:
+        """Keep one point more: `at`, tangent and next step; `row` with multipliers and whether it is visible."""
+        if self.place is None:
+            return
+        named = {f"{kind} {impact}": value for (kind, impact), value in tests.items()}
+        self.points.append(KeptPoint(*at, row[1], bool(row[2]), named))
+        self._new = True
+        if time.monotonic() - self._written > EVERY:
+            self.write()
+
+    def write(self) -> None:
+        """Put the points on disk, whole, if there are new ones."""
+        if self.place is not None and self._new:
+            cache.keep(self.place, cache.packed(self.points))
+            self._written, self._new = time.monotonic(), False
+
+
+def _key(asked: tuple[Any, ...]) -> str:
+    """A digest of what was asked, of the source below and of numpy's version."""
+    return hashlib.sha256(json.dumps([_ground(), *map(repr, asked)]).encode()).hexdigest()
+
+
+@lru_cache(maxsize=1)
+def _ground() -> str:
+    above = ("paper/", "documents/", "scenes/", "bench/", "cli/")  # rooms that no branch depends on
+    return np.__version__ + cache.source_digest(Path(__file__).parents[1], above)
