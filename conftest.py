@@ -32,6 +32,11 @@ def pytest_unconfigure(config):
         shutil.rmtree(config.singimpact_cache, ignore_errors=True)
 
 
+def pytest_runtest_teardown(item):  # noqa: ARG001
+    if "matplotlib.pyplot" in sys.modules:  # figures of pyplot stay open until they are closed
+        sys.modules["matplotlib.pyplot"].close("all")
+
+
 LONGEST = ("test_faults.py", "test_claims.py", "test_steep_layers.py", "test_threshold.py")
 """Files that take a minute: handed out first, so that no worker is left with one at the end."""
 

@@ -16,7 +16,14 @@ from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch
 from singimpact.bench.stress.table import FUNCTIONS, QUICK, chosen, stressed
 
 NO_NUMBER = {"to_toml", "linear", "universal", "read_model", "sweep", "clearances"}  # models, and work for others
-NO_NUMBER |= {"basins", "bifurcation", "classify", "grown_gamma", "transitions"}  # made of functions that have rows
+NO_NUMBER |= {
+    "shaken_wall",
+    "basins",
+    "bifurcation",
+    "classify",
+    "grown_gamma",
+    "transitions",
+}  # made of functions that have rows
 OF_SERIES = {"fibre", "dynamics_on_gamma", "v_c", "normal_form", "r_of_lambda", "Sheet"}  # exact; PowerSeries is a row
 
 
