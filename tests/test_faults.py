@@ -252,6 +252,7 @@ def test_damaged_machine_code_is_named_and_made_again(damage, tmp_path):
     assert ran() == ("0\n", "")
 
 
+@pytest.mark.slow
 def test_two_processes_share_a_cold_cache(tmp_path):
     runs = [command(tmp_path, "verify", "s3-dvdt") for _ in range(2)]
     codes = [started(["-c", MACHINE], tmp_path) for _ in range(2)]
@@ -268,6 +269,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
 """
 
 
+@pytest.mark.slow
 def test_work_is_done_on_a_full_disk_and_told_once(tmp_path):
     answer, told = started(["-c", FULL + MACHINE], tmp_path).communicate(timeout=300)
     assert answer == "0\n"

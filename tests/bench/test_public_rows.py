@@ -103,6 +103,7 @@ def _executed(text: str, before: str) -> tuple[list[str], list[str]]:
     return calls(lambda: exec(compile(text, "<row>", "exec"), space), text="<row>")
 
 
+@pytest.mark.slow
 def test_commands_and_series_in_new_processes_call_public_names_only():
     for each in commands.SERIES:
         public, private = _executed(each.made, commands.PUBLIC + each.before)

@@ -29,7 +29,7 @@ MODELS = {
 }
 
 
-LONG = ("friction", "no graze")  # 20 s each
+LONG = ("friction", "no graze", "linear")  # 10 to 20 s each
 
 
 @pytest.mark.parametrize(
@@ -154,6 +154,7 @@ def test_plain_acceleration_is_the_text(f):
     assert motion.acceleration(0.7, 0.9, 0.4, motion.parameters) == pytest.approx(true, rel=1e-14)
 
 
+@pytest.mark.slow
 def test_command(singimpact, tmp_path, monkeypatch):
     model = tmp_path / "model.toml"
     model.write_text(DUFFING.to_toml())

@@ -153,6 +153,7 @@ def test_errors_are_measured_against_balls() -> None:
     assert (summed.time.below, summed.velocity.below) == (1, 0)
 
 
+@pytest.mark.slow
 def test_command(singimpact) -> None:
     told = singimpact(
         "bench", "states", "--family", "steep", "--states", "50", "--workers", "1", "--quick", "--balls", "2",

@@ -172,6 +172,7 @@ def windows() -> dict[int, tuple[float, float]]:
     return {k: window(k, 0.07 * LARGER ** (2 * (k - 2))) for k in range(2, 8)}
 
 
+@pytest.mark.slow
 def test_periods_are_added_towards_a_graze(windows) -> None:
     assert pytest.approx(0.2226, abs=1e-4) == LARGER < 0.25
     for low, high in windows.values():

@@ -48,6 +48,7 @@ def test_orbits_of_one_branch_are_followed_once(singimpact):
     )
 
 
+@pytest.mark.slow
 def test_events(singimpact, tmp_path):
     given = ["events", *RESONANT, "--over", "amplitude", "omega", "--from", "-0.3", "0.9", "--to", "-0.05", "1.1"]
     done = singimpact(*given, "--json", "--csv", tmp_path / "e.csv", "-o", tmp_path / "e.svg")

@@ -98,6 +98,7 @@ def test_an_orbit_from_a_flight_is_the_orbit_of_that_flight(osc):
     assert axes.lines[0].get_ydata()[0] == pytest.approx(float(place.x), abs=1e-15)
 
 
+@pytest.mark.slow
 def test_grazes_are_decided():
     rising = si.ImpactOscillator("0", "2", 0, "1/2")  # x = 1 + u t + t^2 touches 0 for u = -2
     below, exact, above = (rising.launch(1, u, 0) for u in (-2 - 1e-9, -2, -2 + 1e-9))

@@ -106,6 +106,7 @@ def test_a_budget_says_how_far_the_flight_came() -> None:
     assert many.sentence.shape == (2,)
 
 
+@pytest.mark.slow
 def test_a_long_flight_keeps_its_errors() -> None:
     """More steps than are traced at first."""
     hit = si.ImpactOscillator("x-100*(1-x**2)*xdot", "cos(t)", 0, "1/2").first_hit("0.3", 1)
@@ -125,6 +126,7 @@ def test_a_mass_that_cannot_come_back_is_not_flown() -> None:
     assert si.ImpactOscillator("x+x**3/10+1000*xdot", "2*cos(t)", -1, "1/2").first_hit(3, 0.001).status == Status.hit
 
 
+@pytest.mark.slow
 def test_both_bounds_against_flights() -> None:
     """Whatever is said to stay up stays up, by flights: near the edge of both proofs."""
     from singimpact.flights.no_return.averaged import stays_up

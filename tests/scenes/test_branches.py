@@ -72,6 +72,7 @@ def overlapped(axes) -> list[tuple[str, str]]:
     return found
 
 
+@pytest.mark.slow
 def test_names_are_clear_of_curves_and_of_one_another(branch, curves) -> None:
     assert overlapped(si.plot(branch)) == []
     assert overlapped(si.plot(branch, height="phase")) == []
