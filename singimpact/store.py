@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import stat
 import sys
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import lru_cache
@@ -27,6 +26,7 @@ def written(path: str | Path) -> Iterator[Path]:
 
     Examples
     --------
+    >>> import tempfile
     >>> place = Path(tempfile.mkdtemp())
     >>> with written(place / "a.txt") as draft:
     ...     _ = draft.write_text("whole")
@@ -55,6 +55,7 @@ def write_table(path: str | Path, columns: Mapping[str, Iterable[Any]]) -> None:
 
     Examples
     --------
+    >>> import tempfile
     >>> place = Path(tempfile.mkdtemp()) / "a.csv"
     >>> write_table(place, {"tau": [0.5, 1.0], "kind": ["impact", "graze"]})
     >>> print(place.read_text(), end="")
@@ -123,6 +124,7 @@ def changeable(place: Path) -> str | None:
 
     Examples
     --------
+    >>> import tempfile
     >>> changeable(Path(tempfile.mkdtemp())) is None
     True
     """
@@ -152,6 +154,7 @@ def passing_folder() -> Path:
     """A folder of this process, removed when it ends."""
     import atexit
     import shutil
+    import tempfile
 
     place = tempfile.mkdtemp(prefix="singimpact-")
     atexit.register(shutil.rmtree, place, ignore_errors=True)
@@ -176,6 +179,8 @@ def _followed(path: str | Path) -> Path:
 
 
 def _draft(target: Path, special: bool) -> Path:
+    import tempfile  # 4 ms, and most processes write nothing
+
     # the ending stays, because writers of pictures read the format from it
     try:
         place = tempfile.gettempdir() if special else target.parent

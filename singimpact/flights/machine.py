@@ -9,7 +9,6 @@ from __future__ import annotations
 import atexit
 import hashlib
 import os
-import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -143,6 +142,8 @@ _STARTED: list[Any] = []
 
 def _outliving(command: list[str]) -> None:
     """Start a process that goes on when this one ends."""
+    import subprocess  # 7 ms, and most processes find all compiled
+
     _STARTED.append(subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         start_new_session=True, cwd=Path(__file__).parents[2],
