@@ -173,6 +173,29 @@ def source_digest(folder: Path, without: tuple[str, ...] = ()) -> str:
     return digest.hexdigest()
 
 
+def key_of(parts: Iterable[Any], libraries: tuple[str, ...], without: tuple[str, ...] = ()) -> str:
+    """A digest of what was asked, of the versions of libraries, and of the package's source.
+
+    Parameters
+    ----------
+    parts : all that the entry depends on beside these, by their `repr`. without : folders that it does not depend on.
+
+    Examples
+    --------
+    >>> key_of(["horizon", 1], ("numpy",)) == key_of(["horizon", 1], ("numpy",)), len(key_of([], ()))
+    (True, 64)
+    """
+    ground = [_versions(libraries), source_digest(Path(__file__).parent, without)]
+    return hashlib.sha256(json.dumps([*ground, *map(repr, parts)]).encode()).hexdigest()
+
+
+@lru_cache(maxsize=8)
+def _versions(libraries: tuple[str, ...]) -> str:
+    from importlib.metadata import version
+
+    return repr([version(name) for name in libraries])
+
+
 def damaged(place: Path, reason: str) -> None:
     """Name an entry that cannot be used."""
     tell(f"cache entry {shown(str(place), 300)} is damaged ({reason}): it is made again")

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import time
 from dataclasses import dataclass
-from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +13,8 @@ from singimpact.store import cache_folder
 
 Array = np.ndarray[Any, Any]
 Tests = dict[tuple[str, int], float]
+ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/")
+"""Rooms that no branch depends on."""
 EVERY = 1.0
 """Seconds of work between two writings."""
 
@@ -52,7 +50,9 @@ class KeptSide:
     """
 
     def __init__(self, asked: tuple[Any, ...] | None) -> None:
-        self.place = None if asked is None else cache_folder() / "branches" / f"{_key(asked)}.points"
+        self.place = (
+            None if asked is None else cache_folder() / "branches" / f"{cache.key_of(asked, ('numpy',), ABOVE)}.points"
+        )
         self.points: list[KeptPoint] = []
         content = None if self.place is None else cache.recall(self.place)
         if content is not None:
@@ -74,14 +74,3 @@ class KeptSide:
         if self.place is not None and self._new:
             cache.keep(self.place, cache.packed(self.points))
             self._written, self._new = time.monotonic(), False
-
-
-def _key(asked: tuple[Any, ...]) -> str:
-    """A digest of what was asked, of the source below and of numpy's version."""
-    return hashlib.sha256(json.dumps([_ground(), *map(repr, asked)]).encode()).hexdigest()
-
-
-@lru_cache(maxsize=1)
-def _ground() -> str:
-    above = ("paper/", "documents/", "scenes/", "bench/", "cli/")  # rooms that no branch depends on
-    return np.__version__ + cache.source_digest(Path(__file__).parents[1], above)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -61,12 +60,7 @@ def save_once(asked: tuple[Any, ...], output: str | Path, make: Callable[[], tup
 
 def kept_at(asked: tuple[Any, ...], libraries: tuple[str, ...]) -> Path:
     """Where the cache keeps what was drawn: under what was asked, the package, and the libraries that draw."""
-    from importlib.metadata import version
-
-    versions = [version(name) for name in ("numpy", *libraries)]
-    source = cache.source_digest(Path(__file__).parents[1])
-    key = hashlib.sha256(json.dumps([source, versions, *map(repr, asked)]).encode()).hexdigest()
-    return cache_folder() / "pictures" / f"{key}.picture"
+    return cache_folder() / "pictures" / f"{cache.key_of(asked, ('numpy', *libraries))}.picture"
 
 
 def blank_axes() -> Any:

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from dataclasses import replace
-from functools import lru_cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +10,7 @@ from singimpact import cache
 from singimpact.store import cache_folder
 from singimpact.surface.curve import Curve, Mark
 
+LIBRARIES = ("numpy", "numba", "contourpy")
 ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/")  # rooms that no curve depends on
 
 
@@ -25,14 +22,7 @@ def key_of(*parts: Any) -> str:
     >>> key_of("horizon", 1) == key_of("horizon", 1), len(key_of("horizon", 2))
     (True, 64)
     """
-    return hashlib.sha256(json.dumps([ground(), *map(repr, parts)]).encode()).hexdigest()
-
-
-@lru_cache(maxsize=1)
-def ground() -> str:
-    """The versions of the libraries, and the digest of the package's source below the pictures."""
-    libraries = repr([version(name) for name in ("numpy", "numba", "contourpy")])
-    return libraries + cache.source_digest(Path(__file__).parents[1], ABOVE)
+    return cache.key_of(parts, LIBRARIES, ABOVE)
 
 
 def recall(key: str) -> list[Curve] | None:

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Sequence
-from functools import lru_cache
-from importlib.metadata import version
-from pathlib import Path
 
 from singimpact import cache
 from singimpact.documents.steps import Section, Step
 from singimpact.store import cache_folder
 
+LIBRARIES = ("sympy", "python-flint", "mpmath")
 ABOVE = ("cli/", "bench/", "scenes/", "paper/figures/")  # rooms that no derivation depends on
 
 
@@ -28,7 +24,7 @@ def kept_sections(names: Sequence[str] = ()) -> list[Section]:
     >>> kept_sections(["swan"]) == kept_sections(["5"])
     True
     """
-    place = cache_folder() / "derivations" / f"{_key(names)}.sections"
+    place = cache_folder() / "derivations" / f"{cache.key_of(names, LIBRARIES, ABOVE)}.sections"
     content = cache.recall(place)
     if content is not None:
         found: list[Section] = cache.unpacked(content, (Section, Step))
@@ -38,14 +34,3 @@ def kept_sections(names: Sequence[str] = ()) -> list[Section]:
     made = sections(names)
     cache.keep(place, cache.packed(made))
     return made
-
-
-def _key(names: Sequence[str]) -> str:
-    return hashlib.sha256(json.dumps([_ground(), *names]).encode()).hexdigest()
-
-
-@lru_cache(maxsize=1)
-def _ground() -> str:
-    """The versions of the libraries, and the digest of the source."""
-    libraries = repr([version(name) for name in ("sympy", "python-flint", "mpmath")])
-    return libraries + cache.source_digest(Path(__file__).parents[2], ABOVE)

@@ -26,7 +26,7 @@ def test_kept_sections_are_those_derived_and_need_no_sympy(monkeypatch, tmp_path
 def test_sections_of_another_source_are_derived_again(monkeypatch, tmp_path):
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
     kept_sections(["swan"])
-    monkeypatch.setattr(cached, "_ground", lambda: "another source")
+    monkeypatch.setattr(cached.cache, "source_digest", lambda *_: "another source")
     monkeypatch.setattr(derivations, "sections", lambda _: [])
     assert kept_sections(["swan"]) == []
 
