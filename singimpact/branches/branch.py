@@ -16,11 +16,11 @@ from singimpact.branches.events import Event
 from singimpact.branches.kept import KeptSide
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, orbit_period
-from singimpact.flights.family import CLEARANCE, RESTITUTION, SteppedFamily
+from singimpact.flights.family import SteppedFamily
 from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import with_number
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
 from singimpact.store import write_text
 
 Array = np.ndarray[Any, Any]
@@ -142,8 +142,7 @@ def branch(
     osc, state = _checked(orbit)
     osc = with_number(osc, over)
     closing = closing_of(osc, int(orbit.n), orbit.k, (over,))
-    value = as_float(osc.clearance if over == CLEARANCE else osc.restitution if over == RESTITUTION
-                     else osc.parameters[over])  # fmt: skip
+    value = value_of(osc, over)
     low, high = interval(over, between, value)
     whole("points", points, 2, 10**6)
     if step is not None and not 0 < step <= 1:

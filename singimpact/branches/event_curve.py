@@ -9,21 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
 from singimpact.branches.branch import SETTINGS, interval
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point, root_between
 from singimpact.branches.events import Event
 from singimpact.branches.solutions import AnyClosing, closing_of
-from singimpact.flights.family import CLEARANCE, RESTITUTION
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import with_number
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
 from singimpact.store import write_text
 
 Array = np.ndarray[Any, Any]
 NUDGE = 1e-6
-"""Half the width of a difference, in scaled unknowns: its error is 1e-12 of the slope, that of Newton's method none."""
+"""Half the width of a central difference, in scaled unknowns: a slope is then known to 1e-10."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +98,7 @@ def event_curve(
 
     Returns
     -------
-    EventCurve : with its points of codimension two, each located to rounding of the test that names it.
+    EventCurve : with its points of codimension two, located to rounding; cusps to 1e-9, for their test is a difference.
 
     Examples
     --------
@@ -126,9 +124,7 @@ def event_curve(
     given = (None, None) if between is None else tuple(between)
     if len(given) != 2:
         raise refuse("between", between, "a pair of intervals, one for each number")
-    values = [
-        as_float(getattr(osc, name) if name in (CLEARANCE, RESTITUTION) else osc.parameters[name]) for name in over
-    ]
+    values = [value_of(osc, name) for name in over]
     ends = [interval(name, part, value) for name, part, value in zip(over, given, values, strict=True)]
     n = int(orbit.n)
     closing = closing_of(osc, n, orbit.k, over)
@@ -179,7 +175,7 @@ class _Walk:
         return float(np.linalg.det(square / np.abs(self.scales[: self.closing.n].max())))
 
     def gradient(self, point: Array) -> Array:
-        """The derivative of the test by each scaled unknown, by central differences; the test is exact."""
+        """The derivative of the test by each unknown: central differences, which move no root of the test."""
         if self.kind == "graze":
             found = np.zeros(len(point))
             found[self.closing.n + self.impact] = 1.0 / self.scales[self.closing.n]

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from singimpact.branches.closing import Loop, lowest
-from singimpact.flights.family import CLEARANCE, Family
+from singimpact.flights.family import Family
+from singimpact.oscillator.moving_number import CLEARANCE
 
 Array = np.ndarray[Any, Any]
 

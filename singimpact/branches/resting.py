@@ -12,9 +12,10 @@ from singimpact.branches.free import FreeClosing
 from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits
 from singimpact.dynamics.long_run import lift_offs
 from singimpact.dynamics.orbit import orbit
-from singimpact.flights.family import CLEARANCE, Family, family
+from singimpact.flights.family import Family, family
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import CLEARANCE
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]

@@ -13,8 +13,9 @@ from singimpact.branches.closing import Closing
 from singimpact.branches.free import FreeClosing
 from singimpact.branches.orbits import PeriodicOrbit, visible
 from singimpact.branches.resting import free_orbit_at
-from singimpact.flights.family import CLEARANCE, RESTITUTION, family
+from singimpact.flights.family import family
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]

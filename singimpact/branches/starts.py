@@ -11,6 +11,7 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.rings import DOUBLES
 from singimpact.branches.closing import Closing
 from singimpact.branches.resting import free_orbits
+from singimpact.flights.family import LinearFamily, SteppedFamily
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.path import ends
 from singimpact.flights.rebound_law import rebound_slope
@@ -61,7 +62,7 @@ def grid_of_starts(closing: Closing, tau: Any = None, v: Any = None) -> Array:
     period = closing.family.period({}).value
     span = closing.k * period
     if tau is None:
-        linear = not hasattr(closing.family, "models")
+        linear = isinstance(closing.family, LinearFamily)
         count, speed_count = (SETTINGS.phases, SETTINGS.speeds) if linear else SETTINGS.fewer
         phases = np.linspace(0, period, count, endpoint=False)
         fast = float(np.abs(acceleration(osc, phases)).max()) * span / n
@@ -152,7 +153,7 @@ def closed_from(closing: Closing, points: Array) -> list[Array]:
         fast = np.maximum(np.abs(at[:, n:]).max(axis=1, initial=0.0), 1e-300)
         with np.errstate(over="ignore"):  # a start of no velocity
             size = np.maximum(np.abs(step[:, :n]).max(axis=1) / period, np.abs(step[:, n:]).max(axis=1) / fast)
-        if count == 0 and hasattr(closing.family, "models") and len(at) > SETTINGS.kept:
+        if count == 0 and isinstance(closing.family, SteppedFamily) and len(at) > SETTINGS.kept:
             best = np.argsort(size, kind="stable")[: SETTINGS.kept]
             at, step, size = at[best], step[best], size[best]
         longest = np.abs(step[:, :n]).max(axis=1) / period

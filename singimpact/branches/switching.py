@@ -12,6 +12,7 @@ from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, orbit_period
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import CLEARANCE
 
 Array = np.ndarray[Any, Any]
 APART = 1e-3
@@ -54,11 +55,11 @@ def _closed(event: PeriodicOrbit, n: int, point: Array) -> PeriodicOrbit:
 def _without_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     n = int(orbit.n)
     times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
-    at = int(np.argmin(speeds))  # an orbit begins at its least phase, not where its branch did
+    at = int(np.argmin(np.abs(speeds)))  # an orbit begins at its least phase, not where its branch did
     if n == 1:
         osc = orbit.oscillator
         closing = closing_of(osc, 0, orbit.k, ())
-        end = closing.family.end({"clearance": _wall(osc)}, float(times[0]), 0.0, -float(times[0]))
+        end = closing.family.end({CLEARANCE: _wall(osc)}, float(times[0]), 0.0, -float(times[0]))
         return orbit_of(closing, np.array([_wall(osc) + end.place[0], end.place[1]]))
     kept = [(at + 1 + i) % n for i in range(n - 1)]
     span = orbit.k * orbit_period(orbit)

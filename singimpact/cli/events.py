@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from singimpact.cli.columns import columns
-from singimpact.cli.followed import orbit_options, take_branches, take_ends, take_orbits, value_of
+from singimpact.cli.followed import orbit_options, take_branches, take_ends, take_orbits
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import blank_axes, save, suffix_of
 from singimpact.inputs import InputError
+from singimpact.oscillator.moving_number import value_of
 from singimpact.store import require_writable, write_text
 
 if TYPE_CHECKING:

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from singimpact.branches.branch import Branch
     from singimpact.branches.orbits import PeriodicOrbit
     from singimpact.impact_oscillator import ImpactOscillator
-    from singimpact.oscillator.model import Oscillator
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 SAME = 1e-6
@@ -70,6 +69,7 @@ def on_branch(orbit: PeriodicOrbit, branch: Branch) -> bool:
     True
     """
     from singimpact.branches.periodic import periodic
+    from singimpact.oscillator.moving_number import value_of
 
     if not branch.n:
         return False
@@ -86,14 +86,6 @@ def on_branch(orbit: PeriodicOrbit, branch: Branch) -> bool:
             if abs(each.tau[0] - orbit.tau[0]) < SAME and abs(each.v[0] - orbit.v[0]) <= SAME * abs(orbit.v[0]):
                 return True
     return False
-
-
-def value_of(osc: Oscillator, name: str) -> float:
-    """A number of a model; nan where it has none of that name."""
-    from singimpact.algebra.numbers import as_float
-
-    fields = {"clearance": osc.clearance, "restitution": osc.restitution, **osc.parameters}
-    return as_float(fields[name]) if name in fields else float("nan")
 
 
 def take_ends(low: Any, high: Any) -> Any:

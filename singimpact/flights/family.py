@@ -15,6 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import cos, factorial, frexp, inf, pi, sin
+from threading import RLock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,15 +37,15 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.codegen.recurrence import recurrence
 from singimpact.flights.compiled_model import CompiledModel, compiled_model
 from singimpact.flights.kernels import layout
-from singimpact.flights.model_numbers import recurrence_of
+from singimpact.flights.model_numbers import fastest_rate, recurrence_of
 from singimpact.oscillator.linear import LinearForm, form_of
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of
 from singimpact.oscillator.period import common_period
 from singimpact.oscillator.rebound import rho_of
 
 Array = np.ndarray[Any, Any]
 Values = Mapping[str, float]
-CLEARANCE, RESTITUTION = "clearance", "restitution"
 
 
 @dataclass(frozen=True)
@@ -91,8 +92,8 @@ class Family(ABC):
     def __init__(self, osc: Oscillator, over: Sequence[str] = ()) -> None:
         self.osc, self.over = osc, tuple(over)
         self.fixed = {name: tree for name, tree in osc.parameters.items() if name not in over}
-        self.start = {name: as_float(getattr(osc, name) if name in (CLEARANCE, RESTITUTION) else osc.parameters[name])
-                      for name in over}  # fmt: skip
+        self.start = {name: value_of(osc, name) for name in over}
+        self.fastest = fastest_rate(osc)
         self._period = self._tree(common_period(osc.g) if _moves(osc.g, over) else osc.period)
         self._rho = [self._tree(tree) for tree in _rebound(osc, over)]
 
@@ -138,12 +139,12 @@ class Family(ABC):
     def path(self, values: Values, tau: float, v: float, time: float) -> Array:
         """x - c and x' at evenly spaced times after the launch, the last of them `time`, shape (samples, 2)."""
 
-    def samples(self, time: float) -> int:
-        """How many places show the shape of a flight."""
-        turns = min(abs(time) * self.fastest / (2 * pi), SETTINGS.most)
+    def samples(self, values: Values, time: float) -> int:
+        """How many places show the shape of a flight; a forcing that has become faster is followed."""
+        period = self.period(values).value
+        rate = max(self.fastest, 4 * pi / period if period > 0 else 0.0)
+        turns = min(abs(time) * rate / (2 * pi), SETTINGS.most)
         return int(min(max(SETTINGS.samples * turns, SETTINGS.least), SETTINGS.most))
-
-    fastest: float = 1.0
 
 
 def family(osc: Oscillator, over: Sequence[str] = ()) -> Family:
@@ -184,17 +185,11 @@ class LinearFamily(Family):
         self._known = [self._number(each, {}) if each is not None and not _moves(each[0], over) else None
                        for each in self._trees]  # fmt: skip
         self.waves = len(form.harmonics)
-        self.fastest = self._fastest(self.start)
 
     def numbers(self, values: Values) -> list[Number]:
         """Damping, stiffness, constant part of a_c; rate, phase, cosine, sine of every wave."""
         return [known or self._number(trees, values)  # type: ignore[arg-type]
                 for known, trees in zip(self._known, self._trees, strict=True)]  # fmt: skip
-
-    def _fastest(self, values: Values) -> float:
-        p = [each.value for each in self.numbers(values)]
-        root = np.sqrt(complex(p[0] * p[0] / 4 - p[1]))
-        return float(max([abs(root - p[0] / 2), abs(root + p[0] / 2), *np.abs(p[3::4]).tolist(), 1e-3]))
 
     def end(self, values: Values, tau: float, v: float, time: float) -> End:
         p, count = self.numbers(values), len(self.over)
@@ -227,7 +222,7 @@ class LinearFamily(Family):
         return exponential(self._matrix([each.value for each in self.numbers(values)]) * time)
 
     def path(self, values: Values, tau: float, v: float, time: float) -> Array:
-        p, count = self.numbers(values), self.samples(time)
+        p, count = self.numbers(values), self.samples(values, time)
         flow = exponential(self._matrix([each.value for each in p]) * (time / count))
         states = (flow @ self._start(p, tau, v))[None]
         while len(states) < count:  # so many places again, as many steps later
@@ -255,7 +250,10 @@ class LinearFamily(Family):
 
 
 class SteppedFamily(Family):
-    """Flights in Taylor steps; the flow of every number has a compiled model of its own."""
+    """Flights in Taylor steps; the flow of every number has a compiled model of its own.
+
+    The numbers of these models are changed from call to call, so one thread flies at a time.
+    """
 
     def __init__(self, osc: Oscillator, over: Sequence[str]) -> None:
         super().__init__(osc, over)
@@ -268,10 +266,10 @@ class SteppedFamily(Family):
         self.flows, self.models = flows, [CompiledModel(osc, allowance, flow) for flow in flows]
         for model in self.models:
             model.flat[layout.TURN : layout.TURN + 5] = 0.0  # launch times are not reduced by a period that moves
-        self.fastest = max(self.models[0]._pace(), 1.0)
         self._trees = [[substitute(tree, self.fixed) for tree in flow.constants] for flow in flows]
         self._force, self._forcing = substitute(osc.f, self.fixed), substitute(osc.g, self.fixed)
         self._at: tuple[float, ...] | None = None
+        self._alone = RLock()
 
     def _moved(self, values: Values) -> None:
         at = tuple(values[name] for name in self.over)
@@ -284,6 +282,10 @@ class SteppedFamily(Family):
         self._at = at
 
     def end(self, values: Values, tau: float, v: float, time: float) -> End:
+        with self._alone:
+            return self._end(values, tau, v, time)
+
+    def _end(self, values: Values, tau: float, v: float, time: float) -> End:
         self._moved(values)
         given = np.array([tau]), np.array([v]), np.array([time])
         by_v, by_v_dot, by_tau, by_tau_dot = self.models[0].variations(*given)[0]
@@ -303,8 +305,9 @@ class SteppedFamily(Family):
                    by_numbers)  # fmt: skip
 
     def path(self, values: Values, tau: float, v: float, time: float) -> Array:
-        self._moved(values)
-        return self.models[0].follow(tau, v, np.linspace(0.0, time, self.samples(time) + 1)[1:])
+        with self._alone:
+            self._moved(values)
+            return self.models[0].follow(tau, v, np.linspace(0.0, time, self.samples(values, time) + 1)[1:])
 
 
 _ORDER = 19

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from singimpact.algebra.expressions import Name, add, multiply, names_in, number
+from singimpact.algebra.numbers import as_float
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
 
@@ -49,6 +50,18 @@ def with_number(osc: Oscillator, name: str) -> Oscillator:
         g = _shifted(g, letter)
     fields: dict[str, Any] = {"f": f, "g": g, "clearance": osc.clearance, "restitution": osc.restitution}
     return type(osc)(**fields, parameters={**osc.parameters, name: LINEAR[name]})
+
+
+def value_of(osc: Oscillator, name: str) -> float:
+    """A number of a model as a double; nan where it has none of that name.
+
+    Examples
+    --------
+    >>> value_of(Oscillator("w**2*x", "cos(t)", "0.3", 1, {"w": 2}), "w")
+    2.0
+    """
+    fields = {CLEARANCE: osc.clearance, RESTITUTION: osc.restitution, **osc.parameters}
+    return as_float(fields[name]) if name in fields else float("nan")
 
 
 def _shifted(g: Any, letter: Name) -> Any:

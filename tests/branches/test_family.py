@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -68,3 +70,22 @@ def test_exponential() -> None:
         matrix = size * (matrix - matrix.T) / 7
         assert exponential(matrix) == pytest.approx(expm(matrix), abs=1e-13)
     assert exponential(np.zeros((3, 3))).tolist() == np.eye(3).tolist()
+
+
+def test_threads_do_not_meet_in_the_numbers_of_a_model() -> None:
+    moving = family(DUFFING, ("b",))
+    values = [{"b": 0.1 * i} for i in range(1, 9)]
+
+    def flown(each: dict[str, float]) -> list[float]:
+        return moving.end(each, 0.7, 0.4, 1.3).place.tolist()
+
+    alone = [flown(each) for each in values]
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(flown, values * 5))
+    assert together == alone * 5
+
+
+def test_a_faster_forcing_is_sampled_more_finely() -> None:
+    moving = family(linear("0.9", -1, "0.8"), ("omega",))
+    slow, fast = (moving.samples({"omega": omega}, 10.0) for omega in (0.9, 9.0))
+    assert fast >= 24 * 10 * 9 / (2 * np.pi) > slow
