@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.branches.closing import Closing
-from singimpact.branches.continuation import Curve, Point, root_between
+from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.events import Event
 from singimpact.branches.kept import KeptSide
 from singimpact.branches.orbits import PeriodicOrbit
@@ -278,7 +279,7 @@ class _Walk:
             if outside:
                 notes.append(f"ends at {over} = {after.at[-1]:.12g}, the end of the interval")
                 return rows, events
-            if len(rows) > 10 and self._again(start, here, after, curve.scales):
+            if len(rows) > 10 and self._again(curve, start, here, after):
                 notes.append("closed: the branch comes back to where it began")
                 return rows, events
         where = rows[-1][0] if rows else start
@@ -317,34 +318,19 @@ class _Walk:
     def _end(self, curve: Curve, here: Point, length: float, after: Point) -> tuple[float, Point] | None:
         """The point of the step at which the number is the end of the interval."""
         goal = self.ends[0] if after.at[-1] < self.ends[0] else self.ends[1]
+        ends = float(here.at[-1] - goal), float(after.at[-1] - goal)
+        found = None if ends[0] == 0 else curve.located(here, length, lambda point: float(point.at[-1] - goal), ends)
+        if found is not None:
+            found[1].at[-1] = goal
+        return found
 
-        def past(part: float) -> float:
-            found = curve.beyond(here, part) if part else (here, 0)
-            return np.nan if found is None else float(found[0].at[-1] - goal)
-
-        ends = past(0.0), float(after.at[-1] - goal)
-        if ends[0] == 0:
-            return None
-        try:
-            part = root_between(past, 0.0, length, ends)
-        except ArithmeticError:
-            return None
-        found = curve.beyond(here, part)
-        if found is None:
-            return None
-        found[0].at[-1] = goal
-        return part, found[0]
-
-    def _again(self, start: Point, here: Point, after: Point, scales: Array) -> bool:
-        """Whether a step passes the start in the direction in which it was left."""
-        gap, move = (start.at - here.at) / scales, (after.at - here.at) / scales
-        n = self.closing.n
+    def _again(self, curve: Curve, start: Point, here: Point, after: Point) -> bool:
+        """Whether a step passes the start, perhaps some periods later."""
+        gap, n = (start.at - here.at) / curve.scales, self.closing.n
         if n:
-            period = self.closing.family.period(self.closing.values(after.at)).value / scales[0]
+            period = self.closing.family.period(self.closing.values(after.at)).value / curve.scales[0]
             gap[:n] -= period * np.rint(gap[0] / period)
-        share = float(gap @ move / (move @ move))
-        return 0 <= share < 1 and float(np.linalg.norm(gap - share * move)) < 0.1 * float(np.linalg.norm(move)) and (
-            float(start.tangent @ after.tangent) > 0)  # fmt: skip
+        return curve.passes(start, here, after, gap)
 
     # ---- what is seen at a point
 
@@ -399,7 +385,7 @@ class _Walk:
                 notes.append(f"meets the ({self.closing.n // 2}, {self.closing.k // 2}) orbits at their doubling, near "
                              f"{here.at[-1]:.9g}")  # fmt: skip
                 continue
-            located = self._located(curve, here, length, key, (value, later))
+            located = curve.located(here, length, partial(self._test, key), (value, later))
             if located is None and key[0] == "torus":
                 continue  # the multipliers have become real before their product is 1
             if located is None:
@@ -411,6 +397,9 @@ class _Walk:
             found.append((part, self._event(key, point, index, notes)))
         return [event for _, event in sorted(found, key=lambda pair: pair[0])]
 
+    def _test(self, key: tuple[str, int], point: Point) -> float | None:
+        return self._tests(point).get(key)
+
     def _halves(self, at: Array) -> Array:
         """The second half of an orbit less the first; it changes sign where a doubled orbit begins."""
         n, k = self.closing.n, self.closing.k
@@ -420,29 +409,6 @@ class _Walk:
         times, speeds = np.diff(at[:n].reshape(2, -1), axis=0)[0], np.diff(at[n : 2 * n].reshape(2, -1), axis=0)[0]
         scales = self.closing.scales(at)
         return np.concatenate([(times - k // 2 * period) / scales[0], speeds / scales[n]])
-
-    def _located(
-        self, curve: Curve, here: Point, length: float, key: tuple[str, int], ends: tuple[float, float]
-    ) -> tuple[float, Point] | None:
-        kept: dict[float, Point] = {0.0: here}
-
-        def test(part: float) -> float:
-            if part not in kept:
-                found = curve.beyond(here, part)
-                if found is None:
-                    raise ArithmeticError
-                kept[part] = found[0]
-            value = self._tests(kept[part]).get(key)
-            if value is None:
-                raise ArithmeticError
-            return value
-
-        try:
-            part = root_between(test, 0.0, length, ends)
-            test(part)
-        except ArithmeticError:
-            return None
-        return part, kept[part]
 
     def _real(self, key: tuple[str, int], point: Point) -> bool:
         """A hidden impact on an orbit with v <= 0 is one of flights that begin below the wall: it says nothing."""

@@ -37,6 +37,8 @@ class ContinuationSettings:
     longer: float = 1.5
     # the largest angle between two tangents, as a cosine
     turn: float = 0.95
+    # a step passes a point that is nearer to it than this part of its length
+    beside: float = 0.1
 
 
 SETTINGS = ContinuationSettings()
@@ -148,6 +150,50 @@ class Curve:
                 yield here, length, after
                 here, length = after, self.following
         self.note = f"{most} points are spent: the curve goes on (points=)"
+
+    def located(
+        self, here: Point, length: float, test: Callable[[Point], float | None], ends: tuple[float, float]
+    ) -> tuple[float, Point] | None:
+        """Where a test of points changes sign along a step: the part of its length, and the point.
+
+        Parameters
+        ----------
+        here, length : the step. test : None or nan where it has no value. ends : its values at both ends of the step.
+
+        Returns
+        -------
+        None : the test, or the curve, has no value on the way.
+        """
+        known: dict[float, Point] = {0.0: here}
+
+        def value(part: float) -> float:
+            if part not in known:
+                found = self.beyond(here, part)
+                if found is None:
+                    raise ArithmeticError
+                known[part] = found[0]
+            tested = test(known[part])
+            return np.nan if tested is None else tested
+
+        try:
+            part = root_between(value, 0.0, length, ends)
+            value(part)
+        except ArithmeticError:
+            return None
+        return part, known[part]
+
+    def passes(self, start: Point, here: Point, after: Point, gap: Array | None = None) -> bool:
+        """Whether a step passes the start in the direction in which it was left.
+
+        Parameters
+        ----------
+        gap : from `here` to the start in scaled unknowns, where periods are taken off.
+        """
+        gap = (start.at - here.at) / self.scales if gap is None else gap
+        move = (after.at - here.at) / self.scales
+        share = float(gap @ move / (move @ move))
+        near = float(np.linalg.norm(gap - share * move)) < SETTINGS.beside * float(np.linalg.norm(move))
+        return 0 <= share < 1 and near and float(start.tangent @ after.tangent) > 0
 
     def _scaled(self, point: Array) -> tuple[Array, Array]:
         values, slopes = self.conditions.equations(point)

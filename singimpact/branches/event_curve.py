@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from singimpact.branches.branch import SETTINGS, interval
 from singimpact.branches.closing import Closing
-from singimpact.branches.continuation import Curve, Point, root_between
+from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.events import Event
 from singimpact.branches.solutions import AnyClosing, closing_of
 from singimpact.inputs import refuse, whole
@@ -240,7 +241,7 @@ class _Walk:
         for here, length, after in curve.walk(start, most):
             crossed = self._crossed(after.at)
             if crossed is not None:
-                end = self._end(curve, here, length, crossed)
+                end = self._end(curve, here, length, after)
                 if end is not None:
                     rows.append(end)
                 which = self.closing.over[crossed[0]]
@@ -250,9 +251,7 @@ class _Walk:
             special += self._special(curve, here, length, (before, tests), len(rows))
             rows.append(after)
             before = tests
-            gap, move = (start.at - here.at) / curve.scales, (after.at - here.at) / curve.scales
-            share = float(gap @ move / (move @ move))
-            if len(rows) > 10 and 0 <= share < 1 and np.linalg.norm(gap - share * move) < 0.1 * np.linalg.norm(move):
+            if len(rows) > 10 and curve.passes(start, here, after):
                 notes.append("closed: the curve comes back to where it began")
                 return rows, special
         where = (rows[-1] if rows else start).at[-2:]
@@ -266,21 +265,13 @@ class _Walk:
                 return i, low if value < low else high
         return None
 
-    def _end(self, curve: Curve, here: Point, length: float, crossed: tuple[int, float]) -> Point | None:
-        which, goal = crossed
-
-        def past(part: float) -> float:
-            found = curve.beyond(here, part) if part else (here, 0)
-            return np.nan if found is None else float(found[0].at[len(here.at) - 2 + which] - goal)
-
-        ends = past(0.0), past(length)
-        if not ends[0] * ends[1] < 0:
-            return None
-        try:
-            found = curve.beyond(here, root_between(past, 0.0, length, ends))
-        except ArithmeticError:
-            return None
-        return None if found is None else found[0]
+    def _end(self, curve: Curve, here: Point, length: float, after: Point) -> Point | None:
+        """The point of a step at which a number is the end of its interval."""
+        which, goal = self._crossed(after.at) or (0, 0.0)
+        place = len(here.at) - 2 + which
+        ends = float(here.at[place] - goal), float(after.at[place] - goal)
+        found = curve.located(here, length, lambda point: float(point.at[place] - goal), ends)
+        return None if ends[0] == 0 or found is None else found[1]
 
     # ---- points of codimension two
 
@@ -305,6 +296,9 @@ class _Walk:
                 tests[f"two grazes {i}" if self.kind == "graze" else f"graze {i}"] = float(at[n + i])
         return tests
 
+    def _one_test(self, name: str, point: Point) -> float | None:
+        return self._tests(point).get(name)
+
     def _push(self, at: Array) -> float:
         """a_c at the impact that grazes."""
         assert isinstance(self.closing, Closing)
@@ -320,23 +314,12 @@ class _Walk:
             later = after.get(name)
             if later is None or not value * later < 0:
                 continue
-            kept: dict[float, Point] = {0.0: here}
-
-            def test(part: float, name: str = name, kept: dict[float, Point] = kept) -> float:
-                if part not in kept:
-                    moved = curve.beyond(here, part)
-                    if moved is None:
-                        raise ArithmeticError
-                    kept[part] = moved[0]
-                return self._tests(kept[part])[name]
-
-            try:
-                part = root_between(test, 0.0, length, (value, later))
-                test(part)
-            except ArithmeticError:
+            located = curve.located(here, length, partial(self._one_test, name), (value, later))
+            if located is None:
                 continue
-            if not (name == "cusp" and abs(self._tests(kept[part])[name]) > 0.1 * max(abs(value), abs(later))):
-                found.append((part, name.rstrip("0123456789 "), kept[part]))
+            part, point = located
+            if not (name == "cusp" and abs(self._tests(point)[name]) > 0.1 * max(abs(value), abs(later))):
+                found.append((part, name.rstrip("0123456789 "), point))
         return _merged(sorted(found, key=lambda each: each[0]), length, index)
 
     def _visible(self, at: Array) -> bool:
@@ -357,5 +340,4 @@ def _merged(found: list[tuple[float, str, Point]], length: float, index: int) ->
             point = next(point for _, name, point in found if name in pair)
             special.append(Special("resonant graze", (float(point.at[-2]), float(point.at[-1])), index))
             found = [each for each in found if each[1] not in pair]
-    return special + [Special(name, (float(at[-2]), float(at[-1])), index) for _, name, at in
-                      ((part, name, point.at) for part, name, point in found)]  # fmt: skip
+    return special + [Special(name, (float(each.at[-2]), float(each.at[-1])), index) for _, name, each in found]
