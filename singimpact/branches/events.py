@@ -19,7 +19,8 @@ class Event:
     kind : "fold" (two orbits meet), "period-doubling" (multiplier -1), "torus" (two multipliers on the unit circle),
         "graze" (an impact of the orbit has no velocity), "hidden impact" (a flight touches the wall on its way).
     parameter : the number of the model there. orbit : the orbit. index : it lies after this point of the branch.
-    impact : which impact or flight grazes. time : of a hidden impact after its launch.
+    impact : which impact grazes, or after which one the flight does, from 0: a column of `tau` and `v` of the branch
+        (an orbit itself begins at its least phase). time : of a hidden impact after its launch.
     """
 
     kind: str

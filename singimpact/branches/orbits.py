@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.flights.impact_map import impact_map
-from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
@@ -75,36 +73,6 @@ class PeriodicOrbits(list[PeriodicOrbit]):
     ) -> None:
         super().__init__(orbits)
         self.complete, self.notes = complete, notes
-
-
-@dataclass(frozen=True)
-class VisibleSettings:
-    """When the next impact of the true map is the one of a closed orbit."""
-
-    # flight times that differ by less than this, relative: a graze next to the hit moves it by a square root
-    near: float = 1e-6
-
-
-SETTINGS = VisibleSettings()
-
-
-def visible(osc: Oscillator, tau: Array, v: Array, times: Array) -> Array:
-    """Whether flights from states with v >= 0 first meet the wall after these times.
-
-    Examples
-    --------
-    >>> visible(Oscillator("0", "-2", 0, "1/2"), np.zeros(2), np.ones(2), np.array([1.0, 1.5])).tolist()
-    [True, False]
-    """
-    found = np.zeros(tau.shape, dtype=bool)
-    chosen = (v >= 0) & (times > 0)
-    if chosen.any():
-        given = (float(tau[0]), float(v[0])) if tau.size == 1 else (tau[chosen], v[chosen])  # two floats are faster
-        step = impact_map(osc, *given)
-        with np.errstate(invalid="ignore"):
-            same = np.abs(step.flight_time - times[chosen]) <= SETTINGS.near * times[chosen]
-        found[chosen] = same & np.isin(step.status, (Status.hit, Status.graze))
-    return found
 
 
 @dataclass

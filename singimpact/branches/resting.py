@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.branches.closing import lowest
 from singimpact.branches.free import FreeClosing
-from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits
+from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits
 from singimpact.dynamics.long_run import lift_offs
 from singimpact.dynamics.orbit import orbit
 from singimpact.flights.family import Family, family
@@ -19,6 +20,8 @@ from singimpact.oscillator.moving_number import CLEARANCE
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
+SAME_PHASE = 1e-9
+"""Lift-offs whose phases differ by less than this, of the period, are one."""
 TOUCHING = 1e-12
 """An orbit that is so little below the wall, of the larger of |c| and 1, touches it."""
 FAR = 30.0
@@ -26,7 +29,7 @@ FAR = 30.0
 ROUNDS = 40
 """Steps of Newton's method at most."""
 FLOWN = 4000
-"""Impacts after which a lift-off is said not to come back."""
+"""Impacts after a lift-off in which chatter must complete for the next one to be known."""
 
 
 def free_orbits(osc: Oscillator, k: int, lowest_only: bool = False) -> PeriodicOrbits:
@@ -116,7 +119,9 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
 
     Notes
     -----
-    The mass lifts off at finitely many phases, and what follows each is fixed: each is flown until it lifts off again.
+    The mass lifts off at finitely many phases, and what follows each is fixed: the next lift-off, rest for ever or no
+    return. So each orbit is a circle of phases. `.complete` where this is known of every phase: an orbit that does not
+    rest within `FLOWN` impacts leaves it open.
 
     Examples
     --------
@@ -125,23 +130,45 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
     (2.743893, True)
     """
     assert osc.period is not None
-    period, found = as_float(osc.period), list[PeriodicOrbit]()
-    notes: tuple[str, ...] = ()
-    phases = lift_offs(osc)
-    complete = True
-    for phase in phases:
-        flown = orbit(osc, phase, 0, impacts=FLOWN)
-        times = flown.tau[flown.kind == "release"]
-        home = np.abs(times - phase - period * np.rint((times - phase) / period)) < 1e-9 * period
-        if home.any():
-            first = float(times[np.argmax(home)])
-            if round((first - phase) / period) == k and not any(
-                np.abs(np.mod(times[: np.argmax(home) + 1], period) - other.tau[0]).min() < 1e-9 for other in found
-            ):
-                miss = abs(first - phase - k * period)
-                found.append(PeriodicOrbit(np.array([np.mod(phase, period)]), np.zeros(1), np.zeros(2), miss,
-                                           np.int8(Status.hit), osc, np.inf, k, "chatter"))  # fmt: skip
-        elif flown.phases and flown.phases[-1][0] == "unresolved":
-            complete = False
-            notes = ("the orbit released at a zero of a_c is not decided in doubles",)
-    return PeriodicOrbits(found, complete, notes)
+    period, notes = as_float(osc.period), Notes()
+    phases = list(lift_offs(osc))
+    following = [_next_lift_off(osc, phases, place, notes) for place in range(len(phases))]
+    found = list[PeriodicOrbit]()
+    for first, phase in enumerate(phases):
+        circle, turns, miss, step = [first], 0, 0.0, following[first]
+        while step is not None:
+            turns, miss = turns + step.periods, max(miss, step.miss)
+            if step.place in circle:
+                break
+            circle.append(step.place)
+            step = following[step.place]
+        # of the phases of one circle the first stands for it; a phase that leads into a circle is not on it
+        if step is not None and step.place == first == min(circle) and turns == k:
+            found.append(PeriodicOrbit(np.array([np.mod(phase, period)]), np.zeros(1), np.zeros(2), miss,
+                                       np.int8(Status.hit), osc, np.inf, k, "chatter"))  # fmt: skip
+    return PeriodicOrbits(found, not notes.sentences, tuple(notes.sentences))
+
+
+@dataclass(frozen=True)
+class _Lift:
+    """The next lift-off: the place of its phase, the periods until then, by how much it misses that phase."""
+
+    place: int
+    periods: int
+    miss: float
+
+
+def _next_lift_off(osc: Oscillator, phases: list[float], place: int, notes: Notes) -> _Lift | None:
+    """The lift-off after the one at phases[place]; None where there is none, or none is known, which is noted."""
+    assert osc.period is not None
+    period, phase = as_float(osc.period), phases[place]
+    flown = orbit(osc, phase, 0, impacts=FLOWN)
+    for time in flown.tau[flown.kind == "release"][:1].tolist():
+        for other, zero in enumerate(phases):
+            turns = round((time - zero) / period)
+            miss = abs(time - zero - turns * period)
+            if miss < SAME_PHASE * period:
+                return _Lift(other, turns, miss)
+    if not flown.phases or flown.phases[-1][0] not in ("sticking", "no_return"):
+        notes.add(f"what follows the lift-off at tau = {phase:.6g} is open: no rest within {FLOWN} impacts in doubles")
+    return None

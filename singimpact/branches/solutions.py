@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,15 +11,29 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.branches.closing import Closing
 from singimpact.branches.free import FreeClosing
-from singimpact.branches.orbits import PeriodicOrbit, visible
+from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.resting import free_orbit_at
 from singimpact.flights.family import family
+from singimpact.flights.impact_map import impact_map
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
 AnyClosing = Closing | FreeClosing
+
+
+@dataclass(frozen=True)
+class VisibleSettings:
+    """When the next impact of the true map is the one of a closed orbit."""
+
+    # flight times that differ by less than this, relative: a graze next to the hit moves it by a square root
+    near: float = 1e-6
+    # a flight that is so little below the wall touches it
+    touching: float = 1e-9
+
+
+SETTINGS = VisibleSettings()
 
 
 def closing_of(osc: Oscillator, n: int, k: int, over: Sequence[str]) -> AnyClosing:
@@ -53,11 +67,38 @@ def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None, seen
     first = int(np.argmin(launches))
     order = [(first + i) % n for i in range(n)]
     tau = launches[first] + np.concatenate([[0.0], np.cumsum(times[order])[:-1]])
-    seen = bool(visible(osc, launches, speeds, times).all()) if seen is None else seen
+    seen = visible(closing, point, osc) if seen is None else seen
     miss = float(np.abs(loop.miss).max())
     return PeriodicOrbit(
         tau, speeds[order], _plain(loop.multipliers()), miss, np.int8(Status.hit), osc, n, k, visible=seen
     )
+
+
+def visible(closing: Closing, point: Array, osc: Oscillator) -> bool:
+    """Whether every flight of a closed point first meets the wall at the next impact, with all v >= 0.
+
+    A first hit that doubles leave open is judged by the lowest place of the flight between its impacts.
+
+    Examples
+    --------
+    >>> osc = Oscillator("x", "cos(4*t)", 0, "1/2")
+    >>> closing = Closing(family(osc), 1, 2)
+    >>> visible(closing, np.array([3 * np.pi / 8, 8 / 15]), osc)
+    True
+    """
+    tau, _arrival, v, times = (np.array(part) for part in zip(*closing.flights(point), strict=True))
+    if not ((v >= 0) & (times > 0)).all():
+        return False
+    given = (float(tau[0]), float(v[0])) if tau.size == 1 else (tau, v)  # two floats are faster
+    step = impact_map(osc, *given)
+    flown, status = np.atleast_1d(step.flight_time), np.atleast_1d(step.status)
+    with np.errstate(invalid="ignore"):
+        same = (np.abs(flown - times) <= SETTINGS.near * times) & np.isin(status, (Status.hit, Status.graze))
+    left = status == Status.unresolved
+    if not (same | left).all():
+        return False
+    heights = closing.heights(point) if left.any() else []
+    return all(height >= -SETTINGS.touching for (_, height), open_ in zip(heights, left, strict=False) if open_)
 
 
 def _plain(multipliers: Array) -> Array:

@@ -15,7 +15,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import compare
 from singimpact.dynamics.chatter import ENDING, chatter_limit
-from singimpact.dynamics.release import release
+from singimpact.dynamics.release import periods_between, release
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import impact_map
@@ -39,8 +39,6 @@ class LyapunovSettings:
     stretches: int = 256
     # groups of stretches whose spread gives the standard error
     groups: int = 32
-    # times an orbit comes to rest before its exponent is called -inf: the first may belong to the way there
-    rests: int = 2
 
 
 SETTINGS = LyapunovSettings()
@@ -59,7 +57,7 @@ class Lyapunov:
     start, last : the states (tau, v) before and after these impacts.
     status : `hit` where all impacts were flown, `sticks` of an orbit that comes to rest, else the status of the flight
         that ended the orbit. The exponents are those of the impacts before it.
-    superstable : whether the orbit comes to rest again and again, or for ever.
+    superstable : whether the orbit lifts off twice at one phase of the forcing, or rests for ever.
     """
 
     exponents: Array
@@ -157,7 +155,7 @@ class _Run:
     def __init__(self, osc: Oscillator, states: States) -> None:
         self.osc, self.given = osc, states.given(0)
         self.tau, self.v = float(states.tau[0]), float(states.v[0])
-        self.first, self.rests, self.status = True, 0, Status.hit
+        self.first, self.lifted, self.status = True, list[float](), Status.hit
         self.near = 0.0 if compare(osc.slope_at_rest(), 1) == 0 else ENDING.near
         self.begin()
 
@@ -219,10 +217,12 @@ class _Run:
         return 1
 
     def _rest(self, at: float) -> None:
-        self.rests += 1
         lifted = release(self.osc, at)
-        if not np.isfinite(lifted) or self.rests >= SETTINGS.rests:
+        # what follows a lift-off is fixed: one at a phase of an earlier one comes again and again
+        known = any(periods_between(self.osc, each, lifted) is not None for each in self.lifted)
+        if known or not np.isfinite(lifted):
             self.status = Status.unresolved if np.isnan(lifted) else Status.sticks
+        self.lifted.append(lifted)
         self.tau, self.v = (lifted if np.isfinite(lifted) else at), 0.0
         self.first = False
 

@@ -11,7 +11,7 @@ import numpy as np
 from singimpact.algebra.expressions import subtract
 from singimpact.algebra.numbers import as_float, constant, float_array
 from singimpact.dynamics.chatter import ENDING, chatter_left, impacts_until
-from singimpact.dynamics.release import release
+from singimpact.dynamics.release import periods_between, release
 from singimpact.dynamics.sampling import Section, sampled
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.limits import LIMITS
@@ -36,8 +36,6 @@ class OrbitSettings:
 
     # impacts of one call into compiled code
     block: int = 4096
-    # two lift-offs are one when their phases differ by at most this, relative: both are doubles next to one zero of a_c
-    same: float = 4 * EPSILON
 
 
 SETTINGS = OrbitSettings()
@@ -314,11 +312,10 @@ class _Run:
                 self.known = np.inf if self.osc.period is not None else self.tau + LIMITS.horizon_time
             return
         self._go("sticking", lifted, 0.0, "release")
-        period = 0.0 if self.osc.period is None else as_float(self.osc.period)
-        for earlier, block in self.lifted if period else ():
-            turns = np.rint((lifted - earlier) / period)
-            if abs(lifted - earlier - turns * period) <= SETTINGS.same * max(abs(lifted), period):
-                self._repeat(block, turns * period)
+        for earlier, block in self.lifted:
+            time = periods_between(self.osc, earlier, lifted)
+            if time is not None:
+                self._repeat(block, time)
                 return
         self.lifted.append((lifted, len(self.times)))
 

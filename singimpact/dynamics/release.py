@@ -21,6 +21,8 @@ from singimpact.oscillator.model import Oscillator
 
 ORDER = 22
 EPSILON = 2.0**-52
+SAME = 4 * EPSILON
+"""Lift-offs whose phases differ by at most this, relative, are one: both are doubles next to one zero of a_c."""
 
 
 def release(osc: Oscillator, tau: float, horizon: float | None = None) -> float:
@@ -56,6 +58,22 @@ def release(osc: Oscillator, tau: float, horizon: float | None = None) -> float:
             return _lifted(osc, start + s)
         start, longest = start + width, 2 * width
     return float("inf")
+
+
+def periods_between(osc: Oscillator, earlier: float, later: float) -> float | None:
+    """Time from one lift-off to another of the same phase; None where the phases differ or g has no period.
+
+    Examples
+    --------
+    >>> osc = Oscillator("x", "sin(t)", 0, 1)
+    >>> periods_between(osc, 0.0, release(osc, 4.0)) == 2 * np.pi, periods_between(osc, 0.0, 3.0)
+    (True, None)
+    """
+    if osc.period is None:
+        return None
+    period = as_float(osc.period)
+    time = float(np.rint((later - earlier) / period)) * period
+    return time if abs(later - earlier - time) <= SAME * max(abs(later), period) else None
 
 
 def _lifted(osc: Oscillator, tau: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import root
 
 import singimpact as si
 from singimpact.inputs import InputError
@@ -42,6 +43,37 @@ def test_doublings_of_the_bouncing_ball() -> None:
                 assert pytest.approx(truth, rel=1e-11) == G
             if event.kind == "fold":
                 assert pytest.approx(np.pi * (1 - r) / (1 + r), rel=1e-11) == G
+
+
+def test_two_folds_of_a_forcing_with_two_harmonics_meet_in_a_cusp() -> None:
+    w, r = 2.8, 0.8
+    osc = si.ImpactOscillator("x", "cos(2.8*t) + b*cos(5.6*t + 1)", "-0.1", "0.8", {"b": 3})
+    orbit = max(osc.periodic(1, 1), key=lambda orbit: orbit.v[0])
+    folds = [event for event in si.branch(orbit, "clearance", (-9, 9)).events if event.kind == "fold"]
+    assert len(folds) == 4
+    curve = si.event_curve(folds[1], ("clearance", "b"), ((-9, 9), (0.1, 4)))
+    # an impact a period at phase tau needs c = p - K p', p the periodic motion without impact
+    K = (1 + r) / (1 - r) / np.tan(np.pi / w)
+
+    def clearance(tau, b, order):
+        first, second = 1 / (1 - w * w), b / (1 - 4 * w * w)
+        turn, angle, twice = order * np.pi / 2, w * tau, 2 * w * tau + 1
+        p = first * w**order * np.cos(angle + turn) + second * (2 * w) ** order * np.cos(twice + turn)
+        slope = first * w ** (order + 1) * np.cos(angle + turn + np.pi / 2)
+        slope += second * (2 * w) ** (order + 1) * np.cos(twice + turn + np.pi / 2)
+        return p - K * slope
+
+    c, b = curve.parameters.T
+    tau = curve.tau[:, 0]
+    assert clearance(tau, b, 0) == pytest.approx(c, abs=1e-11)
+    assert clearance(tau, b, 1) == pytest.approx(np.zeros(len(b)), abs=1e-10)
+    cusps = [each for each in curve.special if each.kind == "cusp"]
+    (cusp,) = cusps
+    solution = root(lambda at: [clearance(at[0], at[1], 1), clearance(at[0], at[1], 2)],
+                    [tau[cusp.index], cusp.parameters[1]], tol=1e-13)  # fmt: skip
+    assert solution.success
+    assert cusp.parameters[1] == pytest.approx(solution.x[1], abs=1e-9)
+    assert cusp.parameters[0] == pytest.approx(clearance(*solution.x, 0), abs=1e-9)
 
 
 def test_bad_input(events) -> None:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.branches import branch as module
 from singimpact.branches.continuation import Curve
 
 
@@ -45,4 +44,3 @@ def test_branches_of_linear_models_are_not_kept(tmp_path, monkeypatch) -> None:
     (orbit,) = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45").periodic(1, 1)
     si.branch(orbit, "amplitude", (-0.5, -0.4))
     assert not (tmp_path / "branches").exists()
-    assert module.SETTINGS.step > 0

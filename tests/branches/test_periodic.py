@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import mpmath
 import numpy as np
 import pytest
 
+import singimpact as si
+from singimpact.branches import solutions
+from singimpact.branches.closing import Closing
 from singimpact.branches.periodic import periodic
+from singimpact.branches.starts import conditions
+from singimpact.flights.family import family
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.inputs import InputError
 
@@ -101,6 +108,50 @@ def test_orbits_of_other_kinds() -> None:
     assert linear("0.8", "-2.71", "0.8", damping="0.1").periodic(0, 1) == []
     with pytest.raises(InputError, match=r"or math\.inf"):
         linear(4, 0, "0.5").periodic(-1, 1)
+
+
+@pytest.mark.parametrize(("second", "both"), [("0.05", True), ("0.2", False)])
+def test_an_orbit_of_chatter_through_one_or_two_lift_offs(second: str, both: bool) -> None:
+    osc = si.ImpactOscillator("x", f"cos(2*t) + {second}*cos(t + 1)", "0.6", "1/2")
+    found = osc.periodic(np.inf, 1)
+    (orbit,) = found
+    assert found.complete
+    assert osc.periodic(np.inf, 2) == []
+    flown = osc.orbit(orbit.tau[0], 0, impacts=2000)
+    phases = np.mod(flown.tau[flown.kind == "release"], 2 * np.pi)
+    assert (np.ptp(phases) > 1) == both
+    assert np.abs(phases - orbit.tau[0]).min() < 1e-12
+
+
+def test_lift_offs_that_never_rest_leave_chatter_open() -> None:
+    found = linear("2.8", "0.6", "0.5").periodic(np.inf, 1)
+    assert (found, found.complete) == ([], False)
+    assert "no rest within 4000 impacts" in found.notes[0]
+
+
+def test_a_first_hit_that_doubles_leave_open_does_not_hide_an_orbit(monkeypatch) -> None:
+    osc = linear(4, 0, "0.5")
+    closing = Closing(family(osc), 1, 2)
+    point = np.array([3 * np.pi / 8, 8 / 15])
+    assert solutions.visible(closing, point, osc)
+    open_ = replace(osc.impact_map(0.1, 0.5), status=np.int8(si.Status.unresolved), flight_time=np.float64(np.nan))
+    monkeypatch.setattr(solutions, "impact_map", lambda *_: open_)
+    assert solutions.visible(closing, point, osc)
+    monkeypatch.setattr(Closing, "heights", lambda *_: [(0.3, -0.1)])
+    assert not solutions.visible(closing, point, osc)
+
+
+@pytest.mark.parametrize("law", ["0.6", "-0.8*v + 0.1*v**2"])
+@pytest.mark.parametrize("force", ["x + 0.2*xdot", "x + 0.1*xdot + 0.3*x**3"])
+def test_conditions_of_many_points_are_those_of_each(force: str, law: str) -> None:
+    osc = si.ImpactOscillator(force, "cos(1.7*t)", "0.3", law)
+    closing = Closing(family(osc), 2, 2)
+    points = np.array([[0.4, 3.0, 0.7, 0.5], [2.0, 6.5, 0.3, 1.1], [5.0, 7.0, 0.2, 0.0]])
+    miss, slope = conditions(closing, points)
+    for i, point in enumerate(points):
+        loop = closing.at(point)
+        assert miss[i] == pytest.approx(loop.miss, abs=1e-11)
+        assert slope[i] == pytest.approx(loop.slope, abs=1e-9)
 
 
 def test_a_start() -> None:

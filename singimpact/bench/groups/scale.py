@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from typing import Any
 
 from singimpact.bench.compiled import compiled
-from singimpact.bench.fresh import cost
+from singimpact.bench.fresh import Cost, cost
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Timed
 
 SMALL = 100_000
@@ -57,36 +56,36 @@ except KeyboardInterrupt:
 def cases(effort: Effort) -> Iterator[Case]:
     """The impact map of a small and of a large array, into arrays of the package and of the caller."""
     count = 1_000_000 if effort.quick else 10_000_000
-    found: dict[str, Any] = {}
     many = f"{count:.0e} states".replace("e+0", "e")
     methods = [
-        Method("singimpact, impact_map", f"{SMALL:.0e} states".replace("e+0", "e"), partial(_mapped, SMALL, "", found),
+        Method("singimpact, impact_map", f"{SMALL:.0e} states".replace("e+0", "e"), partial(_mapped, SMALL),
                problems=SMALL, aim=Aim(1.2)),
-        Method("singimpact, impact_map", many, partial(_mapped, count, "", found), problems=count, aim=Aim(1.2)),
-        Method("singimpact, impact_map", f"{many}, out= of memory maps", partial(_mapped, count, OUT, found),
+        Method("singimpact, impact_map", many, partial(_mapped, count), problems=count, aim=Aim(1.2)),
+        Method("singimpact, impact_map", f"{many}, out= of memory maps", partial(_mapped, count, OUT),
                problems=count, aim=Aim(1.2)),
     ]  # fmt: skip
-    yield Case("linear, a state of a large array", methods, notes=_notes(count, found, effort))
+    yield Case("linear, a state of a large array", methods, notes=_notes(count, effort))
 
 
 OUT = """, out={name: np.lib.format.open_memmap(f"{folder}/{name}.npy", "w+", "f8", tau.shape)
     for name in ("tau", "v")}"""
 
 
-def _mapped(count: int, out: str, found: dict[str, Any]) -> Timed:
+def _mapped(count: int, out: str = "") -> Timed:
+    return Timed(_cost(count, out).seconds, [])
+
+
+def _cost(count: int, out: str = "") -> Cost:
     before = BEFORE.format(count=count) + "import tempfile\nfolder = tempfile.mkdtemp()\n"
-    measured = cost(MAPPED.format(out=out), before, KEPT.format(count=count) + "import shutil; shutil.rmtree(folder)\n")
-    each, all_of_them = measured.answer
-    found[f"{count}{bool(out)}"] = (each, measured.megabytes - all_of_them)
-    return Timed(measured.seconds, [])
+    return cost(MAPPED.format(out=out), before, KEPT.format(count=count) + "import shutil; shutil.rmtree(folder)\n")
 
 
-def _notes(count: int, found: dict[str, Any], effort: Effort) -> list[str]:
+def _notes(count: int, effort: Effort) -> list[str]:
     """Sentences, each with what is to be reached and whether it was."""
-    if not found:
-        _mapped(count, "", found)
     notes = list(compiled(("map", "iterate"), effort.wait))
-    each, beside = found[f"{count}False"]
+    measured = _cost(count)
+    each, all_of_them = measured.answer
+    beside = measured.megabytes - all_of_them
     notes.append(f"memory: {each:.0f} bytes a state of results (at most {BYTES}: {_word(each <= BYTES)}), at most "
                  f"{max(beside, 0):.0f} MB beside them (at most {BESIDE}: {_word(beside <= BESIDE)})")  # fmt: skip
     ratios = cost(PAIRED.format(count=1_000_000), BEFORE.format(count=1_000_000), "answer = ratios").answer
