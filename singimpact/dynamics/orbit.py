@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -285,8 +286,11 @@ class _Run:
 
     def _mapped(self) -> None:
         """One flight by the impact map, which says what became of it."""
-        given = self.given if len(self.times) == 1 else (self.tau, self.v)
-        self.ended(impact_map(self.osc, *given, horizon=self.horizon))
+        if self.v == 0 and len(self.times) > 1 and self.horizon is None:
+            self.ended(_after_rest(self.osc, self.tau))
+        else:
+            given = self.given if len(self.times) == 1 else (self.tau, self.v)
+            self.ended(impact_map(self.osc, *given, horizon=self.horizon))
 
     def ended(self, step: Step | Launched) -> None:
         """The end of one flight."""
@@ -335,3 +339,9 @@ class _Run:
         self.velocities.append(np.tile(velocities, again)[:kept])
         self.kinds.append(np.tile(kinds, again)[:kept])
         self.flown = self.most
+
+
+@lru_cache(maxsize=256)
+def _after_rest(osc: Oscillator, tau: float) -> Step:
+    """The flight of a mass that lifts off from rest; every orbit that rests there goes on with it."""
+    return impact_map(osc, tau, 0.0)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from math import ulp
 from typing import Any
 
@@ -29,6 +30,7 @@ class Zero:
     sign: int
 
 
+@lru_cache(maxsize=1024)
 def zero_beside(osc: Oscillator, tau: float, bits: int) -> Zero | None:
     """The zero of a_c within one ulp of a double; None where there is none, or where it is not decided.
 
