@@ -26,7 +26,7 @@ from singimpact.algebra.expressions import (
     substitute,
     walk,
 )
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import as_float, rational_near
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import Symbolic
 from singimpact.algebra.taylor import NotSmooth
@@ -136,7 +136,7 @@ def next_zero(osc: Oscillator, tau: Expression) -> NextZero:
 
 def _far(osc: Oscillator, function: Expression, tau: Expression) -> NextZero:
     """For a forcing of no known period: windows of growing length; that there is no zero is then never proved."""
-    start = as_rational(Balls(256).evaluate(tau, {})) - Fraction(1, 2**60)
+    start = rational_near(tau, 256) - Fraction(1, 2**60)
     low, width = start, Fraction(1)
     while low - start < SETTINGS.far:
         pieces = _decided(osc, function, low, low + width)
@@ -246,7 +246,7 @@ def _named_places(osc: Oscillator, turn: Zero) -> list[Expression]:
     tried += [tree for tree in walk(osc.clearance) if isinstance(tree, Root)]
     tried += [inner for tree in list(tried) if isinstance(tree, Root) for inner in walk(tree.function) if isinstance(
         inner, Root)]  # fmt: skip
-    return [tree for tree in tried if turn.low <= as_rational(Balls(256).evaluate(tree, {})) <= turn.high]
+    return [tree for tree in tried if turn.low <= rational_near(tree, 256) <= turn.high]
 
 
 def _vanishes(function: Expression, place: Expression, order: int) -> bool:

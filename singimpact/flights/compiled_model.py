@@ -14,9 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import names_in, substitute
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import as_float, rational_near
 from singimpact.algebra.precision import kept_property
 from singimpact.codegen.recurrence import Recurrence
 from singimpact.codegen.scalar import scalar
@@ -587,7 +586,7 @@ def _batch_turn(osc: Oscillator) -> tuple[float, float, float]:
     """The period in two parts, the first of 33 bits, and its inverse; zeros without a period."""
     if osc.period is None:
         return 0.0, 0.0, 0.0
-    exact = as_rational(Balls(256).evaluate(osc.period, {}))
+    exact = rational_near(osc.period, 256)
     fraction, exponent = frexp(float(exact))
     high = ldexp(int(ldexp(fraction, 33)), exponent - 33)
     return high, float(exact - Fraction(high)), 1 / float(exact)

@@ -147,7 +147,8 @@ def _outliving(command: list[str]) -> None:
     _STARTED.append(subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         start_new_session=True, cwd=Path(__file__).parents[2],
-        env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder())},
+        # the passes of `object_code` do all that numba's own would, which take a third of the time
+        env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder()), "NUMBA_OPT": "0"},
     ))  # fmt: skip
     if len(_STARTED) == 1:
         atexit.register(_left_alone)

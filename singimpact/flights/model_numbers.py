@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power, substitute
-from singimpact.algebra.numbers import as_float, constant, sign_of
+from singimpact.algebra.numbers import as_float, constant, rational_near, sign_of
 from singimpact.codegen.recurrence import Recurrence, recurrence
 from singimpact.flights.kernels.state import Linear
 from singimpact.flights.limits import LIMITS
@@ -103,7 +102,7 @@ def phases_of(osc: Oscillator) -> tuple[Array, Array]:
 
 def _below(tree: Expression) -> float:
     high = as_float(tree)
-    exact = as_rational(Balls(256).evaluate(tree, {}))
+    exact = rational_near(tree, 256)
     return float(exact - Fraction(high)) if np.isfinite(high) else 0.0
 
 
@@ -135,7 +134,7 @@ def turn_of(osc: Oscillator) -> tuple[float, ...]:
     """The period and its parts of 26 bits, whose products with fewer than 2^26 periods are exact; zeros without one."""
     if osc.period is None:
         return (0.0,) * 5
-    left, parts = as_rational(Balls(600).evaluate(osc.period, {})), [as_float(osc.period)]
+    left, parts = rational_near(osc.period, 600), [as_float(osc.period)]
     for _ in range(4):
         unit = Fraction(2) ** (frexp(float(left))[1] - 26) if left else Fraction(1)
         parts.append(float(round(left / unit) * unit))

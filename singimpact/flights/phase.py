@@ -47,7 +47,7 @@ def _reduced(tau: float, period: Expression) -> float:
 @lru_cache(maxsize=1024)
 def _scaled(period: Expression, bits: int) -> int:
     """The integer nearest to period * 2^bits."""
-    from singimpact.algebra.balls import Balls, as_rational
+    from singimpact.algebra.numbers import rational_near
 
-    scaled: int = round(as_rational(Balls(bits + 80).evaluate(period, {})) * 2**bits)
+    scaled: int = round(rational_near(period, bits + 80) * 2**bits)
     return scaled

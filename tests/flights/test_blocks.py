@@ -27,7 +27,7 @@ def states(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 def same(found: np.ndarray, expected: np.ndarray) -> None:
     """Up to the roundings in which interpreted and compiled flights differ: compiled code may arrive in between."""
-    np.testing.assert_allclose(found, expected, rtol=1e-9)
+    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize("osc", [LINEAR, DUFFING], ids=["linear", "Duffing"])
