@@ -68,11 +68,15 @@ class Monomials:
 
 def _number_key(value: Any) -> Key:
     """The key of a rational: sympy sorts by its classes first, and numbers before symbols."""
-    if value is sympy.S.Half:
+    return _rational_key(value.p, value.q)
+
+
+def _rational_key(p: int, q: int) -> Key:
+    if (p, q) == (1, 2):
         return (-4,)
-    if value is sympy.S.NegativeOne:
+    if (p, q) == (-1, 1):
         return (-3,)
-    return (-2 if value.q == 1 else -1, value.p, value.q)
+    return (-2 if q == 1 else -1, p, q)
 
 
 CLASSES = {"Zero": 0, "One": 1, "Half": 2, "NegativeOne": 5, "Integer": 7, "Rational": 8, "Symbol": 13, "Pow": 15,
@@ -95,7 +99,52 @@ def order_key(expression: Any) -> Key:
         return place, expression.p, expression.q
     if place == CLASSES["Symbol"]:
         return place, expression.name
+    if place == CLASSES["Add"]:
+        return place, len(expression.args), _Terms(expression)
     return place, len(expression.args), *(order_key(part) for part in expression.args)
+
+
+class _Terms:
+    """The keys of the terms of a sum, found when two sums of one length are compared: most are told apart before."""
+
+    __slots__ = ("total",)
+
+    def __init__(self, total: Any) -> None:
+        self.total = total
+
+    def keys(self) -> list[Key]:
+        return [order_key(part) for part in self.total.args]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Terms) and (self.total is other.total or self.keys() == other.keys())
+
+    def __lt__(self, other: _Terms) -> bool:
+        return self.keys() < other.keys()
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def polynomial(symbol: Any, coefficients: Sequence[tuple[int, int]]) -> Any:
+    """The polynomial in a symbol whose coefficients, from the constant one, have these numerators and denominators.
+
+    Examples
+    --------
+    >>> x = sympy.Symbol("x")
+    >>> polynomial(x, [(1, 2), (0, 1), (-3, 1)]) == sympy.Rational(1, 2) - 3 * x**2
+    True
+    """
+    made = []
+    for n, (p, q) in enumerate(coefficients[1:], 1):
+        power = (int(n > 1), n)
+        if p:
+            made.append(((0, *power), n, p, q) if p == q == 1 else ((MULTIPLE, _rational_key(p, q), *power), n, p, q))
+    made.sort()
+    parts = [sympy.Rational(*coefficients[0])] if coefficients[0][0] else []
+    for _, n, p, q in made:
+        power = symbol if n == 1 else sympy.Pow(symbol, n)
+        value = sympy.Integer(p) if q == 1 else sympy.Rational(p, q)  # Rational takes three times as long
+        parts.append(power if p == q == 1 else sympy.Mul._from_args([value, power], is_commutative=True))
+    return sympy.Add._from_args(parts, is_commutative=True)
 
 
 class Products:

@@ -110,16 +110,11 @@ def factored(poly: Any) -> tuple[Any, list[tuple[Any, int]]]:
 @lru_cache(maxsize=4096)
 def _in_lambda(coefficients: tuple[tuple[int, int], ...]) -> Any:
     """The polynomial in lambda with these coefficients, as numerators and denominators."""
-    return _letter().summed({(n,): sympy_rational(*pair) for n, pair in enumerate(coefficients) if pair[0]})
-
-
-@lru_cache(maxsize=1)
-def _letter() -> Any:
     import sympy
 
-    from singimpact.algebra.long_sums import Monomials
+    from singimpact.algebra.long_sums import polynomial
 
-    return Monomials([sympy.Symbol("lambda")])
+    return polynomial(sympy.Symbol("lambda"), coefficients)
 
 
 def rho_names(j: int, order: int) -> tuple[str, ...]:
