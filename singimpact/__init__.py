@@ -12,22 +12,16 @@ from singimpact.status import Status as Status
 if TYPE_CHECKING:
     from singimpact import theory as theory
     from singimpact.bench.selftest.run import selftest as selftest
+    from singimpact.branches.branch import branch as branch
+    from singimpact.branches.event_curve import event_curve as event_curve
+    from singimpact.cases import sweep as sweep
+    from singimpact.contact.points import tangency_points as tangency_points
+    from singimpact.dynamics.lyapunov import lyapunov as lyapunov
+    from singimpact.dynamics.threshold import threshold as threshold
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
-    from singimpact.impact_oscillator import basins as basins
-    from singimpact.impact_oscillator import bifurcation as bifurcation
-    from singimpact.impact_oscillator import branch as branch
-    from singimpact.impact_oscillator import classify as classify
-    from singimpact.impact_oscillator import event_curve as event_curve
-    from singimpact.impact_oscillator import grown_gamma as grown_gamma
     from singimpact.impact_oscillator import linear as linear
-    from singimpact.impact_oscillator import lyapunov as lyapunov
     from singimpact.impact_oscillator import read_model as read_model
     from singimpact.impact_oscillator import shaken_wall as shaken_wall
-    from singimpact.impact_oscillator import swan_points as swan_points
-    from singimpact.impact_oscillator import sweep as sweep
-    from singimpact.impact_oscillator import tangency_points as tangency_points
-    from singimpact.impact_oscillator import threshold as threshold
-    from singimpact.impact_oscillator import transitions as transitions
     from singimpact.impact_oscillator import universal as universal
     from singimpact.paper.claims import Claims as _Claims
     from singimpact.paper.claims.verdicts import verify as verify
@@ -36,6 +30,12 @@ if TYPE_CHECKING:
     from singimpact.scenes import Scene as Scene
     from singimpact.scenes import plot as plot
     from singimpact.scenes.explore import explore as explore
+    from singimpact.studies import basins as basins
+    from singimpact.studies import bifurcation as bifurcation
+    from singimpact.studies import classify as classify
+    from singimpact.studies import grown_gamma as grown_gamma
+    from singimpact.studies import swan_points as swan_points
+    from singimpact.studies import transitions as transitions
     from singimpact.surface.impact_surface import ImpactSurface as ImpactSurface
     from singimpact.theory import fixed_points as fixed_points
 
@@ -50,22 +50,22 @@ _ROOMS = {
 }
 _HOMES = {
     "ImpactOscillator": "singimpact.impact_oscillator",
-    "branch": "singimpact.impact_oscillator",
-    "event_curve": "singimpact.impact_oscillator",
+    "branch": "singimpact.branches.branch",
+    "event_curve": "singimpact.branches.event_curve",
     "linear": "singimpact.impact_oscillator",
     "universal": "singimpact.impact_oscillator",
-    "lyapunov": "singimpact.impact_oscillator",
+    "lyapunov": "singimpact.dynamics.lyapunov",
     "read_model": "singimpact.impact_oscillator",
-    "tangency_points": "singimpact.impact_oscillator",
+    "tangency_points": "singimpact.contact.points",
     "shaken_wall": "singimpact.impact_oscillator",
-    "swan_points": "singimpact.impact_oscillator",
-    "sweep": "singimpact.impact_oscillator",
-    "basins": "singimpact.impact_oscillator",
-    "bifurcation": "singimpact.impact_oscillator",
-    "classify": "singimpact.impact_oscillator",
-    "grown_gamma": "singimpact.impact_oscillator",
-    "transitions": "singimpact.impact_oscillator",
-    "threshold": "singimpact.impact_oscillator",
+    "swan_points": "singimpact.studies",
+    "sweep": "singimpact.cases",
+    "basins": "singimpact.studies",
+    "bifurcation": "singimpact.studies",
+    "classify": "singimpact.studies",
+    "grown_gamma": "singimpact.studies",
+    "transitions": "singimpact.studies",
+    "threshold": "singimpact.dynamics.threshold",
     "ImpactSurface": "singimpact.surface.impact_surface",
     "plot": "singimpact.scenes",
     "explore": "singimpact.scenes.explore",
@@ -94,9 +94,10 @@ def _no_such(name: str) -> str:
         return f"module 'singimpact' has no attribute {name!r}"
     from singimpact.inputs import nearest
 
-    near = nearest(name, _PUBLIC) or _PUBLIC
-    return f"module 'singimpact' has no attribute {name!r}: the nearest known are {', '.join(near)}"
+    near = nearest(name, _PUBLIC)
+    hint = f"the nearest known are {', '.join(near)}" if near else "dir(singimpact) lists what it has"
+    return f"module 'singimpact' has no attribute {name!r}: {hint}"
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_PUBLIC})
+    return _PUBLIC

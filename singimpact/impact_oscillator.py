@@ -3,38 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float, as_fraction, compare, constant, float_array
-from singimpact.inputs import InputError, refuse, unknown, whole
+from singimpact.algebra.numbers import compare, constant, float_array
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
     from pathlib import Path as FilePath
 
-    from singimpact.branches.branch import Branch
-    from singimpact.branches.event_curve import EventCurve
-    from singimpact.branches.events import Event
-    from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits
-    from singimpact.contact.points import TangencyPoints
-    from singimpact.contact.swans import SwanPoint
-    from singimpact.dynamics.basins import Basins
-    from singimpact.dynamics.bifurcation import Bifurcation
+    from singimpact.branches.orbits import PeriodicOrbits
     from singimpact.dynamics.chatter import ChatterLimit
-    from singimpact.dynamics.lyapunov import Lyapunov
     from singimpact.dynamics.orbit import Orbit
-    from singimpact.dynamics.threshold import Threshold
     from singimpact.flights.off_wall import Launched
     from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.path import Path
     from singimpact.flights.results import Derivative, Flight, Step
     from singimpact.oscillator.shaken_wall import ShakenWall
-    from singimpact.surface.classification import Classification
-    from singimpact.surface.curve import Curve
-    from singimpact.surface.transitions import Transitions
 
 
 class ImpactOscillator(Oscillator):
@@ -54,7 +41,20 @@ class ImpactOscillator(Oscillator):
         self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
         steps: int | None = None, out: Mapping[str, Any] | None = None,
     ) -> Flight:  # fmt: skip
-        """The first hit F of flights from (tau, v): see `singimpact.flights.impact_map.first_hit`.
+        """The first hit F of the wall by flights from (tau, v).
+
+        Parameters
+        ----------
+        tau : launch times. v : launch velocities >= 0; they broadcast. Floats mean their binary values, text what is
+            written.
+        digits : decimal digits of the answer, which then holds mpmath numbers. horizon : flight time after which no
+            impact is looked for (1000 periods).
+        tolerance : relative error of a step of a nonlinear flight. steps : Taylor steps after which one is given up
+            (16000). out : arrays that take the results, by field.
+
+        Returns
+        -------
+        Flight : `.flight_time`, `.velocity` (x' at the hit, <= 0), `.status`, `.error`, `.condition`, of their shape.
 
         Examples
         --------
@@ -71,7 +71,16 @@ class ImpactOscillator(Oscillator):
         self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
         steps: int | None = None, out: Mapping[str, Any] | None = None,
     ) -> Step:  # fmt: skip
-        """The impact map G(tau, v): see `singimpact.flights.impact_map.impact_map`.
+        """The impact map G: the next impact of flights from (tau, v), and the velocity after it.
+
+        Parameters
+        ----------
+        tau, v, digits, tolerance, horizon, steps, out : as for `first_hit`.
+
+        Returns
+        -------
+        Step : `.tau` and `.v` of the next impact, and the fields of `first_hit`. Without an impact tau is inf or nan
+            and v nan; `.status` says which.
 
         Examples
         --------
@@ -84,7 +93,17 @@ class ImpactOscillator(Oscillator):
         return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
     def flight(self, tau: Any, v: Any, t: Any) -> Path:
-        """x and x' at times t along one flight: see `singimpact.flights.path.path`."""
+        """x and x' along one flight, which does not feel the wall.
+
+        Parameters
+        ----------
+        tau, v : one launch. t : times after it (negative: before), any shape.
+
+        Examples
+        --------
+        >>> linear(2, "0.3", "0.5").flight(0, 1, [0, 1]).x.round(6).tolist()
+        [0.3, 1.322378]
+        """
         from singimpact.flights.path import path
 
         return path(self, tau, v, t)
@@ -127,34 +146,76 @@ class ImpactOscillator(Oscillator):
         return iterates(self, tau, v, whole("impacts", impacts, 0, 10**7), keep)
 
     def derivative(self, tau: Any, v: Any, *, horizon: Any = None) -> Derivative:
-        """D G at states, from the variational equation: see `singimpact.flights.impact_map.derivative`."""
+        """D G, the derivative of the impact map, from the variational equation.
+
+        Parameters
+        ----------
+        tau, v : states, v >= 0; they broadcast. horizon : as for `first_hit`.
+
+        Returns
+        -------
+        Derivative : `.matrix`, shape (..., 2, 2), rows tau' and v', columns tau and v; nan without one; `.status`.
+
+        Examples
+        --------
+        >>> universal(-1, "0.5").derivative(-1, 1).matrix.shape
+        (2, 2)
+        """
         from singimpact.flights.derivative import derivative
 
         return derivative(self, tau, v, horizon=horizon)
 
     def inverse_map(self, tau: Any, v: Any, *, digits: int | None = None, horizon: Any = None) -> Step:
-        """G^{-1}: see `singimpact.flights.inverse.inverse_map`.
+        """The inverse G^{-1}: the state whose next impact leaves (tau, v).
+
+        Parameters
+        ----------
+        tau, v : states just after an impact. digits, horizon : as for `first_hit`.
 
         Examples
         --------
         >>> osc = linear(2, "0.3", "0.5")
         >>> step = osc.impact_map(0, 1)
         >>> before = osc.inverse_map(step.tau, step.v)
-        >>> abs(before.tau) < 1e-15, round(float(before.v), 14)
-        (np.True_, 1.0)
+        >>> bool(abs(before.tau) < 1e-15), round(float(before.v), 14)
+        (True, 1.0)
         """
         from singimpact.flights.inverse_map import inverse_map
 
         return inverse_map(self, tau, v, digits=digits, horizon=horizon)
 
     def chatter_limit(self, tau: Any, v: Any, *, digits: int | None = None, impacts: int = 1_000_000) -> ChatterLimit:
-        """Where infinitely many impacts accumulate: see `singimpact.dynamics.chatter.chatter_limit`."""
+        """The time at which infinitely many impacts accumulate.
+
+        Parameters
+        ----------
+        tau, v : states, v >= 0; they broadcast. digits : decimal digits of the time, certified for linear models.
+        impacts : flown at most before the status is `unresolved`.
+
+        Returns
+        -------
+        ChatterLimit : `.tau`, `.error`, `.impacts` flown, and `.status`, `complete` or `lifts_off` among others.
+
+        Examples
+        --------
+        >>> linear("2.8", 0, "0.8").chatter_limit("0.9", "0.005").tau.round(12)
+        np.float64(0.959359234422)
+        """
         from singimpact.dynamics.chatter import chatter_limit
 
         return chatter_limit(self, tau, v, digits=digits, impacts=impacts)
 
     def periodic(self, n: Any, k: int, start: Any = None, *, digits: int | None = None) -> PeriodicOrbits:
-        """Orbits of n impacts in k periods: see `singimpact.branches.periodic.periodic`.
+        """The periodic orbits of n impacts in k periods of the forcing.
+
+        Parameters
+        ----------
+        n : impacts; `math.inf` for orbits that chatter to rest, 0 for orbits without impact. k : periods.
+        start : states to start from, (tau, v) or n of them, or an orbit. digits : decimal digits of the orbits.
+
+        Returns
+        -------
+        list of PeriodicOrbit : with `.complete`, whether there are shown to be no others, and `.notes`.
 
         Examples
         --------
@@ -170,7 +231,22 @@ class ImpactOscillator(Oscillator):
         self, tau: Any = None, v: Any = None, impacts: int = 200, *, horizon: Any = None, x: Any = None,
         xdot: Any = None, t: Any = None,
     ) -> Orbit:  # fmt: skip
-        """Impacts, chatter and rest in order, from (tau, v) or off the wall: see `singimpact.dynamics.orbit.orbit`."""
+        """The orbit of one state: impacts, complete chatter, rest and lift-off in order.
+
+        Parameters
+        ----------
+        tau, v : the state just after an impact; or x, xdot, t : a start off the wall.
+        impacts : flights at most; a chatter that is summed up counts as one. horizon : as for `first_hit`.
+
+        Returns
+        -------
+        Orbit : `.tau`, `.v`, `.kind` of events, `.phases` between them; `.sample(t)`, `.section()`, `.to_csv(file)`.
+
+        Examples
+        --------
+        >>> linear("2.8", 0, "0.8").orbit("0.9", "0.005").kind[:3].tolist()
+        ['start', 'impact', 'impact']
+        """
         from singimpact.dynamics.orbit import dropped_orbit, orbit
 
         if x is xdot is t is None:
@@ -181,8 +257,29 @@ class ImpactOscillator(Oscillator):
             )
         return dropped_orbit(self, (x, xdot, t), impacts, horizon=horizon)
 
+    def release(self, tau: float) -> float:
+        """When a mass at rest on the wall at tau lifts off: where a_c > 0 at once, else at its next rise through 0.
+
+        Examples
+        --------
+        >>> print(f"{linear(2, '0.3', '0.5').release(1.2):.12f}")
+        2.508540817200
+        """
+        from singimpact.dynamics.release import release
+
+        start = float(float_array("tau", tau))
+        return start if self.acceleration(start) > 0 else release(self, start)
+
     def launch(self, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -> Launched:
-        """The first impact of flights that start off the wall: see `singimpact.flights.off_wall.launch`.
+        """The first impact of flights that start off the wall.
+
+        Parameters
+        ----------
+        x, xdot, t : places at or above the wall, velocities of either sign, times; they broadcast.
+
+        Returns
+        -------
+        Launched : the state `.tau`, `.v` after the impact, `.flight_time`, `.velocity` before it, `.status`.
 
         Examples
         --------
@@ -213,6 +310,7 @@ class ImpactOscillator(Oscillator):
         return to_toml(self.to_dict())
 
 
+@checked_keywords
 def linear(
     omega: Any,
     clearance: Any,
@@ -243,6 +341,7 @@ def linear(
     return ImpactOscillator(force, forcing, clearance, restitution, {"omega": omega, **changed})
 
 
+@checked_keywords
 def universal(kappa: Any, restitution: Any) -> ImpactOscillator:
     """x'' = 12 kappa (t^2 - 1), c = 0: the unfolded swan, positive for kappa > 0, negative for kappa < 0.
 
@@ -260,7 +359,15 @@ def universal(kappa: Any, restitution: Any) -> ImpactOscillator:
 def shaken_wall(
     f: Any, g: Any, wall: Any, restitution: Any, parameters: Mapping[str, Any] | None = None, period: Any = None
 ) -> ShakenWall:
-    """x'' + f(x, x') = g(t), x >= wall(t), in the wall's frame: see `singimpact.oscillator.shaken_wall.shaken_wall`.
+    """x'' + f(x, x') = g(t) above a wall that moves, in the frame of the wall.
+
+    Parameters
+    ----------
+    f, g, restitution, parameters, period : as for `ImpactOscillator`. wall : the place of the wall, an expression in t.
+
+    Returns
+    -------
+    ShakenWall : `.oscillator`, the model of x - wall(t) >= 0, and `.back(t, x, xdot)`, which undoes the change.
 
     Examples
     --------
@@ -275,318 +382,16 @@ def shaken_wall(
 
 
 def read_model(path: str | FilePath) -> ImpactOscillator:
-    """The model in a TOML file with f, g, clearance, restitution and perhaps parameters and period."""
+    """The model in a TOML file with f, g, clearance, restitution and perhaps parameters and period.
+
+    Parameters
+    ----------
+    path : the file, as `to_toml` writes it.
+
+    Raises
+    ------
+    InputError : a file that cannot be read, or a field that is none of these.
+    """
     from singimpact.oscillator.files import read_fields
 
     return ImpactOscillator(**read_fields(path))
-
-
-def tangency_points(oscillator: Oscillator, digits: int = 30) -> TangencyPoints:
-    """The zeros of a_c over one period, or all real ones when g is a polynomial: see `singimpact.contact.points`.
-
-    Examples
-    --------
-    >>> points = tangency_points(linear(2, "0.3", "0.5"))
-    >>> points.kind, points.tau.round(6).tolist()
-    (('foliation', 'gamma'), [0.633052, 2.508541])
-    >>> print(tangency_points(linear(2, "0.3", "0.5"), digits=60).certified()[1])
-    2.50854081720004368283298401807339174662515706538471755942770
-    """
-    from singimpact.contact.points import tangency_points as found
-
-    return found(oscillator, digits)
-
-
-def swan_points(
-    f: Any, g: Any, parameters: Mapping[str, Any] | None = None, over: str = "clearance", between: Any = None
-) -> tuple[SwanPoint, ...]:
-    """The swan points of x'' + f(x, x') = g(t) as the clearance varies, in the order of tau_*.
-
-    Parameters
-    ----------
-    f, g, parameters : as for `ImpactOscillator`. over : "clearance".
-    between : (low, high), clearances to look between; None for all, where f(x, 0) is a polynomial.
-
-    Returns
-    -------
-    tuple of SwanPoint : each with `.tau`, `.clearance` (c_0), `.kind` ("positive" | "negative"), `.certified(digits)`
-        and `.oscillator(restitution)`, the model exactly at c_0.
-
-    Examples
-    --------
-    >>> [(swan.kind, swan.clearance) for swan in swan_points("x", "cos(2*t)")]
-    [('negative', 1.0), ('positive', -1.0)]
-    >>> print(swan_points("x + 3*x**3/10", "cos(2*t)")[0].oscillator("0.5").clearance)
-    root(u + 0.3*u**3 - 1, 0.829051, 0.829052)
-    """
-    from singimpact.contact.swans import swan_points_over_clearance
-
-    if over != "clearance":
-        raise refuse("over", over, "'clearance'")
-    model = ImpactOscillator(f, g, 0, 1, parameters)
-    return swan_points_over_clearance(model, None if between is None else clearances(between))
-
-
-def _bound(end: Any) -> Fraction:
-    tree = constant("between", end)
-    exact = as_fraction(tree)
-    return Fraction(as_float(tree)) if exact is None else exact
-
-
-def clearances(between: Any) -> tuple[Fraction, Fraction]:
-    """Two clearances, the lower first, as exact fractions.
-
-    Examples
-    --------
-    >>> clearances(("-1/3", "0.5"))
-    (Fraction(-1, 3), Fraction(1, 2))
-    """
-    try:
-        low, high = (_bound(end) for end in between)
-    except (TypeError, ValueError) as error:
-        raise error if isinstance(error, InputError) else refuse("between", between, "two numbers low < high") from None
-    if not low < high:
-        raise refuse("between", between, "two numbers low < high")
-    return low, high
-
-
-def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = 640_000) -> Threshold:
-    """The v on gamma over tau: see `singimpact.dynamics.threshold.threshold`.
-
-    Examples
-    --------
-    >>> print(f"{threshold(linear('2.8', 0, '0.5'), 'pi/2.8').v:.12f}")
-    0.100869991269
-    """
-    from singimpact.dynamics.threshold import threshold
-
-    return threshold(osc, tau, digits=digits, impacts=impacts)
-
-
-def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int = 0) -> Lyapunov:
-    """Both Lyapunov exponents of an orbit, with standard errors: see `singimpact.dynamics.lyapunov.lyapunov`.
-
-    Examples
-    --------
-    >>> lyapunov(linear("0.9", "0.2", "0.4"), "0.3", "0.4")
-    Lyapunov(superstable: the orbit comes to rest, 10 impacts)
-    """
-    from singimpact.dynamics.lyapunov import lyapunov
-
-    _require_model(osc)
-    return lyapunov(osc, tau, v, impacts, transient=transient)
-
-
-def branch(
-    orbit: PeriodicOrbit, over: str = "clearance", between: Any = None, *, points: int = 2000, step: float | None = None
-) -> Branch:
-    """A periodic orbit followed as a number of its model moves: see `singimpact.branches.branch.branch`.
-
-    Examples
-    --------
-    >>> osc = linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45")
-    >>> found = branch(osc.periodic(1, 1)[0], over="amplitude", between=(-0.5, -0.3))
-    >>> print(found.events[-1])
-    <graze of impact 1 at amplitude = -0.368781778292>
-    """
-    from singimpact.branches.branch import branch
-
-    return branch(orbit, over, between, points=points, step=step)
-
-
-def event_curve(
-    event: Event, over: Any = ("clearance", "restitution"), between: Any = None, *, points: int = 1000,
-    step: float | None = None,
-) -> EventCurve:  # fmt: skip
-    """The curve of an event of a branch in two numbers: see `singimpact.branches.event_curve.event_curve`."""
-    from singimpact.branches.event_curve import event_curve
-
-    return event_curve(event, over, between, points=points, step=step)
-
-
-def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: Any = None, output: Any = None) -> Basins:
-    """What the orbits of a grid of launches do for ever: n impacts in k periods, chatter, rest, chaos.
-
-    Parameters
-    ----------
-    osc : a model with a period. window : ((tau_low, tau_high), (v_low, v_high)); one period and (0, 2) without it.
-    size : states a side, from 2 to 10000. executor, output : as for `sweep`, where some rows of the grid are a case;
-        without an executor threads, as many as there are cores.
-
-    Returns
-    -------
-    Basins : `.codes`, shape (size, size), numbers of the classes in `.attractors`; `.classes` has their names and
-        shares, `.first_chatter_completes` is an array of bool. `si.plot` draws it, `.to_csv(file)` writes it.
-
-    Raises
-    ------
-    InputError : a model without a period, or a window or a size that is none.
-
-    Examples
-    --------
-    >>> basins(linear(2, "0.7", "0.5"), ((0, 3), (0, 1)), 8)
-    Basins(8 x 8 states: (inf, 1) chatter for ever 100 %)
-    """
-    from singimpact.dynamics.basins import basins
-
-    whole("size", size, 2, 10_000)
-    tau, v = (None, (0, 2)) if window is None else _two_ends(window, "((tau_low, tau_high), (v_low, v_high))")
-    return basins(osc, tau, v, size, executor, output)
-
-
-def bifurcation(
-    osc: Oscillator, over: str, between: Any, points: int = 300, *, start: Any = (0, "0.1"), impacts: int = 200,
-    kept: int = 60, direction: str | None = None, **sweeping: Any,
-) -> Bifurcation:  # fmt: skip
-    """Where orbits settle as a number of the model moves: the last events of one orbit for each value.
-
-    Parameters
-    ----------
-    osc : a model with a period. over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or
-        "phase" (the model need not name them). between : its ends. points : values, evenly spaced.
-    start : the first state (tau, v) of each orbit. impacts : flown for each value.
-    kept : events of the end of an orbit that are returned. sweeping : `executor` and `output` of `sweep`.
-    direction : "up", "down", "both": each orbit starts from the last state of the one before, so hysteresis shows.
-
-    Returns
-    -------
-    Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v and 1 where chatter has
-        ended; nan where an orbit had fewer. `si.plot` draws it, `.to_csv(file)` writes it.
-
-    Raises
-    ------
-    InputError : a model without a period, a number it does not have, ends that are none.
-
-    Examples
-    --------
-    >>> found = bifurcation(linear(2, 0, "0.5"), "clearance", ("0.2", "0.3"), 2, impacts=60, kept=4)
-    >>> found
-    Bifurcation(over clearance: 2 values from 0.2 to 0.3, 4 events of each)
-    >>> found.events[0, :, 1].round(6).tolist()
-    [1.066667, 1.066667, 1.066667, 1.066667]
-    """
-    from singimpact.dynamics.bifurcation import bifurcation
-
-    for name in sweeping:
-        if name not in ("executor", "output"):
-            raise unknown(
-                "argument of bifurcation", name, ["executor", "output", "start", "impacts", "kept", "direction"]
-            )
-    return bifurcation(osc, over, between, points, start, impacts, kept, direction, **sweeping)
-
-
-def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classification:
-    """The singular points of p and phi on V_c': tangencies, swans, cusps, and the fold lines between them.
-
-    Parameters
-    ----------
-    osc : the model. window : ((tau_low, tau_high), (t_low, t_high)); without it one period of tau and as much on both
-        sides of t = 0, or what holds all zeros of a_c when g is a polynomial.
-    between : two clearances to look for swans between; all where they can be isolated, when it is not given.
-
-    Returns
-    -------
-    Classification : `.points`, `.folds`, `.swans`, and `.notes` on what was not decided.
-
-    Examples
-    --------
-    >>> classify(universal(-1, "0.5"))
-    Classification(cusp 4, tangency 2; fold lines 4; swans over the clearance 0)
-    """
-    from singimpact.surface.classification import classify
-
-    tau, t = (None, None) if window is None else _two_ends(window, "((tau_low, tau_high), (t_low, t_high))")
-    return classify(osc, tau, t, None if between is None else clearances(between))
-
-
-def transitions(osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None) -> Transitions:
-    """Where P changes its kind as a number of the model moves: swans, swallowtails, lips and beaks.
-
-    Parameters
-    ----------
-    osc : the model. over : "clearance" or a parameter. between : its ends. t : ends of the flight times; as for
-        `classify` when they are not given.
-
-    Returns
-    -------
-    Transitions : a tuple in order of the number, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` says whether it
-        is proved that no swan is missing, `.notes` why one may be.
-
-    Raises
-    ------
-    InputError : no number of the model, or ends that are no two numbers in rising order.
-
-    Examples
-    --------
-    >>> [(each.kind, each.value) for each in transitions(linear(2, 0, "0.5"), between=("0.9", "1.1"), t=(-1, 1))]
-    [('swan, negative', 1.0)]
-    """
-    from singimpact.surface.classification import default_window
-    from singimpact.surface.transitions import transitions
-
-    _require_model(osc)
-    return transitions(osc, over, between, default_window(osc)[1] if t is None else t)
-
-
-def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Curve]:
-    """gamma from its series at a tangency or swan point to the edge of a window of the plane of states.
-
-    Parameters
-    ----------
-    osc : the model. window : ((tau_low, tau_high), (v_low, v_high)); without it a period on both sides of tau = 0 (the
-        zeros of a_c with room about them, when g is a polynomial) and (0, 2).
-    tau : the point; without one the first that has an invariant curve.
-
-    Returns
-    -------
-    list of Curve : in (tau, v), in order of hit history, the first from (tau_*, 0) on. `si.plot` draws it.
-
-    Raises
-    ------
-    InputError : no such point, or a window that is none.
-
-    Examples
-    --------
-    >>> curve = grown_gamma(universal(1, "0.5"), ((-2, 1), (0, 20)), 1)[0]
-    >>> curve.points[0].tolist(), curve.points[-1].round(3).tolist()
-    ([1.0, 0.0], [-1.385, 0.0])
-    """
-    from singimpact.dynamics.invariant_arcs import grown_gamma
-    from singimpact.surface.classification import default_window
-    from singimpact.surface.curve import STATES, Window
-
-    _require_model(osc)
-    if not isinstance(window, Window):
-        low, high = default_window(osc)[0]
-        usual = ((low - high if osc.period is not None else low, high), (0, 2))
-        named = "((tau_low, tau_high), (v_low, v_high))"
-        tau_ends, v_ends = usual if window is None else _two_ends(window, named)
-        window = Window.read(tau_ends, v_ends, axes=STATES)
-    return grown_gamma(osc, window, tau)
-
-
-def _require_model(osc: Any) -> None:
-    if not isinstance(osc, Oscillator):
-        raise refuse("osc", osc, "an ImpactOscillator")
-
-
-def _two_ends(window: Any, accepted: str) -> tuple[Any, Any]:
-    """The ranges of both axes."""
-    ranges = (window.x, window.y) if hasattr(window, "x") and hasattr(window, "y") else window
-    if not isinstance(ranges, tuple | list) or len(ranges) != 2:
-        raise refuse("window", window, accepted)
-    return ranges[0], ranges[1]
-
-
-def sweep(function: Any, cases: Any, executor: Any = None, output: str | FilePath | None = None) -> Any:
-    """function(case) for every case, on an executor, kept in a file: see `singimpact.cases.sweep`.
-
-    Examples
-    --------
-    >>> import math
-    >>> sweep(math.sqrt, [1.0, 4.0]).tolist()
-    [1.0, 2.0]
-    """
-    from singimpact.cases import sweep
-
-    return sweep(function, cases, executor, output)

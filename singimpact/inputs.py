@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import wraps
 from numbers import Integral
+from typing import ParamSpec, TypeVar
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 LONGEST = 1500  # characters of a refusal
 
@@ -43,12 +48,13 @@ def whole(name: str, value: object, least: int, most: int) -> int:
 
     Examples
     --------
-    >>> whole("impacts", 3, 1, 10)
-    3
+    >>> whole("impacts", 3, 1, 10), whole("impacts", 1e3, 1, 10_000)
+    (3, 1000)
     """
-    if isinstance(value, bool) or not isinstance(value, Integral) or not least <= int(value) <= most:
+    counts = isinstance(value, Integral) or (isinstance(value, float) and value.is_integer())
+    if isinstance(value, bool) or not counts or not least <= int(value) <= most:  # type: ignore[call-overload]
         raise refuse(name, value, f"a whole number from {least} to {most}")
-    return int(value)
+    return int(value)  # type: ignore[call-overload,no-any-return]
 
 
 def shown(value: object, limit: int = 60) -> str:
@@ -74,11 +80,60 @@ def nearest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
     >>> nearest("clearence", ["clearance", "restitution"])
     ['clearance']
     """
-    return difflib.get_close_matches(name[:200], list(known), n=count, cutoff=0.4)
+    return difflib.get_close_matches(name[:200], list(known), n=count, cutoff=0.6)
+
+
+SYNONYMS = {"r": "restitution", "e": "restitution", "c": "clearance", "d": "clearance", "w": "omega",
+            "frequency": "omega", "v": "xdot", "u": "xdot", "x_dot": "xdot", "dx": "xdot", "dxdt": "xdot", "y": "x",
+            "time": "t", "tau": "t", "out": "output", "n": "impacts"}  # fmt: skip
+"""Other names of what the package names so."""
+
+
+def meant(name: str, known: Iterable[str]) -> str | None:
+    """The known name that was meant by another one: a synonym, or the nearest in letters; None where none is near.
+
+    Examples
+    --------
+    >>> meant("r", ["omega", "restitution"]), meant("omga", ["omega", "restitution"]), meant("eq:1", ["t:t1"])
+    ('restitution', 'omega', None)
+    """
+    names = list(known)
+    if SYNONYMS.get(name) in names:
+        return SYNONYMS[name]
+    return next(iter(nearest(name, names, count=1)), None)
 
 
 def unknown(kind: str, name: str, known: Iterable[str]) -> InputError:
-    """The error for a name that does not exist, with the nearest names that do."""
+    """The error for a name that does not exist, with the nearest names that do, or with some where none is near."""
     names = list(known)
-    near = nearest(name, names) or sorted(names)[:8]
-    return InputError(f"unknown {kind} {shown(name)}: the nearest known are {', '.join(near) or 'none'}")
+    near = nearest(name, names)
+    if SYNONYMS.get(name) in names:
+        near = [SYNONYMS[name]]
+    if near:
+        return InputError(f"unknown {kind} {shown(name)}: the nearest known are {', '.join(near)}")
+    some = sorted(names)[:8]
+    more = f" and {len(names) - len(some)} more" if len(names) > len(some) else ""
+    return InputError(f"unknown {kind} {shown(name)}: none is near; there are {', '.join(some) or 'none'}{more}")
+
+
+def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
+    """The function, which refuses keywords that it does not have with a word about those that it has.
+
+    Examples
+    --------
+    >>> checked_keywords(lambda clearance: clearance)(c=1)
+    Traceback (most recent call last):
+    singimpact.inputs.InputError: <lambda> has no argument 'c': give clearance
+    """
+    code = function.__code__
+    names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
+
+    @wraps(function)
+    def checked(*given: P.args, **named: P.kwargs) -> T:
+        for name in named:
+            if name not in names:
+                instead = meant(name, names) or ", ".join(names)
+                raise InputError(f"{function.__name__} has no argument {name!r}: give {instead}")
+        return function(*given, **named)
+
+    return checked

@@ -16,6 +16,12 @@ class Certified:
     Attributes
     ----------
     value, radius : mpmath numbers. digits : how many significant digits were asked for.
+
+    Examples
+    --------
+    >>> import mpmath
+    >>> Certified(mpmath.mpf(1) / 3, mpmath.mpf("1e-16"), 15)
+    Certified(0.333333333333333 +- 1.0e-16)
     """
 
     value: Any
@@ -24,6 +30,9 @@ class Certified:
 
     def __str__(self) -> str:
         return _text(self.value, self.digits)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self} +- {_text(self.radius, 2)})"
 
     def as_dict(self) -> dict[str, str]:
         """value and radius as decimal text; the radius covers the rounding of the text, which has two more digits."""

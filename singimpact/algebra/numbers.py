@@ -60,6 +60,9 @@ def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> 
         return value
     if str(type(value).__module__).partition(".")[0] == "sympy" and hasattr(value, "args"):
         return from_sympy(value, names, what)
+    if callable(value):
+        letters = f"an expression in {', '.join(names)}" if names else "a number"
+        raise refuse(what, value, f"{letters} as text: a Python function has no derivatives that are exact")
     return Number(exact(what, value))
 
 

@@ -30,7 +30,7 @@ from singimpact.algebra.expressions import (
     power,
     walk,
 )
-from singimpact.inputs import InputError, nearest, shown
+from singimpact.inputs import InputError, meant, shown
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,7 @@ class _Parser:
         self.depth = 0
         self.roots = 0
         self.token, self.kind = "", ""
+        self.before = "", ""
         self.advance()
 
     def refusal(self, reason: str) -> InputError:
@@ -107,7 +108,10 @@ class _Parser:
         found = _TOKEN.match(self.text, self.at)
         if found is None:
             bad = self.text[self.at :].lstrip()[0]
+            if bad in "'\N{RIGHT SINGLE QUOTATION MARK}\N{PRIME}" and "xdot" in self.names:
+                raise self.refusal("the velocity x' is written xdot")
             raise self.refusal(f"the character {bad!r} has no meaning here; accepted are {_LANGUAGE}")
+        self.before = self.kind, self.token
         self.at = found.end()
         self.kind = str(found.lastgroup)
         self.token = found.group(self.kind)
@@ -131,7 +135,12 @@ class _Parser:
             return "'^' has no meaning here; write a power as **"
         if self.token == ".":
             return f"'.' has no meaning here (there are no attributes); accepted are {_LANGUAGE}"
-        return f"{shown(self.token)} is out of place" if self.token else "it ends too early"
+        if not self.token:
+            return "it ends too early"
+        kind, before = self.before
+        if (kind in ("number", "name") or before == ")") and (self.kind in ("number", "name") or self.token == "("):
+            return f"a product is written with its *, {before}*{self.token}"
+        return f"{shown(self.token)} is out of place"
 
     def sum(self) -> Expression:
         self.depth += 1
@@ -245,8 +254,8 @@ class _Parser:
 def unknown_name(token: str, names: Iterable[str]) -> str:
     """The sentence about a symbol that has no value."""
     known = list(names)
-    near = nearest(token, known, count=1)
-    hint = f"; did you mean {near[0]}?" if near else ""
+    instead = meant(token, known)
+    hint = f"; did you mean {instead}?" if instead else ""
     listed = f"known names are {', '.join(known)}" if known else "a number is expected here"
     return f"the symbol {shown(token)} has no value ({listed}){hint}"
 

@@ -35,7 +35,7 @@ def command(
     oscillator = take_model(options)
     if over is not None and between is None:
         raise InputError(f"--over {over} needs its ends: --between LOW HIGH")
-    from singimpact.impact_oscillator import clearances
+    from singimpact.studies import clearances
     from singimpact.surface.classification import classify
     from singimpact.surface.transitions import transitions
 

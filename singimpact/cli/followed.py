@@ -63,7 +63,8 @@ def on_branch(orbit: PeriodicOrbit, branch: Branch) -> bool:
 
     Examples
     --------
-    >>> from singimpact.impact_oscillator import branch, linear
+    >>> from singimpact.branches.branch import branch
+    >>> from singimpact.impact_oscillator import linear
     >>> low, high = linear("2.8", "0.1", "0.8", amplitude=-1).periodic(3, 3)  # both sides of a fold
     >>> on_branch(high, branch(low, "clearance", (-0.2, 0.3)))
     True

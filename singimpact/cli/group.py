@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import sys
 from collections.abc import Sequence
@@ -11,7 +12,7 @@ from typing import Any, NoReturn
 import click
 
 from singimpact import __version__
-from singimpact.inputs import InputError, Unfinished, unknown
+from singimpact.inputs import InputError, Unfinished, meant, unknown
 
 # The short helps stand here, so that `singimpact --help` opens no command and no room.
 COMMANDS = {
@@ -71,7 +72,7 @@ class Commands(click.Group):
         except InputError as error:
             return _refused(str(error))
         except click.ClickException as error:
-            return _refused(error.format_message())
+            return _refused(_in_our_words(error, args))
         except (click.Abort, KeyboardInterrupt):
             click.echo("singimpact: interrupted", err=True)
             return 130
@@ -85,6 +86,24 @@ class Commands(click.Group):
 
 def _ended(number: int, frame: Any) -> NoReturn:  # noqa: ARG001
     sys.exit(128 + number)
+
+
+def _in_our_words(error: click.ClickException, args: Sequence[str] | None) -> str:
+    """What click says, with the option that was meant, the value, and what would be accepted."""
+    match error:
+        case click.NoSuchOption(ctx=click.Context() as ctx):
+            names = [name.lstrip("-") for each in ctx.command.params for name in each.opts if name.startswith("--")]
+            instead = meant(error.option_name.lstrip("-"), names)
+            return f"no option {error.option_name}: " + (
+                f"give --{instead}" if instead else "--help lists those there are"
+            )
+        case click.MissingParameter(param=click.Option() as option) if set(option.opts) & set(args or sys.argv[1:]):
+            return f"{option.opts[0]} was read as a value of the option before it, which takes two: --tau 0 3"
+        case click.BadParameter(param=click.Option(type=click.IntRange() | click.types.IntParamType()) as option):
+            found = re.fullmatch(r"'(.*)' is not a valid integer( range)?\.", error.message)
+            if found:
+                return f"{option.opts[-1]} = {found[1]} is not accepted: give a whole number"
+    return error.format_message()
 
 
 def _refused(message: str) -> int:

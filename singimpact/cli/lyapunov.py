@@ -26,7 +26,7 @@ def command(
     An orbit that comes to rest again and again is superstable: its exponents are -inf.
     """
     osc = take_model(options)
-    from singimpact.impact_oscillator import lyapunov
+    from singimpact.dynamics.lyapunov import lyapunov
 
     found = lyapunov(osc, tau, v, impacts, transient=transient)
     status = Status(int(found.status))

@@ -38,7 +38,7 @@ def command(
 
     from singimpact.algebra.numbers import as_float, constant
     from singimpact.case_pools import WorkerPool
-    from singimpact.impact_oscillator import sweep
+    from singimpact.cases import sweep
 
     oscillator = take_model(options)
     if over not in {"clearance", "restitution", *oscillator.parameters}:

@@ -21,7 +21,7 @@ from singimpact.status import Status
 def command(tau: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: Any) -> None:
     """The v on gamma over tau: just below it chatter completes, just above it contact is lost before."""
     oscillator = take_model(options)
-    from singimpact.impact_oscillator import threshold
+    from singimpact.dynamics.threshold import threshold
 
     found = threshold(oscillator, tau, digits=digits, impacts=impacts)
     status = Status(int(found.status))

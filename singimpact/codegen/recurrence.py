@@ -222,7 +222,9 @@ def _made(writer: _Writer, tree: Expression) -> _Series:
             if function == "sqrt":
                 return _power(writer, argument, Number(Fraction(1, 2)))
             if function not in _CALLS:
-                raise InputError(f"{tree} is not smooth: a flight is computed only where f and g are smooth")
+                raise InputError(
+                    f"{tree} is not smooth, as f and g must be: round its corner, sqrt(u**2 + 1e-6) in place of abs(u)"
+                )
             return _CALLS[function](writer, argument)
     raise TypeError(f"a constant has no series of its own: {tree}")
 

@@ -24,7 +24,7 @@ from singimpact.oscillator.model import Oscillator
 MOST_DIGITS = 100_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TangencyPoint:
     """A zero tau_* of a_c.
 
@@ -37,6 +37,9 @@ class TangencyPoint:
     function: Expression
     zero: Zero
     kind: str
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(tau={self.tau}, kind={self.kind})"
 
     def ball(self, bits: int = 128) -> Any:
         """A ball that contains tau_*."""

@@ -39,7 +39,7 @@ GRID = 10**6  # the ends of a root are multiples of 1/GRID where they can be
 SHORT = 1000  # the largest denominator with which c_0 is tried as a rational
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SwanPoint:
     """A clearance c_0 and a time tau_* at which a_c and a_c' vanish together.
 
@@ -53,6 +53,9 @@ class SwanPoint:
     time: Expression
     place: Expression
     kind: str
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(clearance={self.clearance}, tau={self.tau}, kind={self.kind})"
 
     def tau_ball(self, bits: int = 128) -> Any:
         """A ball that contains tau_*."""

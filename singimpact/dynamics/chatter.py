@@ -28,6 +28,7 @@ from singimpact.inputs import whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status, status_array
+from singimpact.words import in_words
 
 EPSILON = 2.0**-52
 ENDED = {
@@ -61,7 +62,7 @@ class Ending:
 ENDING = Ending()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ChatterLimit:
     """Where a chatter sequence ends.
 
@@ -82,6 +83,8 @@ class ChatterLimit:
     status: Any
     certified: Any = None
     cause: Any = 0
+
+    __repr__ = in_words
 
     @property
     def sentence(self) -> Any:

@@ -22,7 +22,7 @@ from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.rebound_law import rebound_slope
 from singimpact.flights.states import States
-from singimpact.inputs import InputError, whole
+from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
@@ -104,6 +104,8 @@ def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transi
     >>> found.exponents.round(6).tolist()  # ln(1/2) an impact, every two periods
     [-0.220636, -0.220636]
     """
+    if not isinstance(osc, Oscillator):
+        raise refuse("osc", osc, "an ImpactOscillator")
     states = States.read(tau, v)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")

@@ -27,6 +27,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
+from singimpact.words import in_words
 
 EPSILON = 2.0**-52
 
@@ -66,7 +67,7 @@ class Search:
 SEARCH = Search()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Threshold:
     """The velocity `v`, an estimate of its `error`, and a status: `complete`; `none` where no gamma lies ahead;
     `unresolved` where the next zero of a_c, its contact order or the two sides of gamma are not decided.
@@ -79,6 +80,8 @@ class Threshold:
     error: Any
     status: Any
     certified: Any = None
+
+    __repr__ = in_words
 
 
 def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = SEARCH.impacts) -> Threshold:

@@ -32,6 +32,7 @@ from singimpact.flights.undecided import Fates, escapes
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status, status_array
+from singimpact.words import in_words
 
 Array = np.ndarray[Any, Any]
 
@@ -47,7 +48,7 @@ class OffWallSettings:
 SETTINGS = OffWallSettings()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Launched:
     """First impacts of flights that start off the wall.
 
@@ -66,6 +67,8 @@ class Launched:
     status: Any
     cause: Any
     notes: Mapping[int, str] = field(default_factory=dict)
+
+    __repr__ = in_words
 
     @property
     def sentence(self) -> Any:

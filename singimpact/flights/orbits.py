@@ -17,6 +17,7 @@ from singimpact.flights.phase import reduced
 from singimpact.flights.states import States
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status, status_array
+from singimpact.words import in_words
 
 Array = np.ndarray[Any, Any]
 
@@ -72,13 +73,15 @@ def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, near_end: f
                    code == PRESSED)  # fmt: skip
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Ends:
     """The states after the last impact flown, and 0, or the status of the flight that ended an orbit before."""
 
     tau: Any
     v: Any
     status: Any
+
+    __repr__ = in_words
 
 
 def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = EPSILON) -> Ends:

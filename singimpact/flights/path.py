@@ -21,6 +21,7 @@ from singimpact.inputs import InputError
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.words import in_words
 
 Array = np.ndarray[Any, Any]
 
@@ -30,6 +31,9 @@ class Path(NamedTuple):
 
     x: Any
     xdot: Any
+
+    def __repr__(self) -> str:
+        return in_words(self)
 
 
 def path(osc: Oscillator, tau: Any, v: Any, t: Any) -> Path:

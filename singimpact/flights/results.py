@@ -10,6 +10,7 @@ import numpy as np
 
 from singimpact.notebook import table
 from singimpact.status import Cause, Status, status_array
+from singimpact.words import in_words, value_in_words
 
 JUDGED = ("condition", "velocity_condition", "time_error", "velocity_error")
 """Fields that may be computed when they are first read: of a Taylor flow they take longer than the flight."""
@@ -106,10 +107,9 @@ class Flight:
         statuses = np.asarray(self.__dict__["status"])
         if not statuses.shape:
             names = [name for name in ("tau", "v", "flight_time", "velocity") if name in self.__dict__]
-            numbers = [f"{name}={_plain(self.__dict__[name])}" for name in names]
-            return f"{type(self).__name__}({', '.join(numbers)}, status={Status(int(statuses)).name})"
-        counts = zip(*np.unique(statuses, return_counts=True), strict=True)
-        ends = ", ".join(f"{count} {Status(int(value)).name}" for value, count in counts)
+            numbers = [f"{name}={value_in_words(self.__dict__[name])}" for name in names]
+            return f"{type(self).__name__}({', '.join(numbers)}, status={value_in_words(statuses, Status)})"
+        ends = value_in_words(statuses, Status)
         return f"{type(self).__name__} of {statuses.size} states, shape {statuses.shape}: {ends}"
 
     def _repr_html_(self) -> str:
@@ -128,12 +128,14 @@ class Step(Flight):
     v: Any
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Derivative:
     """D G of the impact map: `matrix` of shape (..., 2, 2) and the `status` of the flight."""
 
     matrix: Any
     status: Any
+
+    __repr__ = in_words
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "status", status_array(self.status))
@@ -143,10 +145,6 @@ def _sentence(status: int, cause: int, note: str | None) -> str:
     if status != Status.unresolved or not cause:
         return Status(status).sentence
     return Cause(cause).sentence if note is None else f"{note}; {Cause(cause).sentence}"
-
-
-def _plain(number: Any) -> str:
-    return repr(float(number)) if isinstance(number, float | np.floating) else str(number)
 
 
 def _shown(number: Any) -> str:

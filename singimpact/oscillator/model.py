@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from fractions import Fraction
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Self
 
 from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in, substitute, walk
 from singimpact.algebra.numbers import constant, tree_of
@@ -118,13 +119,13 @@ class Oscillator:
         """
         return rebound.slope_at_rest(self.restitution, tuple(sorted(self.parameters.items())))
 
-    def replace(self, **changes: Any) -> Oscillator:
+    def replace(self, **changes: Any) -> Self:
         """The same model with some fields changed; a parameter is changed by its own name.
 
         Examples
         --------
-        >>> Oscillator("x", "cos(w*t)", 0, 1, {"w": 2}).replace(w=3, clearance="0.3")
-        Oscillator(f='x', g='cos(w*t)', clearance='0.3', restitution='1', parameters={'w': '3'})
+        >>> Oscillator("x", "cos(w*t)", 0, 1, {"w": 2}).replace(w=0.3, clearance="0.3")
+        Oscillator(f='x', g='cos(w*t)', clearance='0.3', restitution='1', parameters={'w': 0.3})
         """
         fields: dict[str, Any] = {
             "f": self.f,
@@ -155,7 +156,9 @@ class Oscillator:
         return hash(self._texts)
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{key}={value!r}' for key, value in self.to_dict().items())})"
+        return (
+            f"{type(self).__name__}({', '.join(f'{key}={_written(value)}' for key, value in self.to_dict().items())})"
+        )
 
     def _repr_latex_(self) -> str:
         from singimpact.oscillator.equation import equation
@@ -186,3 +189,15 @@ def require_smooth_text(tree: Expression, what: str) -> None:
             raise InputError(
                 f"{what} = {shown(str(tree))} is not smooth where abs changes sign: a smooth expression is needed here"
             )
+
+
+def _written(value: Any) -> str:
+    """A field as it can be typed: a number that came as a float is shown as that float, not by its many decimals."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name!r}: {_written(each)}" for name, each in value.items()) + "}"
+    try:
+        number = float(value)
+    except ValueError:
+        return repr(value)
+    short = repr(number)
+    return short if len(short) < len(value) and Fraction(number) == Fraction(value) else repr(value)

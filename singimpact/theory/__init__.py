@@ -35,4 +35,12 @@ def __getattr__(name: str) -> Any:
         from singimpact.theory.plane_forms import normal_form
 
         return normal_form
-    raise AttributeError(f"module 'singimpact.theory' has no attribute {name!r}")
+    raise AttributeError(f"module 'singimpact.theory' has no attribute {name!r}: it has {', '.join(_PUBLIC)}")
+
+
+_PUBLIC = ["Sheet", "chatter_limit", "dynamics_on_gamma", "fibre", "gamma", "normal_form", "r_of_lambda", "v_c",
+           "v_c_on_arrays"]  # fmt: skip
+
+
+def __dir__() -> list[str]:
+    return _PUBLIC

@@ -20,13 +20,14 @@ from singimpact.algebra.precision import balls_at
 from singimpact.algebra.roots import real_roots
 from singimpact.contact.contact import contact_order
 from singimpact.inputs import InputError, refuse
+from singimpact.words import in_words
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
 MOST_DIGITS = 100_000
 LEAST = Fraction(1, 10**308)  # isolating the roots of a smaller r takes minutes, then hours
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TangencyFixedPoints:
     """At a tangency: solutions of the cubic, multipliers at m3, zeros of Q_r(1, m)."""
 
@@ -40,8 +41,10 @@ class TangencyFixedPoints:
     one_minus_lambda: Certified
     mu_minus_one: Certified
 
+    __repr__ = in_words
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class SwanFixedPoints:
     """At a swan: the fixed point m_* in (-1, 0) and its multipliers."""
 
@@ -51,8 +54,10 @@ class SwanFixedPoints:
     one_minus_lambda: Certified
     mu_minus_one: Certified
 
+    __repr__ = in_words
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Multipliers:
     """On gamma (lambda) and across it (mu) at a contact of any order, and what they lack of 1."""
 
@@ -60,6 +65,8 @@ class Multipliers:
     mu: Certified
     one_minus_lambda: Certified
     mu_minus_one: Certified
+
+    __repr__ = in_words
 
 
 def as_dict(points: TangencyFixedPoints | SwanFixedPoints | Multipliers) -> dict[str, dict[str, str]]:

@@ -30,7 +30,7 @@ def public_code() -> set[CodeType]:
         rooms = [value for key, value in vars(reached).items() if not key.startswith("_")] if name in si._ROOMS else []
         for value in (reached, *rooms):
             if not isinstance(value, ModuleType):
-                found |= set(_codes(inspect.unwrap(value) if callable(value) else value))
+                found |= {*_codes(value), *_codes(inspect.unwrap(value) if callable(value) else value)}
     return found
 
 

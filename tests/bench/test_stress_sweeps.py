@@ -9,13 +9,14 @@ from functools import partial
 import flint
 import pytest
 
+import singimpact as si
 from singimpact import impact_oscillator, theory
 from singimpact.bench.stress.flown import landing
 from singimpact.bench.stress.judging import LIMITS, Function, Trial, moved, worst
 from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch
 from singimpact.bench.stress.table import FUNCTIONS, QUICK, chosen, stressed
 
-NO_NUMBER = {"to_toml", "linear", "universal", "read_model", "sweep", "clearances"}  # models, and work for others
+NO_NUMBER = {"to_toml", "linear", "universal", "read_model", "sweep", "release"}  # models, and work for others
 NO_NUMBER |= {
     "shaken_wall",
     "basins",
@@ -23,6 +24,12 @@ NO_NUMBER |= {
     "classify",
     "grown_gamma",
     "transitions",
+    "explore",
+    "figure",
+    "plot",
+    "verify",
+    "errata",
+    "selftest",
 }  # made of functions that have rows
 OF_SERIES = {"fibre", "dynamics_on_gamma", "v_c", "normal_form", "r_of_lambda", "Sheet"}  # exact; PowerSeries is a row
 
@@ -30,8 +37,7 @@ OF_SERIES = {"fibre", "dynamics_on_gamma", "v_c", "normal_form", "r_of_lambda", 
 def public():
     methods = {name for name, _ in inspect.getmembers(impact_oscillator.ImpactOscillator, inspect.isfunction)
                if name in vars(impact_oscillator.ImpactOscillator)}  # fmt: skip
-    functions = {name for name, found in inspect.getmembers(impact_oscillator, inspect.isfunction)
-                 if found.__module__ == impact_oscillator.__name__}  # fmt: skip
+    functions = {name for name in dir(si) if inspect.isfunction(getattr(si, name))}
     series = {name for name, found in vars(theory).items() if callable(found) and not name.startswith("_")}
     return {name for name in methods | functions | series if not name.startswith("_")}
 

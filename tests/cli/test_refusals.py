@@ -30,7 +30,7 @@ REFUSED = {
     ("map", *LINEAR[:-1], "__import__('os')", *STATE): "restitution",
     ("map", *LINEAR, "--tau", "nan", "--v", "1"): "tau = 'nan'",
     ("map", *LINEAR, *STATE, "--digits", "0"): "0 is not in the range",
-    ("orbit", *LINEAR, *STATE, "--impacts", "many"): "'many' is not a valid integer",
+    ("orbit", *LINEAR, *STATE, "--impacts", "many"): "--impacts = many is not accepted: give a whole number",
     ("orbit", *LINEAR, *STATE, "-o", "absent/orbit.png"): "output = 'absent/orbit.png' cannot be written",
     ("map", *LINEAR, *STATE, "-o", "."): "output = '.' is a folder",
     ("verify", "-o", "absent/verdicts.txt"): "output = 'absent/verdicts.txt' cannot be written",

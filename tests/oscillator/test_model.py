@@ -114,7 +114,7 @@ def test_missing_file_is_one_line(tmp_path):
 
 
 def test_a_period_is_asked_for_where_it_is_needed():
-    from singimpact.impact_oscillator import tangency_points
+    from singimpact.contact.points import tangency_points
 
     with pytest.raises(InputError, match="give period="):
         tangency_points(ImpactOscillator("x", "exp(-t)", 0, 1))

@@ -11,7 +11,9 @@ from functools import partial
 from typing import Any
 
 from singimpact.bench.measuring import Aim, Case, Counted, Effort, Method
-from singimpact.impact_oscillator import ImpactOscillator, branch, event_curve, linear
+from singimpact.branches.branch import branch
+from singimpact.branches.event_curve import event_curve
+from singimpact.impact_oscillator import ImpactOscillator, linear
 
 MANY = 1000
 """Points of a branch; 200 of a curve of events."""

@@ -20,7 +20,7 @@ from singimpact.bench.measuring import NO_AIM, Aim, Case, Counted, Effort, Metho
 from singimpact.bench.peers import runge_kutta
 from singimpact.bench.peers.impacts import chain
 from singimpact.bench.truth import drawn_flights
-from singimpact.impact_oscillator import lyapunov
+from singimpact.dynamics.lyapunov import lyapunov
 
 FIRST = (1, 2, 3, 4, 5)
 """Impacts of each orbit that are judged."""

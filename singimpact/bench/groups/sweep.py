@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from singimpact.bench.measuring import Aim, Case, Effort, Method, NotInstalled, Timed, with_peers
-from singimpact.impact_oscillator import sweep
+from singimpact.cases import sweep
 
 MANY, FEW = 1_000_000, 20_000
 AIM = Aim(20.0)  # microseconds a case: 10^6 of them in 20 s

@@ -17,7 +17,8 @@ from singimpact.bench.groups.impact_map import HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
 from singimpact.bench.peers import impacts, many_digits, runge_kutta, taylor_events
 from singimpact.bench.problems import Problem, values
-from singimpact.impact_oscillator import linear, threshold
+from singimpact.dynamics.threshold import threshold
+from singimpact.impact_oscillator import linear
 
 END = 3 * pi / 2 / 2.8  # the next zero of a_c with a_c' > 0
 WIDTHS = (1e-3, 1e-6, 1e-9, 1e-12)

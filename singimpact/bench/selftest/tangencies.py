@@ -9,7 +9,7 @@ import numpy as np
 
 from singimpact.bench.selftest.draws import Flown
 from singimpact.bench.selftest.rows import Row, Tally
-from singimpact.impact_oscillator import tangency_points
+from singimpact.contact.points import tangency_points
 from singimpact.inputs import InputError
 
 NAME = "tangency points"

@@ -12,7 +12,8 @@ from singimpact.bench.measuring import condition
 from singimpact.bench.stress.judging import DIGITS, Function, Trial, powers
 from singimpact.bench.stress.launches import Launch
 from singimpact.dynamics.invariant_arcs import grown_gamma, stable_manifold
-from singimpact.impact_oscillator import linear, threshold
+from singimpact.dynamics.threshold import threshold
+from singimpact.impact_oscillator import linear
 from singimpact.status import Status
 from singimpact.surface.curve import Window
 

@@ -7,7 +7,8 @@ from functools import partial
 from typing import Any
 
 from singimpact.bench.stress.judging import Function, Trial, moved, powers
-from singimpact.impact_oscillator import ImpactOscillator, linear, lyapunov
+from singimpact.dynamics.lyapunov import lyapunov
+from singimpact.impact_oscillator import ImpactOscillator, linear
 
 IMPACTS = 300
 

@@ -11,9 +11,11 @@ import numpy as np
 
 from singimpact.bench.stress.judging import Function, Trial, moved, powers
 from singimpact.bench.stress.launches import Launch, both
+from singimpact.contact.points import tangency_points
 from singimpact.dynamics.swan_configuration import swan_configuration
-from singimpact.impact_oscillator import swan_points, tangency_points, universal
+from singimpact.impact_oscillator import universal
 from singimpact.paper.routes import unfolding
+from singimpact.studies import swan_points
 from singimpact.theory import fixed_points
 
 

@@ -8,7 +8,9 @@ from functools import partial
 from typing import Any
 
 from singimpact.bench.stress.judging import Function, Trial, moved, powers
-from singimpact.impact_oscillator import branch, event_curve, linear
+from singimpact.branches.branch import branch
+from singimpact.branches.event_curve import event_curve
+from singimpact.impact_oscillator import linear
 
 
 def _periodic(place: str, points: int) -> Iterator[Trial]:

@@ -10,10 +10,11 @@ import numpy as np
 
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.invariant_arcs import gammas_within, model_step, stable_manifold
-from singimpact.impact_oscillator import ImpactOscillator, linear, swan_points
+from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.paper.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Point, Region
 from singimpact.paper.figures.sheet import projected, rebounded, reset
+from singimpact.studies import swan_points
 from singimpact.surface.curve import Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface
 

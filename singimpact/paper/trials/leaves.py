@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.impact_oscillator import ImpactOscillator, tangency_points
+from singimpact.contact.points import tangency_points
+from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.trials import true_orbits
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
-from singimpact.impact_oscillator import ImpactOscillator, tangency_points
+from singimpact.contact.points import tangency_points
+from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.claims.claim import Trial, Trials
 from singimpact.paper.trials import leaves
 from singimpact.paper.trials.true_sheet import Place, foliated, number

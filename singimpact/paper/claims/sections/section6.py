@@ -7,7 +7,8 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import definite
-from singimpact.impact_oscillator import linear, tangency_points
+from singimpact.contact.points import tangency_points
+from singimpact.impact_oscillator import linear
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.sections.section6_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, is_zero, same

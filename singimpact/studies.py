@@ -1,0 +1,255 @@
+"""What is asked of a model as a whole: its swans, singular points, gamma, basins and bifurcation diagrams.
+
+Each is one call into the room that does the work, with windows and intervals as a user writes them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from singimpact.algebra.numbers import as_float, as_fraction, constant
+from singimpact.impact_oscillator import ImpactOscillator
+from singimpact.inputs import InputError, refuse, unknown, whole
+from singimpact.oscillator.model import Oscillator
+
+if TYPE_CHECKING:
+    from singimpact.contact.swans import SwanPoint
+    from singimpact.dynamics.basins import Basins
+    from singimpact.dynamics.bifurcation import Bifurcation
+    from singimpact.surface.classification import Classification
+    from singimpact.surface.curve import Curve
+    from singimpact.surface.transitions import Transitions
+
+
+def swan_points(
+    f: Any, g: Any, parameters: Mapping[str, Any] | None = None, over: str = "clearance", between: Any = None
+) -> tuple[SwanPoint, ...]:
+    """The swan points of x'' + f(x, x') = g(t) as the clearance varies, in the order of tau_*.
+
+    Parameters
+    ----------
+    f, g, parameters : as for `ImpactOscillator`. over : "clearance".
+    between : (low, high), clearances to look between; None for all, where f(x, 0) is a polynomial.
+
+    Returns
+    -------
+    tuple of SwanPoint : each with `.tau`, `.clearance` (c_0), `.kind` ("positive" | "negative"), `.certified(digits)`
+        and `.oscillator(restitution)`, the model exactly at c_0.
+
+    Examples
+    --------
+    >>> [(swan.kind, swan.clearance) for swan in swan_points("x", "cos(2*t)")]
+    [('negative', 1.0), ('positive', -1.0)]
+    >>> print(swan_points("x + 3*x**3/10", "cos(2*t)")[0].oscillator("0.5").clearance)
+    root(u + 0.3*u**3 - 1, 0.829051, 0.829052)
+    """
+    from singimpact.contact.swans import swan_points_over_clearance
+
+    if over != "clearance":
+        raise refuse("over", over, "'clearance'")
+    model = ImpactOscillator(f, g, 0, 1, parameters)
+    return swan_points_over_clearance(model, None if between is None else clearances(between))
+
+
+def _bound(end: Any) -> Fraction:
+    tree = constant("between", end)
+    exact = as_fraction(tree)
+    return Fraction(as_float(tree)) if exact is None else exact
+
+
+def clearances(between: Any) -> tuple[Fraction, Fraction]:
+    """Two clearances, the lower first, as exact fractions.
+
+    Examples
+    --------
+    >>> clearances(("-1/3", "0.5"))
+    (Fraction(-1, 3), Fraction(1, 2))
+    """
+    try:
+        low, high = (_bound(end) for end in between)
+    except (TypeError, ValueError) as error:
+        raise error if isinstance(error, InputError) else refuse("between", between, "two numbers low < high") from None
+    if not low < high:
+        raise refuse("between", between, "two numbers low < high")
+    return low, high
+
+
+def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: Any = None, output: Any = None) -> Basins:
+    """What the orbits of a grid of launches do for ever: n impacts in k periods, chatter, rest, chaos.
+
+    Parameters
+    ----------
+    osc : a model with a period. window : ((tau_low, tau_high), (v_low, v_high)); one period and (0, 2) without it.
+    size : states a side, from 2 to 10000. executor, output : as for `sweep`, where some rows of the grid are a case;
+        without an executor threads, as many as there are cores.
+
+    Returns
+    -------
+    Basins : `.codes`, shape (size, size), numbers of the classes in `.attractors`; `.classes` has their names and
+        shares, `.first_chatter_completes` is an array of bool. `si.plot` draws it, `.to_csv(file)` writes it.
+
+    Raises
+    ------
+    InputError : a model without a period, or a window or a size that is none.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import linear
+    >>> basins(linear(2, "0.7", "0.5"), ((0, 3), (0, 1)), 8)
+    Basins(8 x 8 states: (inf, 1) chatter for ever 100 %)
+    """
+    from singimpact.dynamics.basins import basins
+
+    whole("size", size, 2, 10_000)
+    tau, v = (None, (0, 2)) if window is None else _two_ends(window, "((tau_low, tau_high), (v_low, v_high))")
+    return basins(osc, tau, v, size, executor, output)
+
+
+def bifurcation(
+    osc: Oscillator, over: str, between: Any, points: int = 300, *, start: Any = (0, "0.1"), impacts: int = 200,
+    kept: int = 60, direction: str | None = None, **sweeping: Any,
+) -> Bifurcation:  # fmt: skip
+    """Where orbits settle as a number of the model moves: the last events of one orbit for each value.
+
+    Parameters
+    ----------
+    osc : a model with a period. over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or
+        "phase" (the model need not name them). between : its ends. points : values, evenly spaced.
+    start : the first state (tau, v) of each orbit. impacts : flown for each value.
+    kept : events of the end of an orbit that are returned. sweeping : `executor` and `output` of `sweep`.
+    direction : "up", "down", "both": each orbit starts from the last state of the one before, so hysteresis shows.
+
+    Returns
+    -------
+    Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v and 1 where chatter has
+        ended; nan where an orbit had fewer. `si.plot` draws it, `.to_csv(file)` writes it.
+
+    Raises
+    ------
+    InputError : a model without a period, a number it does not have, ends that are none.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import linear
+    >>> found = bifurcation(linear(2, 0, "0.5"), "clearance", ("0.2", "0.3"), 2, impacts=60, kept=4)
+    >>> found
+    Bifurcation(over clearance: 2 values from 0.2 to 0.3, 4 events of each)
+    >>> found.events[0, :, 1].round(6).tolist()
+    [1.066667, 1.066667, 1.066667, 1.066667]
+    """
+    from singimpact.dynamics.bifurcation import bifurcation
+
+    for name in sweeping:
+        if name not in ("executor", "output"):
+            raise unknown(
+                "argument of bifurcation", name, ["executor", "output", "start", "impacts", "kept", "direction"]
+            )
+    return bifurcation(osc, over, between, points, start, impacts, kept, direction, **sweeping)
+
+
+def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classification:
+    """The singular points of p and phi on V_c': tangencies, swans, cusps, and the fold lines between them.
+
+    Parameters
+    ----------
+    osc : the model. window : ((tau_low, tau_high), (t_low, t_high)); without it one period of tau and as much on both
+        sides of t = 0, or what holds all zeros of a_c when g is a polynomial.
+    between : two clearances to look for swans between; all where they can be isolated, when it is not given.
+
+    Returns
+    -------
+    Classification : `.points`, `.folds`, `.swans`, and `.notes` on what was not decided.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import universal
+    >>> classify(universal(-1, "0.5"))
+    Classification(cusp 4, tangency 2; fold lines 4; swans over the clearance 0)
+    """
+    from singimpact.surface.classification import classify
+
+    tau, t = (None, None) if window is None else _two_ends(window, "((tau_low, tau_high), (t_low, t_high))")
+    return classify(osc, tau, t, None if between is None else clearances(between))
+
+
+def transitions(osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None) -> Transitions:
+    """Where P changes its kind as a number of the model moves: swans, swallowtails, lips and beaks.
+
+    Parameters
+    ----------
+    osc : the model. over : "clearance" or a parameter. between : its ends. t : ends of the flight times; as for
+        `classify` when they are not given.
+
+    Returns
+    -------
+    Transitions : a tuple in order of the number, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` says whether it
+        is proved that no swan is missing, `.notes` why one may be.
+
+    Raises
+    ------
+    InputError : no number of the model, or ends that are no two numbers in rising order.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import linear
+    >>> [(each.kind, each.value) for each in transitions(linear(2, 0, "0.5"), between=("0.9", "1.1"), t=(-1, 1))]
+    [('swan, negative', 1.0)]
+    """
+    from singimpact.surface.classification import default_window
+    from singimpact.surface.transitions import transitions
+
+    _require_model(osc)
+    return transitions(osc, over, between, default_window(osc)[1] if t is None else t)
+
+
+def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Curve]:
+    """gamma from its series at a tangency or swan point to the edge of a window of the plane of states.
+
+    Parameters
+    ----------
+    osc : the model. window : ((tau_low, tau_high), (v_low, v_high)); without it a period on both sides of tau = 0 (the
+        zeros of a_c with room about them, when g is a polynomial) and (0, 2).
+    tau : the point; without one the first that has an invariant curve.
+
+    Returns
+    -------
+    list of Curve : in (tau, v), in order of hit history, the first from (tau_*, 0) on. `si.plot` draws it.
+
+    Raises
+    ------
+    InputError : no such point, or a window that is none.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import universal
+    >>> curve = grown_gamma(universal(1, "0.5"), ((-2, 1), (0, 20)), 1)[0]
+    >>> curve.points[0].tolist(), curve.points[-1].round(3).tolist()
+    ([1.0, 0.0], [-1.385, 0.0])
+    """
+    from singimpact.dynamics.invariant_arcs import grown_gamma
+    from singimpact.surface.classification import default_window
+    from singimpact.surface.curve import STATES, Window
+
+    _require_model(osc)
+    if not isinstance(window, Window):
+        low, high = default_window(osc)[0]
+        usual = ((low - high if osc.period is not None else low, high), (0, 2))
+        named = "((tau_low, tau_high), (v_low, v_high))"
+        tau_ends, v_ends = usual if window is None else _two_ends(window, named)
+        window = Window.read(tau_ends, v_ends, axes=STATES)
+    return grown_gamma(osc, window, tau)
+
+
+def _require_model(osc: Any) -> None:
+    if not isinstance(osc, Oscillator):
+        raise refuse("osc", osc, "an ImpactOscillator")
+
+
+def _two_ends(window: Any, accepted: str) -> tuple[Any, Any]:
+    """The ranges of both axes."""
+    ranges = (window.x, window.y) if hasattr(window, "x") and hasattr(window, "y") else window
+    if not isinstance(ranges, tuple | list) or len(ranges) != 2:
+        raise refuse("window", window, accepted)
+    return ranges[0], ranges[1]
