@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from singimpact.cli.followed import take_branches, take_orbits
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import save, suffix_of
@@ -24,17 +25,27 @@ from singimpact.store import require_writable
 @click.option(
     "--direction", type=click.Choice(["up", "down", "both"]), help="Carry the last state over, one value after another."
 )
+@click.option(
+    "--follow",
+    nargs=2,
+    type=int,
+    multiple=True,
+    metavar="N K",
+    help="Also draw the branches of the model's orbits of N impacts in K periods; may be repeated.",
+)
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
 @click.option("--keep", metavar="FILE", help="Keep results there (.npz or .zarr) as they come, and resume from it.")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give phase, v and end of chatter for each value as JSON.")
 def command(
     over: str, low: str, high: str, points: int, start: tuple[str, str], impacts: int, kept: int,
-    direction: str | None, workers: int | None, keep: str | None, output: str, as_json: bool, **options: Any,
+    direction: str | None, follow: tuple[tuple[int, int], ...], workers: int | None, keep: str | None, output: str,
+    as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
     """The last impacts of an orbit for values of a number of the model, the clearance if no other is named.
 
-    amplitude, damping, stiffness and phase move without being named before.
+    amplitude, damping, stiffness and phase move without being named before. Drawn are velocities and phases; with
+    --follow also the periodic orbits through the model's own value, stable and unstable ones.
     """
     suffix_of(output)
     require_writable(output)
@@ -43,14 +54,17 @@ def command(
 
     from singimpact.case_pools import WorkerPool
     from singimpact.dynamics.bifurcation import bifurcation
-    from singimpact.scenes.basins import draw_bifurcation
+    from singimpact.scenes.bifurcation import bifurcation_sheet
 
     if direction is not None:
         found = bifurcation(model, over, (low, high), points, start, impacts, kept, direction, output=keep)
     else:
         with nullcontext() if workers is None else WorkerPool(workers) as pool:
             found = bifurcation(model, over, (low, high), points, start, impacts, kept, executor=pool, output=keep)
-    save(draw_bifurcation(found).figure, output)
+    branches = [
+        each for n, k in follow for each in take_branches(take_orbits(model, (n, k), None), over, (low, high), 2000)
+    ]
+    save(bifurcation_sheet(found, branches), output)
     if as_json:
         rows = zip(found.values.tolist(), found.events.tolist(), strict=True)
         click.echo(as_json_text({"over": over, "cases": [{"value": value, "events": each} for value, each in rows]}))

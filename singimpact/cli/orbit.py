@@ -53,10 +53,13 @@ def draw(thing: Any, output: str) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
+    from singimpact.dynamics.orbit import Orbit
     from singimpact.scenes import plot
+    from singimpact.scenes.orbit_sheet import orbit_sheet
 
+    figure = orbit_sheet(thing) if isinstance(thing, Orbit) else plot(thing).figure
     with written(output) as draft:
-        plot(thing).figure.savefig(draft, format=Path(output).suffix[1:].lower())
+        figure.savefig(draft, format=Path(output).suffix[1:].lower())
 
 
 def _name(kind: Any) -> str:

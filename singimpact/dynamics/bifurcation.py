@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
@@ -47,12 +48,14 @@ class Bifurcation:
         3): phase, v, 1 where chatter ended; nan where an orbit had fewer.
     direction : "up", "down" or "both" where each orbit starts from the last state of the one before: with "both" the
         values go up, then down. Empty where each starts from one state.
+    periods : of the forcing at each of the values.
     """
 
     over: str
     values: Array
     events: Array
     direction: str = ""
+    periods: Array = field(default_factory=lambda: np.ones(1), repr=False)
 
     def __repr__(self) -> str:
         count, kept = self.events.shape[:2]
@@ -102,18 +105,31 @@ def bifurcation(
             raise refuse(name, value, f"a whole number from {least}")
     low, high = window_ends(over, between)
     values = np.linspace(low, high, points)
+    periods = _periods(model, over, values)
     if direction is not None:
         if direction not in WAYS:
             raise refuse("direction", direction, "'up', 'down' or 'both'")
         if any(value is not None for value in sweeping.values()):
             raise refuse("direction", direction, "it without executor= and output=: its orbits are flown in a row")
-        values = np.concatenate([values[:: 1 if way == "up" else -1] for way in WAYS[direction]])
-        return Bifurcation(over, values, _carried(model, over, values, start, (impacts, kept)), direction)
+        values, periods = (
+            np.concatenate([part[:: 1 if way == "up" else -1] for way in WAYS[direction]]) for part in (values, periods)
+        )
+        events = _carried(model, over, values, start, (impacts, kept))
+        return Bifurcation(over, values, events, direction, periods)
     ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), impacts, kept)
     few = sweeping.get("executor") is None and points * impacts <= FEW
     with ThreadPool(1) if few else nullcontext(sweeping.get("executor")) as pool:
         events = sweep(ask, values.tolist(), **(sweeping | {"executor": pool}))
-    return Bifurcation(over, values, np.array(events))
+    return Bifurcation(over, values, np.array(events), periods=periods)
+
+
+def _periods(model: Oscillator, over: str, values: Array) -> Array:
+    """The period of the forcing at each value; only a parameter of g moves it."""
+    if over not in names_in(model.g):
+        assert model.period is not None
+        return np.full(values.size, as_float(model.period))
+    moved = [model.replace(**{over: value}).period for value in values.tolist()]
+    return np.array([np.nan if period is None else as_float(period) for period in moved])
 
 
 def settled(

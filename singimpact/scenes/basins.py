@@ -1,4 +1,4 @@
-"""Pictures of basins and of bifurcations: classes told apart by lightness too, values by position alone."""
+"""Pictures of basins: classes differ in lightness too."""
 
 from __future__ import annotations
 
@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 
 from singimpact.dynamics.basins import Basins
-from singimpact.dynamics.bifurcation import Bifurcation
 from singimpact.scenes.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
 
 FIXED = {"not decided": "#F2F2F2", "never returns": "#FFFFFF", "chaotic": "#C9C9C9", "rest": BLACK}
 CHATTERED = (BLACK, "#3D3D3D", "#6B6B6B")  # chatter for ever, of one lift-off or another
 ORBITS = (ORANGE, BLUE, SKY, VERMILLION, GREEN, PURPLE, "#F0E442", "#8C8C8C")  # neighbours differ in lightness
-LETTERS = {"clearance": "clearance $c$", "restitution": "restitution $r$"}
 
 
 def draw_basins(found: Basins, axes: Any = None) -> Any:
@@ -53,32 +51,6 @@ def _painted(found: Basins, layers: list[tuple[Any, str]], colors: list[str], ax
     axes.set_ylabel("launch velocity $v$")
     axes.legend(handles=patches[:12], loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False,
                 fontsize="small")  # fmt: skip
-    return axes
-
-
-def draw_bifurcation(found: Bifurcation, axes: Any = None) -> Any:
-    """Velocities after the impacts of settled orbits, ends of complete chatter on the axis."""
-    axes = _new_axes(8.0, 4.6) if axes is None else axes
-    values = np.repeat(found.values, found.events.shape[1])
-    _, v, ended = found.events.reshape(-1, 3).T
-    resting = ended == 1.0
-    axes.plot(values[~resting], v[~resting], ",", color=BLACK, label="impacts", rasterized=True)
-    axes.plot(values[~resting], v[~resting], "o", color=BLACK, markersize=0.7, markeredgewidth=0, rasterized=True)
-    if found.direction == "both":
-        back = np.arange(values.size) >= values.size // 2
-        down = back & ~resting
-        axes.plot(values[down], v[down], "o", color=BLUE, markersize=0.7, markeredgewidth=0, label="on the way down",
-                  rasterized=True)  # fmt: skip
-    if resting.any():
-        axes.plot(values[resting], v[resting], "|", color=VERMILLION, markersize=7, label="end of complete chatter",
-                  clip_on=False, rasterized=True)  # fmt: skip
-    axes.set_xlabel(LETTERS.get(found.over, found.over))
-    axes.set_ylabel("velocity $v$ after an impact")
-    axes.set_xlim(found.values.min(), found.values.max())
-    axes.set_ylim(bottom=0)
-    if not np.isfinite(v).any():
-        axes.text(0.5, 0.5, "no orbit of this window has an impact", transform=axes.transAxes, ha="center")
-    axes.legend(loc="best", fontsize="small", markerscale=2)
     return axes
 
 

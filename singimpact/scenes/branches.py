@@ -13,9 +13,8 @@ from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.events import Event
 from singimpact.branches.solutions import closing_of, orbit_period
 from singimpact.inputs import refuse
-from singimpact.scenes.basins import LETTERS
 from singimpact.scenes.label_places import place_labels
-from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LINES, MARKS, orbit_color
+from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LETTERS, LINES, MARKS, orbit_color
 
 Array = np.ndarray[Any, Any]
 HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}

@@ -12,7 +12,8 @@ from singimpact.dynamics.bifurcation import Bifurcation
 from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.sampling import Section
 from singimpact.inputs import refuse
-from singimpact.scenes.basins import draw_basins, draw_bifurcation
+from singimpact.scenes.basins import draw_basins
+from singimpact.scenes.bifurcation import draw_bifurcation
 from singimpact.scenes.branches import draw_branches, draw_event_curves
 from singimpact.scenes.orbit import draw_orbit, draw_section
 from singimpact.scenes.scene import Scene
@@ -33,8 +34,8 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
         them, a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
     axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits.
-    height : of branches: "v", velocities after the impacts, or "phase", their phases in periods. A branch of orbits
-        without impact alone is shown by its lowest x - c, beside others at v = 0.
+    height : of branches and bifurcation diagrams: "v", velocities after the impacts, or "phase", their phases in
+        periods. A branch of orbits without impact alone is shown by its lowest x - c, beside others at v = 0.
 
     Examples
     --------
@@ -58,7 +59,7 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     if isinstance(thing, Section):
         return draw_section(thing, _new_axes(HIGH) if axes is None else axes)
     if isinstance(thing, Bifurcation):
-        return draw_bifurcation(thing, _new_axes() if axes is None else axes)
+        return draw_bifurcation(thing, _new_axes() if axes is None else axes, height)
     if isinstance(thing, Basins):
         return draw_basins(thing, _new_axes(HIGH) if axes is None else axes)
     raise refuse(

@@ -36,18 +36,18 @@ class OrbitStyle:
 STYLE = OrbitStyle()
 
 
-def draw_orbit(orbit: Orbit, axes: Any, style: OrbitStyle = STYLE) -> Any:
-    """Draw x(t) of an orbit on axes."""
+def draw_orbit(orbit: Orbit, axes: Any, style: OrbitStyle = STYLE, since: float | None = None) -> Any:
+    """Draw x(t) of an orbit on axes, or of its part from a time on."""
     clearance = as_float(orbit.oscillator.clearance)
-    end = _end(orbit, style)
-    times, places = _curve(orbit, end, style)
+    begin, end = float(orbit.tau[0]) if since is None else since, shown_end(orbit, style)
+    times, places = _curve(orbit, (begin, end), style)
     axes.plot(times, places, color=style.flight, linewidth=1.1, label="flight $x(t)$", zorder=3)
-    axes.axhline(clearance, color=style.obstacle, linewidth=0.8, label="obstacle $x = c$", zorder=1)
-    _marks(orbit, axes, clearance, style)
-    _rests(orbit, axes, clearance, end, style)
+    axes.axhline(clearance, color=style.obstacle, linewidth=0.8, label="wall $x = c$", zorder=1)
+    _marks(orbit, axes, clearance, begin, style)
+    _rests(orbit, axes, clearance, (begin, end), style)
     axes.set_xlabel("time $t$")
     axes.set_ylabel("displacement $x$")
-    axes.set_xlim(orbit.tau[0], end)
+    axes.set_xlim(begin, end)
     high = axes.get_ylim()[1]
     axes.set_ylim(clearance - 0.12 * (high - clearance), high)
     axes.axhspan(axes.get_ylim()[0], clearance, facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0, zorder=0)
@@ -64,7 +64,7 @@ def draw_section(section: Section, axes: Any, style: OrbitStyle = STYLE) -> Any:
     return axes
 
 
-def _end(orbit: Orbit, style: OrbitStyle) -> float:
+def shown_end(orbit: Orbit, style: OrbitStyle) -> float:
     """The right edge: the last event, and a tail when something goes on after it."""
     first, last = float(orbit.tau[0]), float(orbit.tau[-1])
     open_ended = bool(orbit.phases) and not orbit.phases[-1][2] <= last
@@ -75,24 +75,24 @@ def _end(orbit: Orbit, style: OrbitStyle) -> float:
     return last + max(style.tail * (last - first), 0.25 * usual)
 
 
-def _curve(orbit: Orbit, end: float, style: OrbitStyle) -> tuple[Any, Any]:
+def _curve(orbit: Orbit, ends: tuple[float, float], style: OrbitStyle) -> tuple[Any, Any]:
     times: list[Any] = []
     places: list[Any] = []
-    begin = dict(zip(orbit.tau.tolist(), orbit.v.tolist(), strict=True))
+    speed = dict(zip(orbit.tau.tolist(), orbit.v.tolist(), strict=True))
     for kind, start, stop in orbit.phases:
-        if kind not in ("flight", "no_return"):
+        if kind not in ("flight", "no_return") or stop <= ends[0]:
             continue
-        stop = min(stop, end)
-        count = max(style.fewest, int(style.points * (stop - start) / (end - orbit.tau[0])))
+        stop = min(stop, ends[1])
+        count = max(style.fewest, int(style.points * (stop - start) / (ends[1] - ends[0])))
         inside = np.linspace(0.0, stop - start, count)
         times += [start + inside, [np.nan]]
         off_wall = orbit.height > 0 and start == orbit.tau[0]
-        flight = orbit.sample(start + inside) if off_wall else path(orbit.oscillator, start, begin[start], inside)
+        flight = orbit.sample(start + inside) if off_wall else path(orbit.oscillator, start, speed[start], inside)
         places += [flight.x, [np.nan]]
     return (np.concatenate(times), np.concatenate(places)) if times else ([], [])
 
 
-def _marks(orbit: Orbit, axes: Any, clearance: float, style: OrbitStyle) -> None:
+def _marks(orbit: Orbit, axes: Any, clearance: float, begin: float, style: OrbitStyle) -> None:
     looks = {
         "impact": ("o", "impact", "white"),
         "graze": ("^", "graze", "white"),
@@ -100,7 +100,7 @@ def _marks(orbit: Orbit, axes: Any, clearance: float, style: OrbitStyle) -> None
         "release": (">", "lifts off", style.rest),
     }
     for kind, (marker, label, face) in looks.items():
-        times = orbit.tau[orbit.kind == kind]
+        times = orbit.tau[(orbit.kind == kind) & (orbit.tau >= begin)]
         if not times.size:
             continue
         small = kind == "impact" and times.size > style.many
@@ -109,10 +109,10 @@ def _marks(orbit: Orbit, axes: Any, clearance: float, style: OrbitStyle) -> None
                   markeredgewidth=0.4 if small else 0.8, clip_on=False)  # fmt: skip
 
 
-def _rests(orbit: Orbit, axes: Any, clearance: float, end: float, style: OrbitStyle) -> None:
-    label: str | None = "at rest on the obstacle"
+def _rests(orbit: Orbit, axes: Any, clearance: float, ends: tuple[float, float], style: OrbitStyle) -> None:
+    label: str | None = "at rest on the wall"
     for kind, start, stop in orbit.phases:
-        if kind == "sticking":
-            axes.plot([start, min(stop, end)], [clearance, clearance], color=style.rest, linewidth=4.0, label=label,
+        if kind == "sticking" and stop > ends[0]:
+            axes.plot([start, min(stop, ends[1])], [clearance, clearance], color=style.rest, linewidth=4.0, label=label,
                       solid_capstyle="butt", zorder=4)  # fmt: skip
             label = None

@@ -46,6 +46,8 @@ PENS = {
 LINES: dict[str, tuple[Any, float]] = {"stable": ("solid", 1.8), "unstable": (DASHES, 1.5), "virtual": (DOTS, 1.3)}
 """Line style and width of a branch of periodic orbits; its colour says how many impacts in how many periods."""
 ORBIT_COLORS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+LETTERS = {"clearance": "clearance $c$", "restitution": "restitution $r$"}
+"""What an axis of a number of the model is called."""
 MARKS = {
     "fold": "o",
     "period-doubling": "s",

@@ -12,7 +12,8 @@ from singimpact.dynamics.bifurcation import bifurcation
 from singimpact.dynamics.long_run import Future, chaotic, settled
 from singimpact.flights.orbits import iterate
 from singimpact.inputs import InputError
-from singimpact.scenes.basins import draw_basins, draw_bifurcation, draw_first_chatter
+from singimpact.scenes.basins import draw_basins, draw_first_chatter
+from singimpact.scenes.bifurcation import bifurcation_sheet
 from singimpact.status import Status
 
 MODEL = si.linear(2, "0.3", "0.5")
@@ -121,7 +122,7 @@ def test_across_a_swan():
     assert counts[0] > 5
     assert counts[2] == 1
     assert over.events[2, 0, 2] == 1
-    draw_bifurcation(over).figure.canvas.draw()
+    bifurcation_sheet(over).canvas.draw()
 
 
 @pytest.mark.parametrize(

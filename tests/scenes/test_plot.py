@@ -13,7 +13,7 @@ from singimpact.scenes import plot
 def test_everything_that_happened_is_labelled() -> None:
     axes = plot(linear("0.9", "0.2", "0.4").orbit("0.3", "0.4", impacts=40))
     labels = axes.get_legend_handles_labels()[1]
-    assert {"impact", "at rest on the obstacle", "end of chatter (summed)", "lifts off"} <= set(labels)
+    assert {"impact", "at rest on the wall", "end of chatter (summed)", "lifts off"} <= set(labels)
     axes.figure.canvas.draw()
 
 
