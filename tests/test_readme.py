@@ -1,10 +1,14 @@
-"""README: its example runs and prints what it says, its commands are the ones CI runs, its table names every room."""
+"""README: its example runs, its commands write what they should; CONTRIBUTING names every room."""
 
 import doctest
 import re
+import shlex
+import subprocess
+import sys
 
 import pytest
 
+from singimpact.bench.groups import commands
 from singimpact.cli.group import COMMANDS
 
 
@@ -32,12 +36,45 @@ def test_two_commands(readme):
     ]
 
 
-def test_commands_that_are_shown_exist(readme):
-    shown = re.findall(r"^singimpact +([a-z-]+)", readme, re.MULTILINE)
-    assert set(shown) == set(COMMANDS)
+def lines_of(readme):
+    return re.findall(r"^singimpact +(.*)$", readme, re.MULTILINE)
 
 
-def test_every_room_is_in_the_table(clone, readme):
+WRITES = {"orbit": ["orbit.png"], "bifurcation": ["bifurcation.png"], "branch": ["branch.png"],
+          "basins": ["basins.png"], "figure": ["pictures/figure17.png"]}  # fmt: skip
+SAYS = {"threshold": r"v +0\.10086999126", "classify": "negative", "derive": "def ", "verify": "e:meq.*proved",
+        "branch": "graze", "basins": r"\(3, 3\) orbit", "bifurcation": "300 values"}  # fmt: skip
+
+
+def test_commands_exist_and_the_bench_has_their_times(readme):
+    shown = lines_of(readme)
+    assert {line.split()[0] for line in shown} <= set(COMMANDS)
+    assert {line.split()[0] for line in shown} == {*WRITES, *SAYS}
+    assert set(shown) <= {command.line for command in commands.COMMANDS}
+
+
+@pytest.mark.slow
+def test_commands_run_as_printed(readme, tmp_path):
+    (model,) = re.findall(r"```toml\n(.*?)```", readme, re.DOTALL)
+    (tmp_path / "duffing.toml").write_text(model)
+    for line in lines_of(readme):
+        command = [sys.executable, "-m", "singimpact", *shlex.split(line)]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        name = line.split()[0]
+        assert done.returncode == 0, done.stderr
+        assert re.search(SAYS.get(name, ""), done.stdout), done.stdout
+        for path in WRITES.get(name, ()):
+            assert (tmp_path / path).stat().st_size > 10_000
+            assert (tmp_path / path).read_bytes()[1:4] == b"PNG"
+
+
+def test_links_and_pictures_are_there(clone, readme):
+    links = re.findall(r"\]\(([^)#:]+)\)", readme)
+    assert len(links) > 12
+    assert [link for link in links if not (clone / link).is_file()] == []
+
+
+def test_every_room_is_in_the_table(clone):
     rooms = {path.parent.name for path in (clone / "singimpact").glob("*/__init__.py")}
-    table = readme.partition("## Which room")[2].partition("##")[0]
+    table = (clone / "CONTRIBUTING.md").read_text().partition("## Which room")[2].partition("\n## ")[0]
     assert {room for room in rooms if f"`{room}`" not in table} == set()

@@ -98,6 +98,20 @@ def branches(place: Path) -> None:
     save(si.plot(curves, axes()), "branch_resonance")
 
 
+def gallery(page: Path, place: Path) -> None:
+    """The pictures of the gallery, each by the lines that the page shows."""
+    import re
+
+    import singimpact as si
+
+    for text in re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
+        space: dict[str, Any] = {"si": si}
+        name = text.partition("\n")[0].removeprefix("# picture: ")
+        exec(compile(text, f"gallery: {name}", "exec"), space)
+        figure = space["figure"] if "figure" in space else space["axes"].figure
+        figure.savefig(place / f"gallery_{name}.png", dpi=110)
+
+
 def build(app: Any) -> None:
     """Write the pages into the folder `computed` beside those that are written by hand."""
     from singimpact.store import folder
@@ -107,6 +121,7 @@ def build(app: Any) -> None:
     for name, page in pages.items():
         _put(place / name, page())
     branches(place)
+    gallery(Path(app.srcdir) / "gallery.md", place)
 
 
 def _put(path: Path, text: str) -> None:
