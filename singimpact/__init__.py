@@ -12,6 +12,8 @@ from singimpact.status import Status as Status
 if TYPE_CHECKING:
     from singimpact import theory as theory
     from singimpact.bench.selftest.run import selftest as selftest
+    from singimpact.branches.homoclinic import homoclinic_points as homoclinic_points
+    from singimpact.branches.manifold import manifold as manifold
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
     from singimpact.impact_oscillator import basins as basins
     from singimpact.impact_oscillator import bifurcation as bifurcation
@@ -51,6 +53,8 @@ _ROOMS = {
 _HOMES = {
     "ImpactOscillator": "singimpact.impact_oscillator",
     "branch": "singimpact.impact_oscillator",
+    "homoclinic_points": "singimpact.branches.homoclinic",
+    "manifold": "singimpact.branches.manifold",
     "event_curve": "singimpact.impact_oscillator",
     "linear": "singimpact.impact_oscillator",
     "universal": "singimpact.impact_oscillator",
