@@ -17,7 +17,7 @@ import numpy as np
 from singimpact.branches.cylinder import meetings
 from singimpact.branches.manifold import Manifold, manifold
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.saddle_arcs import checked_saddle
+from singimpact.branches.saddle_arcs import LocalArc, checked_saddle
 from singimpact.dynamics.growth import Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.derivative import derivative
@@ -42,6 +42,9 @@ class CrossingSettings:
     moved: float = 8.0
     # two orbits whose s_u differ by less than this, relative, are one
     same: float = 1e-7
+    # how near to a saddle the ends of an orbit are, in s, and turns of the saddle for that at most
+    ends: float = 1e-5
+    turns: int = 60
 
 
 SETTINGS = CrossingSettings()
@@ -55,7 +58,7 @@ class Crossing:
     ----------
     tau, v : the impact that is farthest from both saddles, a point of W^u and of W^s.
     angle : at which they cross there, in radians, of tau and v as numbers; angles : at all impacts.
-    states : all impacts from the arc at one saddle to the arc at the other, shape (N + 1, 2), tau within a period.
+    states : all impacts from next to one saddle to next to the other, shape (N + 1, 2), tau within a period.
     index : of (tau, v) among them. residual : the largest miss of an impact, in sides of the window.
     error : of the states, estimated from the last step of Newton's method and the error of the arcs, in the same unit.
     s : the places on the two arcs. unstable, stable : the saddles that the orbit leaves and comes to.
@@ -91,7 +94,7 @@ class Crossing:
 
 
 class Crossings(list[Crossing]):
-    """Orbits in which W^u and W^s cross, each once, in the order in which W^u comes to them.
+    """Orbits in which W^u and W^s cross, each once, those of fewest impacts first.
 
     Parameters
     ----------
@@ -104,7 +107,7 @@ class Crossings(list[Crossing]):
 
 
 def homoclinic_points(
-    saddle: PeriodicOrbit, to: PeriodicOrbit | None = None, *, v: Any = None, length: Any = 10,
+    saddle: PeriodicOrbit, to: PeriodicOrbit | None = None, *, v: Any = None, length: Any = 6,
     resolution: Any = RESOLUTION.usual,
 ) -> Crossings:  # fmt: skip
     """Where W^u of a saddle crosses its W^s, each homoclinic orbit once.
@@ -131,7 +134,7 @@ def homoclinic_points(
     --------
     >>> from singimpact.impact_oscillator import linear
     >>> (saddle,) = linear("2.8", 0, "0.8").periodic(1, 1)
-    >>> first = homoclinic_points(saddle, length=6)[0]
+    >>> first = homoclinic_points(saddle)[0]
     >>> first.residual < 1e-13, first.angle > 0.1
     (True, True)
     """
@@ -179,17 +182,19 @@ class _Search:
         for away, home, point in self._polylines():
             if any(side == away.side and self._passes(states, away, point) for side, states in seen):
                 continue
-            crossing = self._refined(away, home, point)
+            states, s, first = self._guess(away, home)
+            crossing = self._refined(states, s, (first + away.generation, point))
             if isinstance(crossing, str):
                 self.rejected[crossing] = self.rejected.get(crossing, 0) + 1
                 continue
-            seen.append((away.side, crossing.states))
+            seen.append((away.side, crossing.states[first:]))
             if not any(side == away.side and self._same(crossing, old) for side, old in known):
                 known.append((away.side, crossing))
         notes = [f"W^u {note}" for note in self.unstable.notes] + [f"W^s {note}" for note in self.stable.notes]
         notes += [f"{count} crossings of the drawn curves are not in the list: {why}"
                   for why, count in self.rejected.items()]  # fmt: skip
-        return Crossings([each for _, each in known], tuple(notes), (self.unstable, self.stable))
+        found = sorted((each for _, each in known), key=lambda each: (len(each.states), abs(each.s[0])))
+        return Crossings(found, tuple(notes), (self.unstable, self.stable))
 
     def _passes(self, states: Array, away: _Place, point: Array) -> bool:
         """Whether a known orbit has an impact at a crossing, after as many images."""
@@ -200,8 +205,8 @@ class _Search:
         return bool(np.hypot(*gap) < 0.5 * self.unstable.window.resolution)
 
     def _same(self, one: Crossing, other: Crossing) -> bool:
-        ratio = self.unstable.arc.ratio**self.unstable.arc.turns
-        return any(abs(one.s[0] * factor / other.s[0] - 1) < SETTINGS.same for factor in (1.0, ratio, 1 / ratio))
+        turn = self.unstable.arc.multiplier
+        return any(abs(one.s[0] * turn**power / other.s[0] - 1) < SETTINGS.same for power in (-2, -1, 0, 1, 2))
 
     # ---- crossings of polylines
 
@@ -219,13 +224,14 @@ class _Search:
 
     # ---- Newton's method
 
-    def _refined(self, away: _Place, home: _Place, point: Array) -> Crossing | str:
-        sides = self.unstable.window.sides
-        states = self._guess(away, home)
+    def _refined(self, states: Array, s: Array, expected: tuple[int, Array]) -> Crossing | str:
+        """The orbit near some states, or why there is none; `expected` is the place of one of them on the polylines."""
+        sides, size = self.unstable.window.sides, np.inf
         if not np.isfinite(states).all():
             return "a flight between their impacts has no end"
-        s, size = np.array([away.s, home.s]), np.inf
         for _ in range(SETTINGS.rounds):
+            if not (states[:, 1] > 0).all():
+                return "Newton's method leaves v > 0"
             miss, slopes = self._missed(states)
             if not np.isfinite(miss).all() or not np.isfinite(slopes).all():
                 return "a flight next to them grazes"
@@ -239,18 +245,17 @@ class _Search:
             last, size = size, float(np.abs(step[1:-1].reshape(-1, 2) / sides).max(initial=0.0))
             if size < SETTINGS.arrived or (size >= last / 2 and size < 1e-11):
                 break
+        if not (states[:, 1] > 0).all():
+            return "Newton's method leaves v > 0"
         miss, slopes = self._missed(states)
         residual = float(np.abs(miss / sides).max())
-        moved = (states[away.generation] - point) / sides
+        moved = (states[expected[0]] - expected[1]) / sides
         moved[0] -= np.rint(moved[0])
         if not residual < SETTINGS.residual:
             return "Newton's method does not end"
         if not np.hypot(*moved) < SETTINGS.moved * self.unstable.window.resolution:
             return "Newton's method leaves them for another one"
-        if (
-            min(abs(s / np.array([self.unstable.arc.size, self.stable.arc.size]))) < 1e-12
-            or not (states[:, 1] > 0).all()
-        ):
+        if not (np.abs(s) > 1e-12 * np.array([self.unstable.arc.size, self.stable.arc.size])).all():
             return "Newton's method ends in the saddle"
         states[:, 0] = np.mod(states[:, 0], sides[0])
         angles = self._angles(slopes, s)
@@ -261,18 +266,39 @@ class _Search:
         return Crossing(tau, v, float(angles[index]), angles, states, index, residual, error, ends,
                         self.unstable.saddle, self.stable.saddle)  # fmt: skip
 
-    def _guess(self, away: _Place, home: _Place) -> Array:
-        """Images of the place on W^u up to the crossing, then those of the place on W^s, from the crossing on."""
+    def _guess(self, away: _Place, home: _Place) -> tuple[Array, Array, int]:
+        """States near the orbit, s_u and s_s of its ends, and the index of the state on W^u that `away` began with.
+
+        Images of the place on W^u up to the crossing, then those of the place on W^s, from the crossing on; on both
+        arcs turns more, until the ends are next to the saddles.
+        """
         osc = self.unstable.saddle.oscillator
-        forward = [self.unstable.arc.points(np.array([away.s]))]
+        before_it, s_u = self._turns(self.unstable.arc, away.s)
+        forward = [*before_it, self.unstable.arc.points(np.array([away.s]))]
         for _ in range(away.generation):
             forward.append(model_step(osc, forward[-1]))
-        backward = [self.stable.arc.points(np.array([home.s]))]
+        after_it, s_s = self._turns(self.stable.arc, home.s)
+        # at generation 0 the crossing itself lies on the arc of W^s
+        backward = [self.stable.arc.points(np.array([home.s]))] if home.generation else []
         for _ in range(home.generation - 1):
             backward.append(before(osc, backward[-1]))
-        if not home.generation:
-            backward = []
-        return np.vstack(forward + backward[::-1])
+        return np.vstack([*forward, *backward[::-1], *after_it]), np.array([s_u, s_s]), len(before_it)
+
+    def _turns(self, arc: LocalArc, s: float) -> tuple[list[Array], float]:
+        """States of whole turns between the end next to a saddle and K(s), in the order of time, and s of that end."""
+        count = int(np.ceil(np.log(abs(s) / SETTINGS.ends) / np.log(arc.ratio))) if abs(s) > SETTINGS.ends else 0
+        count = min(count, SETTINGS.turns)
+        inwards = arc.multiplier if arc.stable else 1 / arc.multiplier
+        found: list[Array] = []
+        for turn in range(count):
+            # of W^s the turn begins at K(s mu^turn) and its first state is there already; of W^u it ends before K(s)
+            states = [arc.points(np.array([s * inwards**turn if arc.stable else s * inwards ** (count - turn)]))]
+            for _ in range(int(arc.saddle.n)):
+                states.append(model_step(arc.saddle.oscillator, states[-1]))
+            found += states[1:-1] if arc.stable else states[:-1]
+            if arc.stable:
+                found.append(arc.points(np.array([s * inwards ** (turn + 1)])))
+        return found, s * inwards**count
 
     def _missed(self, states: Array) -> tuple[Array, Array]:
         """G(z_i) - z_{i+1}, whole periods taken off, shape (N, 2), and D G at z_0 ... z_{N-1}."""

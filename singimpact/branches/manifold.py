@@ -29,10 +29,12 @@ Array = np.ndarray[Any, Any]
 class ManifoldSettings:
     """How far a manifold is grown."""
 
-    # the highest v that is looked at, in largest velocities of the orbit
-    highest: float = 3.0
+    # the highest v that is looked at: in largest velocities of the orbit, and in largest a_c times a period
+    highest: tuple[float, float] = (3.0, 0.25)
     # states are followed up to this part of the highest v: from there they may come back
     reach: float = 2.0
+    # a flight that is longer, in periods times k/n or 1, is given up: undamped ones may go on for a thousand
+    horizon: float = 20.0
     # points of one piece, and of all
     piece: int = 100_000
     points: int = 1_000_000
@@ -40,6 +42,9 @@ class ManifoldSettings:
     turns: int = 2000
     # a piece that is nearer than this to what is there, in resolutions, adds nothing
     distinct: float = 0.25
+    # but a whole turn of a side is followed on, for so many turns, while it is longer than this
+    lingering: int = 400
+    least: float = 0.01
     # a tear is said to be a graze when the slower side goes on to the other one, within so many resolutions
     touching: float = 8.0
 
@@ -162,7 +167,8 @@ def manifold(
     ----------
     saddle : an unstable orbit of `osc.periodic(n, k)` with impacts.
     stable : True for W^s, which is grown with the inverse of the impact map; False for W^u, grown with the map.
-    v : the highest velocity looked at; three times the largest one of the orbit without it.
+    v : the highest velocity looked at; without it three times the largest one of the orbit, or what the largest a_c
+        gives in a quarter of a period where that is more.
     length : the growth ends with the generation in which the length passes this; tau in periods, v in the highest v.
     resolution : of the curve, a share of the window from 1e-6 to 1/16.
 
@@ -194,7 +200,7 @@ def manifold(
         raise refuse("stable", stable, "True for W^s, False for W^u")
     period = orbit_period(saddle)
     fastest = float(np.max(np.asarray(saddle.v, dtype=float)))
-    highest = SETTINGS.highest * fastest if v is None else as_float(constant("v", v))
+    highest = _highest(saddle, fastest) if v is None else as_float(constant("v", v))
     if not highest > fastest:
         raise refuse("v", v, f"a velocity above the largest of the orbit, {fastest:.6g}")
     longest = as_float(constant("length", length))
@@ -214,25 +220,34 @@ def manifold(
     )  # fmt: skip
 
 
+def _highest(saddle: PeriodicOrbit, fastest: float) -> float:
+    period = orbit_period(saddle)
+    push = float(np.abs(acceleration(saddle.oscillator, np.linspace(0, period, 64))).max())
+    return max(SETTINGS.highest[0] * fastest, SETTINGS.highest[1] * push * period)
+
+
 class _Grown:
     """A manifold while it is grown: pieces of both sides of the saddle, generation by generation."""
 
     def __init__(self, saddle: PeriodicOrbit, stable: bool, window: Window, longest: float) -> None:
         self.saddle, self.stable, self.window, self.longest = saddle, stable, window, longest
         self.arc, self.notes = local_arc(saddle, stable), Notes()
+        self.horizon = SETTINGS.horizon * max(1.0, saddle.k / saddle.n) * window.x[1]
         self.recurs = int(saddle.n) * self.arc.turns
         self.done: list[tuple[int, Piece]] = []  # the side of the arc they come from, and the piece
         self.cuts: list[Cut] = []
+        self._lingered: dict[tuple[int, int], int] = {}  # turns of a side that added little
         self.carried = Carried(
             window, self.arc.points, self._step, lambda points: points[:, 1] <= 1.2 * window.y[1],
             lambda points: points[:, 1] <= SETTINGS.reach * window.y[1], SETTINGS.piece,
+            located=True,
         )  # fmt: skip
         self._nearby = Nearby(window.sides, SETTINGS.distinct * window.resolution)
 
     def _step(self, points: Array, generation: int) -> Array:
         """The next generation; the periods of the orbit are taken off, so that times stay small."""
         osc = self.saddle.oscillator
-        points = before(osc, points) if self.stable else model_step(osc, points)
+        points = (before if self.stable else model_step)(osc, points, self.horizon)
         if (generation + 1) % int(self.saddle.n) == 0:
             span = self.saddle.k * self.window.sides[0]
             points = points + np.array([span if self.stable else -span, 0.0])
@@ -240,8 +255,7 @@ class _Grown:
 
     def grow(self) -> None:
         """All generations, until nothing is added or the length is reached."""
-        ratio = self.arc.ratio**-self.arc.turns
-        pieces = [(number, self.carried.first(ratio * side, side)) for number, side in enumerate(self.arc.sides)]
+        pieces = [(number, self._first(self._inner(number), side)) for number, side in enumerate(self.arc.sides)]
         total, points = 0.0, 0
         for flown in range(SETTINGS.turns * int(self.saddle.n)):
             self.done += pieces
@@ -270,7 +284,7 @@ class _Grown:
         self._note_ends(piece, images)
         kept = []
         for image in images:
-            if self._at_saddle(image.points) or self._adds(image.points):
+            if self._at_saddle(image.points) or self._adds(image.points) or self._lingers(number, image):
                 kept.append((number, image))
             elif self._rests(image.points):
                 self.notes.add("states that come to rest in complete chatter lift off together: the curve ends there")
@@ -288,6 +302,27 @@ class _Grown:
         seen = points[points[:, 1] <= self.window.y[1]]
         return not len(seen) or not self._nearby.all_on(seen)
 
+    def _lingers(self, number: int, piece: Piece) -> bool:
+        """Whether a whole piece adds little, next to a weak saddle or a weak attractor, but may add more in time."""
+        whole = piece.s[-1] == self.arc.sides[number] and piece.s[0] == self._inner(number)
+        step = np.hypot(*((piece.points[-1] - piece.points[0]) / self.window.sides))
+        if not whole or step < SETTINGS.least * self.window.resolution:
+            return False
+        at = (number, piece.generation % self.recurs)
+        self._lingered[at] = self._lingered.get(at, 0) + 1
+        if self._lingered[at] > SETTINGS.lingering:
+            told = f"turns add less than {SETTINGS.distinct} of the resolution is given up after {SETTINGS.lingering}"
+            self.notes.add(f"a side whose {told} of them")
+            return False
+        return True
+
+    def _first(self, low: float, high: float) -> Piece:
+        """A part of the arc at the saddle."""
+        return self.carried.refined(self.carried.first(low, high))
+
+    def _inner(self, number: int) -> float:
+        return float(self.arc.ratio**-self.arc.turns * self.arc.sides[number])
+
     def _note_ends(self, piece: Piece, images: list[Piece]) -> None:
         for one, other in pairwise(images):
             if one.ends[1] == other.ends[0] == TORN:
@@ -298,10 +333,14 @@ class _Grown:
                 sides[:, 0] = np.mod(sides[:, 0], self.window.x[1])
                 self.cuts.append(Cut(kind, tau % self.window.x[1], v, sides, piece.generation))
         ends = {end for image in images for end in image.ends}
+        if any(cut.kind == "unresolved" for cut in self.cuts):
+            self.notes.add(
+                "at unresolved cuts the curve is stretched beyond what doubles of s resolve, or graze follows graze"
+            )
         if LEFT in ends:
             self.notes.add(f"parts with v > {SETTINGS.reach * self.window.y[1]:.6g} are not followed (v=)")
         if LOST in ends:
-            self.notes.add("parts whose next impact does not exist, or is not decided, are left out")
+            self.notes.add(f"parts with no impact within {self.horizon:.4g} units of time are left out")
 
     def _grazes(self, sides: Array, image: int) -> bool:
         """Whether the slower side goes on to the other one: the flight that meets the wall there and the one beside it
@@ -336,18 +375,18 @@ class _Grown:
 
     def _chains(self) -> list[list[Piece]]:
         """Pieces joined where the image of one end of the fundamental piece is the other end."""
-        inner = {number: self.arc.ratio**-self.arc.turns * side for number, side in enumerate(self.arc.sides)}
         chains: list[list[Piece]] = []
         open_: dict[tuple[int, int], list[Piece]] = {}  # by side and generation of the piece that goes on
-        for number in inner:
-            s = np.linspace(0.0, inner[number], 3)
+        for number in range(len(self.arc.sides)):
+            piece = self._first(0.0, self._inner(number))
             for generation in range(self.recurs):
-                chain = [Piece(s, self.carried.image(s, generation), generation)]
+                image = Piece(piece.s, self.carried.image(piece.s, generation), generation)
+                chain = [self.carried.refined(image)]
                 chains.append(chain)
                 open_[number, generation] = chain
         for number, piece in self.done:
             side = self.arc.sides[number]
-            found = open_.pop((number, piece.generation), None) if piece.s[0] == inner[number] else None
+            found = open_.pop((number, piece.generation), None) if piece.s[0] == self._inner(number) else None
             if found is None:
                 found = []
                 chains.append(found)

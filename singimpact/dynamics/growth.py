@@ -30,6 +30,7 @@ class GrowthSettings:
     most: int = 4000  # points of a piece
     distinct: float = 0.25  # a piece nearer than this to the generation before is the end of the growth
     generations: int = 60  # images at most
+    halvings: int = 60  # of s at a tear
 
 
 SETTINGS = GrowthSettings()
@@ -64,6 +65,7 @@ class Carried:
     start : points of the fundamental piece, from s. step : points of the next generation, from those of a generation
         and its number; nan where there are none.
     shown : which points lie where the curve is resolved. followed : which are carried on. most : points of a piece.
+    located : tears are located to the graze, or to rounding in s, not to where their ends are resolved.
     """
 
     window: Window
@@ -72,6 +74,7 @@ class Carried:
     shown: Callable[[Array], Array]
     followed: Callable[[Array], Array]
     most: int = SETTINGS.most
+    located: bool = False
 
     def image(self, s: Array, generation: int) -> Array:
         """The points of a generation."""
@@ -86,15 +89,22 @@ class Carried:
         s = np.linspace(inner, outer, count)
         return Piece(s, self.start(s), 0)
 
+    def refined(self, piece: Piece) -> Piece:
+        """A piece with points added to the resolution, where it is not torn."""
+        s, points, coarse = self._refined(piece.s, piece.points, piece.generation)
+        return Piece(s, points, piece.generation, piece.ends, coarse)
+
     def images(self, piece: Piece) -> list[Piece]:
         """The image of a piece, with points added to the resolution, in stretches without a tear."""
-        generation, sides, resolution = piece.generation + 1, self.window.sides, self.window.resolution
+        generation = piece.generation + 1
         s, points, coarse = self._refined(piece.s, self.step(piece.points, piece.generation), generation)
+        jump = np.hypot(*(np.diff(points, axis=0) / self.window.sides).T) > SETTINGS.jump * self.window.resolution
+        torn: Array = np.asarray(jump & (np.abs(np.diff(s)) <= closest(self.window) * np.ptp(piece.s)))
+        if self.located and torn.any():
+            s, points, torn = self._located(s, points, np.flatnonzero(torn), generation)
         known: Array = np.asarray(np.isfinite(points).all(axis=1))
         with np.errstate(invalid="ignore"):
             kept: Array = known & self.followed(points)
-        jump = np.hypot(*(np.diff(points, axis=0) / sides).T) > SETTINGS.jump * resolution
-        torn = jump & (np.abs(np.diff(s)) <= closest(self.window) * np.ptp(piece.s))
         cuts: Array = np.flatnonzero(torn | ~kept[1:] | ~kept[:-1]) + 1
         parts = [part for part in np.split(np.arange(len(s)), cuts) if len(part) > 1 and kept[part].all()]
 
@@ -123,6 +133,34 @@ class Carried:
             middle = (s[at] + s[at + 1]) / 2
             s, points = np.insert(s, at + 1, middle), np.insert(points, at + 1, self.image(middle, generation), axis=0)
         return s, points, False
+
+    def _located(self, s: Array, points: Array, at: Array, generation: int) -> tuple[Array, Array, Array]:
+        """Points more on both sides of tears, by bisection in s, and which chords are the tears then.
+
+        A middle belongs to the end that it is nearer to. A curve that ends like a square root gets points in geometric
+        sequence.
+        """
+        ends = [s[at].copy(), s[at + 1].copy()]
+        places = [points[at].copy(), points[at + 1].copy()]
+        low = SETTINGS.graze * self.window.resolution * self.window.sides[1]
+        more = [(s, points)]
+        for _ in range(SETTINGS.halvings):
+            middle = (ends[0] + ends[1]) / 2
+            apart = (middle != ends[0]) & (middle != ends[1])
+            # an end at rest is where a flight grazes: nearer to it flights are dear, and the curve is no longer
+            apart &= np.minimum(places[0][:, 1], places[1][:, 1]) > low
+            if not apart.any():
+                break
+            image = np.full(places[0].shape, np.nan)
+            image[apart] = self.image(middle[apart], generation)
+            gaps = [np.hypot(*((image - place) / self.window.sides).T) for place in places]
+            first = gaps[0] <= gaps[1]  # of nan neither is true
+            for end, chosen in ((0, first), (1, gaps[0] > gaps[1])):
+                ends[end][chosen], places[end][chosen] = middle[chosen], image[chosen]
+                more.append((middle[chosen], image[chosen]))
+        s, points = np.concatenate([each[0] for each in more]), np.vstack([each[1] for each in more])
+        order = np.argsort(s, kind="stable") if ends[0][0] < ends[1][0] else np.argsort(-s, kind="stable")
+        return s[order], points[order], np.isin(s[order][:-1], ends[0])
 
     def _too_coarse(self, points: Array) -> Array:
         """Chords too long for the resolution, or at a bend beyond it; or with one end that is not known."""

@@ -135,26 +135,31 @@ def _foot(model: Oscillator, tau: Any, at: str | None) -> float:
     return next(point.tau for point in tangency_points(model) if point.kind == kind)
 
 
-def model_step(model: Oscillator, points: Array) -> Array:
-    """The impact map on points (tau, v), shape (n, 2); nan where there is no next impact."""
+def model_step(model: Oscillator, points: Array, horizon: float | None = None) -> Array:
+    """The impact map on points (tau, v), shape (n, 2); nan where there is no next impact, and where v < 0.
+
+    `horizon` : time after which a flight is given up.
+    """
     from singimpact.flights.impact_map import impact_map
 
-    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
-    step = impact_map(model, points[known, 0], points[known, 1], tolerance=SETTINGS.tolerance)
+    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
+    at, v_at = points[known].T
+    step = impact_map(model, at, v_at, tolerance=SETTINGS.tolerance, horizon=horizon)
     good = np.isin(step.status, (Status.hit, Status.graze))
     found[known] = np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
     return found
 
 
-def before(model: Oscillator, points: Array) -> Array:
-    """The inverse map on points, shape (n, 2); nan where nothing lands there."""
-    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
+def before(model: Oscillator, points: Array, horizon: float | None = None) -> Array:
+    """The inverse map on points, shape (n, 2); nan where nothing lands there, and where v < 0."""
+    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
     at, v_at = points[known].T
     if names_in(model.restitution):
-        step = inverse_map(model, at, v_at)
+        step = inverse_map(model, at, v_at, horizon=horizon)
         tau, v, status = step.tau, step.v, step.status
     else:
-        hit = first_hit(backwards(model), -at, v_at / as_float(model.restitution), tolerance=SETTINGS.tolerance)
+        speeds = v_at / as_float(model.restitution)
+        hit = first_hit(backwards(model), -at, speeds, tolerance=SETTINGS.tolerance, horizon=horizon)
         tau, v, status = at - hit.flight_time, -hit.velocity, hit.status
     good = np.isin(status, (Status.hit, Status.graze))
     found[known] = np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)

@@ -25,7 +25,7 @@ def saddle_of(osc: si.ImpactOscillator, n: int) -> PeriodicOrbit:
 
 @pytest.fixture(scope="module")
 def found() -> Crossings:
-    return si.homoclinic_points(saddle_of(CHAOTIC, 1), length=6)
+    return si.homoclinic_points(saddle_of(CHAOTIC, 1), v=1)
 
 
 def nearest(orbit: Crossing, tau: float, v: float) -> float:
@@ -108,13 +108,14 @@ def test_the_angle_is_that_of_the_curves(found: Crossings) -> None:
 
 
 def test_each_orbit_once_and_more_with_the_length(found: Crossings) -> None:
-    assert len(found) == 18
+    assert len(found) == 23
     starts = [each.s[0] for each in found]
     assert min(abs(a / b - 1) for i, a in enumerate(starts) for b in starts[:i]) > 1e-7
     middle = [nearest(one, other.tau, other.v) for i, one in enumerate(found) for other in found[:i]]
     assert min(middle) > 1e-9
-    longer = si.homoclinic_points(saddle_of(CHAOTIC, 1), length=10)
-    assert len(longer) == 73
+    longer = si.homoclinic_points(saddle_of(CHAOTIC, 1), v=1, length=10)
+    assert len(longer) == 118
+    assert [each.s for each in longer[:3]] == [pytest.approx(each.s, rel=1e-6) for each in found[:3]]
     for each in found:
         assert min(nearest(other, each.tau, each.v) for other in longer) < 1e-11
     assert any(note.startswith("W^u ends after") for note in found.notes)
