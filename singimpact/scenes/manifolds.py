@@ -11,7 +11,7 @@ import numpy as np
 from singimpact.branches.homoclinic import Crossings
 from singimpact.branches.manifold import Manifold
 from singimpact.inputs import refuse
-from singimpact.scenes.style import BLACK, PENS
+from singimpact.scenes.style import BLACK, DASHES, PENS
 
 Array = np.ndarray[Any, Any]
 
@@ -45,9 +45,9 @@ def draw_manifolds(found: Sequence[Manifold], axes: Any) -> Any:
     periods, highest = found[0].window.x, max(each.window.y[1] for each in found)
     limits = (axes.get_xlim(), axes.get_ylim())
     for each in found:
-        # over basins, whose colours are strong, W^s is the line that bounds them
-        line = PENS[each.name].line() if fresh else PENS[each.name].line() | {"color": BLACK, "linewidth": 0.8}
-        line = line if each.stable or fresh else PENS[each.name].line()
+        line = PENS[each.name].line()
+        if not fresh:  # over basins, whose colours are strong
+            line |= {"color": BLACK, "linewidth": 0.8, "linestyle": "solid" if each.stable else DASHES}
         entries.setdefault(f"${each.name}$ of the {_orbit(each)} saddle", _line(line))
         for turn in _turns(limits[0], periods[1], fresh):
             for piece in each.pieces:
