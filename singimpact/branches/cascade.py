@@ -7,18 +7,17 @@ coordinates of the blow-up, so the distances of these edges shrink by mu(r).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from singimpact.algebra.balls import as_rational
 from singimpact.algebra.numbers import exact
-from singimpact.algebra.precision import balls_at, digits_at, for_user
-from singimpact.algebra.solving import halved, secant
+from singimpact.algebra.precision import digits_at, for_user
+from singimpact.algebra.solving import halved
 from singimpact.branches.border_digits import DigitOrbits
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.released import Return
@@ -37,19 +36,21 @@ class CascadeSettings:
     Parameters
     ----------
     start : the largest distance, as a part of that at which v/gamma changes by itself. factor : of one distance to the
-        next, before those between which two edges lie are halved. narrow : two edges nearer than this, relative, end
-        the search. least : edges are looked for down to so many times the error of the border orbit.
-    most : edges at most. settled : with digits, edges are looked for until two ratios differ by less.
-    spare : digits that a ratio keeps where the last edge is. digits : of mu.
+        next, before those between which two edges lie are halved. narrow : two distances nearer than this, relative,
+        are not halved. regular : edges that are found by counting impacts; each next one is extrapolated.
+    least : edges are looked for down to so many times the error of the border orbit. most : edges at most.
+    settled : edges are looked for until two ratios differ by less. steps : of the secant method.
+    digits : of mu.
     """
 
     start: float = 0.25
     factor: float = 0.7
     narrow: float = 1e-3
-    least: float = 1e4
+    regular: int = 5
+    least: float = 1e5
     most: int = 400
-    settled: float = 1e-10
-    spare: int = 10
+    settled: float = 1e-9
+    steps: int = 12
     digits: int = 20
 
 
@@ -102,17 +103,19 @@ class Cascade:
     def limit(self) -> tuple[float, float]:
         """What the ratios tend to, and an estimate of its error: three ratios extrapolated by Aitken's method.
 
-        Of all triples the one of least error is taken; mu(r) is not used. nan where there are fewer than four ratios.
+        The error is the spread of three such numbers in a row and the rounding of the ratios in them; where it is least
+        they are taken. mu(r) is not used. nan where there are fewer than five ratios.
         """
         best = (np.nan, np.inf)
-        rows = [(float(one), float(two)) for one, two in zip(self.ratios, self.errors, strict=True)]
-        for (a, e), (b, f), (c, g), (d, h) in zip(rows, rows[1:], rows[2:], rows[3:], strict=False):
-            one, two = _aitken(a, b, c), _aitken(b, c, d)
-            # rounding of the ratios is enlarged by the division, and the last step tells how far the limit moves
-            grown = max(1.0, abs((d - c) / ((d - c) - (c - b)))) if d - c != c - b else np.inf
-            error = abs(two - one) + 4 * grown * (e + f + g + h)
+        ratios, errors = (np.array(part, dtype=float) for part in (self.ratios, self.errors))
+        steps = np.diff(ratios)
+        for i in range(len(ratios) - 4):
+            three = [_aitken(*ratios[j : j + 3].tolist()) for j in range(i, i + 3)]
+            # what is lost by the division of steps that are nearly equal
+            grown = max(1.0, 1 / abs(1 - steps[i + 2] / steps[i + 3])) if steps[i + 3] != steps[i + 2] else np.inf
+            error = max(three) - min(three) + float(grown * errors[i : i + 5].sum())
             if error < best[1]:
-                best = two, error
+                best = three[-1], error
         return best
 
     @cached_property
@@ -158,24 +161,24 @@ def cascade(found: Return, osc: Oscillator, border: tuple[Any, Any, float], digi
         of it, and the change of the number that changes v by itself. digits : None for doubles.
     """
     value, error, scale = border
-    search = _Edges(found, scale, float(error))
-    edges = search.in_doubles()
-    notes = search.notes
-    mu = tangency(osc.slope_at_rest(), digits=SETTINGS.digits).mu.value
-    centre, wrong = Fraction(found.value), Fraction(float(error)) + Fraction(EPSILON * abs(found.value))
-    if digits is not None and value is not None and edges:
-        deeper = _Deeper(found, digits, exact("parameter", value))
-        edges, note = deeper.edges(edges)
-        centre, wrong = deeper.border, exact("error", error) + abs(deeper.border) / 10**digits
-        notes = [note]
-    numbers = np.array([number for number, _ in edges], dtype=int)
+    flights: _Flights
+    if digits is None or value is None:
+        centre, flights, digits = Fraction(found.value), _InDoubles(found), None
+        wrong = Fraction(float(error)) + Fraction(EPSILON * abs(found.value))
+    else:
+        centre, flights = exact("parameter", value), _InDigits(found, digits)
+        wrong = exact("error", error) + abs(centre) / 10**digits
+    search = _Edges(found, flights, centre, wrong)
+    edges, note = search.edges(scale)
     places = [place for _, place in edges]
     distances = [abs(place - centre) for place in places]
-    ratios = [one / two for one, two in zip(distances, distances[1:], strict=False)]
-    errors = [float(ratio * wrong * (1 / one + 1 / two)) for ratio, one, two in zip(ratios, distances, distances[1:],
-                                                                                  strict=False)]  # fmt: skip
+    pairs = list(zip(distances, distances[1:], strict=False))
+    ratios = [one / two for one, two in pairs]
+    errors = [float(one / two * wrong * (1 / one + 1 / two)) for one, two in pairs]
     rows = [_array(each, digits) for each in (places, distances, ratios)]
-    return Cascade(found.releases.over, numbers, *rows, np.array(errors), mu, tuple(notes), found)
+    mu = tangency(osc.slope_at_rest(), digits=SETTINGS.digits).mu.value
+    numbers = np.array([number for number, _ in edges], dtype=int)
+    return Cascade(found.releases.over, numbers, *rows, np.array(errors), mu, (note,), found)
 
 
 def _array(values: list[Fraction], digits: int | None) -> Array:
@@ -185,138 +188,144 @@ def _array(values: list[Fraction], digits: int | None) -> Array:
         return np.array([for_user(mp.mpf(value.numerator) / value.denominator) for value in values], dtype=object)
 
 
-class _Edges:
-    """The search for edges in doubles: distances d with N(d) impacts, and the places between where N changes."""
+class _Flights(Protocol):
+    """Released orbits, in doubles or in many digits."""
 
-    def __init__(self, found: Return, scale: float, error: float) -> None:
-        self.found, self.side = found, -found.side
-        self.start = SETTINGS.start * scale
-        self.least = max(SETTINGS.least * (error + EPSILON * abs(found.value)), SETTINGS.least * 5e-324)
-        self.notes: list[str] = []
+    def landing(self, number: int, value: Fraction) -> Fraction | None:
+        """The time of an impact less that of the end of gamma; None where there is no such impact about there."""
 
-    def in_doubles(self) -> list[tuple[int, Fraction]]:
-        """(N on the near side, value of the number) of each edge, from the farthest on."""
-        rows = self._counted()
-        edges = []
-        for (far, fewer), (near, more) in zip(rows, rows[1:], strict=False):
-            if more > fewer:
-                edges.append((more, Fraction(self._refined(more, near, far))))
-        self.notes.append(
-            f"edges nearer than {self.least:.2g} to the border orbit are not told from it in doubles: digits= goes on"
-        )
-        return edges[: SETTINGS.most]
-
-    def _counted(self) -> list[tuple[float, int]]:
-        """Distances and numbers of impacts, from where on one more impact comes at a time."""
-        rows: list[tuple[float, int]] = []
-        distance = self.start
-        while distance > self.least:
-            count = self._count(distance)
-            if count is not None:
-                rows += self._between(rows[-1], (distance, count)) if rows else []
-                rows.append((distance, count))
-            else:
-                rows = []
-            distance *= SETTINGS.factor
-        first = 0
-        for i in range(len(rows) - 1):
-            if not 0 <= rows[i + 1][1] - rows[i][1] <= 1:
-                first = i + 1
-        return rows[first:]
-
-    def _between(self, far: tuple[float, int], near: tuple[float, int]) -> list[tuple[float, int]]:
-        """Distances between two, where there is more than one edge."""
-        if near[1] - far[1] <= 1 or near[1] < far[1] or near[0] > far[0] * (1 - SETTINGS.narrow):
-            return []
-        distance = float(np.sqrt(far[0] * near[0]))
-        count = self._count(distance)
-        if count is None:
-            return []
-        middle = distance, count
-        return [*self._between(far, middle), middle, *self._between(middle, near)]
-
-    def _count(self, distance: float) -> int | None:
-        """Impacts before the end of gamma; None where the chatter completes before it, or is not decided."""
-        orbit = self.found.flown(self.found.value + self.side * distance)
-        if orbit.place == self.found.place or not orbit.zeros.size >= self.found.place:
-            return None
-        return orbit.impacts_before(self.found.place)
-
-    def _refined(self, number: int, near: float, far: float) -> float:
-        """The value between two distances at which an impact falls on the end of gamma."""
-        ends = (self.found.value + self.side * near, self.found.value + self.side * far)
-
-        def landing(value: float) -> float:
-            return self.found.flown(value).landing(number, self.found.place)
-
-        place = secant(landing, *ends)
-        inside = min(ends) <= place <= max(ends)
-        if inside and abs(landing(place)) < 1e-13 * abs(landing(ends[0])) + 1e-14:
-            return float(place)
-        return halved(lambda value: landing(value) < 0, *ends)[0]
+    def rounded(self, value: Fraction) -> Fraction:
+        """A value as these flights take it."""
 
 
-class _Deeper:
-    """Edges in many digits: those that doubles know, refined, and the next ones, each from the two before."""
+class _InDoubles:
+    """Landings by doubles."""
 
-    def __init__(self, found: Return, digits: int, border: Fraction) -> None:
-        self.found, self.digits, self.border = found, digits, border
+    def __init__(self, found: Return) -> None:
+        self.found = found
+
+    def landing(self, number: int, value: Fraction) -> Fraction | None:
+        orbit = self.found.flown(float(value))
+        gap = orbit.landing(number, self.found.place)
+        near = orbit.impacts_before(self.found.place) in (number - 1, number)
+        return Fraction(gap) if near and np.isfinite(gap) else None
+
+    def rounded(self, value: Fraction) -> Fraction:
+        return Fraction(float(value))
+
+
+class _InDigits:
+    """Landings by balls or in many digits."""
+
+    def __init__(self, found: Return, digits: int) -> None:
         self.orbits = DigitOrbits(found, digits)
 
-    def edges(self, known: list[tuple[int, Fraction]]) -> tuple[list[tuple[int, Fraction]], str]:
-        """The edges, and why there are no more."""
-        rows: list[tuple[int, Fraction]] = []
-        for number, place in known:
-            distance = abs(place - self.border)
-            refined = self._solved(number, place, distance / 10**8)
-            if refined is None:
-                break
-            rows.append((number, refined))
-        if len(rows) < 3:
-            return rows, "fewer than three edges are resolved"
-        while len(rows) < SETTINGS.most:
-            (_, a), (_, b), (number, c) = rows[-3:]
-            distances = [abs(each - self.border) for each in (a, b, c)]
-            one, two = distances[0] / distances[1], distances[1] / distances[2]
-            if abs(one - two) < SETTINGS.settled * two:
-                return rows, f"two ratios differ by less than {SETTINGS.settled:.0e}: the edges go on"
-            following = distances[2] / two
-            if following < abs(self.border) / 10 ** (self.digits - SETTINGS.spare):
-                return rows, f"the next edges have fewer than {SETTINGS.spare} of the {self.digits} digits"
-            guess = self.border - self.found.side * following
-            place = self._solved(number + 1, guess, following / 10**3)
-            if place is None:
-                return rows, f"the edge of {number + 1} impacts is not resolved"
-            rows.append((number + 1, place))
-        return rows, f"only {SETTINGS.most} edges are given"
+    def landing(self, number: int, value: Fraction) -> Fraction | None:
+        rows = self.orbits.landings(value, number)
+        return as_rational(rows[-1].sigma) if len(rows) == number else None
 
-    def _solved(self, number: int, guess: Fraction, step: Fraction) -> Fraction | None:
-        """The value at which an impact falls on the end of gamma."""
-        small = abs(self.border) / 10 ** (self.digits + 2)
-        landing = self._landing(number)
-        with balls_at(self.orbits.bits):
-            first, value = guess, landing(guess)
-            second = guess + (step if self.found.side > 0 else -step)
-            for _ in range(12):
-                other = landing(second)
-                if value is None or other is None or not abs(other - value) > 0:
-                    return None
-                change = as_rational(other * self.orbits.balls.rational(second - first) / (other - value))
-                # to the digits that are there: a rational of a hundred digits makes the model's text long
-                after = self._short(second - change)
-                first, value, second = second, other, after
-                if abs(second - first) < small:
-                    return second
-        return None
-
-    def _landing(self, number: int) -> Callable[[Fraction], Any]:
-        def landing(value: Fraction) -> Any:
-            rows = self.orbits.landings(value, number)
-            return rows[-1].sigma if len(rows) == number else None
-
-        return landing
-
-    def _short(self, value: Fraction) -> Fraction:
+    def rounded(self, value: Fraction) -> Fraction:
         return as_rational(self.orbits.balls.rational(value))
 
 
+class _Edges:
+    """The search for edges: the first ones by counting impacts, then each from the three before.
+
+    Parameters
+    ----------
+    found : a return. flights : of the orbits. border : the value of the border orbit. wrong : its error.
+    """
+
+    def __init__(self, found: Return, flights: _Flights, border: Fraction, wrong: Fraction) -> None:
+        self.found, self.flights, self.border, self.wrong = found, flights, border, wrong
+        self.side = -found.side
+
+    def edges(self, scale: float) -> tuple[list[tuple[int, Fraction]], str]:
+        """N on the near side and the value of the number of each edge, and why there are no more."""
+        rows: list[tuple[int, Fraction]] = []
+        for number, near, far in self._counted(SETTINGS.start * scale):
+            place = self._solved(number, *self._halved(number, near, far))
+            if place is None:
+                return rows, f"the edge of {number} impacts is not resolved"
+            rows.append((number, place))
+        if len(rows) < 3:
+            return rows, "fewer than three edges are resolved"
+        while len(rows) < SETTINGS.most:
+            distances = [abs(place - self.border) for _, place in rows[-3:]]
+            before, ratio = distances[0] / distances[1], distances[1] / distances[2]
+            if abs(before - ratio) < SETTINGS.settled * ratio:
+                return rows, f"two ratios differ by less than {SETTINGS.settled:.0e}: the edges go on"
+            number, following = rows[-1][0] + 1, distances[2] / ratio
+            if following < SETTINGS.least * self.wrong:
+                return rows, ("nearer edges are not told from the border orbit: digits=, or more of them, goes on")
+            guess = self.border + self.side * following
+            # from the side where the impact is still before the end of gamma
+            place = self._solved(number, guess, guess - self.side * following / 1000)
+            if place is None:
+                return rows, f"the edge of {number} impacts is not resolved"
+            rows.append((number, place))
+        return rows, f"only {SETTINGS.most} edges are given"
+
+    def _solved(self, number: int, first: Fraction, second: Fraction) -> Fraction | None:
+        """The value at which an impact falls on the end of gamma, by secants."""
+        first, second = self.flights.rounded(first), self.flights.rounded(second)
+        value, small = self.flights.landing(number, first), self.wrong / 4
+        for _ in range(SETTINGS.steps):
+            other = self.flights.landing(number, second)
+            if value is None or other is None:
+                return None
+            if other == value or abs(second - first) <= small:
+                return second
+            after = self.flights.rounded(second - other * (second - first) / (other - value))
+            first, value, second = second, other, after
+        return None
+
+    def _halved(self, number: int, near: float, far: float) -> tuple[Fraction, Fraction]:
+        """Values next to the edge between two distances: beyond a graze the impact lands elsewhere, and secants fail."""
+        low, high = halved(lambda distance: self._count(distance) >= number, near, far, SETTINGS.narrow)
+        place = self.border + self.side * Fraction(low)
+        return place, place - self.side * Fraction(high - low) / 1000
+
+    # ---- the first edges, in doubles
+
+    def _counted(self, start: float) -> list[tuple[int, float, float]]:
+        """N on the near side, and distances on both sides, of edges from where on one more impact comes at a time."""
+        rows: list[tuple[float, int]] = []
+        distance = start
+        while distance > SETTINGS.least * float(self.wrong):
+            count = self._count(distance)
+            rows += self._between(rows[-1], (distance, count)) if rows else []
+            rows.append((distance, count))
+            found = _regular(rows)
+            # edges farther away are kept too, but not before it is seen that they are regular
+            if len(found) >= 2 * SETTINGS.regular:
+                return found[: SETTINGS.regular]
+            distance *= SETTINGS.factor
+        return _regular(rows)[: SETTINGS.regular]
+
+    def _between(self, far: tuple[float, int], near: tuple[float, int]) -> list[tuple[float, int]]:
+        """Distances between two, where there is more than one edge."""
+        if near[1] - far[1] <= 1 or far[1] < 0 or near[0] > far[0] * (1 - SETTINGS.narrow):
+            return []
+        distance = float(np.sqrt(far[0] * near[0]))
+        middle = distance, self._count(distance)
+        return [*self._between(far, middle), middle, *self._between(middle, near)]
+
+    def _count(self, distance: float) -> int:
+        """Impacts before the end of gamma; -1 where the chatter completes before it, or is not decided."""
+        orbit = self.found.flown(float(self.border) + self.side * distance)
+        passed = orbit.decided and orbit.place != self.found.place
+        return orbit.impacts_before(self.found.place) if passed else -1
+
+
+def _regular(rows: list[tuple[float, int]]) -> list[tuple[int, float, float]]:
+    """Where one impact more comes, in the last rows in which never more than one does at a time.
+
+    Examples
+    --------
+    >>> _regular([(0.5, 4), (0.4, 3), (0.3, 4), (0.2, 4), (0.1, 5)])
+    [(4, 0.3, 0.4), (5, 0.1, 0.2)]
+    """
+    first = max((i + 1 for i in range(len(rows) - 1) if not 0 <= rows[i + 1][1] - rows[i][1] <= 1), default=0)
+    tail = [row for row in rows[first:] if row[1] >= 0]
+    return [(near[1], near[0], far[0]) for far, near in zip(tail, tail[1:], strict=False) if near[1] > far[1]]
