@@ -12,6 +12,7 @@ from singimpact.status import Status as Status
 if TYPE_CHECKING:
     from singimpact import theory as theory
     from singimpact.bench.selftest.run import selftest as selftest
+    from singimpact.branches.border import border_orbits as border_orbits
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
     from singimpact.impact_oscillator import basins as basins
     from singimpact.impact_oscillator import bifurcation as bifurcation
@@ -50,6 +51,7 @@ _ROOMS = {
 }
 _HOMES = {
     "ImpactOscillator": "singimpact.impact_oscillator",
+    "border_orbits": "singimpact.branches.border",
     "branch": "singimpact.impact_oscillator",
     "event_curve": "singimpact.impact_oscillator",
     "linear": "singimpact.impact_oscillator",

@@ -1,4 +1,4 @@
-"""Periodic orbits and what becomes of them as numbers of the model move: branches through grazes, and their events.
+"""Periodic orbits and what becomes of them as numbers of the model move: branches, events, border orbits, cascades.
 
 Not here: flights after flights that need not close (`dynamics`), the flights of a family of models (`flights.family`),
 pictures (`scenes`).
@@ -6,5 +6,7 @@ Files: `closing` (the conditions, smooth through a graze; the lowest place of a 
 without impact), `orbits` (what an orbit is), `solutions` (the orbit at a point), `one_impact` (one impact, linear:
 closed form), `starts` (Newton's method from many starts), `resting` (orbits without impact, and with rest), `digits`,
 `periodic` (what a user asks), `continuation` (pseudo-arclength), `events`, `switching`
-(the other branches at an event), `branch`, `kept` (on disk), `event_curve` (events in two numbers).
+(the other branches at an event), `branch`, `kept` (on disk), `event_curve` (events in two numbers); `border` (where a
+released orbit returns onto gamma), `released` (that orbit), `border_digits`, `cascade` (the edges beside it),
+`settled` (the periodic orbit on which one settles).
 """

@@ -38,7 +38,7 @@ class DigitSettings:
     ----------
     spare : digits beyond those asked for. bits : of the balls of a proof at most, per digit asked for.
     before : a zero of a_c is looked for from so far before it, in periods: doubles know it to 1e-16.
-    around : half the width of the ball in which a zero of a_c is isolated. pieces : of an interval on which a_c presses.
+    around : half the width of the ball in which a zero of a_c is isolated. pieces : of a time in which a_c presses.
     """
 
     spare: int = 15

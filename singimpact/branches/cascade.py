@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -22,6 +23,7 @@ from singimpact.branches.border_digits import DigitOrbits
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.released import Return
 from singimpact.branches.settled import settled_orbit
+from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory.fixed_points import tangency
 
@@ -35,7 +37,8 @@ class CascadeSettings:
 
     Parameters
     ----------
-    start : the largest distance, as a part of that at which v/gamma changes by itself. factor : of one distance to the
+    start : the largest distance, as a part of that at which v/gamma changes by itself; the search for border orbits has
+        an end too. factor : of one distance to the
         next, before those between which two edges lie are halved. narrow : two distances nearer than this, relative,
         are not halved. regular : edges that are found by counting impacts; each next one is extrapolated.
     least : edges are looked for down to so many times the error of the border orbit. most : edges at most.
@@ -52,19 +55,20 @@ class CascadeSettings:
     settled: float = 1e-9
     steps: int = 12
     digits: int = 20
+    apart: float = 1e3
 
 
 SETTINGS = CascadeSettings()
 
 
 @dataclass(frozen=True)
-class Window:
+class CascadeWindow:
     """What attracts the released orbit between two edges.
 
     Parameters
     ----------
-    impacts : of the released orbit before it passes the end of gamma. parameter : in the middle of the logarithms of
-        the distances of its edges. distance : of it from the border orbit.
+    impacts : of the released orbit before it passes the end of gamma. parameter, distance : where it was flown, and how
+        far that is from the border orbit.
     orbit : the orbit on which the released one settles, with its multipliers; None where none is seen.
     """
 
@@ -80,9 +84,9 @@ class Cascade:
 
     Parameters
     ----------
-    over : the number that moves. impacts : of the released orbit before the end of gamma, on the near side of each edge.
+    over : the number that moves. impacts : of the released orbit before the end of gamma, on the near side of an edge.
     parameter, distance : of each edge, and from the border orbit; doubles, or mpmath numbers with digits.
-    ratios : of the distance of each edge to that of the next. errors : of the ratios, estimated from those of the edges.
+    ratios : of the distance of each edge to that of the next. errors : of the ratios, from those of the edges.
     mu : the multiplier across gamma at a tangency, to which they tend. notes : where the edges end, and why.
     """
 
@@ -119,21 +123,30 @@ class Cascade:
         return best
 
     @cached_property
-    def windows(self) -> tuple[Window, ...]:
-        """What attracts the released orbit in each window between two edges, found when asked for."""
-        found, side = [], -self.returned.side
-        border = self._border()
-        for i in range(len(self) - 1):
-            distance = float(self.distance[i] * self.distance[i + 1]) ** 0.5
-            value = border + side * distance
-            if not abs(value - border) > 1e3 * EPSILON * abs(border):
-                break
-            orbit = self.returned.flown(value)
-            found.append(Window(int(self.impacts[i]), value, distance, settled_orbit(orbit.model, orbit.tau)))
-        return tuple(found)
+    def windows(self) -> tuple[CascadeWindow, ...]:
+        """What attracts the released orbit in the middle of each window between two edges, found when asked for."""
+        return self.sampled(1)
 
-    def _border(self) -> float:
-        return float(self.parameter[-1] + self.returned.side * self.distance[-1]) if len(self) else self.returned.value
+    def sampled(self, count: int) -> tuple[CascadeWindow, ...]:
+        """What attracts it at so many values in each window, whose distances divide the window evenly in logarithms.
+
+        Parameters
+        ----------
+        count : of values in a window. Those that doubles do not tell from the border orbit are left out.
+        """
+        found: list[CascadeWindow] = []
+        side = -self.returned.side
+        border = float(self.parameter[-1] + self.returned.side * self.distance[-1]) if len(self) else np.nan
+        for i in range(len(self) - 1):
+            far, near = float(self.distance[i]), float(self.distance[i + 1])
+            for j in range(count):
+                distance = far * (near / far) ** ((j + 0.5) / count)
+                if distance < SETTINGS.apart * (EPSILON * abs(border) + 5e-324):
+                    return tuple(found)
+                orbit = self.returned.flown(border + side * distance)
+                settled = settled_orbit(orbit.model, orbit.tau)
+                found.append(CascadeWindow(int(self.impacts[i]), border + side * distance, distance, settled))
+        return tuple(found)
 
     def __repr__(self) -> str:
         if not len(self):
@@ -172,13 +185,13 @@ def cascade(found: Return, osc: Oscillator, border: tuple[Any, Any, float], digi
     edges, note = search.edges(scale)
     places = [place for _, place in edges]
     distances = [abs(place - centre) for place in places]
-    pairs = list(zip(distances, distances[1:], strict=False))
+    pairs = list(pairwise(distances))
     ratios = [one / two for one, two in pairs]
     errors = [float(one / two * wrong * (1 / one + 1 / two)) for one, two in pairs]
-    rows = [_array(each, digits) for each in (places, distances, ratios)]
+    parameter, distance, ratio = (_array(each, digits) for each in (places, distances, ratios))
     mu = tangency(osc.slope_at_rest(), digits=SETTINGS.digits).mu.value
     numbers = np.array([number for number, _ in edges], dtype=int)
-    return Cascade(found.releases.over, numbers, *rows, np.array(errors), mu, (note,), found)
+    return Cascade(found.releases.over, numbers, parameter, distance, ratio, np.array(errors), mu, (note,), found)
 
 
 def _array(values: list[Fraction], digits: int | None) -> Array:
@@ -243,7 +256,7 @@ class _Edges:
     def edges(self, scale: float) -> tuple[list[tuple[int, Fraction]], str]:
         """N on the near side and the value of the number of each edge, and why there are no more."""
         rows: list[tuple[int, Fraction]] = []
-        for number, near, far in self._counted(SETTINGS.start * scale):
+        for number, near, far in self._counted(min(SETTINGS.start * scale, self.found.reach)):
             place = self._solved(number, *self._halved(number, near, far))
             if place is None:
                 return rows, f"the edge of {number} impacts is not resolved"
@@ -281,7 +294,7 @@ class _Edges:
         return None
 
     def _halved(self, number: int, near: float, far: float) -> tuple[Fraction, Fraction]:
-        """Values next to the edge between two distances: beyond a graze the impact lands elsewhere, and secants fail."""
+        """Values next to the edge between two distances: secants fail beyond a graze, where the impact is elsewhere."""
         low, high = halved(lambda distance: self._count(distance) >= number, near, far, SETTINGS.narrow)
         place = self.border + self.side * Fraction(low)
         return place, place - self.side * Fraction(high - low) / 1000
@@ -313,7 +326,10 @@ class _Edges:
 
     def _count(self, distance: float) -> int:
         """Impacts before the end of gamma; -1 where the chatter completes before it, or is not decided."""
-        orbit = self.found.flown(float(self.border) + self.side * distance)
+        try:
+            orbit = self.found.flown(float(self.border) + self.side * distance)
+        except InputError:  # a number that is none of a model's
+            return -1
         passed = orbit.decided and orbit.place != self.found.place
         return orbit.impacts_before(self.found.place) if passed else -1
 
@@ -328,4 +344,4 @@ def _regular(rows: list[tuple[float, int]]) -> list[tuple[int, float, float]]:
     """
     first = max((i + 1 for i in range(len(rows) - 1) if not 0 <= rows[i + 1][1] - rows[i][1] <= 1), default=0)
     tail = [row for row in rows[first:] if row[1] >= 0]
-    return [(near[1], near[0], far[0]) for far, near in zip(tail, tail[1:], strict=False) if near[1] > far[1]]
+    return [(near[1], near[0], far[0]) for far, near in pairwise(tail) if near[1] > far[1]]

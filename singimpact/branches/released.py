@@ -35,8 +35,9 @@ class ReleasedSettings:
     impacts: int = 200_000
     # impacts flown on where what is left of a chatter does not end before the zero of a_c
     more: int = 8
-    # a zero of a_c is looked for from this part of a period before the place where it was
-    back: float = 1 / 64
+    # steps of Newton's method for a zero of a_c, and the part of a period before it from which its double is looked for
+    steps: int = 20
+    before: float = 1e-9
 
 
 SETTINGS = ReleasedSettings()
@@ -96,14 +97,8 @@ class Releases:
         return self.osc.replace(**{self.over: value})
 
     def followed(self, model: Oscillator, phases: tuple[float, ...]) -> tuple[float, ...]:
-        """The phases at which a_c rises through zero, next to those of a model nearby; inf where one is not found."""
-        period, found = _period(model), []
-        for phase in phases:
-            back = SETTINGS.back * period
-            while acceleration(model, np.array([phase - back]))[0] >= 0 and back > 1e-12 * period:
-                back /= 2
-            found.append(release(model, phase - back, 4 * back))
-        return tuple(found)
+        """The phases at which a_c rises through zero, next to those of a model nearby; nan where one is not found."""
+        return tuple(_rising(model, phase) for phase in phases)
 
     def flown(self, value: Any, index: int, near: tuple[float, ...] | None = None) -> Released:
         """The orbit of one of the releases in a period, given by its index in their order.
@@ -140,6 +135,22 @@ class Releases:
 def _period(model: Oscillator) -> float:
     assert model.period is not None
     return as_float(model.period)
+
+
+def _rising(model: Oscillator, near: float) -> float:
+    """The double from which the mass lifts off, next to a phase; nan where Newton's method does not find it."""
+    period, at = _period(model), near
+    for _ in range(SETTINGS.steps):
+        value, slope = (float(acceleration(model, np.array([at]), order)[0]) for order in (0, 1))
+        if not slope > 0 or not abs(at - near) < period / 4:
+            return float("nan")
+        at -= value / slope
+        if abs(value) < SETTINGS.before * period * slope:
+            break
+    before = at - SETTINGS.before * period
+    pressed = acceleration(model, np.array([before]))[0] < 0
+    found = release(model, before, 4 * SETTINGS.before * period) if pressed else np.inf
+    return found if np.isfinite(found) else float("nan")
 
 
 class _Run:
@@ -217,6 +228,7 @@ class Return:
     releases : the models. value : of the number, a double. phases : of all releases there. index : of the one released.
     place : of the zero into which gamma runs, from 1. entry : the number of the first impact after which a_c presses.
     side : 1 where chatter completes for larger values of the number, -1 where for smaller ones.
+    reach : the larger of the distances to the ends of the search: models farther away are not looked at.
     """
 
     releases: Releases
@@ -226,6 +238,7 @@ class Return:
     place: int
     entry: int
     side: int
+    reach: float
 
     def flown(self, value: float) -> Released:
         """The orbit at a value of the number nearby."""

@@ -228,7 +228,7 @@ def searched(
     ----------
     missed : how far from gamma's first two terms the orbit of a number is after so many impacts; None: not known.
         The more impacts, the less the cut of gamma matters.
-    rough : the number in doubles. contact : order of the zero where gamma ends, and lambda there. digits : of the number.
+    rough : the number in doubles. contact : order of the zero where gamma ends, and lambda there. digits : wanted.
     """
     rate = float(contact[1].mid())
     forgotten = max(rate**2 / multiplier_across(contact[0], rate), 1e-300)  # by each impact, of the error in the cut

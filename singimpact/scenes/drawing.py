@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
+from singimpact.branches.border import BorderOrbit
 from singimpact.branches.branch import Branch
 from singimpact.branches.event_curve import EventCurve
 from singimpact.dynamics.basins import Basins
@@ -13,6 +14,7 @@ from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.sampling import Section
 from singimpact.inputs import refuse
 from singimpact.scenes.basins import draw_basins, draw_bifurcation
+from singimpact.scenes.border import draw_border
 from singimpact.scenes.branches import draw_branches, draw_event_curves
 from singimpact.scenes.orbit import draw_orbit, draw_section
 from singimpact.scenes.scene import Scene
@@ -21,6 +23,11 @@ from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 
 WIDE, HIGH, BRANCHES = (8.0, 4.0), (7.2, 5.2), (7.2, 4.8)  # inches
+ALONE: tuple[tuple[type, Callable[..., Any], tuple[float, float]], ...] = (
+    (Orbit, draw_orbit, WIDE), (Section, draw_section, HIGH), (Bifurcation, draw_bifurcation, WIDE),
+    (Basins, draw_basins, HIGH),
+)  # fmt: skip
+"""Things that are drawn one at a time: kind, function, size of new axes."""
 LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}
 
 
@@ -30,7 +37,8 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     Parameters
     ----------
     thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a branch or an event curve or a list of
-        them, a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
+        them, a border orbit, of which the cascade is drawn, a curve or a list of curves of one plane, or an impact
+        surface, of which Z and H are drawn.
     axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits.
     height : of branches: "v", velocities after the impacts, or "phase", their phases in periods. A branch of orbits
@@ -53,18 +61,15 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
         return draw_branches(several, _new_axes(BRANCHES) if axes is None else axes, height)
     if several and all(isinstance(each, EventCurve) for each in several):
         return draw_event_curves(several, _new_axes(BRANCHES) if axes is None else axes)
-    if isinstance(thing, Orbit):
-        return draw_orbit(thing, _new_axes() if axes is None else axes)
-    if isinstance(thing, Section):
-        return draw_section(thing, _new_axes(HIGH) if axes is None else axes)
-    if isinstance(thing, Bifurcation):
-        return draw_bifurcation(thing, _new_axes() if axes is None else axes)
-    if isinstance(thing, Basins):
-        return draw_basins(thing, _new_axes(HIGH) if axes is None else axes)
+    if isinstance(thing, BorderOrbit):
+        return draw_border(thing, *(_two_axes() if axes is None else (axes,)))
+    for kind, draw, size in ALONE:
+        if isinstance(thing, kind):
+            return draw(thing, _new_axes(size) if axes is None else axes)
     raise refuse(
         "thing to plot",
         type(thing).__name__,
-        "an orbit, a scene, basins, a bifurcation, branches, event curves, or curves",
+        "an orbit, a scene, basins, a bifurcation, branches, event curves, a border orbit, or curves",
     )
 
 
@@ -96,3 +101,11 @@ def _new_axes(size: tuple[float, float] = WIDE) -> Any:
     import matplotlib.pyplot
 
     return matplotlib.pyplot.figure(figsize=size, dpi=150, layout="constrained").add_subplot()
+
+
+def _two_axes() -> Any:
+    """Two axes that share their horizontal one, the upper one higher."""
+    import matplotlib.pyplot
+
+    figure = matplotlib.pyplot.figure(figsize=HIGH, dpi=150, layout="constrained")
+    return figure.subplots(2, sharex=True, height_ratios=(3, 2))
