@@ -9,7 +9,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.dynamics.orbit import orbit
+from singimpact.dynamics.orbit import Orbit, orbit
 from singimpact.flights.derivative import derivative
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
@@ -23,13 +23,17 @@ class SettledSettings:
 
     Parameters
     ----------
-    impacts : flown. most : impacts of the orbits that are looked for. near : two states nearer than this are one, in
-        periods and in units of the largest velocity.
+    impacts, rounds : flown at a time, and how often, where the orbit comes nearer to a periodic one.
+    most : impacts of the periodic orbits that are looked for.
+    near : two states nearer than this are one, in periods and in units of the largest velocity. nearing : those of an
+        orbit on its way to a periodic one are so near.
     """
 
-    impacts: int = 4000
+    impacts: int = 2000
+    rounds: int = 8
     most: int = 250
     near: float = 1e-10
+    nearing: float = 1e-5
 
 
 SETTINGS = SettledSettings()
@@ -50,24 +54,44 @@ def settled_orbit(osc: Oscillator, tau: Any, v: Any = 0) -> PeriodicOrbit | None
     1 2 0.533333333333
     """
     assert osc.period is not None
-    period = as_float(osc.period)
-    flown = orbit(osc, tau, v, impacts=SETTINGS.impacts)
-    if (lifted := flown.tau[flown.kind == "release"]).size > 1:
-        return _with_rest(osc, lifted, period)
-    if flown.tau.size <= SETTINGS.impacts or not (flown.kind[-2 * SETTINGS.most :] == "impact").all():
-        return None
+    period, n = as_float(osc.period), 0
+    for _ in range(SETTINGS.rounds):
+        flown = orbit(osc, tau, v, impacts=SETTINGS.impacts)
+        if (lifted := flown.tau[flown.kind == "release"]).size > 1:
+            return _with_rest(osc, lifted, period)
+        if flown.tau.size <= SETTINGS.impacts or not (flown.kind[-2 * SETTINGS.most :] == "impact").all():
+            return None
+        distance = _distances(flown, period)
+        # an orbit that turns as it comes nearer is sooner near after two rounds than after one: the first n counts
+        near = np.flatnonzero(distance < SETTINGS.nearing)
+        if not near.size:
+            return None
+        n = int(near[0]) + 1
+        if distance[n - 1] < SETTINGS.near:
+            return _closed(osc, flown, n, period)
+        tau, v = float(flown.tau[-1]), float(flown.v[-1])
+        tau -= period * np.floor(tau / period)
+    near = np.flatnonzero(distance < SETTINGS.near)
+    return _closed(osc, flown, int(near[0]) + 1, period) if near.size else None
+
+
+def _distances(flown: Orbit, period: float) -> Array:
+    """How far the last state is from the one so many impacts before, 1, 2, ..., phases apart from whole periods."""
     times, speeds = flown.tau, flown.v
+    before = slice(-2, -SETTINGS.most - 2, -1)
+    apart = (times[-1] - times[before]) / period
     fast = float(speeds[-SETTINGS.most :].max())
-    apart = (times[-1] - times[-2 : -SETTINGS.most - 2 : -1]) / period
-    near = np.abs(apart - np.rint(apart)) < SETTINGS.near
-    near &= np.abs(speeds[-2 : -SETTINGS.most - 2 : -1] - speeds[-1]) < SETTINGS.near * fast
-    if not near.any():
-        return None
-    n = int(np.argmax(near)) + 1
-    k, first = int(np.rint(apart[n - 1])), int(np.argmin(np.mod(times[-n:], period)))
+    return np.asarray(np.maximum(np.abs(apart - np.rint(apart)), np.abs(speeds[before] - speeds[-1]) / fast))
+
+
+def _closed(osc: Oscillator, flown: Orbit, n: int, period: float) -> PeriodicOrbit:
+    """The last n impacts as a periodic orbit, the one of the least phase first."""
+    times, speeds = flown.tau, flown.v
+    turns = (times[-1] - times[-1 - n]) / period
+    k, first = int(np.rint(turns)), int(np.argmin(np.mod(times[-n:], period)))
     at = slice(-2 * n + first, -n + first) if first else slice(-n, None)
     tau, v = times[at] - period * np.floor(times[at][0] / period), speeds[at]
-    miss = max(abs(float(apart[n - 1]) - k) * period, abs(float(speeds[-1] - speeds[-1 - n])))
+    miss = max(abs(float(turns) - k) * period, abs(float(speeds[-1] - speeds[-1 - n])))
     return PeriodicOrbit(tau, v, _multipliers(osc, tau, v), miss, np.int8(Status.hit), osc, n, k)
 
 
