@@ -58,6 +58,18 @@ def figures(place: Path) -> str:
     return "\n".join(parts)
 
 
+def border(place: Path) -> None:
+    """The picture of a border orbit's cascade."""
+    from matplotlib.figure import Figure
+
+    import singimpact as si
+    from singimpact.scenes.border import draw_border
+
+    (found,) = si.border_orbits(si.linear("2.8", "0.6", "0.3"), between=(0.47, 0.475), points=5)
+    axes = Figure(figsize=(7.2, 5.2), layout="constrained").subplots(2, sharex=True, height_ratios=(3, 2))
+    draw_border(found, *axes).figure.savefig(place / "border_cascade.png", dpi=110)
+
+
 def branches(place: Path) -> None:
     """The pictures of the page on branches."""
     from matplotlib.figure import Figure
@@ -136,6 +148,7 @@ def build(app: Any) -> None:
     branches(place)
     gallery(Path(app.srcdir) / "gallery.md", place)
     manifolds(place)
+    border(place)
 
 
 def _put(path: Path, text: str) -> None:

@@ -32,6 +32,7 @@ COMMANDS = {
     "basins": "where the orbits of a grid of states end, as a picture",
     "bifurcation": "where an orbit settles as a number of the model moves",
     "branch": "follow periodic orbits through grazes, folds and doublings",
+    "border": "where a released orbit returns onto gamma, and the cascade beside it",
     "events": "curves of grazes, folds and doublings in two numbers of the model",
     "bench": "run time against error, beside other tools",
     "stress": "errors towards the bad places, in units of rounding",

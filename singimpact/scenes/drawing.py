@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from singimpact.branches.border import BorderOrbit
 from singimpact.branches.branch import Branch
 from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.homoclinic import Crossings
@@ -16,6 +17,7 @@ from singimpact.dynamics.sampling import Section
 from singimpact.inputs import refuse
 from singimpact.scenes.basins import draw_basins
 from singimpact.scenes.bifurcation import draw_bifurcation
+from singimpact.scenes.border import draw_border
 from singimpact.scenes.branches import draw_branches, draw_event_curves
 from singimpact.scenes.manifolds import draw_crossings, draw_manifolds
 from singimpact.scenes.orbit import draw_orbit, draw_section
@@ -34,8 +36,8 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     Parameters
     ----------
     thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a branch or an event curve or a list of
-        them, W^s or W^u of a saddle or a list of them, the points where two cross, a curve or a list of curves of one
-        plane, or an impact surface, of which Z and H are drawn.
+        them, W^s or W^u of a saddle or a list of them, the points where two cross, a border orbit, of which the cascade
+        is drawn, a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
     axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
         manifolds on those of basins.
@@ -60,13 +62,15 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     several = list(thing) if isinstance(thing, list | tuple) else [thing]
     if several and all(isinstance(each, Branch) for each in several):
         return draw_branches(several, _new_axes(BRANCHES) if axes is None else axes, height)
+    if isinstance(thing, BorderOrbit):
+        return draw_border(thing, *(_two_axes() if axes is None else (axes,)))
     for kind, size, draw in TOGETHER:
         if several and all(isinstance(each, kind) for each in several):
             return draw(several, _new_axes(size) if axes is None else axes)
     raise refuse(
         "thing to plot",
         type(thing).__name__,
-        "an orbit, a scene, basins, a bifurcation, branches, event curves, manifolds, or curves",
+        "an orbit, a scene, basins, a bifurcation, branches, event curves, manifolds, border orbits, or curves",
     )
 
 
@@ -98,6 +102,14 @@ def _new_axes(size: tuple[float, float] = WIDE) -> Any:
     import matplotlib.pyplot
 
     return matplotlib.pyplot.figure(figsize=size, dpi=150, layout="constrained").add_subplot()
+
+
+def _two_axes() -> Any:
+    """Two axes that share their horizontal one, the upper one higher."""
+    import matplotlib.pyplot
+
+    figure = matplotlib.pyplot.figure(figsize=HIGH, dpi=150, layout="constrained")
+    return figure.subplots(2, sharex=True, height_ratios=(3, 2))
 
 
 Drawer = Callable[[Any, Any], Any]
