@@ -13,8 +13,8 @@ def notebooks(request):
     }
 
 
-def test_six_stories_in_order(notebooks):
-    assert [name.partition("_")[0] for name in notebooks] == ["1", "2", "3", "4", "5", "6"]
+def test_seven_stories_in_order(notebooks):
+    assert [name.partition("_")[0] for name in notebooks] == ["1", "2", "3", "4", "5", "6", "7"]
 
 
 def test_no_outputs(notebooks):
