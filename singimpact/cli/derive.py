@@ -13,7 +13,7 @@ from singimpact.progress import ProgressLine
 from singimpact.store import folder
 
 if TYPE_CHECKING:
-    from singimpact.documents.series import Asked
+    from singimpact.documents.series import SeriesRequest
     from singimpact.documents.steps import Mark, Section
 
 FORMATS = ("latex", "pdf", "markdown", "json", "sympy", "numpy")
@@ -57,7 +57,7 @@ def command(
     if form in ("sympy", "numpy") or order is not None or model is not None:
         if names:
             raise InputError(f"{names[0]} is a section of the derivations: a series takes --order and --model alone")
-        _series(_asked(order, model, tau, keep), form, output)
+        _series(_request(order, model, tau, keep), form, output)
         return
     if tau is not None or keep:
         raise InputError("--tau and --keep belong to --model")
@@ -79,18 +79,18 @@ def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
         _write(told, marks, form, output)
 
 
-def _asked(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> Asked:
-    from singimpact.documents.series import Asked
+def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> SeriesRequest:
+    from singimpact.documents.series import SeriesRequest
 
     given = None
     if model is not None:
         from singimpact.impact_oscillator import read_model
 
         given = read_model(model)
-    return Asked(6 if order is None else order, given, tau, keep)
+    return SeriesRequest(6 if order is None else order, given, tau, keep)
 
 
-def _series(asked: Asked, form: str, output: str | None) -> None:
+def _series(request: SeriesRequest, form: str, output: str | None) -> None:
     """The series as text to standard output, or as files in the folder."""
     from singimpact.documents.formats import as_text
     from singimpact.documents.series import series_section, series_text
@@ -98,7 +98,7 @@ def _series(asked: Asked, form: str, output: str | None) -> None:
     from singimpact.store import written
 
     if form in ("sympy", "numpy", "json"):
-        text = series_text(asked, form)
+        text = series_text(request, form)
         if output is None:
             click.echo(text, nl=False)
             return
@@ -106,7 +106,7 @@ def _series(asked: Asked, form: str, output: str | None) -> None:
         with written(Path(output) / name) as draft:
             draft.write_bytes(text.encode())
         return
-    told = [NOTATION, series_section(asked)]
+    told = [NOTATION, series_section(request)]
     if output is None:
         click.echo(as_text(told, {}, form), nl=False)
     else:
