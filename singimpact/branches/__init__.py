@@ -1,10 +1,10 @@
-"""Periodic orbits and what becomes of them as numbers of the model move: branches through grazes, and their events.
+"""Periodic orbits, their branches over a parameter through grazes, and the events of branches.
 
-Not here: flights after flights that need not close (`dynamics`), the flights of a family of models (`flights.family`),
+Not here: orbits that are not periodic (`dynamics`), the flights of a family of models (`flights.family`),
 pictures (`scenes`).
 Files: `closing` (the conditions, smooth through a graze; the lowest place of a flight), `free` (those of an orbit
-without impact), `orbits` (what an orbit is), `solutions` (the orbit at a point), `one_impact` (one impact, linear:
+without impact), `orbits` (the type of an orbit), `solutions` (the orbit at a point), `one_impact` (one impact, linear:
 closed form), `starts` (Newton's method from many starts), `resting` (orbits without impact, and with rest), `digits`,
-`periodic` (what a user asks), `continuation` (pseudo-arclength), `events`, `switching`
-(the other branches at an event), `branch`, `kept` (on disk), `event_curve` (events in two numbers).
+`periodic` (the search for all orbits), `continuation` (pseudo-arclength), `events`, `switching`
+(the other branches at an event), `branch`, `kept` (on disk), `event_curve` (events in two parameters).
 """

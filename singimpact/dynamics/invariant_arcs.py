@@ -1,8 +1,8 @@
 """Invariant curves beyond their series: gamma and the stable manifolds W^s_tau, grown by the inverse of the map.
 
-A fundamental piece lies where the series is good; its inverse images follow one another without a gap, and errors
-across the curve shrink.  A piece is a function of one number s; where two neighbours are torn apart, the flight run
-back grazes between them, and the curve is split there by its hit history.
+A fundamental piece lies where the series is accurate. Its inverse images follow one another without a gap, and errors
+across the curve shrink. A piece is a function of one parameter s. At a discontinuity the backward flight grazes, and
+the curve is split there by its hit history.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """How curves are grown; lengths are in resolutions of the window."""
+    """How curves are grown; lengths are in units of the resolution of the window."""
 
     order: int = 12  # of the series
     trust: float = 1e-13  # relative truncation error of the series on the fundamental piece
     tolerance: float = 1e-13  # of a flight: thousands are flown, and more digits change no curve visibly
-    start: int = 100  # resolutions between two points of the fundamental piece
-    least: int = 4  # points of the fundamental piece
-    longest: float = 8.0  # a chord
+    start: int = 100  # distance of two points of the fundamental piece
+    least: int = 4  # points of the fundamental piece at least
+    longest: float = 8.0  # maximal chord length
     bend: float = 0.5  # deviation of a vertex from the chord of its neighbours that is refined
-    jump: float = 8.0  # a step between neighbours in s that are torn apart
+    jump: float = 8.0  # distance of neighbours in s beyond which there is a discontinuity between them
     graze: float = 0.01  # an arc ends at a graze like a square root: its end is located to within this length
-    most: int = 4000  # points of one generation
-    distinct: float = 0.25  # a piece nearer than this to the generation before is the end of the growth
+    most: int = 4000  # points of one generation at most
+    distinct: float = 0.25  # distance from the generation before below which the growth ends
     generations: int = 60  # inverse images at most
 
 
@@ -59,7 +59,8 @@ def held(window: Window, points: Array) -> Array:
 
 
 def _closest(window: Window) -> float:
-    """Neighbours in s nearer than this share of a piece, still far apart in the window, are torn."""
+    """The smallest step in s, as a part of a piece: neighbours this close, but far apart in the window, lie beside
+    a discontinuity. The square, because an arc ends at a graze like a square root."""
     return float((SETTINGS.graze * window.resolution) ** 2)
 
 
@@ -140,13 +141,13 @@ def stable_manifold(model: Oscillator, window: Window, tau: Any) -> list[Curve]:
         raise refuse("tau", tau, "a time with a_c < 0: chatter comes to rest there, and W^s_tau exists")
     series, _ = arc_in_numbers(SETTINGS.order, 0, model, tau)
     size = series.valid_within(SETTINGS.trust)
-    # along the fibre the map contracts by r to first order; the exact image bounds the fundamental piece
+    # along the fibre the map contracts by r to first order; the computed image bounds the fundamental piece
     landed = model_step(model, np.array([[foot - size, float(series(-size))]]))[0, 0] - foot
     return _grown(model, window, foot, series, -size, float(landed))
 
 
 def _curved(model: Oscillator, tau: Any) -> str:
-    """Whether the point is a tangency or a swan; a swan is asked for first, for a_c vanishes there too."""
+    """Whether the point is a tangency or a swan. A swan is tested first, because a_c vanishes there too."""
     order = points_of(model, tau)[0]
     if order == 0:
         raise InputError(f"tau = {tau}: a_c does not vanish there, so that no invariant curve ends there")
@@ -176,7 +177,7 @@ def model_step(model: Oscillator, points: Array) -> Array:
 
 
 def before(model: Oscillator, points: Array) -> Array:
-    """The inverse map on points, shape (n, 2); nan where nothing lands there."""
+    """The inverse map on points, shape (n, 2); nan where no flight ends there."""
     found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
     at, v_at = points[known].T
     if names_in(model.restitution):
@@ -212,9 +213,9 @@ def _grown(
 
 
 def _adds(piece: Piece, before: list[Piece], window: Window) -> bool:
-    """Whether a piece is resolved from those of one generation before, so that growing it on adds something new.
+    """Whether a piece is farther from the generation before than the resolution, so that its images add to the picture.
 
-    Loops of stable manifolds accumulate on gamma: each generation has one more, soon nearer than a line is wide.
+    Loops of stable manifolds accumulate on gamma: each generation adds one, soon closer than the width of a line.
     """
     seen = piece.points[held(window, piece.points)] / window.sides
     gaps = [distances(seen, old.points / window.sides) for old in before]
@@ -224,7 +225,7 @@ def _adds(piece: Piece, before: list[Piece], window: Window) -> bool:
 def _images(
     model: Oscillator, window: Window, start: Callable[[Array], Array], piece: Piece, generation: int
 ) -> list[Piece]:
-    """The inverse image of a piece, with points added to the resolution, in stretches without a tear."""
+    """The inverse image of a piece, refined to the resolution, in parts without a discontinuity."""
 
     def image(s: Array) -> Array:
         points = start(s)
@@ -243,7 +244,7 @@ def _images(
 
 
 def _refined(s: Array, points: Array, image: Callable[[Array], Array], window: Window) -> tuple[Array, Array]:
-    """Midpoints put in until chords are short or straight enough for the resolution, or their ends close in s."""
+    """Insert midpoints until every chord is short or straight enough for the resolution, or its ends are close in s."""
     least = _closest(window) * np.ptp(s)
     for _ in range(60):
         wanted = _too_coarse(points, window) & (np.abs(np.diff(s)) > least)
@@ -256,7 +257,7 @@ def _refined(s: Array, points: Array, image: Callable[[Array], Array], window: W
 
 
 def _too_coarse(points: Array, window: Window) -> Array:
-    """Chords too long for the resolution, or at a bend beyond it; or with one end that is not known."""
+    """Chords that are too long, or adjacent to a vertex with too large a deviation, or with one end that is nan."""
     known: Array = np.asarray(np.isfinite(points).all(axis=1))
     near: Array = np.logical_or(held(window, points), ~known)
     step = np.diff(points, axis=0) / window.sides
@@ -272,7 +273,7 @@ def _too_coarse(points: Array, window: Window) -> Array:
 
 
 def _joined(pieces: list[Piece], window: Window) -> list[Curve]:
-    """Pieces that follow one another as curves, cut to the window."""
+    """Curves made of consecutive pieces, cut to the window."""
     chains: list[list[Piece]] = []
     for piece in pieces:
         for chain in chains:
