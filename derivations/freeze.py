@@ -12,7 +12,8 @@ from pathlib import Path
 from singimpact.documents.formats import as_files
 from singimpact.documents.rendering import Marks
 from singimpact.documents.steps import Section, equations_of
-from singimpact.paper.claims.index import PLACE, reread, written_index
+from singimpact.paper.claims.beyond import BEYOND
+from singimpact.paper.claims.index import BEYOND_PLACE, PLACE, reread, written_index
 from singimpact.paper.sections.derivations import sections
 from singimpact.paper.sections.marks import marks_of
 from singimpact.store import folder, written
@@ -48,8 +49,8 @@ def statements() -> dict[Path, bytes]:
 
 
 def claim_index() -> dict[Path, bytes]:
-    """The index of the claims, from the sections that they are written in."""
-    return {PLACE: written_index().encode()}
+    """The indices of the paper's claims and of those beyond it, from the files that they are written in."""
+    return {PLACE: written_index().encode(), BEYOND_PLACE: written_index(BEYOND).encode()}
 
 
 def generated() -> dict[Path, bytes]:

@@ -12,8 +12,11 @@ from singimpact.status import Status as Status
 if TYPE_CHECKING:
     from singimpact import theory as theory
     from singimpact.bench.selftest.run import selftest as selftest
+    from singimpact.branches.border import border_orbits as border_orbits
     from singimpact.branches.branch import branch as branch
     from singimpact.branches.event_curve import event_curve as event_curve
+    from singimpact.branches.homoclinic import homoclinic_points as homoclinic_points
+    from singimpact.branches.manifold import manifold as manifold
     from singimpact.cases import sweep as sweep
     from singimpact.contact.points import tangency_points as tangency_points
     from singimpact.dynamics.lyapunov import lyapunov as lyapunov
@@ -50,8 +53,11 @@ _ROOMS = {
 }
 _HOMES = {
     "ImpactOscillator": "singimpact.impact_oscillator",
+    "border_orbits": "singimpact.branches.border",
     "branch": "singimpact.branches.branch",
     "event_curve": "singimpact.branches.event_curve",
+    "homoclinic_points": "singimpact.branches.homoclinic",
+    "manifold": "singimpact.branches.manifold",
     "linear": "singimpact.impact_oscillator",
     "universal": "singimpact.impact_oscillator",
     "lyapunov": "singimpact.dynamics.lyapunov",

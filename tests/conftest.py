@@ -1,4 +1,8 @@
-"""The command in this process, with what it writes and the code it leaves with."""
+"""The command in this process, with what it writes and the code it leaves with; how much work a call is."""
+
+import sys
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -17,3 +21,25 @@ def reference():
     from singimpact.bench.problems import values
 
     return values()
+
+
+@pytest.fixture
+def work_of() -> Callable[[Callable[[], Any]], int]:
+    """How many functions a call runs, of Python and of C: on a busy machine the same as on a quiet one."""
+
+    def counted(call: Callable[[], Any]) -> int:
+        count = 0
+
+        def watch(_frame: Any, event: str, _argument: Any) -> None:
+            nonlocal count
+            count += event in ("call", "c_call")
+
+        before = sys.getprofile()
+        sys.setprofile(watch)
+        try:
+            call()
+        finally:
+            sys.setprofile(before)
+        return count
+
+    return counted

@@ -23,7 +23,8 @@ def site(request, tmp_path_factory):
 @pytest.mark.slow
 def test_pages_are_there(site):
     pages = ["index", "tutorial", "gallery", "how_to", "reference", "conventions", "trust", "stress", "benchmarks"]
-    ideas = ["index", "impact_surface", "regular", "tangency", "swan", "unfolding", "one_structure", "branches"]
+    ideas = ["index", "impact_surface", "regular", "tangency", "swan", "unfolding", "one_structure"]
+    ideas += ["branches", "manifolds"]
     computed = ["errata", "claims", "commands", "figures"]
     pages += ["changelog", "citation", "bibliography"]
     pages += [f"explanation/{name}" for name in ideas] + [f"computed/{name}" for name in computed]

@@ -39,6 +39,8 @@ print(found.sample([0.1]).x, found.section("pi/4").xdot, found.end, osc.launch(1
 print(si.lyapunov(osc, 1.2, 0.1, impacts=10).exponents, si.lyapunov(osc, 1.2, 0.1).superstable)
 print(si.shaken_wall("0", "-9.81", "sin(7*t)/5", "1/2").back(0.1).xdot)
 print(si.bifurcation(osc, "damping", (0.2, 0.3), 2, direction="both").direction)
+moved: si.ImpactOscillator = osc.replace(clearance="0.4")
+print(moved.release(1.2) + 1.0, moved.impact_map(1.2, 0.1).v, si.theory.grazing_map(2, model=osc, at=0).xdot[1])
 print(osc.periodic(1, 1)[0].multipliers, osc.flight(1.2, 0.1, 0.05).x, osc.inverse_map(1.2, 0.1).tau)
 """
 

@@ -58,6 +58,18 @@ def figures(place: Path) -> str:
     return "\n".join(parts)
 
 
+def border(place: Path) -> None:
+    """The picture of a border orbit's cascade."""
+    from matplotlib.figure import Figure
+
+    import singimpact as si
+    from singimpact.scenes.border import draw_border
+
+    (found,) = si.border_orbits(si.linear("2.8", "0.6", "0.3"), between=(0.47, 0.475), points=5)
+    axes = Figure(figsize=(7.2, 5.2), layout="constrained").subplots(2, sharex=True, height_ratios=(3, 2))
+    draw_border(found, *axes).figure.savefig(place / "border_cascade.png", dpi=110)
+
+
 def branches(place: Path) -> None:
     """The pictures of the page on branches."""
     from matplotlib.figure import Figure
@@ -112,6 +124,19 @@ def gallery(page: Path, place: Path) -> None:
         figure.savefig(place / f"gallery_{name}.png", dpi=110)
 
 
+def manifolds(place: Path) -> None:
+    """The pictures of the page on manifolds."""
+    import singimpact as si
+
+    osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+    saddle = next(orbit for orbit in osc.periodic(3, 3) if not orbit.stable)
+    both = [si.manifold(saddle, stable, v=1) for stable in (True, False)]
+    over = si.plot(both, axes=si.plot(si.basins(osc, ((0, "2*pi/2.8"), (0, 1)), 600)))
+    over.figure.savefig(place / "manifold_basins.png", dpi=110)
+    tangle = si.plot(si.homoclinic_points(si.linear("2.8", 0, "0.8").periodic(1, 1)[0]))
+    tangle.figure.savefig(place / "manifold_tangle.png", dpi=110)
+
+
 def build(app: Any) -> None:
     """Write the pages into the folder `computed` beside those that are written by hand."""
     from singimpact.store import folder
@@ -122,6 +147,8 @@ def build(app: Any) -> None:
         _put(place / name, page())
     branches(place)
     gallery(Path(app.srcdir) / "gallery.md", place)
+    manifolds(place)
+    border(place)
 
 
 def _put(path: Path, text: str) -> None:

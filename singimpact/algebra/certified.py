@@ -29,17 +29,17 @@ class Certified:
     digits: int
 
     def __str__(self) -> str:
-        return _text(self.value, self.digits)
+        return text_of(self.value, self.digits)
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({self} +- {_text(self.radius, 2)})"
+        return f"{type(self).__name__}({self} +- {text_of(self.radius, 2)})"
 
     def as_dict(self) -> dict[str, str]:
         """value and radius as decimal text; the radius covers the rounding of the text, which has two more digits."""
         with bits_at(64) as mp:
             value, radius = mp.convert(self.value), mp.convert(self.radius)
             radius = 1.01 * (radius + abs(value) * mp.mpf(10) ** (-self.digits - 1))
-            return {"value": _text(self.value, self.digits + 2), "radius": _text(radius, 3)}
+            return {"value": text_of(self.value, self.digits + 2), "radius": text_of(radius, 3)}
 
     def contains(self, number: Any) -> bool:
         """Whether a number, taken exactly, lies within the radius.
@@ -56,7 +56,8 @@ class Certified:
         return abs(exact("value", self.value) - exact("number", number)) <= exact("radius", self.radius)
 
 
-def _text(value: Any, digits: int) -> str:
+def text_of(value: Any, digits: int) -> str:
+    """An mpmath number as decimal text of so many significant digits, whatever the precision that is set."""
     from mpmath.libmp import to_str
 
     return str(to_str(value._mpf_, digits, strip_zeros=False))

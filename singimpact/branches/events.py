@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.switching import others
+from singimpact.branches.switching import graze_time, others
+from singimpact.inputs import refuse
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,13 @@ class Event:
             at a hidden impact the orbit with an impact there. Empty at folds and tori.
         """
         return others(self.kind, self.orbit, self.over, self.parameter)
+
+    @property
+    def graze_time(self) -> float:
+        """When the orbit touches the wall, of a graze or a hidden impact: `at` of `singimpact.theory.grazing_map`."""
+        if self.kind not in ("graze", "hidden impact"):
+            raise refuse("event", self.kind, "a graze or a hidden impact")
+        return graze_time(self.kind, self.orbit)
 
     def __repr__(self) -> str:
         which = f" of impact {self.impact + 1}" if self.kind == "graze" and self.orbit.n else ""

@@ -72,13 +72,28 @@ def _with_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
     if n == 0:
         return _closed(orbit, 1, np.array([times[0], 0.0]))
-    closing = closing_of(orbit.oscillator, n, orbit.k, ())
-    # the flight that touches is the one with the least height, wherever the orbit begins
-    heights = closing.heights(np.concatenate([times, speeds]))
-    flight = int(np.argmin([abs(height) for _, height in heights]))
-    time = heights[flight][0]
+    flight, time = _touching_flight(orbit)
     return _closed(orbit, n + 1, np.concatenate([np.insert(times, flight + 1, times[flight] + time),
                                                  np.insert(speeds, flight + 1, 0.0)]))  # fmt: skip
+
+
+def _touching_flight(orbit: PeriodicOrbit) -> tuple[int, float]:
+    """The flight of a hidden impact and the time from its launch: the one with the least height, wherever it begins."""
+    closing = closing_of(orbit.oscillator, int(orbit.n), orbit.k, ())
+    heights = closing.heights(_point(orbit))
+    flight = int(np.argmin([abs(height) for _, height in heights]))
+    return flight, heights[flight][0]
+
+
+def graze_time(kind: str, orbit: PeriodicOrbit) -> float:
+    """The time at which an orbit touches the wall: see `events.Event.graze_time`."""
+    times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
+    if not orbit.n:
+        return float(times[0])
+    if kind == "graze":
+        return float(times[np.argmin(np.abs(speeds))])
+    flight, time = _touching_flight(orbit)
+    return float(times[flight] + time)
 
 
 def _doubled(orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:

@@ -32,14 +32,15 @@ def listed(as_json: bool, output: str | None) -> None:
 @output_options
 def show(name: str, as_json: bool, output: str | None) -> None:
     """One claim: the printed statement, the verdict, the evidence, the claims it rests on and those that rest on it."""
-    from singimpact.paper.claims import CLAIMS, INDEX, run, select
+    from singimpact.paper.claims import BEYOND, CLAIMS, INDEX, run, select
     from singimpact.paper.claims.graph import dependants
 
+    known = INDEX | BEYOND
     verdict = run(select([name]), kept=True)[-1]
     data: dict[str, Any] = verdict.as_dict() | {
         "mutants": len(CLAIMS[name].mutants),
-        "rested_on_by": [other for other, entry in INDEX.items() if name in entry.rests_on],
-        "falls_with_it": dependants(INDEX, name),
+        "rested_on_by": [other for other, entry in known.items() if name in entry.rests_on],
+        "falls_with_it": dependants(known, name),
     }
     emit(
         as_json_text(data) if as_json else "\n".join(f"{key:14} {_told(value)}" for key, value in data.items()), output

@@ -32,6 +32,7 @@ COMMANDS = {
     "basins": "the attractor of each state of a grid, as a picture",
     "bifurcation": "settled orbits for many values of a parameter, as a picture",
     "branch": "follow periodic orbits through grazes, folds and doublings",
+    "border": "where a released orbit returns onto gamma, and the cascade beside it",
     "events": "curves of grazes, folds and doublings in two parameters",
     "bench": "run time against error, compared with other tools",
     "stress": "errors near singular points, in units of the rounding error",

@@ -17,9 +17,10 @@ COLOURS = {"proved": "green", "certified": "green", "corrected": "yellow", "open
 
 @click.command(short_help="check every claim of the paper and print its verdict")
 @click.argument("ids", metavar="[ID]...", nargs=-1)
+@click.option("--beyond", is_flag=True, help="The claims that are not in the paper, and those they rest on.")
 @output_options
 @click.pass_context
-def command(ctx: click.Context, ids: tuple[str, ...], as_json: bool, output: str | None) -> None:
+def command(ctx: click.Context, ids: tuple[str, ...], beyond: bool, as_json: bool, output: str | None) -> None:
     """Derive, prove and cross-check every claim, or the named ones and those that they rest on.
 
     Prints the misprints at the end. The exit code is 1 if a claim ends in `error`.
@@ -29,7 +30,9 @@ def command(ctx: click.Context, ids: tuple[str, ...], as_json: bool, output: str
     with ProgressLine(delay=0.2) as line:
         done = iter(range(1, sys.maxsize))
         found = verify(
-            ids or None, on_start=lambda claim, _, total: line.show(next(done), total, f"{claim.id}  {claim.title}")
+            ids or None,
+            on_start=lambda claim, _, total: line.show(next(done), total, f"{claim.id}  {claim.title}"),
+            beyond=beyond,
         )
     emit(as_json_text(found.as_dict()) if as_json else found.text(_width(output), _painter(output)), output)
     ctx.exit(found.exit_code)

@@ -22,12 +22,15 @@ class AttractorSettings:
     catch : how near to an attractor an orbit is looked upon as caught, relative, when the corners of that neighbourhood
         are seen to come in; a tenth of it is tried next, down to `close`.
     turns : of the attractor, in which they must come into half of it.
+    spiral : turns of an orbit of several impacts after which it is looked again whether fewer close it. A state that
+        still spirals in comes back nearer after two turns than after one, where a multiplier is near +-i.
     """
 
     most_impacts: int = 8
     close: float = 1e-6
     catch: float = 1e-2
     turns: int = 6
+    spiral: int = 30
 
 
 SETTINGS = AttractorSettings()
@@ -44,6 +47,20 @@ class Attractor:
 
 
 def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
+    """(n, k) of states that return to themselves, else OTHER; of the orbit they converge to, if its n is smaller."""
+    codes = _returns(model, tau, v, fast)
+    several = np.flatnonzero(codes // PLACES > 1)
+    if several.size:
+        impacts = SETTINGS.spiral * int(codes[several].max() // PLACES)
+        ends = iterate(model, tau[several], v[several], impacts)
+        later = _returns(model, ends.tau, ends.v, fast)
+        (n, k), (of, around) = divmod(codes[several], PLACES), divmod(later, PLACES)
+        fewer = (ends.status == 0) & (later != OTHER) & (of < n) & (of * k == n * around)
+        codes[several[fewer]] = later[fewer]
+    return codes
+
+
+def _returns(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
     """(n, k) of states that return to themselves, else OTHER."""
     assert model.period is not None
     period = as_float(model.period)

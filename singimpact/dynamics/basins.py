@@ -95,6 +95,7 @@ class Basins:
     ----------
     tau, v : the axes. attractors : the classes that occur. codes : shape (len(v), len(tau)), indices into `attractors`.
     first_chatter_completes : of the same shape, bool: the first chatter of the orbit completes.
+    boundary : points between neighbouring states of different class.
     """
 
     model: Oscillator
@@ -115,6 +116,15 @@ class Basins:
             for name, each in zip(names, self.attractors, strict=True)
         ]
         return [(int(i), told[i], float(counts[i]) / self.codes.size) for i in order]
+
+    @property
+    def boundary(self) -> Array:
+        """Places (tau, v) half way between neighbouring states of two classes, shape (m, 2)."""
+        row, column = np.nonzero(self.codes[:, 1:] != self.codes[:, :-1])
+        beside = np.stack([(self.tau[1:] + self.tau[:-1])[column] / 2, self.v[row]], axis=1)
+        row, column = np.nonzero(self.codes[1:] != self.codes[:-1])
+        above = np.stack([self.tau[column], (self.v[1:] + self.v[:-1])[row] / 2], axis=1)
+        return np.concatenate([beside, above])
 
     def __repr__(self) -> str:
         shares = ", ".join(f"{name} {100 * share:.3g} %" for _, name, share in self.classes[:4])

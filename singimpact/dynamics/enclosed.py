@@ -60,7 +60,7 @@ def enclosable(osc: Oscillator) -> bool:
     return linear_form(osc) is not None and not names_in(osc.restitution) and as_float(osc.restitution) < 1
 
 
-def _with_more_bits(
+def with_more_bits(
     attempt: Callable[[LinearFlow], Found | None], osc: Oscillator, digits: int, expected: int = 0
 ) -> Found | None:
     """attempt(flow) at growing precision, from that which is expected to be enough, until it decides."""
@@ -101,7 +101,7 @@ def chatter_limit(osc: Oscillator, states: States, digits: int) -> EnclosedLimit
         if states.rest[0].sign <= 0:
             return None
         removed = states.rest[0].order + 2
-    return _with_more_bits(lambda flow: _chatter(flow, tau, v, removed, digits), osc, digits)
+    return with_more_bits(lambda flow: _chatter(flow, tau, v, removed, digits), osc, digits)
 
 
 def _chatter(flow: LinearFlow, tau: Expression, v: Expression, removed: int, digits: int) -> EnclosedLimit | None:
@@ -163,16 +163,19 @@ def threshold(osc: Oscillator, tau: Expression, rough: Any, end: ContactZero, di
             near = newton(flow, tau, float(rough), guide, digits)
             lost = 0 if near is None else spread(flow, tau, near, guide, digits)
     if near is None:
-        near = _with_more_bits(lambda flow: _searched(_Gamma(osc, flow, end), tau, rough, digits), osc, digits)
+        near = with_more_bits(lambda flow: _searched(_Gamma(osc, flow, end), tau, rough, digits), osc, digits)
     if near is None:
         return None
     margin = abs(near) / (4 * 10**digits)
 
-    def side(v: Fraction) -> int | None:
-        return _with_more_bits(lambda flow: _side(flow, end.moved(flow.balls.bits), tau, v), osc, digits, lost)
+    def side_of(v: Fraction) -> int | None:
+        def attempt(flow: LinearFlow) -> int | None:
+            return side(flow, end.moved(flow.balls.bits), evaluate(tau, {}, flow.balls), flow.number(v))
+
+        return with_more_bits(attempt, osc, digits, lost)
 
     low, high = near - margin, near + margin
-    return from_ends(low, high, digits) if side(low) == -1 and side(high) == 1 else None
+    return from_ends(low, high, digits) if side_of(low) == -1 and side_of(high) == 1 else None
 
 
 def end_of_gamma(osc: Oscillator, end: ContactZero, bits: int) -> tuple[Any, Any, Any]:
@@ -211,15 +214,30 @@ class _Gamma:
 
 
 def _searched(gamma: _Gamma, tau: Expression, rough: Any, digits: int) -> Fraction | None:
-    """A v near gamma, by secants: nothing is proved here.  The more impacts, the less the cut of gamma matters."""
-    start, rate = evaluate(tau, {}, gamma.flow.balls), float(gamma.rate.mid())
-    forgotten = max(rate**2 / multiplier_across(gamma.order, rate), 1e-300)  # by each impact, of the error in the cut
+    """A v near gamma, by secants: nothing is proved here."""
+    start, balls = evaluate(tau, {}, gamma.flow.balls), gamma.flow.balls
+    return searched(partial(gamma.missed, start), Fraction(float(rough)), (gamma.order, gamma.rate), digits, balls)
+
+
+def searched(
+    missed: Callable[[int, Fraction], Any], rough: Fraction, contact: tuple[int, Any], digits: int, balls: Balls
+) -> Fraction | None:
+    """A positive number at which an orbit runs along gamma, by secants; None where these balls do not give it.
+
+    Parameters
+    ----------
+    missed : how far from gamma's first two terms the orbit of a number is after so many impacts; None: not known.
+        The more impacts, the less the cut of gamma matters.
+    rough : the number in doubles. contact : order of the zero where gamma ends, and lambda there. digits : wanted.
+    """
+    rate = float(contact[1].mid())
+    forgotten = max(rate**2 / multiplier_across(contact[0], rate), 1e-300)  # by each impact, of the error in the cut
     most = ceil((digits + 3) * log(10) / -log(forgotten))
-    v, impacts, step = Fraction(float(rough)), ORBITS.stage, Fraction(1, 10**12)
+    v, impacts, step = rough, ORBITS.stage, Fraction(1, 10**12)
     while True:
         impacts = min(impacts, most)
         reached = max(Fraction(forgotten**impacts), Fraction(1, 10 ** (digits + 3))) / 10
-        found = _secant(partial(gamma.missed, start, impacts), v, v * step, v * reached, gamma.flow.balls)
+        found = _secant(partial(missed, impacts), v, v * step, v * reached, balls)
         if found is None or impacts == most:
             return found
         impacts, step = ceil(impacts * ORBITS.stages), max(abs(found - v) / v / 10**4, Fraction(1, 10 ** (2 * digits)))
@@ -245,9 +263,13 @@ def _secant(
     return other
 
 
-def _side(flow: LinearFlow, end: Any, tau: Expression, v: Fraction) -> int | None:
-    """-1 when chatter from (tau, v) completes before the end of gamma, 1 when a flight passes it, None undecided."""
-    time, speed = evaluate(tau, {}, flow.balls), flow.number(v)
+def side(flow: LinearFlow, end: Any, time: Any, speed: Any) -> int | None:
+    """-1 when chatter from a state completes before the end of gamma, 1 when a flight passes it, None undecided.
+
+    Parameters
+    ----------
+    end : of gamma. time, speed : the state. All are balls.
+    """
     for _ in range(ORBITS.impacts):
         if not time < end or not speed > 4 * speed.rad():
             return None

@@ -1,13 +1,11 @@
 """Invariant curves beyond their series: gamma and the stable manifolds W^s_tau, grown by the inverse of the map.
 
-A fundamental piece lies where the series is accurate. Its inverse images follow one another without a gap, and errors
-across the curve shrink. A piece is a function of one parameter s. At a discontinuity the backward flight grazes, and
-the curve is split there by its hit history.
+A fundamental piece lies where the series is accurate; its inverse images follow one another (`growth`), and errors
+across the curve shrink.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,13 +14,15 @@ import numpy as np
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import tangency_points
+from singimpact.dynamics.growth import SETTINGS as GROWTH
+from singimpact.dynamics.growth import Carried, Piece, adds, held
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards, inverse_map
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-from singimpact.surface.curve import STATES, Curve, Mark, Window, distances
+from singimpact.surface.curve import STATES, Curve, Mark, Window
 from singimpact.theory.contact_points import points_of
 from singimpact.theory.formulas import arc_in_numbers
 from singimpact.theory.power_series import PowerSeries
@@ -31,46 +31,16 @@ Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
-class GrowthSettings:
-    """How curves are grown; lengths are in units of the resolution of the window."""
+class ArcSettings:
+    """The series that a curve begins with, and its flights."""
 
     order: int = 12  # of the series
     trust: float = 1e-13  # relative truncation error of the series on the fundamental piece
     tolerance: float = 1e-13  # of a flight: thousands are flown, and more digits change no curve visibly
-    start: int = 100  # distance of two points of the fundamental piece
-    least: int = 4  # points of the fundamental piece at least
-    longest: float = 8.0  # maximal chord length
-    bend: float = 0.5  # deviation of a vertex from the chord of its neighbours that is refined
-    jump: float = 8.0  # distance of neighbours in s beyond which there is a discontinuity between them
-    graze: float = 0.01  # an arc ends at a graze like a square root: its end is located to within this length
-    most: int = 4000  # points of one generation at most
-    distinct: float = 0.25  # distance from the generation before below which the growth ends
-    generations: int = 60  # inverse images at most
 
 
-SETTINGS = GrowthSettings()
+SETTINGS = ArcSettings()
 CURVED = {"tangency": 1, "swan": 2}  # contact orders of the points where gamma may end
-
-
-def held(window: Window, points: Array) -> Array:
-    """Which points lie in the window; v has no lower end, for no state has v < 0."""
-    tau, v = points.T
-    return np.asarray((tau >= window.x[0]) & (tau <= window.x[1]) & (v <= window.y[1]))
-
-
-def _closest(window: Window) -> float:
-    """The smallest step in s, as a part of a piece: neighbours this close, but far apart in the window, lie beside
-    a discontinuity. The square, because an arc ends at a graze like a square root."""
-    return float((SETTINGS.graze * window.resolution) ** 2)
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A stretch of one generation: parameters s in order, their points, how often the map takes them to the start."""
-
-    s: Array
-    points: Array
-    generation: int
 
 
 def grown_gamma(model: Oscillator, window: Window, tau: Any = None) -> list[Curve]:
@@ -165,26 +135,31 @@ def _foot(model: Oscillator, tau: Any, at: str | None) -> float:
     return next(point.tau for point in tangency_points(model) if point.kind == kind)
 
 
-def model_step(model: Oscillator, points: Array) -> Array:
-    """The impact map on points (tau, v), shape (n, 2); nan where there is no next impact."""
+def model_step(model: Oscillator, points: Array, horizon: float | None = None) -> Array:
+    """The impact map on points (tau, v), shape (n, 2); nan where there is no next impact, and where v < 0.
+
+    `horizon` : time after which a flight is given up.
+    """
     from singimpact.flights.impact_map import impact_map
 
-    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
-    step = impact_map(model, points[known, 0], points[known, 1], tolerance=SETTINGS.tolerance)
+    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
+    at, v_at = points[known].T
+    step = impact_map(model, at, v_at, tolerance=SETTINGS.tolerance, horizon=horizon)
     good = np.isin(step.status, (Status.hit, Status.graze))
     found[known] = np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
     return found
 
 
-def before(model: Oscillator, points: Array) -> Array:
-    """The inverse map on points, shape (n, 2); nan where no flight ends there."""
-    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1)
+def before(model: Oscillator, points: Array, horizon: float | None = None) -> Array:
+    """The inverse map on points, shape (n, 2); nan where nothing lands there, and where v < 0."""
+    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
     at, v_at = points[known].T
     if names_in(model.restitution):
-        step = inverse_map(model, at, v_at)
+        step = inverse_map(model, at, v_at, horizon=horizon)
         tau, v, status = step.tau, step.v, step.status
     else:
-        hit = first_hit(backwards(model), -at, v_at / as_float(model.restitution), tolerance=SETTINGS.tolerance)
+        speeds = v_at / as_float(model.restitution)
+        hit = first_hit(backwards(model), -at, speeds, tolerance=SETTINGS.tolerance, horizon=horizon)
         tau, v, status = at - hit.flight_time, -hit.velocity, hit.status
     good = np.isin(status, (Status.hit, Status.graze))
     found[known] = np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)
@@ -199,77 +174,23 @@ def _grown(
     def start(s: Array) -> Array:
         return np.stack([foot + s, series(s)], axis=1)
 
-    count = max(SETTINGS.least, round(1 / window.resolution) // SETTINGS.start + 1)
-    s = np.linspace(inner, outer, count)
-    whole = np.linspace(0.0, inner, 2 * count)
-    pieces, done = [Piece(s, start(s), 0)], [Piece(whole, start(whole), 0)]
-    for generation in range(SETTINGS.generations):
+    carried = Carried(
+        window,
+        start,
+        lambda points, _: before(model, points),
+        lambda points: held(window, points),
+        lambda points: points[:, 0] >= window.x[0] - 0.2 * window.sides[0],
+    )
+    first = carried.first(inner, outer)
+    whole = np.linspace(0.0, inner, 2 * len(first.s))
+    pieces, done = [first], [Piece(whole, start(whole), 0)]
+    for _ in range(GROWTH.generations):
         if not pieces:
             break
         done += pieces
-        new = [image for piece in pieces for image in _images(model, window, start, piece, generation + 1)]
-        pieces = [piece for piece in new if _adds(piece, pieces, window)]
+        new = [image for piece in pieces for image in carried.images(piece)]
+        pieces = [piece for piece in new if adds(piece, pieces, window)]
     return list(_joined(done, window))
-
-
-def _adds(piece: Piece, before: list[Piece], window: Window) -> bool:
-    """Whether a piece is farther from the generation before than the resolution, so that its images add to the picture.
-
-    Loops of stable manifolds accumulate on gamma: each generation adds one, soon closer than the width of a line.
-    """
-    seen = piece.points[held(window, piece.points)] / window.sides
-    gaps = [distances(seen, old.points / window.sides) for old in before]
-    return not len(seen) or bool(np.min(gaps, axis=0).max() > SETTINGS.distinct * window.resolution)
-
-
-def _images(
-    model: Oscillator, window: Window, start: Callable[[Array], Array], piece: Piece, generation: int
-) -> list[Piece]:
-    """The inverse image of a piece, refined to the resolution, in parts without a discontinuity."""
-
-    def image(s: Array) -> Array:
-        points = start(s)
-        for _ in range(generation):
-            points = before(model, points)
-        return points
-
-    s, points = piece.s, before(model, piece.points)
-    s, points = _refined(s, points, image, window)
-    known = np.isfinite(points).all(axis=1) & (points[:, 0] >= window.x[0] - 0.2 * window.sides[0])
-    jump = np.hypot(*(np.diff(points, axis=0) / window.sides).T) > SETTINGS.jump * window.resolution
-    torn = jump & (np.abs(np.diff(s)) <= _closest(window) * np.ptp(piece.s))
-    cuts = np.flatnonzero(torn | ~known[1:] | ~known[:-1]) + 1
-    parts = np.split(np.arange(len(s)), cuts)
-    return [Piece(s[part], points[part], generation) for part in parts if len(part) > 1 and known[part].all()]
-
-
-def _refined(s: Array, points: Array, image: Callable[[Array], Array], window: Window) -> tuple[Array, Array]:
-    """Insert midpoints until every chord is short or straight enough for the resolution, or its ends are close in s."""
-    least = _closest(window) * np.ptp(s)
-    for _ in range(60):
-        wanted = _too_coarse(points, window) & (np.abs(np.diff(s)) > least)
-        at = np.flatnonzero(wanted)
-        if not at.size or len(s) + at.size > SETTINGS.most:
-            break
-        middle = (s[at] + s[at + 1]) / 2
-        s, points = np.insert(s, at + 1, middle), np.insert(points, at + 1, image(middle), axis=0)
-    return s, points
-
-
-def _too_coarse(points: Array, window: Window) -> Array:
-    """Chords that are too long, or adjacent to a vertex with too large a deviation, or with one end that is nan."""
-    known: Array = np.asarray(np.isfinite(points).all(axis=1))
-    near: Array = np.logical_or(held(window, points), ~known)
-    step = np.diff(points, axis=0) / window.sides
-    length = np.hypot(*step.T)
-    with np.errstate(all="ignore"):
-        cross = np.abs(step[:-1, 0] * step[1:, 1] - step[:-1, 1] * step[1:, 0])
-        off = cross / np.maximum(np.hypot(*(step[:-1] + step[1:]).T), 1e-300)
-    bend = np.zeros(len(length), dtype=bool)
-    bend[:-1] |= off > SETTINGS.bend * window.resolution
-    bend[1:] |= off > SETTINGS.bend * window.resolution
-    coarse = (length > min(SETTINGS.longest * window.resolution, 1 / 25)) | (bend & (length > window.resolution))
-    return np.asarray((near[:-1] | near[1:]) & ((known[:-1] != known[1:]) | (known[:-1] & known[1:] & coarse)))
 
 
 def _joined(pieces: list[Piece], window: Window) -> list[Curve]:

@@ -325,9 +325,11 @@ class _Run:
 
     def _repeat(self, block: int, time: float) -> None:
         """The events since a lift-off at this phase, again and again, until all flights asked for are there."""
+        left = self.most - self.flown
+        if not left:  # the chatter before this lift-off was the last flight asked for
+            return
         times, velocities, kinds = (np.concatenate(part[block:]) for part in (self.times, self.velocities, self.kinds))
         flights = np.count_nonzero(kinds != "release")
-        left = self.most - self.flown
         again = -(-left // flights)
         shifts = time * np.arange(1, again + 1)
         counted = np.cumsum(np.tile(kinds != "release", again))

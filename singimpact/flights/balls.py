@@ -14,12 +14,13 @@ from functools import lru_cache
 from typing import Any
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import evaluate, names_in
+from singimpact.algebra.expressions import Name, evaluate, names_in
 from singimpact.algebra.precision import balls_at, kept_property
 from singimpact.algebra.solving import newton_in_balls
 from singimpact.flights.short_balls import ShortFlights
-from singimpact.oscillator.linear import at_rest, linear_form
+from singimpact.oscillator.linear import at_rest, form_of, linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,12 @@ class BallHit:
 class LinearFlow:
     """The numbers of a linear model as balls, at the precision that is set when it is made.
 
+    Parameters
+    ----------
+    osc : the model. bits : of the balls.
+    number : name and ball of a number of the model that takes every value in the ball; what is returned then holds for
+        each of them.
+
     Examples
     --------
     >>> from singimpact.algebra.precision import balls_at
@@ -64,13 +71,18 @@ class LinearFlow:
     2.333796858489047912592349
     """
 
-    def __init__(self, osc: Oscillator, bits: int) -> None:
-        form = linear_form(osc)
+    def __init__(self, osc: Oscillator, bits: int, number: tuple[str, Any] | None = None) -> None:
+        kept = () if number is None else (number[0],)
+        form = form_of(osc.force(kept), osc.forcing(kept)) if kept else linear_form(osc)
         if form is None or names_in(osc.restitution):
             raise ArithmeticError("balls fly linear models with a number for restitution")
-        self.balls = Balls(bits)
+        self.balls, self.moving = Balls(bits), dict([number] if number else [])
+        clearance, restitution = (
+            Name(name) if name in kept else tree
+            for name, tree in ((CLEARANCE, osc.clearance), (RESTITUTION, osc.restitution))
+        )
         self.d, self.k, self.r, self.rest = (
-            self._ball(tree) for tree in (form.damping, form.stiffness, osc.restitution, at_rest(form, osc.clearance))
+            self._ball(tree) for tree in (form.damping, form.stiffness, restitution, at_rest(form, clearance))
         )
         self.waves = [tuple(map(self._ball, (w.rate, w.phase, w.cosine, w.sine))) for w in form.harmonics]
         self.fastest = max([abs(w[0]).upper() for w in self.waves], default=self.number(Fraction(1)))
@@ -78,7 +90,7 @@ class LinearFlow:
             self.fastest = max(self.fastest, part)
 
     def _ball(self, tree: Any) -> Any:
-        return evaluate(tree, {}, self.balls)
+        return evaluate(tree, self.moving, self.balls)
 
     @kept_property
     def _short(self) -> ShortFlights:

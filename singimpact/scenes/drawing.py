@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
+from singimpact.branches.border import BorderOrbit
 from singimpact.branches.branch import Branch
 from singimpact.branches.event_curve import EventCurve
+from singimpact.branches.homoclinic import Crossings
+from singimpact.branches.manifold import Manifold
 from singimpact.dynamics.basins import Basins
 from singimpact.dynamics.bifurcation import Bifurcation
 from singimpact.dynamics.orbit import Orbit
@@ -14,7 +17,9 @@ from singimpact.dynamics.sampling import Section
 from singimpact.inputs import refuse
 from singimpact.scenes.basins import draw_basins
 from singimpact.scenes.bifurcation import draw_bifurcation
+from singimpact.scenes.border import draw_border
 from singimpact.scenes.branches import draw_branches, draw_event_curves
+from singimpact.scenes.manifolds import draw_crossings, draw_manifolds
 from singimpact.scenes.orbit import draw_orbit, draw_section
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import PENS
@@ -31,9 +36,11 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     Parameters
     ----------
     thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a branch or an event curve or a list of
-        them, a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
+        them, W^s or W^u of a saddle or a list of them, the points where two cross, a border orbit, of which the cascade
+        is drawn, a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
     axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
-        `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits.
+        `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
+        manifolds on those of basins.
     height : of branches and bifurcation diagrams: "v", velocities after the impacts, or "phase", their phases in
         periods. A branch of orbits without impact alone is shown by its lowest x - c, beside others at v = 0.
 
@@ -47,25 +54,23 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
         return thing.draw(axes)
     if isinstance(thing, ImpactSurface):
         thing = [*thing.zero_set, *thing.horizon]
-    several = list(thing) if isinstance(thing, list | tuple) else [thing]
-    if several and all(isinstance(each, Curve) for each in several):
-        return _curves(several, _new_axes() if axes is None else axes)
-    if several and all(isinstance(each, Branch) for each in several):
-        return draw_branches(several, _new_axes(BRANCHES) if axes is None else axes, height)
-    if several and all(isinstance(each, EventCurve) for each in several):
-        return draw_event_curves(several, _new_axes(BRANCHES) if axes is None else axes)
-    if isinstance(thing, Orbit):
-        return draw_orbit(thing, _new_axes() if axes is None else axes)
-    if isinstance(thing, Section):
-        return draw_section(thing, _new_axes(HIGH) if axes is None else axes)
     if isinstance(thing, Bifurcation):
         return draw_bifurcation(thing, _new_axes() if axes is None else axes, height)
-    if isinstance(thing, Basins):
-        return draw_basins(thing, _new_axes(HIGH) if axes is None else axes)
+    for kind, size, draw in ALONE:
+        if isinstance(thing, kind):
+            return draw(thing, _new_axes(size) if axes is None else axes)
+    several = list(thing) if isinstance(thing, list | tuple) else [thing]
+    if several and all(isinstance(each, Branch) for each in several):
+        return draw_branches(several, _new_axes(BRANCHES) if axes is None else axes, height)
+    if isinstance(thing, BorderOrbit):
+        return draw_border(thing, *(_two_axes() if axes is None else (axes,)))
+    for kind, size, draw in TOGETHER:
+        if several and all(isinstance(each, kind) for each in several):
+            return draw(several, _new_axes(size) if axes is None else axes)
     raise refuse(
         "thing to plot",
         type(thing).__name__,
-        "an orbit, a scene, basins, a bifurcation, branches, event curves, or curves",
+        "an orbit, a scene, basins, a bifurcation, branches, event curves, manifolds, border orbits, or curves",
     )
 
 
@@ -97,3 +102,27 @@ def _new_axes(size: tuple[float, float] = WIDE) -> Any:
     import matplotlib.pyplot
 
     return matplotlib.pyplot.figure(figsize=size, dpi=150, layout="constrained").add_subplot()
+
+
+def _two_axes() -> Any:
+    """Two axes that share their horizontal one, the upper one higher."""
+    import matplotlib.pyplot
+
+    figure = matplotlib.pyplot.figure(figsize=HIGH, dpi=150, layout="constrained")
+    return figure.subplots(2, sharex=True, height_ratios=(3, 2))
+
+
+Drawer = Callable[[Any, Any], Any]
+ALONE: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
+    (Crossings, HIGH, draw_crossings),
+    (Orbit, WIDE, draw_orbit),
+    (Section, HIGH, draw_section),
+    (Basins, HIGH, draw_basins),
+)
+"""What is drawn by itself: its type, the size of its picture, and who draws it."""
+TOGETHER: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
+    (Curve, WIDE, _curves),
+    (EventCurve, BRANCHES, draw_event_curves),
+    (Manifold, HIGH, draw_manifolds),
+)
+"""What is drawn by itself or several in one picture."""

@@ -38,6 +38,9 @@ PENS = {
     "axis": Pen(GREY, width=0.8),
     "hidden": Pen(GREY, DASHES, 0.9),
     "graph": Pen(BLUE, width=1.8),
+    "W^s": Pen(BLUE, width=1.0),
+    "W^u": Pen(VERMILLION, width=1.0),
+    "crossing": Pen(BLACK),
     "before": Pen(GREY, DASHES, 1.4),
     "at": Pen(GREY, DASH_DOT, 1.4),
 }

@@ -4,7 +4,8 @@ Not here: the points and their jets (`contact`), finite flights (`flights`), the
 (`paper.routes`), verdicts on the paper (`paper.claims`).
 Files, the series: `sheet` (v_c), `involution` (from p to phi), `invariant_curve` (gamma, the stable fibre),
 `completion` (where chatter ends), `homogeneous` (the leading parts, in closed form), `plane_forms` and `fold_form`
-(normal forms of p and phi). Their numbers: `fixed_points` (certified), `multipliers` (as functions of r).
+(normal forms of p and phi), `grazing` (the discontinuity mapping). Their numbers: `fixed_points` (certified),
+`multipliers` (as functions of r).
 What a user asks: `formulas` (`v_c`, `gamma`, ...), `power_series` (what they answer), `contact_points` (a model at a
 point, in the best numbers), `letters` (parameters that stay letters), `constants` (exact numbers, not rational),
 `symbolic_curve` (gamma in symbols), `digits` (more bits until each digit is certain), `notation` (LaTeX), `frozen`
@@ -22,12 +23,14 @@ from singimpact.theory.formulas import v_c_on_arrays as v_c_on_arrays
 from singimpact.theory.sheet import Sheet as Sheet
 
 if TYPE_CHECKING:
+    from singimpact.theory.grazing import grazing_map as grazing_map
     from singimpact.theory.homogeneous import r_of_lambda as r_of_lambda
     from singimpact.theory.plane_forms import normal_form as normal_form
 
 
 def __getattr__(name: str) -> Any:
-    if name == "r_of_lambda":  # its room loads sympy
+    # these files load sympy
+    if name == "r_of_lambda":
         from singimpact.theory.homogeneous import r_of_lambda
 
         return r_of_lambda
@@ -35,11 +38,15 @@ def __getattr__(name: str) -> Any:
         from singimpact.theory.plane_forms import normal_form
 
         return normal_form
+    if name == "grazing_map":
+        from singimpact.theory.grazing import grazing_map
+
+        return grazing_map
     raise AttributeError(f"module 'singimpact.theory' has no attribute {name!r}: it has {', '.join(_PUBLIC)}")
 
 
-_PUBLIC = ["Sheet", "chatter_limit", "dynamics_on_gamma", "fibre", "gamma", "normal_form", "r_of_lambda", "v_c",
-           "v_c_on_arrays"]  # fmt: skip
+_PUBLIC = ["Sheet", "chatter_limit", "dynamics_on_gamma", "fibre", "gamma", "grazing_map", "normal_form", "r_of_lambda",
+           "v_c", "v_c_on_arrays"]  # fmt: skip
 
 
 def __dir__() -> list[str]:

@@ -1,6 +1,5 @@
 """The matrix of coefficients: exact to a few units in the last place near contact, and quick."""
 
-import time
 from fractions import Fraction
 
 import mpmath
@@ -76,16 +75,3 @@ def test_compensated_sheet_of_a_model_against_true_flights():
         back = model.first_hit(sigma, v, digits=35).flight_time
         slope = float(si.theory.v_c_on_arrays(12, "tangency", model, 0)(sigma, t + 1e-9) - v) / 1e-9
         assert abs((back - mpmath.mpf(t)) * slope / v) < 4 * EPSILON
-
-
-def test_order_8_at_20000_points():
-    """Nanoseconds a point, the best of ten: a shared machine may disturb one."""
-    evaluate = Horner(duffing_sheet().v.terms)
-    sigma, t = np.random.default_rng(1).uniform(-0.3, 0.3, (2, 20_000))
-    spent = []
-    for _ in range(10):
-        start = time.perf_counter()
-        evaluate(sigma, t)
-        spent.append((time.perf_counter() - start) / 20_000 * 1e9)
-    assert min(spent) < 80  # 25 to 35 on a quiet core
-    print(f"{min(spent):.1f} ns a point")

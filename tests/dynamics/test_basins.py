@@ -180,3 +180,17 @@ def test_an_attractor_catches_only_what_comes_in():
     home = iterate(model, place, speed, 200)
     assert np.abs(home.v - attractor.v[0]).max() < 1e-9
     assert (caught([attractor], model, place + 0.5, speed, 2.0) == -1).all()
+
+
+def test_a_state_that_spirals_in_is_not_taken_for_an_orbit_of_twice_the_period():
+    """The multipliers of the (3, 3) orbit are near +-0.5i: a state may come back nearer after six impacts than three.
+
+    A block of ten rows of a grid of 300 x 300 was called "(6, 6) orbit".
+    """
+    model = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+    orbit = next(each for each in model.periodic(3, 3) if each.stable)
+    angle, size = np.meshgrid(np.linspace(0, 2 * np.pi, 40), np.geomspace(1e-8, 5e-6, 60))
+    tau = orbit.tau[0] + 2 * np.pi / 2.8 * (size * np.cos(angle)).ravel()
+    codes = periodic_codes(model, tau, orbit.v[0] + (size * np.sin(angle)).ravel(), 1.0)
+    assert (codes == 3003).sum() > 1500
+    assert set(codes.tolist()) <= {3003, OTHER}

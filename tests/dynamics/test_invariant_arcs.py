@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.invariant_arcs import before, grown_gamma, held, model_step, stable_manifold
+from singimpact.dynamics.growth import held
+from singimpact.dynamics.invariant_arcs import before, grown_gamma, model_step, stable_manifold
 from singimpact.surface.curve import Window
 
 SWAN = si.universal(-1, "0.5")

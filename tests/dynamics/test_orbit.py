@@ -83,6 +83,14 @@ def test_one_state_at_a_time() -> None:
         linear(2, 0, 1).orbit([0, 1], 1)
 
 
+def test_an_orbit_whose_last_flight_ends_a_chatter_ends_at_the_lift_off() -> None:
+    osc = linear(2, "0.7", "0.5")
+    impacts = int(np.flatnonzero(osc.orbit(0, 0.3).kind == "complete")[1]) - 1  # the first lift-off is no flight
+    orbit = osc.orbit(0, 0.3, impacts=impacts)
+    assert orbit.kind.tolist()[-2:] == ["complete", "release"]
+    assert len(orbit.phases) == orbit.tau.size - 1
+
+
 def test_what_follows_a_lift_off_is_repeated() -> None:
     osc = linear(2, "0.9", "0.5")
     orbit = osc.orbit(0.31, 0.5, impacts=400)

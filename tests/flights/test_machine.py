@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from threading import Timer
 
 import numpy as np
@@ -235,9 +234,7 @@ def flown(place, seconds, **around):
 def test_a_second_process_runs_what_a_third_compiled_meanwhile(tmp_path):
     first = flown(tmp_path, 240)
     assert first[1:] == ["True", "False"]  # never numba in a process that flies
-    begun = time.monotonic()
-    assert flown(tmp_path, 240) == first
-    assert time.monotonic() - begun < 20
+    assert flown(tmp_path, 0) == first  # there from its first call on
 
 
 @pytest.mark.parametrize("around", [{"NUMBA_DISABLE_JIT": "1"}, {"SINGIMPACT_CACHE": "off"}])

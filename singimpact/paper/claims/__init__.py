@@ -2,31 +2,32 @@
 
 Not here: the derivations (`theory`, `paper.routes`), proofs' certificates (`algebra`), the orbits and surfaces on which
 claims are tried (`paper.trials`), the words of the derivations and errata (`paper.sections`).
-Files: `claim` (the data), `sections/` (the claims in the paper's order), `index` (their ids, titles and what they rest
-on, without building any), `verifiers` (ways to decide a statement), `next_sigma` (a formula that several verifiers
-use), `deciding` (one claim), `engine` (several, each after what it rests on), `keys` and `memory` (verdicts that are
-kept), `graph` (what rests on what), `verdicts` and `layout` (the table of verdicts).
+Files: `claim` (the data), `sections/` (the claims in the paper's order), `beyond/` (those that it does not have),
+`index` (their ids, titles and what they rest on, without building any), `verifiers` (ways to decide a statement),
+`next_sigma` (a formula that several verifiers use), `deciding` (one claim), `engine` (several, each after what it rests
+on), `keys` and `memory` (verdicts that are kept), `graph` (what rests on what), `verdicts` and `layout` (the table of
+verdicts).
 """
 
 import sys
 from collections.abc import Iterator
 from types import ModuleType
 
-from singimpact.inputs import unknown
 from singimpact.paper.claims.claim import Claim as Claim
 from singimpact.paper.claims.claim import Verdict as Verdict
 from singimpact.paper.claims.engine import run as run
 from singimpact.paper.claims.engine import select as select
+from singimpact.paper.claims.index import BEYOND as BEYOND
 from singimpact.paper.claims.index import CLAIMS as CLAIMS
 from singimpact.paper.claims.index import INDEX as INDEX
+from singimpact.paper.claims.index import entry_of
 
 
 class Claims(ModuleType):
     """The room as a collection: `singimpact.claims["e:meq"]` is a claim, iteration gives ids."""
 
     def __getitem__(self, name: str) -> Claim:
-        if name not in INDEX:
-            raise unknown("claim", name, INDEX)
+        entry_of(name)  # an unknown id is refused with the nearest known ones
         return CLAIMS[name]
 
     def __iter__(self) -> Iterator[str]:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from singimpact.inputs import unknown
 from singimpact.paper.claims.claim import Claim, Verdict
-from singimpact.paper.claims.index import CLAIMS, INDEX, Entry
+from singimpact.paper.claims.index import CLAIMS, INDEX, Entry, entry_of
 from singimpact.paper.claims.keys import key_of
 from singimpact.paper.claims.memory import keep, recall
 
 
 def select(ids: Sequence[str] | None = None) -> list[Entry]:
-    """The index entries of the claims named and of what they rest on, each after what it rests on; all for None.
+    """The index entries of the claims named and of what they rest on, each after what it rests on.
+
+    Parameters
+    ----------
+    ids : of the paper's claims and of those beyond it; None for all of the paper's.
 
     Raises
     ------
@@ -25,15 +28,14 @@ def select(ids: Sequence[str] | None = None) -> list[Entry]:
     """
     wanted = list(INDEX) if not ids else list(dict.fromkeys(ids))
     for name in wanted:
-        if name not in INDEX:
-            raise unknown("claim", name, INDEX)
+        entry_of(name)
     chosen: dict[str, Entry] = {}
 
     def visit(name: str) -> None:
         if name not in chosen:
-            for other in INDEX[name].rests_on:
+            for other in entry_of(name).rests_on:
                 visit(other)
-            chosen[name] = INDEX[name]
+            chosen[name] = entry_of(name)
 
     for name in wanted:
         visit(name)

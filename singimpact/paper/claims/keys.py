@@ -1,9 +1,9 @@
 """The canonical key of a claim: what its verdict depends on, so that a kept verdict serves while nothing changed.
 
-A key is a digest of the package's source outside `claims/sections`, of the versions of Python and the libraries, of
-the claim's line in the index, of the source of its file of `sections` with the files of `sections` that this one
-imports, and of the keys of what the claim rests on.  An edited verifier runs again with its file and their dependants;
-an edit below the claims runs all again.  No claim is built for its key.
+A key is a digest of the package's source outside `claims/sections` and `claims/beyond`, of the versions of Python and
+the libraries, of the claim's line in the index, of the source of its file there with the files of `sections` that this
+one imports, and of the keys of what the claim rests on.  An edited verifier runs again with its file and their
+dependants; an edit below the claims runs all again.  No claim is built for its key.
 """
 
 from __future__ import annotations
@@ -22,12 +22,13 @@ from singimpact.cache import source_digest
 from singimpact.paper.claims.index import Entry
 
 LIBRARIES = ("sympy", "numpy", "scipy", "python-flint", "mpmath", "numba")
-SECTIONS = Path(__file__).with_name("sections")
+SECTIONS, BEYOND = (Path(__file__).with_name(name) for name in ("sections", "beyond"))
 IMPORTED = re.compile(
     r"^\s*from singimpact\.paper\.claims\.sections(?:\.(\w+) import|\s+import ([\w, ]+))", re.MULTILINE
 )
 ABOVE = (  # folders that no verdict depends on, and the sections, which each claim adds for itself
-    "paper/claims/sections/", "paper/sections/", "paper/figures/", "cli/", "documents/", "scenes/", "bench/",
+    "paper/claims/sections/", "paper/claims/beyond/", "paper/sections/", "paper/figures/", "cli/", "documents/",
+    "scenes/", "bench/",
 )  # fmt: skip
 
 
@@ -40,8 +41,9 @@ def ground() -> str:
 
 
 def source_of(file: str) -> str:
-    """The source of one file of `sections`."""
-    return (SECTIONS / f"{file}.py").read_text(encoding="utf-8")
+    """The source of one file of `sections` or `beyond`."""
+    place = SECTIONS / f"{file}.py"
+    return (place if place.exists() else BEYOND / f"{file}.py").read_text(encoding="utf-8")
 
 
 def imported_by(file: str) -> list[str]:

@@ -20,7 +20,10 @@ CORRECTED = "corrected"
 
 
 def verify(
-    ids: str | Sequence[str] | None = None, on_start: Callable[[Entry | Claim, int, int], None] | None = None
+    ids: str | Sequence[str] | None = None,
+    on_start: Callable[[Entry | Claim, int, int], None] | None = None,
+    *,
+    beyond: bool = False,
 ) -> VerdictTable:
     """Derive, prove and cross-check claims of the paper; the twin of the command `singimpact verify`.
 
@@ -28,6 +31,8 @@ def verify(
     ----------
     ids : one id, several, or None for every claim; what they rest on is run with them.
     on_start : called with the claim, its place and the number of claims before each is worked on.
+    beyond : whether the claims that the paper does not have are run beside the ids; without ids they alone, and what
+        they rest on.
 
     Returns
     -------
@@ -46,6 +51,10 @@ def verify(
     from singimpact.paper.claims import run, select
 
     wanted = [ids] if isinstance(ids, str) else None if ids is None else list(ids)
+    if beyond:
+        from singimpact.paper.claims import BEYOND
+
+        wanted = [*(wanted or ()), *BEYOND]
     claims = select(wanted)
     return VerdictTable(claims, run(claims, on_start=on_start, kept=True))
 

@@ -6,7 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from singimpact.dynamics.invariant_arcs import before, gammas_within, held, stable_manifold
+from singimpact.dynamics.growth import held
+from singimpact.dynamics.invariant_arcs import before, gammas_within, stable_manifold
 from singimpact.flights.rebound_law import rebound
 from singimpact.paper.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Region, arc
 from singimpact.paper.figures.sheet import rebounded, reset

@@ -1,0 +1,268 @@
+"""Released orbits in many digits: the number of a border orbit, and a proof that one lies in a ball.
+
+The proof, for linear models.  (1) For every value in the ball the orbit comes to the same impact, transversally, after
+which a_c presses up to the zero where gamma ends.  (2) At one end of the ball its chatter completes before that zero,
+at the other a flight passes it.  While a_c presses every impact is transversal, for x'' = a_c < 0 where x' = 0; so each
+fate of (2) belongs to an open set of values, and between the two ends lies a value with neither: its impacts are
+infinitely many and accumulate at the zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, log10
+from typing import Any, NamedTuple
+
+from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
+from singimpact.algebra.certified import Certified, from_ends
+from singimpact.algebra.expressions import Number
+from singimpact.algebra.numbers import as_float, exact
+from singimpact.algebra.precision import balls_at, digits_at, for_user
+from singimpact.algebra.solving import newton_in_balls
+from singimpact.branches.released import Return
+from singimpact.contact.next_zero import ContactZero, next_zero
+from singimpact.dynamics.enclosed import enclosable, end_of_gamma, searched, side
+from singimpact.flights.balls import LinearFlow
+from singimpact.flights.impact_map import impact_map
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+
+@dataclass(frozen=True)
+class DigitSettings:
+    """How many digits and bits are spent.
+
+    Parameters
+    ----------
+    spare : digits beyond those asked for. bits : of the balls of a proof at most, per digit asked for.
+    before : a zero of a_c is looked for from so far before it, in periods: doubles know it to 1e-16.
+    around : half the width of the ball in which a zero of a_c is isolated. pieces : of a time in which a_c presses.
+    """
+
+    spare: int = 15
+    bits: int = 64
+    before: float = 2.0**-20
+    around: Fraction = Fraction(1, 2**30)
+    pieces: int = 4000
+
+
+SETTINGS = DigitSettings()
+
+
+class Landing(NamedTuple):
+    """The state after an impact: its time less that of the zero where gamma ends, and its velocity; balls."""
+
+    sigma: Any
+    v: Any
+
+
+@dataclass(frozen=True)
+class InDigits:
+    """A border orbit in many digits: value and error for a user, the value as a rational, and what was proved.
+
+    Parameters
+    ----------
+    note : why nothing was proved, where `certified` is None.
+    """
+
+    value: Any
+    error: Any
+    exact: Fraction
+    certified: Certified | None
+    note: str
+
+
+class DigitOrbits:
+    """Released orbits next to a return, for balls of so many bits; nothing is proved by them.
+
+    Parameters
+    ----------
+    found : a return. digits : that the states have.
+    """
+
+    def __init__(self, found: Return, digits: int) -> None:
+        self.found, self.digits = found, digits + SETTINGS.spare
+        self.bits = ceil(self.digits * BITS_A_DIGIT) + 64
+        self.balls = Balls(self.bits)
+
+    def landings(self, value: Fraction, count: int) -> list[Landing]:
+        """The states after at most `count` impacts, up to the first one beyond the zero where gamma ends."""
+        model = self.found.releases.model(value)
+        with balls_at(self.bits):
+            start, end = self._zeros(model)
+            fly = self._in_balls if enclosable(model) else self._in_digits
+            return fly(model, start, end.moved(self.bits), count)
+
+    def missed(self, impacts: int, value: Fraction) -> Any | None:
+        """v less the first two terms of gamma so many impacts after the orbit came back; None where it has passed."""
+        rows = self.landings(value, self.found.entry + impacts)
+        if len(rows) < self.found.entry + impacts or not rows[-1].sigma < 0:
+            return None
+        model = self.found.releases.model(value)
+        with balls_at(self.bits):
+            _, end = self._zeros(model)
+            first, second, _ = end_of_gamma(model, end, self.bits)
+            sigma, v = rows[-1]
+            return (v - sigma**2 * (first + second * sigma)).mid()
+
+    def contact(self) -> tuple[int, Any]:
+        """The order of the zero where gamma ends, and lambda there."""
+        model = self.found.releases.model(self.found.value)
+        with balls_at(self.bits):
+            _, end = self._zeros(model)
+            return end.order, end_of_gamma(model, end, self.bits)[2]
+
+    def _zeros(self, model: Oscillator) -> tuple[ContactZero, ContactZero]:
+        """The zeros of a_c where the orbit begins and ends."""
+        assert model.period is not None
+        before = SETTINGS.before * as_float(model.period)
+        found = [next_zero(model, Number(Fraction(time - before))).zero for time in self.found.ends(model)]
+        if found[0] is None or found[1] is None or found[1].order != 1:
+            raise ArithmeticError("a zero of a_c is not isolated")
+        return found[0], found[1]
+
+    def _in_balls(self, model: Oscillator, start: ContactZero, end: Any, count: int) -> list[Landing]:
+        flow, rows = LinearFlow(model, self.bits), list[Landing]()
+        time, v, removed = start.moved(self.bits).mid(), flow.number(Fraction(0)), start.order + 2
+        while len(rows) < count:
+            hit = flow.first_hit(time, v, removed=removed)
+            if hit is None or hit.time is None:
+                break
+            time, v, removed = (time + hit.time).mid(), (-flow.r * hit.velocity).mid(), 1
+            rows.append(Landing((time - end).mid(), v))
+            if rows[-1].sigma > 0:
+                break
+        return rows
+
+    def _in_digits(self, model: Oscillator, start: ContactZero, end: Any, count: int) -> list[Landing]:
+        rows: list[Landing] = []
+        tau: Any = start.tau
+        v: Any = 0
+        while len(rows) < count:
+            step = impact_map(model, tau, v, digits=self.digits)
+            if step.status != Status.hit:
+                break
+            tau, v = step.tau, step.v
+            time, speed = (self.balls.rational(exact("tau", part)) for part in (tau, v))
+            rows.append(Landing((time - end).mid(), speed))
+            if rows[-1].sigma > 0:
+                break
+        return rows
+
+
+def in_digits(found: Return, scale: float, digits: int) -> InDigits | None:
+    """The value of the number at a border orbit, in many digits; None where it is not reached.
+
+    Parameters
+    ----------
+    found : the return in doubles. scale : the change of the number that changes v by itself. digits : of the result.
+    """
+    middle, unit = Fraction(found.value), Fraction(scale)
+    extra = max(0, ceil(log10(scale / abs(found.value)))) + 1 if found.value else 0
+    orbits = DigitOrbits(found, digits + extra)
+    # v/gamma is a positive number with the relative error that `searched` knows
+    with balls_at(orbits.bits):
+        near = searched(
+            lambda impacts, share: orbits.missed(impacts, middle + (share - 1) * unit),
+            Fraction(1), orbits.contact(), digits + extra, orbits.balls,
+        )  # fmt: skip
+    if near is None:
+        return None
+    exactly = middle + (near - 1) * unit
+    proof, note = _proved(found, exactly, digits)
+    with digits_at(digits) as mp:
+        if proof is not None:
+            value = mp.convert(proof.value)
+            error = mp.convert(proof.radius) + abs(value) * mp.mpf(10) ** -digits
+        else:
+            value = mp.mpf(exactly.numerator) / exactly.denominator
+            error = mp.mpf(10) ** -digits * max(abs(value), mp.mpf(scale))
+        return InDigits(for_user(+value), for_user(+error), exact("parameter", +value), proof, note)
+
+
+def _proved(found: Return, near: Fraction, digits: int) -> tuple[Certified | None, str]:
+    """A ball about a value in which a border orbit is proved to be, or why there is none."""
+    model = found.releases.model(near)
+    if not enclosable(model):
+        return None, "not certified: balls fly linear models with a number for restitution"
+    margin = abs(near) / (4 * 10**digits)
+    low, high = near - margin, near + margin
+    bits = ceil(digits * BITS_A_DIGIT) + 64
+    times = found.ends(model)
+    sides: dict[Fraction, int | None] = {low: None, high: None}
+    followed = False
+    while bits <= SETTINGS.bits * (digits + 32):
+        with balls_at(bits):
+            followed = followed or _followed(_flow(found, (low, high), bits), times, found.entry) is not None
+            for value, known in sides.items():
+                sides[value] = known or _fate(_flow(found, (value, value), bits), times, found.entry)
+        if followed and None not in sides.values():
+            break
+        bits *= 2
+    else:
+        return None, f"not certified: balls of {bits // 2} bits do not decide what the orbits next to it do"
+    if (sides[low], sides[high]) != (found.side, -found.side):
+        return None, "not certified: the orbits on both sides of it have one fate"
+    return from_ends(low, high, digits), ""
+
+
+def _flow(found: Return, ends: tuple[Fraction, Fraction], bits: int) -> LinearFlow:
+    """The flow of all values from one to another."""
+    low, high = ends
+    if low == high:
+        return LinearFlow(found.releases.model(low), bits)
+    ball = Balls(bits).interval(low, high)
+    return LinearFlow(found.releases.model((low + high) / 2), bits, (found.releases.over, ball))
+
+
+def _fate(flow: LinearFlow, times: tuple[float, float], entry: int) -> int | None:
+    """-1 where chatter completes before the second zero, 1 where a flight passes it; None undecided."""
+    reached = _followed(flow, times, entry)
+    return None if reached is None else side(flow, reached[2], *reached[:2])
+
+
+def _followed(flow: LinearFlow, times: tuple[float, float], entry: int) -> tuple[Any, Any, Any] | None:
+    """Time and velocity of an impact of the released orbit, and the zero of a_c before which a_c presses.
+
+    Parameters
+    ----------
+    times : of the release and of that zero, in doubles. entry : the number of the impact.
+    """
+    zeros = [_rising_zero(flow, time) for time in times]
+    start, end = zeros
+    if start is None or end is None:
+        return None
+    time, v, removed = start, flow.number(Fraction(0)), 3
+    for _ in range(entry):
+        hit = flow.first_hit(time, v, removed=removed)
+        if hit is None or hit.time is None or not hit.velocity < 0:
+            return None
+        time, v, removed = time + hit.time, -flow.r * hit.velocity, 1
+    return (time, v, end) if _presses(flow.acceleration, time, end, SETTINGS.around) else None
+
+
+def _rising_zero(flow: LinearFlow, near: float) -> Any | None:
+    """The zero of a_c next to a double, where it is the only one and a_c rises; for every value in the flow's balls."""
+    middle = flow.number(Fraction(near))
+    reach = flow.number(SETTINGS.around)
+    low, high = middle - reach, middle + reach
+    if not (flow.acceleration(low) < 0 and flow.acceleration(high) > 0 and flow.acceleration(low.union(high), 1) > 0):
+        return None
+    return newton_in_balls(flow.acceleration, lambda t: flow.acceleration(t, 1), low.union(high))
+
+
+def _presses(acceleration: Callable[..., Any], time: Any, end: Any, around: Fraction) -> bool:
+    """Whether a_c < 0 from a time up to a zero where it rises, before which it is known to rise for `around`."""
+    high = as_rational(end) - around / 2
+    pieces, left = [(as_rational(time.lower()), high)], SETTINGS.pieces
+    balls = Balls(128)
+    while pieces and left:
+        low, top = pieces.pop()
+        left -= 1
+        if low >= top or acceleration(balls.interval(low, top)) < 0:
+            continue
+        middle = (low + top) / 2
+        pieces += [(low, middle), (middle, top)]
+    return not pieces

@@ -1,0 +1,347 @@
+"""The cascade beside a border orbit: where the number of impacts before the release changes, and what attracts between.
+
+At distance d from the border orbit the released orbit stays near gamma for N(d) impacts and then passes its end.  N
+changes where an impact falls exactly on the end of gamma.  Each impact multiplies the distance from gamma by mu, in the
+coordinates of the blow-up, so the distances of these edges shrink by mu(r).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, Protocol
+
+import numpy as np
+
+from singimpact.algebra.balls import as_rational
+from singimpact.algebra.numbers import exact
+from singimpact.algebra.precision import digits_at, for_user
+from singimpact.algebra.solving import halved
+from singimpact.branches.border_digits import DigitOrbits
+from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.branches.released import Return
+from singimpact.branches.settled import settled_orbit
+from singimpact.inputs import InputError
+from singimpact.oscillator.model import Oscillator
+from singimpact.theory.fixed_points import tangency
+
+EPSILON = 2.0**-52
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class CascadeSettings:
+    """How edges are found.
+
+    Parameters
+    ----------
+    start : the largest distance, as a part of that at which v/gamma changes by itself; the search for border orbits has
+        an end too. factor : of one distance to the
+        next, before those between which two edges lie are halved. narrow : two distances nearer than this, relative,
+        are not halved. regular : edges that are found by counting impacts; each next one is extrapolated.
+    least : edges are looked for down to so many times the error of the border orbit. most : edges at most.
+    settled : edges are looked for until two ratios differ by less. steps : of the secant method.
+    digits : of mu.
+    """
+
+    start: float = 0.25
+    factor: float = 0.7
+    narrow: float = 1e-3
+    regular: int = 5
+    least: float = 1e5
+    most: int = 400
+    settled: float = 1e-9
+    steps: int = 12
+    digits: int = 20
+    apart: float = 1e3
+
+
+SETTINGS = CascadeSettings()
+
+
+@dataclass(frozen=True)
+class CascadeWindow:
+    """What attracts the released orbit between two edges.
+
+    Parameters
+    ----------
+    impacts : of the released orbit before it passes the end of gamma. parameter, distance : where it was flown, and how
+        far that is from the border orbit.
+    orbit : the orbit on which the released one settles, with its multipliers; None where none is seen.
+    """
+
+    impacts: int
+    parameter: float
+    distance: float
+    orbit: PeriodicOrbit | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Cascade:
+    """Edges between numbers of impacts, from the farthest to the nearest to the border orbit.
+
+    Parameters
+    ----------
+    over : the number that moves. impacts : of the released orbit before the end of gamma, on the near side of an edge.
+    parameter, distance : of each edge, and from the border orbit; doubles, or mpmath numbers with digits.
+    ratios : of the distance of each edge to that of the next. errors : of the ratios, from those of the edges.
+    mu : the multiplier across gamma at a tangency, to which they tend. notes : where the edges end, and why.
+    """
+
+    over: str
+    impacts: Array
+    parameter: Array
+    distance: Array
+    ratios: Array
+    errors: Array
+    mu: Any
+    notes: tuple[str, ...]
+    returned: Return
+
+    def __len__(self) -> int:
+        return len(self.impacts)
+
+    @property
+    def limit(self) -> tuple[float, float]:
+        """What the ratios tend to, and an estimate of its error: three ratios extrapolated by Aitken's method.
+
+        The error is the spread of three such numbers in a row and the rounding of the ratios in them; where it is least
+        they are taken. mu(r) is not used. nan where there are fewer than five ratios.
+        """
+        best = (np.nan, np.inf)
+        ratios, errors = (np.array(part, dtype=float) for part in (self.ratios, self.errors))
+        steps = np.diff(ratios)
+        for i in range(len(ratios) - 4):
+            three = [_aitken(*ratios[j : j + 3].tolist()) for j in range(i, i + 3)]
+            # what is lost by the division of steps that are nearly equal
+            grown = max(1.0, 1 / abs(1 - steps[i + 2] / steps[i + 3])) if steps[i + 3] != steps[i + 2] else np.inf
+            error = max(three) - min(three) + float(grown * errors[i : i + 5].sum())
+            if error < best[1]:
+                best = three[-1], error
+        return best
+
+    @cached_property
+    def windows(self) -> tuple[CascadeWindow, ...]:
+        """What attracts the released orbit in the middle of each window between two edges, found when asked for."""
+        return self.sampled(1)
+
+    def sampled(self, count: int) -> tuple[CascadeWindow, ...]:
+        """What attracts it at so many values in each window, whose distances divide the window evenly in logarithms.
+
+        Parameters
+        ----------
+        count : of values in a window. Those that doubles do not tell from the border orbit are left out.
+        """
+        found: list[CascadeWindow] = []
+        side = -self.returned.side
+        border = float(self.parameter[-1] + self.returned.side * self.distance[-1]) if len(self) else np.nan
+        for i in range(len(self) - 1):
+            far, near = float(self.distance[i]), float(self.distance[i + 1])
+            for j in range(count):
+                distance = far * (near / far) ** ((j + 0.5) / count)
+                if distance < SETTINGS.apart * (EPSILON * abs(border) + 5e-324):
+                    return tuple(found)
+                orbit = self.returned.flown(border + side * distance)
+                settled = settled_orbit(orbit.model, orbit.tau)
+                found.append(CascadeWindow(int(self.impacts[i]), border + side * distance, distance, settled))
+        return tuple(found)
+
+    def __repr__(self) -> str:
+        if not len(self):
+            return f"<cascade without edges: {'; '.join(self.notes)}>"
+        value, error = self.limit
+        ends = f"{self.impacts[0] - 1} to {self.impacts[-1]} impacts, {len(self)} edges"
+        last = f"distances {float(self.distance[0]):.3g} to {float(self.distance[-1]):.3g}"
+        ratios = f"last ratio {float(self.ratios[-1]):.10g} +- {float(self.errors[-1]):.1e}" if len(self) > 1 else ""
+        shown = f"limit {value:.10g} +- {error:.1e}, mu = {float(self.mu):.10g}"
+        return f"<cascade in {self.over}: {'; '.join(part for part in (ends, last, ratios, shown) if part)}>"
+
+
+def _aitken(a: float, b: float, c: float) -> float:
+    """The limit of a, b, c as terms of a geometric approach."""
+    lost = (c - b) - (b - a)
+    return c - (c - b) ** 2 / lost if lost else c
+
+
+def cascade(found: Return, osc: Oscillator, border: tuple[Any, Any, float], digits: int | None) -> Cascade:
+    """The edges beside a border orbit.
+
+    Parameters
+    ----------
+    found : the border orbit in doubles. osc : the model there. border : its value (None: that of doubles), the error
+        of it, and the change of the number that changes v by itself. digits : None for doubles.
+    """
+    value, error, scale = border
+    flights: _Flights
+    if digits is None or value is None:
+        centre, flights, digits = Fraction(found.value), _InDoubles(found), None
+        wrong = Fraction(float(error)) + Fraction(EPSILON * abs(found.value))
+    else:
+        centre, flights = exact("parameter", value), _InDigits(found, digits)
+        wrong = exact("error", error) + abs(centre) / 10**digits
+    search = _Edges(found, flights, centre, wrong)
+    edges, note = search.edges(scale)
+    places = [place for _, place in edges]
+    distances = [abs(place - centre) for place in places]
+    pairs = list(pairwise(distances))
+    ratios = [one / two for one, two in pairs]
+    errors = [float(one / two * wrong * (1 / one + 1 / two)) for one, two in pairs]
+    parameter, distance, ratio = (_array(each, digits) for each in (places, distances, ratios))
+    mu = tangency(osc.slope_at_rest(), digits=SETTINGS.digits).mu.value
+    numbers = np.array([number for number, _ in edges], dtype=int)
+    return Cascade(found.releases.over, numbers, parameter, distance, ratio, np.array(errors), mu, (note,), found)
+
+
+def _array(values: list[Fraction], digits: int | None) -> Array:
+    if digits is None:
+        return np.array([float(value) for value in values])
+    with digits_at(digits) as mp:
+        return np.array([for_user(mp.mpf(value.numerator) / value.denominator) for value in values], dtype=object)
+
+
+class _Flights(Protocol):
+    """Released orbits, in doubles or in many digits."""
+
+    def landing(self, number: int, value: Fraction) -> Fraction | None:
+        """The time of an impact less that of the end of gamma; None where there is no such impact about there."""
+
+    def rounded(self, value: Fraction) -> Fraction:
+        """A value as these flights take it."""
+
+
+class _InDoubles:
+    """Landings by doubles."""
+
+    def __init__(self, found: Return) -> None:
+        self.found = found
+
+    def landing(self, number: int, value: Fraction) -> Fraction | None:
+        orbit = self.found.flown(float(value))
+        gap = orbit.landing(number, self.found.place)
+        near = orbit.impacts_before(self.found.place) in (number - 1, number)
+        return Fraction(gap) if near and np.isfinite(gap) else None
+
+    def rounded(self, value: Fraction) -> Fraction:
+        return Fraction(float(value))
+
+
+class _InDigits:
+    """Landings by balls or in many digits."""
+
+    def __init__(self, found: Return, digits: int) -> None:
+        self.orbits = DigitOrbits(found, digits)
+
+    def landing(self, number: int, value: Fraction) -> Fraction | None:
+        rows = self.orbits.landings(value, number)
+        return as_rational(rows[-1].sigma) if len(rows) == number else None
+
+    def rounded(self, value: Fraction) -> Fraction:
+        return as_rational(self.orbits.balls.rational(value))
+
+
+class _Edges:
+    """The search for edges: the first ones by counting impacts, then each from the three before.
+
+    Parameters
+    ----------
+    found : a return. flights : of the orbits. border : the value of the border orbit. wrong : its error.
+    """
+
+    def __init__(self, found: Return, flights: _Flights, border: Fraction, wrong: Fraction) -> None:
+        self.found, self.flights, self.border, self.wrong = found, flights, border, wrong
+        self.side = -found.side
+
+    def edges(self, scale: float) -> tuple[list[tuple[int, Fraction]], str]:
+        """N on the near side and the value of the number of each edge, and why there are no more."""
+        rows: list[tuple[int, Fraction]] = []
+        for number, near, far in self._counted(min(SETTINGS.start * scale, self.found.reach)):
+            place = self._solved(number, *self._halved(number, near, far))
+            if place is None:
+                return rows, f"the edge of {number} impacts is not resolved"
+            rows.append((number, place))
+        if len(rows) < 3:
+            return rows, "fewer than three edges are resolved"
+        while len(rows) < SETTINGS.most:
+            distances = [abs(place - self.border) for _, place in rows[-3:]]
+            before, ratio = distances[0] / distances[1], distances[1] / distances[2]
+            if abs(before - ratio) < SETTINGS.settled * ratio:
+                return rows, f"two ratios differ by less than {SETTINGS.settled:.0e}: the edges go on"
+            number, following = rows[-1][0] + 1, distances[2] / ratio
+            if following < SETTINGS.least * self.wrong:
+                return rows, ("nearer edges are not told from the border orbit: digits=, or more of them, goes on")
+            guess = self.border + self.side * following
+            # from the side where the impact is still before the end of gamma
+            place = self._solved(number, guess, guess - self.side * following / 1000)
+            if place is None:
+                return rows, f"the edge of {number} impacts is not resolved"
+            rows.append((number, place))
+        return rows, f"only {SETTINGS.most} edges are given"
+
+    def _solved(self, number: int, first: Fraction, second: Fraction) -> Fraction | None:
+        """The value at which an impact falls on the end of gamma, by secants."""
+        first, second = self.flights.rounded(first), self.flights.rounded(second)
+        value, small = self.flights.landing(number, first), self.wrong / 4
+        for _ in range(SETTINGS.steps):
+            other = self.flights.landing(number, second)
+            if value is None or other is None:
+                return None
+            if other == value or abs(second - first) <= small:
+                return second
+            after = self.flights.rounded(second - other * (second - first) / (other - value))
+            first, value, second = second, other, after
+        return None
+
+    def _halved(self, number: int, near: float, far: float) -> tuple[Fraction, Fraction]:
+        """Values next to the edge between two distances: secants fail beyond a graze, where the impact is elsewhere."""
+        low, high = halved(lambda distance: self._count(distance) >= number, near, far, SETTINGS.narrow)
+        place = self.border + self.side * Fraction(low)
+        return place, place - self.side * Fraction(high - low) / 1000
+
+    # ---- the first edges, in doubles
+
+    def _counted(self, start: float) -> list[tuple[int, float, float]]:
+        """N on the near side, and distances on both sides, of edges from where on one more impact comes at a time."""
+        rows: list[tuple[float, int]] = []
+        distance = start
+        while distance > SETTINGS.least * float(self.wrong):
+            count = self._count(distance)
+            rows += self._between(rows[-1], (distance, count)) if rows else []
+            rows.append((distance, count))
+            found = _regular(rows)
+            # edges farther away are kept too, but not before it is seen that they are regular
+            if len(found) >= 2 * SETTINGS.regular:
+                return found[: SETTINGS.regular]
+            distance *= SETTINGS.factor
+        return _regular(rows)[: SETTINGS.regular]
+
+    def _between(self, far: tuple[float, int], near: tuple[float, int]) -> list[tuple[float, int]]:
+        """Distances between two, where there is more than one edge."""
+        if near[1] - far[1] <= 1 or far[1] < 0 or near[0] > far[0] * (1 - SETTINGS.narrow):
+            return []
+        distance = float(np.sqrt(far[0] * near[0]))
+        middle = distance, self._count(distance)
+        return [*self._between(far, middle), middle, *self._between(middle, near)]
+
+    def _count(self, distance: float) -> int:
+        """Impacts before the end of gamma; -1 where the chatter completes before it, or is not decided."""
+        try:
+            orbit = self.found.flown(float(self.border) + self.side * distance)
+        except InputError:  # a number that is none of a model's
+            return -1
+        passed = orbit.decided and orbit.place != self.found.place
+        return orbit.impacts_before(self.found.place) if passed else -1
+
+
+def _regular(rows: list[tuple[float, int]]) -> list[tuple[int, float, float]]:
+    """Where one impact more comes, in the last rows in which never more than one does at a time.
+
+    Examples
+    --------
+    >>> _regular([(0.5, 4), (0.4, 3), (0.3, 4), (0.2, 4), (0.1, 5)])
+    [(4, 0.3, 0.4), (5, 0.1, 0.2)]
+    """
+    first = max((i + 1 for i in range(len(rows) - 1) if not 0 <= rows[i + 1][1] - rows[i][1] <= 1), default=0)
+    tail = [row for row in rows[first:] if row[1] >= 0]
+    return [(near[1], near[0], far[0]) for far, near in pairwise(tail) if near[1] > far[1]]

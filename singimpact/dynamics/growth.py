@@ -1,0 +1,206 @@
+"""An invariant curve of a map, grown image by image from a fundamental piece, and cut at discontinuities.
+
+The images of a fundamental piece follow one another without a gap.  A piece is a function of one parameter s. At a
+discontinuity between two neighbours in s the flight grazes, and the curve is split there by its hit history.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.surface.curve import Window, distances
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class GrowthSettings:
+    """How curves are grown; lengths are in units of the resolution of the window."""
+
+    start: int = 100  # distance of two points of the fundamental piece
+    least: int = 4  # points of the fundamental piece at least
+    longest: float = 8.0  # maximal chord length
+    bend: float = 0.5  # deviation of a vertex from the chord of its neighbours that is refined
+    jump: float = 8.0  # distance of neighbours in s beyond which there is a discontinuity between them
+    graze: float = 0.01  # an arc ends at a graze like a square root: its end is located to within this length
+    most: int = 4000  # points of a piece at most
+    distinct: float = 0.25  # distance from the generation before below which the growth ends
+    generations: int = 60  # images at most
+    halvings: int = 60  # of s at a discontinuity
+
+
+SETTINGS = GrowthSettings()
+NATURAL, TORN, LEFT, LOST = "", "torn", "left", "lost"
+"""How a piece ends: with its fundamental piece, or where the curve was cut before; at a tear; where it leaves what is
+followed; where the map has no image."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch of one generation: parameters s in order, their points, how often the map takes them to the start.
+
+    Parameters
+    ----------
+    ends : how its first and its last point came to be ends. coarse : points ran out before it was resolved.
+    """
+
+    s: Array
+    points: Array
+    generation: int
+    ends: tuple[str, str] = (NATURAL, NATURAL)
+    coarse: bool = False
+
+
+@dataclass(frozen=True)
+class Carried:
+    """A curve that a map carries over itself.
+
+    Parameters
+    ----------
+    window : its sides and resolution are the units of length.
+    start : points of the fundamental piece, from s. step : points of the next generation, from those of a generation
+        and its number; nan where there are none.
+    shown : which points lie where the curve is resolved. followed : which are carried on. most : points of a piece.
+    located : tears are located to the graze, or to rounding in s, not to where their ends are resolved.
+    """
+
+    window: Window
+    start: Callable[[Array], Array]
+    step: Callable[[Array, int], Array]
+    shown: Callable[[Array], Array]
+    followed: Callable[[Array], Array]
+    most: int = SETTINGS.most
+    located: bool = False
+
+    def image(self, s: Array, generation: int) -> Array:
+        """The points of a generation."""
+        points = self.start(s)
+        for count in range(generation):
+            points = self.step(points, count)
+        return points
+
+    def first(self, inner: float, outer: float) -> Piece:
+        """The fundamental piece between two values of s."""
+        count = max(SETTINGS.least, round(1 / self.window.resolution) // SETTINGS.start + 1)
+        s = np.linspace(inner, outer, count)
+        return Piece(s, self.start(s), 0)
+
+    def refined(self, piece: Piece) -> Piece:
+        """A piece with points added to the resolution, where it is not torn."""
+        s, points, coarse = self._refined(piece.s, piece.points, piece.generation)
+        return Piece(s, points, piece.generation, piece.ends, coarse)
+
+    def images(self, piece: Piece) -> list[Piece]:
+        """The image of a piece, with points added to the resolution, in stretches without a tear."""
+        generation = piece.generation + 1
+        s, points, coarse = self._refined(piece.s, self.step(piece.points, piece.generation), generation)
+        jump = np.hypot(*(np.diff(points, axis=0) / self.window.sides).T) > SETTINGS.jump * self.window.resolution
+        torn: Array = np.asarray(jump & (np.abs(np.diff(s)) <= closest(self.window) * np.ptp(piece.s)))
+        if self.located and torn.any():
+            s, points, torn = self._located(s, points, np.flatnonzero(torn), generation)
+        known: Array = np.asarray(np.isfinite(points).all(axis=1))
+        with np.errstate(invalid="ignore"):
+            kept: Array = known & self.followed(points)
+        cuts: Array = np.flatnonzero(torn | ~kept[1:] | ~kept[:-1]) + 1
+        parts = [part for part in np.split(np.arange(len(s)), cuts) if len(part) > 1 and kept[part].all()]
+
+        def end(beyond: int, before: str) -> str:
+            if not 0 <= beyond < len(s):
+                return before
+            return TORN if kept[beyond] else LEFT if known[beyond] else LOST
+
+        return [
+            Piece(s[part], points[part], generation,
+                  (end(int(part[0]) - 1, piece.ends[0]), end(int(part[-1]) + 1, piece.ends[1])),
+                  coarse or piece.coarse)
+            for part in parts
+        ]  # fmt: skip
+
+    def _refined(self, s: Array, points: Array, generation: int) -> tuple[Array, Array, bool]:
+        """Midpoints put in until chords are short or straight enough for the resolution, or their ends close in s."""
+        least = closest(self.window) * np.ptp(s)
+        for _ in range(60):
+            wanted = self._too_coarse(points) & (np.abs(np.diff(s)) > least)
+            at = np.flatnonzero(wanted)
+            if not at.size:
+                return s, points, False
+            if len(s) + at.size > self.most:
+                return s, points, True
+            middle = (s[at] + s[at + 1]) / 2
+            s, points = np.insert(s, at + 1, middle), np.insert(points, at + 1, self.image(middle, generation), axis=0)
+        return s, points, False
+
+    def _located(self, s: Array, points: Array, at: Array, generation: int) -> tuple[Array, Array, Array]:
+        """Points more on both sides of tears, by bisection in s, and which chords are the tears then.
+
+        A middle belongs to the end that it is nearer to. A curve that ends like a square root gets points in geometric
+        sequence.
+        """
+        ends = [s[at].copy(), s[at + 1].copy()]
+        places = [points[at].copy(), points[at + 1].copy()]
+        low = SETTINGS.graze * self.window.resolution * self.window.sides[1]
+        more = [(s, points)]
+        for _ in range(SETTINGS.halvings):
+            middle = (ends[0] + ends[1]) / 2
+            apart = (middle != ends[0]) & (middle != ends[1])
+            # an end at rest is where a flight grazes: nearer to it flights are dear, and the curve is no longer
+            apart &= np.minimum(places[0][:, 1], places[1][:, 1]) > low
+            if not apart.any():
+                break
+            image = np.full(places[0].shape, np.nan)
+            image[apart] = self.image(middle[apart], generation)
+            gaps = [np.hypot(*((image - place) / self.window.sides).T) for place in places]
+            first = gaps[0] <= gaps[1]  # of nan neither is true
+            for end, chosen in ((0, first), (1, gaps[0] > gaps[1])):
+                ends[end][chosen], places[end][chosen] = middle[chosen], image[chosen]
+                more.append((middle[chosen], image[chosen]))
+        s, points = np.concatenate([each[0] for each in more]), np.vstack([each[1] for each in more])
+        order = np.argsort(s, kind="stable") if ends[0][0] < ends[1][0] else np.argsort(-s, kind="stable")
+        return s[order], points[order], np.isin(s[order][:-1], ends[0])
+
+    def _too_coarse(self, points: Array) -> Array:
+        """Chords too long for the resolution, or at a bend beyond it; or with one end that is not known."""
+        resolution = self.window.resolution
+        known: Array = np.asarray(np.isfinite(points).all(axis=1))
+        near: Array = np.logical_or(self.shown(points), ~known)
+        step = np.diff(points, axis=0) / self.window.sides
+        length = np.hypot(*step.T)
+        with np.errstate(all="ignore"):
+            cross = np.abs(step[:-1, 0] * step[1:, 1] - step[:-1, 1] * step[1:, 0])
+            off = cross / np.maximum(np.hypot(*(step[:-1] + step[1:]).T), 1e-300)
+        bend = np.zeros(len(length), dtype=bool)
+        bend[:-1] |= off > SETTINGS.bend * resolution
+        bend[1:] |= off > SETTINGS.bend * resolution
+        coarse = (length > min(SETTINGS.longest * resolution, 1 / 25)) | (bend & (length > resolution))
+        return np.asarray((near[:-1] | near[1:]) & ((known[:-1] != known[1:]) | (known[:-1] & known[1:] & coarse)))
+
+
+def closest(window: Window) -> float:
+    """Neighbours in s nearer than this share of a piece, still far apart in the window, are torn.
+
+    Examples
+    --------
+    >>> closest(Window((0, 1), (0, 1), 0.01))
+    1e-08
+    """
+    return float((SETTINGS.graze * window.resolution) ** 2)
+
+
+def held(window: Window, points: Array) -> Array:
+    """Which points lie in the window; v has no lower end, for no state has v < 0."""
+    tau, v = points.T
+    return np.asarray((tau >= window.x[0]) & (tau <= window.x[1]) & (v <= window.y[1]))
+
+
+def adds(piece: Piece, before: list[Piece], window: Window) -> bool:
+    """Whether a piece is resolved from those of one generation before, so that growing it on adds something new.
+
+    Loops of stable manifolds accumulate on gamma: each generation has one more, soon nearer than a line is wide.
+    """
+    seen = piece.points[held(window, piece.points)] / window.sides
+    gaps = [distances(seen, old.points / window.sides) for old in before]
+    return not len(seen) or bool(np.min(gaps, axis=0).max() > SETTINGS.distinct * window.resolution)

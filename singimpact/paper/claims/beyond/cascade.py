@@ -1,0 +1,190 @@
+"""The cascade beside a border orbit: what a launch next to a release forgets, and how fast the windows shrink."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.certificates import positive_on
+from singimpact.branches.border import BorderOrbit, border_orbits
+from singimpact.oscillator.model import Oscillator
+from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
+from singimpact.paper.claims.sections.section4a_rays import ray_m3
+from singimpact.paper.claims.verifiers import every, identity, is_zero
+from singimpact.paper.routes import fold
+from singimpact.paper.routes.implicit import a_symbol, at_contact, sigma, t, v, y_c
+
+claim = in_section("beyond")
+lam = sympy.Symbol("lambda")
+_SCALE = sympy.Symbol("h")
+_FACTOR = lam * (2 + lam) ** 2 / (1 + 2 * lam) ** 2
+
+
+def _at_release() -> tuple[Any, Any]:
+    """x - c and x' at tau_* of a launch at (tau_* + h sigma, h^2 v) next to a tangency, to order 3 in h."""
+    height = t * at_contact(y_c(3), 1)
+    found = []
+    for part in (height, sympy.diff(height, t)):
+        scaled = part.subs(t, -sigma).subs({sigma: _SCALE * sigma, v: _SCALE**2 * v}, simultaneous=True)
+        found.append(sympy.expand(scaled))
+    return found[0], found[1]
+
+
+def _forgets(stated: tuple[int, Any]) -> Check:
+    """(k, w): at tau_* the launch has x - c = O(h^k), not O(h^(k+1)), and x' = h^2 w + O(h^3)."""
+    power, speed = stated
+    height, slope = _at_release()
+    least = min(key[0] for key in sympy.Poly(height, _SCALE).as_dict())
+    kept = sympy.Poly(slope, _SCALE)
+    check = identity(lambda: kept.nth(2), "derived from the equation of motion at a tangency")(speed)
+    return every(
+        [
+            (f"x - c begins with h^{least}", least == power),
+            ("x' begins with h^2", is_zero(kept.nth(0)) and is_zero(kept.nth(1))),
+            (check.evidence, check.holds),
+        ],
+        witness=lambda: dict(check.witness or {"x - c": f"h^{least}", "stated": f"h^{power}"}),
+    )
+
+
+def _contracts(stated: tuple[int, Any, str]) -> Check:
+    """(p, formula, side): lambda^p mu is the formula, and lies on that side of 1 for every r in (0, 1)."""
+    power, formula, side = stated
+    rate, _ = fold.h_blown_up()
+    product = rate**power * fold.N_r_at_fixed_points()
+    check = identity(lambda: product, "derived from the blow-up at a tangency")(formula.subs(lam, rate))
+    rest = sympy.cancel((1 - formula if side == "below" else formula - 1).together())
+    return every(
+        [
+            (check.evidence, check.holds),
+            ("m3 = 1/2 + lambda runs once through (1/2, 3/2) as r does through (0, 1)",
+             ray_m3((HALF, THREE_HALVES)).holds),
+            (f"what it lacks of 1 is {sympy.factor(rest)}" if side == "below" else "it is above 1",
+             positive_on(rest, lam, 0, 1)),
+        ],
+        witness=lambda: dict(check.witness or {"lambda": "1/2", "value": str(formula.subs(lam, HALF))}),
+    )  # fmt: skip
+
+
+def _in_r(stated: tuple[int, int]) -> Check:
+    """(p, q): lambda^2 mu = r^p/lambda^q at the fixed point."""
+    rate, _ = fold.h_blown_up()
+    power, root = stated
+    found = fold.r_of_m() ** power / rate**root
+    return identity(lambda: rate**2 * fold.N_r_at_fixed_points(), "derived from the blow-up at a tangency")(found)
+
+
+MODELS = (
+    ("x'' + x = cos 2.8t, r = 3/10", Oscillator("x", "cos(2.8*t)", 0, "0.3"), ("0.47", "0.475")),
+    ("x'' + x = cos 2.8t, r = 1/2", Oscillator("x", "cos(2.8*t)", 0, "0.5"), ("0.6", "0.61")),
+    ("x'' + x = cos 2.8t, r = 4/5", Oscillator("x", "cos(2.8*t)", 0, "0.8"), ("0.81", "0.82")),
+    (
+        "x'' + x'/10 + x + 3x^3/10 = cos 2.8t, r = 1/2",
+        Oscillator("x + 0.1*xdot + 0.3*x**3", "cos(2.8*t)", 0, "0.5"),
+        ("0.53", "0.55"),
+    ),
+)
+"""Models with a border orbit, and two clearances between which it lies."""
+SAME = (1e-6, 4e-3)
+"""Relative distances of what is measured from what is stated: of ratios of edges, and of multipliers.
+
+A multiplier differs from its limit by a part of itself, so the last ones of doubles, 0.03 to 0.1, are off by 2e-3.
+"""
+SETTLED = 0.3
+"""Multipliers below this size are on their way to 0."""
+
+
+@cache
+def _border(place: int) -> BorderOrbit:
+    _, model, ends = MODELS[place]
+    (found,) = border_orbits(model, "clearance", ends, points=5)
+    return found
+
+
+def _measured(stated: tuple[int, int, int, int]) -> Check:
+    """(a, b, c, d): edges shrink by lambda^-a mu^b, and the multipliers of consecutive windows by lambda^c mu^d."""
+    a, b, c, d = stated
+    from singimpact.theory.fixed_points import tangency
+
+    checks, worst = [], dict[str, str]()
+    for place, (name, model, _) in enumerate(MODELS):
+        at = tangency(model.restitution)
+        lambda_, mu = float(at.lambda_.value), float(at.mu.value)
+        cascade = _border(place).cascade
+        edges, wanted = cascade.limit[0], lambda_**-a * mu**b
+        sizes = [abs(complex(each.orbit.multipliers[0])) for each in cascade.windows if each.orbit is not None]
+        # windows of doubles may not go so deep that multipliers fall
+        deep = len(sizes) > 2 and sizes[-1] < SETTLED and sizes[-1] < sizes[-2] < sizes[-3]
+        told = f"{name}: edges {'' if deep else 'alone, they '}shrink by {edges:.10g}, mu = {mu:.10g}"
+        checks.append((told, abs(edges / wanted - 1) < SAME[0]))
+        if not deep:
+            continue
+        share, stated_share = sizes[-1] / sizes[-2], lambda_**c * mu**d
+        checks.append(
+            (
+                f"multipliers by {share:.6g}, lambda^2 mu = {lambda_**2 * mu:.6g}",
+                abs(share / stated_share - 1) < SAME[1],
+            )
+        )
+        worst = {"model": name, "edges": f"{edges:.8g}", "multipliers": f"{share:.6g}"}
+    return every(checks, "supported", witness=lambda: worst)
+
+
+CLAIMS = (
+    claim(
+        "b:cascade-launch",
+        "a launch next to a release differs from it only by v - a' sigma^2/2, of second order",
+        Statement(
+            r"(\tau_*+h\sigma,\,h^2v):\quad x(\tau_*)-c=O(h^3),\quad\dot x(\tau_*)=h^2(v-\tfrac12a'\sigma^2)+O(h^3)",
+            (3, v - a_symbol(1) * sigma**2 / 2),
+        ),
+        _forgets,
+        (
+            (2, v - a_symbol(1) * sigma**2 / 2),
+            (3, v + a_symbol(1) * sigma**2 / 2),
+            (3, v - a_symbol(1) * sigma**2 / 6),
+            (4, v),
+        ),
+        ("e:yeq",),
+    ),
+    claim(
+        "b:cascade-contraction",
+        "lambda^2 mu < 1 for every r in (0, 1): what a window returns is small beside its width",
+        Statement(
+            r"\lambda^2\mu=\frac{\lambda(2+\lambda)^2}{(1+2\lambda)^2}"
+            r"=1-\frac{1-\lambda^3}{(1+2\lambda)^2}<1\ \text{for}\ 0<r<1",
+            (2, _FACTOR, "below"),
+        ),
+        _contracts,
+        (
+            (2, _FACTOR, "above"),
+            (1, _FACTOR / lam, "below"),
+            (3, _FACTOR * lam, "above"),
+            (2, lam * (2 + lam) / (1 + 2 * lam), "below"),
+            (2, 1 - (1 - lam**2) / (1 + 2 * lam) ** 2, "below"),
+        ),
+        ("s4-saddle-m3", "s4-Nr-3", "s4-m3"),
+    ),
+    claim(
+        "b:cascade-contraction-r",
+        "lambda^2 mu = r^2/lambda^3",
+        Statement(r"\lambda^2\mu=r^2/\lambda^3", (2, 3)),
+        _in_r,
+        ((2, 2), (1, 3), (2, 5)),
+        ("s4-Nr-3", "e:meq"),
+    ),
+    claim(
+        "b:cascade",
+        "beside a border orbit edges shrink by mu, and multipliers of the windows' attractors by lambda^2 mu",
+        Statement(
+            r"\frac{d_N}{d_{N+1}}\to\mu,\qquad\frac{\nu_{N+1}}{\nu_N}\to\lambda^2\mu",
+            (0, 1, 2, 1),
+        ),
+        _measured,
+        ((0, 1, 1, 1), (1, 1, 2, 1), (0, 2, 2, 1), (0, 1, 2, 2)),
+        ("b:cascade-launch", "b:cascade-contraction"),
+    ),
+)

@@ -1,0 +1,141 @@
+"""Pictures of W^s and W^u of saddles, and of the points where they cross, alone or over basins."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.branches.homoclinic import Crossings
+from singimpact.branches.manifold import Manifold
+from singimpact.inputs import refuse
+from singimpact.scenes.style import BLACK, DASHES, PENS
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class ManifoldPictureSettings:
+    """Marks of a picture of manifolds."""
+
+    saddle: float = 6.0
+    cut: float = 3.2
+    crossing: float = 4.5
+    # more tears than this are not marked
+    marked: int = 60
+    # orbits whose impacts are all marked, the first ones
+    orbits: int = 1
+
+
+SETTINGS = ManifoldPictureSettings()
+
+
+def draw_manifolds(found: Sequence[Manifold], axes: Any) -> Any:
+    """Draw manifolds of one model with their saddles, and where the map tears them.
+
+    Parameters
+    ----------
+    found : manifolds. axes : of matplotlib; limits of a picture that is there are kept.
+    """
+    if len({each.saddle.oscillator for each in found}) > 1:
+        raise refuse("manifolds to plot", "those of several models", "manifolds of one model")
+    fresh, entries = not axes.has_data(), _entries(axes)
+    periods, highest = found[0].window.x, max(each.window.y[1] for each in found)
+    limits = (axes.get_xlim(), axes.get_ylim())
+    for each in found:
+        line = PENS[each.name].line()
+        if not fresh:  # over basins, whose colours are strong
+            line |= {"color": BLACK, "linewidth": 0.8, "linestyle": "solid" if each.stable else DASHES}
+        entries.setdefault(f"${each.name}$ of the {_orbit(each)} saddle", _line(line))
+        for turn in _turns(limits[0], periods[1], fresh):
+            for piece in each.pieces:
+                axes.plot(piece.points[:, 0] + turn, piece.points[:, 1], **line, zorder=4)
+            _saddle(each, turn, axes)
+            _cuts(each, turn, axes, entries)
+    entries["saddle"] = _mark("s", SETTINGS.saddle, BLACK)
+    if fresh:
+        axes.set_xlim(*periods)
+        axes.set_ylim(0.0, highest)
+        axes.set_xlabel(r"launch phase $\tau$")
+        axes.set_ylabel("launch velocity $v$")
+    else:
+        axes.set_xlim(*limits[0])
+        axes.set_ylim(*limits[1])
+    axes.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3,
+                frameon=False, fontsize="small")  # fmt: skip
+    return axes
+
+
+def draw_crossings(found: Crossings, axes: Any) -> Any:
+    """Draw both manifolds, a point of each orbit in which they cross, and all impacts of the first one."""
+    draw_manifolds(found.manifolds, axes)
+    entries, limits = _entries(axes), (axes.get_xlim(), axes.get_ylim())
+    pen = PENS["crossing"]
+    kind = found[0].kind if found else "homoclinic"
+    for each in found:
+        axes.plot(each.tau, each.v, "o", color=pen.color, markersize=SETTINGS.crossing, markeredgewidth=0, zorder=6)
+    for each in found[: SETTINGS.orbits]:
+        axes.plot(
+            *each.states.T, "o", color=BLACK, markerfacecolor="none", markersize=1.8 * SETTINGS.crossing, zorder=7
+        )
+        entries[f"impacts of the first {kind} orbit"] = _mark("o", 1.8 * SETTINGS.crossing, "none")
+    if found:
+        entries[f"{kind} points, one of each orbit"] = _mark("o", SETTINGS.crossing, pen.color, pen.color)
+    axes.set_xlim(*limits[0])
+    axes.set_ylim(*limits[1])
+    axes.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3,
+                frameon=False, fontsize="small")  # fmt: skip
+    return axes
+
+
+def _orbit(found: Manifold) -> str:
+    return f"({found.saddle.n:.0f}, {found.saddle.k})"
+
+
+def _turns(limits: tuple[float, float], period: float, fresh: bool) -> list[float]:
+    """Whole periods that bring the curves into a picture that is there."""
+    if fresh:
+        return [0.0]
+    low, high = np.floor(limits[0] / period), np.ceil(limits[1] / period)
+    return [float(turn) * period for turn in np.arange(low, max(high, low + 1))]
+
+
+def _saddle(found: Manifold, turn: float, axes: Any) -> None:
+    period = found.window.x[1]
+    tau = np.mod(np.asarray(found.saddle.tau, dtype=float), period) + turn
+    v = np.asarray(found.saddle.v, dtype=float)
+    axes.plot(tau, v, "s", color=BLACK, markerfacecolor="white", markersize=SETTINGS.saddle, zorder=6)
+
+
+def _cuts(found: Manifold, turn: float, axes: Any, entries: dict[str, Any]) -> None:
+    """The states that the map tears apart."""
+    if not found.cuts or len(found.cuts) > SETTINGS.marked:
+        return
+    places = np.array([(cut.tau + turn, cut.v) for cut in found.cuts])
+    axes.plot(*places.T, "D", color=BLACK, markerfacecolor="white", markersize=SETTINGS.cut, zorder=5)
+    entries["torn by a graze"] = _mark("D", SETTINGS.cut, BLACK)
+
+
+def _entries(axes: Any) -> dict[str, Any]:
+    """The legend that is there."""
+    old = axes.get_legend()
+    if old is None:
+        handles, labels = axes.get_legend_handles_labels()
+        return dict(zip(labels, handles, strict=True))
+    return dict(zip([text.get_text() for text in old.get_texts()], list(old.legend_handles), strict=True))
+
+
+def _line(look: dict[str, Any]) -> Any:
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], **look)
+
+
+def _mark(shape: str, size: float, color: str, face: str = "white") -> Any:
+    from matplotlib.lines import Line2D
+
+    edge = BLACK if color == "none" else color
+    face = "none" if color == "none" else face
+    return Line2D([], [], linestyle="none", marker=shape, color=edge, markerfacecolor=face, markersize=size)

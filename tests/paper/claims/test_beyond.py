@@ -1,0 +1,79 @@
+"""Claims that the paper does not have: verdicts, mutants, and that the paper's 131 stay apart."""
+
+import json
+
+import pytest
+
+import singimpact as si
+from singimpact.algebra.checking import accepts
+from singimpact.paper.claims import BEYOND, CLAIMS, INDEX, keys, run, select
+from singimpact.paper.claims.beyond import BEYOND as FILES
+from singimpact.paper.claims.index import BEYOND_PLACE, written_index
+
+KINDS = {
+    "b:cascade-launch": "proved",
+    "b:cascade-contraction": "proved",
+    "b:cascade-contraction-r": "proved",
+    "b:cascade": "supported",
+}
+
+
+@pytest.fixture(scope="module")
+def verdicts():
+    return {verdict.id: verdict for verdict in run(select(list(BEYOND)), kept=True)}
+
+
+def test_index_is_what_the_files_say():
+    assert BEYOND_PLACE.read_text() == written_index(FILES), "python derivations/freeze.py writes it anew"
+
+
+def test_the_claims_of_the_paper_stay_apart():
+    assert len(si.claims) == len(CLAIMS) == len(INDEX) == 131
+    assert not set(BEYOND) & set(INDEX)
+    assert not set(BEYOND) & {entry.id for entry in select()}
+    assert si.claims["b:cascade"].section == "beyond"
+    assert all(name.startswith("b:") for name in BEYOND)
+
+
+@pytest.mark.parametrize("name", BEYOND)
+def test_each_has_its_verdict(name, verdicts):
+    verdict = verdicts[name]
+    assert (verdict.kind, verdict.effective) == (KINDS[name], KINDS[name]), verdict.evidence
+    if verdict.kind == "proved":
+        assert verdict.certificates
+        assert all(accepts(json.loads(json.dumps(each))) for each in verdict.certificates)
+
+
+@pytest.mark.parametrize("name", BEYOND)
+def test_verifier_rejects_every_mutant(name):
+    claim = CLAIMS[name]
+    assert claim.mutants
+    for mutant in claim.mutants:
+        assert not claim.verify(mutant).holds, f"{name} accepts {mutant}"
+
+
+def test_contraction_for_all_r_rests_on_positive_coefficients(verdicts):
+    kinds = [certificate["kind"] for certificate in verdicts["b:cascade-contraction"].certificates]
+    assert "positive" in kinds
+
+
+def test_contraction_at_numbers():
+    """lambda^2 mu of certified fixed points, beside the formula."""
+    for r in ("0.01", "0.3", "0.5", "0.8", "0.99"):
+        at = si.fixed_points.tangency(r, digits=40)
+        root, mu = at.lambda_.value, at.mu.value
+        assert float(abs(root**2 * mu - (1 - (1 - root**3) / (1 + 2 * root) ** 2))) < 1e-15
+        assert float(abs(root**2 * mu - type(root)(r) ** 2 / root**3)) < 1e-14
+        assert root**2 * mu < 1
+
+
+def test_key_holds_what_a_file_imports():
+    assert {"cascade", "section4a_rays", "section4a_blowup"} <= set(keys.imported_by("cascade"))
+
+
+def test_from_the_command_line(singimpact):
+    shown = json.loads(singimpact("verify", "--beyond", "--json").stdout)["claims"]
+    assert {name: kind for name, kind in ((each["id"], each["verdict"]) for each in shown) if name in KINDS} == KINDS
+    assert json.loads(singimpact("claims", "show", "b:cascade-contraction", "--json").stdout)["falls_with_it"] == [
+        "b:cascade"
+    ]
