@@ -1,4 +1,4 @@
-"""Entries of the user's cache: sealed by a digest of their content; what is damaged is named and made again.
+"""Entries of the user's cache, each stored with a digest of its content; a damaged entry is named and made again.
 
 A cache is a convenience: when it cannot be read or written, one line says so and the work goes on without it.
 """
@@ -39,14 +39,14 @@ _SAID: list[str] = []  # why results are not kept, once in a process
 
 
 def keep(place: Path, content: bytes) -> None:
-    """Put an entry under a name, whole or not at all; a cache that cannot be written is told once and is no failure."""
+    """Write an entry, which appears only when complete. A cache that cannot be written gives one warning, no error."""
     try:
         _swept(folder(place.parent))
         reason = _changeable(place)
         if reason is not None:
             raise InputError(f"{shown(str(place.parent))}: {reason}")
         if place.is_symlink():
-            place.unlink()  # an entry is a file of its own: what a link names is not written to
+            place.unlink()  # an entry is a regular file: a link is removed, its target is not written to
         with written(place) as draft:
             draft.write_bytes(_seal(content) + content)
     except (InputError, OSError) as error:
@@ -139,7 +139,7 @@ def _grown(tree: Any, kinds: Mapping[str, type], array: Callable[[], Any]) -> An
 
 
 def _unfollowed(place: str, flags: int) -> int:
-    """An entry is a file: what stands there as a link is not opened."""
+    """An entry is a regular file; a link is not opened."""
     return os.open(place, flags | getattr(os, "O_NOFOLLOW", 0))
 
 
@@ -202,11 +202,11 @@ def damaged(place: Path, reason: str) -> None:
 
 
 def not_kept(error: Exception) -> None:
-    """Say once in a process that results are not kept."""
+    """Print once in a process that results are not stored."""
     if not _SAID:
         _SAID.append(str(error))
         reason = str(error).removeprefix("output = ").partition(": give")[0]
-        tell(f"cache: {reason}; the work goes on and keeps nothing (SINGIMPACT_CACHE names another folder)")
+        tell(f"cache: {reason}; results are not stored; the work goes on (SINGIMPACT_CACHE names another folder)")
 
 
 def _seal(content: bytes) -> bytes:
@@ -215,7 +215,7 @@ def _seal(content: bytes) -> bytes:
 
 @lru_cache(maxsize=64)
 def _swept(place: Path) -> None:
-    """Take away drafts of processes that were killed; once a folder and process."""
+    """Remove temporary files of killed processes, once for each folder and process."""
     for draft in place.glob(f"{DRAFT}*"):
         if draft.stat().st_mtime < time.time() - AGES.draft:
             draft.unlink(missing_ok=True)

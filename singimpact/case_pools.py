@@ -1,6 +1,6 @@
 """Where cases are computed: a pool of processes, threads, a cluster, or this process, with one interface.
 
-Not here: which cases are computed, and what becomes of their results (`cases`).
+Not here: the choice of the cases and the use of their results (`cases`).
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ THREADS = "executor=concurrent.futures.ThreadPoolExecutor()"
 
 @dataclass(frozen=True)
 class ChunkSettings:
-    """When a worker sends back what it has, before all cases of its chunk are done."""
+    """Size at which a worker returns its results before its chunk is complete."""
 
-    bytes: int = 1 << 24  # of results: some chunks a worker are in the memory of the process that keeps them
+    bytes: int = 1 << 24  # of results; the calling process holds a few chunks of each worker in memory
 
 
 CHUNK = ChunkSettings()
@@ -40,9 +40,9 @@ CHUNK = ChunkSettings()
 
 @dataclass(frozen=True)
 class ClusterSettings:
-    """How often a cluster is asked for its size."""
+    """Time between two requests for the size of a cluster."""
 
-    asked: float = 1.0  # seconds; workers come and go while a sweep runs
+    interval: float = 1.0  # s; workers come and go while a sweep runs
 
 
 CLUSTER = ClusterSettings()
@@ -82,7 +82,7 @@ def _stacked(function: Function, values: list[Any]) -> Array:
 
 
 def unpacked(payload: bytes, seconds: float) -> tuple[Array, float]:
-    """`computed` in another process; what cannot be loaded there is an error of the caller, and ends no worker."""
+    """`computed` in another process. A payload that cannot be loaded raises an error and does not end the worker."""
     try:
         function, items = pickle.loads(payload)
     except Exception as error:
@@ -108,7 +108,7 @@ class Place:
     """
 
     replaceable = False  # by a new pool, when a worker has died
-    reason = ""  # why there is no other place
+    reason = ""  # for computing in this process
 
     def __init__(self, executor: Executor) -> None:
         self.executor = executor
@@ -124,7 +124,7 @@ class Place:
         return self.executor.submit(computed, function, items, seconds)
 
     def opened(self) -> AbstractContextManager[Any]:
-        """Ends a pool that was made here; the caller's is left to the caller."""
+        """A context that ends a pool made here; a pool of the caller stays open."""
         return nullcontext()
 
     def again(self, width: int | None = None) -> Place:
@@ -134,7 +134,7 @@ class Place:
 
 
 class Here(Place):
-    """This process, one case after another."""
+    """The calling process, one case after another."""
 
     def __init__(self, reason: str = "") -> None:
         self.reason = reason
@@ -145,7 +145,7 @@ class Here(Place):
         return 1
 
     def submit(self, function: Function, items: Sequence[Any], seconds: float) -> Future[Any]:
-        """Compute them, and return when that is done; an interruption is raised at once."""
+        """Compute the cases and return the finished future; an interruption is raised at once."""
         return _done_here(function, items, seconds)
 
 
@@ -155,17 +155,17 @@ class Cluster(Place):
     def __init__(self, executor: Any) -> None:
         self.client = executor if hasattr(executor, "get_executor") else executor._client
         super().__init__(executor.get_executor() if hasattr(executor, "get_executor") else executor)
-        self._known, self._when = 1, -CLUSTER.asked
+        self._known, self._when = 1, -CLUSTER.interval
 
     @property
     def width(self) -> int:
         """Threads of all workers of the cluster, as many as there are now."""
-        if time.monotonic() - self._when >= CLUSTER.asked:
+        if time.monotonic() - self._when >= CLUSTER.interval:
             self._known, self._when = max(1, sum(self.client.nthreads().values())), time.monotonic()
         return self._known
 
     def submit(self, function: Function, items: Sequence[Any], seconds: float) -> Future[Any]:
-        """Begin to compute some cases; as bytes, for a tuple among the cases would be taken for a task."""
+        """Begin to compute some cases. They are sent as bytes, because Dask takes a tuple among them for a task."""
         import cloudpickle
 
         payload = _packed(function, items, cloudpickle.dumps)
@@ -173,7 +173,7 @@ class Cluster(Place):
 
 
 class Processes(Place):
-    """A process pool: what is sent is pickled first, so that what cannot be sent ends in one line."""
+    """A process pool. Work is pickled before it is submitted, so that a pickling error gives one clear message."""
 
     replaceable = True
 
@@ -182,7 +182,7 @@ class Processes(Place):
         self.own, self.scripted = own, not isinstance(executor, WorkerPool) or executor.script
 
     def submit(self, function: Function, items: Sequence[Any], seconds: float) -> Future[Any]:
-        """Begin to compute some cases; those made of a script that the workers do not know are computed here."""
+        """Begin to compute some cases; cases of a script that the workers have not imported are computed here."""
         payload = _packed(function, items, pickle.dumps)
         if not self.scripted and b"__main__" in payload:
             return _done_here(function, items, seconds)
@@ -249,9 +249,9 @@ def _would_run_the_script(pool: ProcessPoolExecutor) -> bool:
 
 
 def script_can_be_imported() -> bool:
-    """Whether a new process may import the script that is running.
+    """Whether a new process may import the running script.
 
-    It imports the file under another name than "__main__": a call that stands under `if __name__ == "__main__":` is
+    It imports the file under another name than "__main__": a call under `if __name__ == "__main__":` is
     not made again there, any other is.
     """
     main = sys.modules["__main__"]
@@ -297,7 +297,7 @@ def _done_here(function: Function, items: Sequence[Any], seconds: float) -> Futu
 
 
 class ThreadPool(ThreadPoolExecutor):
-    """Threads, as many as there are cores unless it is told; left by an error, it drops the cases that wait."""
+    """Threads, one for each core by default. After an error the waiting cases are dropped."""
 
     def __init__(self, workers: int | None = None) -> None:
         super().__init__(workers or os.cpu_count() or 1)
@@ -310,12 +310,12 @@ class ThreadPool(ThreadPoolExecutor):
 
 
 class WorkerPool(ProcessPoolExecutor):
-    """Processes that share no locks with this one and end with it; left by an error, it ends them at once.
+    """Processes that share no locks with this one and end with it. After an error they are ended at once.
 
     Parameters
     ----------
-    workers : how many; as many as there are cores without it.
-    script : whether they import the script that is running; what belongs to a module does not need it.
+    workers : number of processes; one for each core by default.
+    script : whether they import the running script; functions of a module do not need it.
     """
 
     def __init__(self, workers: int | None = None, script: bool = False) -> None:
@@ -339,7 +339,7 @@ class _BareProcess(context.SpawnProcess):
     """A process that does not import the script that is running."""
 
     def start(self) -> None:
-        """Start it; what it is told about the script is left out of its instructions."""
+        """Start the process without the entries that make it import the script."""
         with _STARTING:
             usual, thread = spawn.get_preparation_data, threading.get_ident()
 
@@ -363,7 +363,7 @@ class _WithoutScript(context.SpawnContext):
 
 
 def _begin() -> None:
-    """A worker ends when the process it works for is gone; Ctrl-C in the terminal is handled by that process."""
+    """Make the worker end with the process that started it, which also handles Ctrl-C in the terminal."""
     import signal
     from multiprocessing.connection import wait
 

@@ -1,6 +1,6 @@
-"""`sweep`: a function of many cases on any executor, kept in chunks as they are done, resumed after an interruption.
+"""`sweep`: a function of many cases on any executor; results are stored in chunks and resumed after an interruption.
 
-Cases are read as they are needed, so that they may come from a generator.  Not here: where they are computed
+Cases are read as they are needed, so they may come from a generator.  Not here: where they are computed
 (`case_pools`), where results are written (`case_files`), the key by which a file is recognised (`case_keys`).
 
 This file is not called `sweep`: importing a module of that name would replace the function `singimpact.sweep` by it.
@@ -12,6 +12,7 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sized
 from concurrent.futures import BrokenExecutor, CancelledError, Future, wait
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
@@ -33,22 +34,20 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class PoolSettings:
-    """How cases are handed out."""
+    """Sizes of chunks, and limits on lost workers."""
 
-    seconds: float = 0.2  # of work in a chunk; it ends with the case that is then begun: what a killed worker loses
-    served: int = 32  # workers that can be sent chunks that often; with more of them chunks are longer
-    most: int = 8192  # cases in a chunk, which memory holds a few of for each worker
-    ahead: int = 2  # chunks a worker: one that it computes, and one that waits
-    awake: float = 0.1  # seconds between two updates of the progress line; Ctrl-C is handled meanwhile
-    losses: int = 2  # of workers with a chunk among their work; its cases are then tried in a pool of one
-    deaths: int = (
-        2  # of a worker alone with one case; then the case is at fault. A worker killed from outside dies once
-    )
-    guilty: int = 16  # cases that end their process, after which the rest is not tried
-    patience: float = 10.0  # seconds after which a line says why cases are computed one after another in this process
+    seconds: float = 0.2  # s, work in a chunk, which ends with the case begun by then; a killed worker loses one chunk
+    served: int = 32  # workers that get a chunk every 0.2 s; with more workers the chunks are longer
+    most: int = 8192  # cases in a chunk at most; memory holds a few chunks for each worker
+    ahead: int = 2  # chunks sent to a worker: one that it computes and one that waits
+    awake: float = 0.1  # s between two updates of the progress line; Ctrl-C is handled at the same time
+    losses: int = 2  # lost workers that had a chunk, after which its cases run in a pool of one worker
+    deaths: int = 2  # ends of a worker alone with one case, after which the case is the cause
+    fatal: int = 16  # cases that end their process, after which the sweep stops
+    serial_note: float = 10.0  # s after which a line gives the reason why the cases run one after another here
 
 
-PORTIONS = PoolSettings()
+POOL = PoolSettings()
 
 
 def sweep(
@@ -62,15 +61,15 @@ def sweep(
     Parameters
     ----------
     function : of one case; it returns a number or an array of numbers of one shape.
-    cases : whatever the function takes; a generator is read as cases are needed.
+    cases : arguments of the function; a generator is read as cases are needed.
     executor : any `concurrent.futures.Executor`, or a `dask.distributed.Client`. Without it a pool of processes, as
         many as there are cores. Where new processes cannot import the function (it is defined in a script that makes
         this call outside `if __name__ == "__main__":`, or in an interactive session) cases are computed one after
         another in this process.
-    output : a file that takes results as they come: NAME.npz (results are in memory too), or NAME.zarr, a Zarr store,
-        where memory holds a few chunks of cases only (extra `cluster`). Until it is complete, results are in
-        NAME.npz.part or NAME.zarr.part. A second run computes what is missing; longer cases that begin with the same
-        ones are continued.
+    output : a file for the results: NAME.npz (results are in memory too), or NAME.zarr, a Zarr store, with memory for
+        a few chunks of cases only (extra `cluster`). Until it is complete, results are in
+        NAME.npz.part or NAME.zarr.part. A second run computes the missing cases; a longer list that begins with
+        the same cases continues the file.
 
     Returns
     -------
@@ -80,8 +79,8 @@ def sweep(
     ------
     InputError : a function that cannot be sent to other processes; an output that holds results of other cases, of a
         function with other code or other values closed over, or of another version.
-    Unfinished : cases end their process. A worker that is killed is no error: the work of its last fraction of a
-        second is done again in a new pool.
+    Unfinished : some cases end their process. A worker killed from outside is no error: its chunk is computed again in
+        a new pool.
 
     Examples
     --------
@@ -97,7 +96,7 @@ def sweep(
         with ProgressLine() as line:
             work = _Work(function, _Source(cases, store), store, line, count)
             work.run(executor)
-        work.refuse_guilty()
+        work.refuse_fatal()
     except BaseException:
         store.leave()
         raise
@@ -106,7 +105,7 @@ def sweep(
 
 @dataclass
 class _Chunk:
-    """Consecutive cases from the one numbered `start`; losses : of workers that had it among their work."""
+    """Consecutive cases from the one numbered `start`; losses : lost workers that had it."""
 
     start: int
     items: list[Any]
@@ -119,7 +118,7 @@ class _Chunk:
 
 
 class _Source:
-    """Cases in order, as they are asked for; those with kept results are compared with their key and left out."""
+    """The cases in order. Cases with stored results are compared with the stored key and left out."""
 
     def __init__(self, cases: Iterable[Any], store: InMemory) -> None:
         self.cases, self.store, self.at = iter(cases), store, 0
@@ -158,7 +157,7 @@ class _Source:
 
 @dataclass
 class _Work:
-    """A sweep that runs: what waits, what is being computed, and cases that ended their process."""
+    """A running sweep: waiting chunks, running chunks, and cases that ended their process."""
 
     function: Callable[[Any], Any]
     source: _Source
@@ -168,11 +167,11 @@ class _Work:
     waiting: deque[_Chunk] = field(default_factory=deque)
     running: dict[Future[Any], _Chunk] = field(default_factory=dict)
     ended: SimpleQueue[Future[Any]] = field(default_factory=SimpleQueue)
-    guilty: list[tuple[int, Any]] = field(default_factory=list)
+    fatal: list[tuple[int, Any]] = field(default_factory=list)
     size: int = 1
 
     def run(self, executor: Any) -> None:
-        """Every case once; pools that lose a worker are replaced, and what is done stays done."""
+        """Compute every case once. A pool that loses a worker is replaced; finished results are kept."""
         first = self.source.take(1)
         if first is None:
             return
@@ -187,49 +186,50 @@ class _Work:
                 self._put_back(lost=True)
                 if not place.replaceable:
                     raise
-            suspects = [chunk for chunk in self.waiting if chunk.losses >= PORTIONS.losses]
-            self.waiting = deque(chunk for chunk in self.waiting if chunk.losses < PORTIONS.losses)
+            suspects = [chunk for chunk in self.waiting if chunk.losses >= POOL.losses]
+            self.waiting = deque(chunk for chunk in self.waiting if chunk.losses < POOL.losses)
             for suspect in suspects:
                 self._alone(place, suspect)
-            if len(self.guilty) >= PORTIONS.guilty:
+            if len(self.fatal) >= POOL.fatal:
                 return
             place = place.again()
 
-    def refuse_guilty(self) -> None:
-        """Name the cases that ended their process."""
-        if not self.guilty:
+    def refuse_fatal(self) -> None:
+        """Raise `Unfinished`, which names the cases that ended their process."""
+        if not self.fatal:
             return
-        number, case = min(self.guilty, key=lambda pair: pair[0])
-        count = len(self.guilty)
-        every = f"{count} of {self.source.at} cases" if count < PORTIONS.guilty else f"{count} cases and perhaps more"
+        number, case = min(self.fatal, key=lambda pair: pair[0])
+        count = len(self.fatal)
+        every = f"{count} of {self.source.at} cases" if count < POOL.fatal else f"{count} cases and perhaps more"
         raise Unfinished(
             f"{every} ended their process each time, the first is case {number} = {shown(case)}; {self.store.done} "
             "others are done"
         )
 
     def _drain(self, place: Place) -> None:
-        """Hand out cases and take in results until both are done."""
-        begun, told = time.monotonic(), not place.reason
+        """Send chunks and store results until no case is left."""
+        begun, said = time.monotonic(), not place.reason
         try:
             while self._fill(place):
                 self._take_in(self._next())
-                if not told and time.monotonic() - begun > PORTIONS.patience:
-                    told = True
+                if not said and time.monotonic() - begun > POOL.serial_note:
+                    said = True
                     tell(f"cases are computed one after another in this process: {place.reason}")
         except BrokenExecutor:
             raise
         except BaseException:
             for future in self.running:
-                if not place.replaceable:  # a process pool stumbles over futures that somebody else has cancelled
+                # the management thread of a ProcessPoolExecutor fails on futures that are cancelled from outside
+                if not place.replaceable:
                     future.cancel()
             self._put_back(lost=False)
             raise
 
     def _fill(self, place: Place) -> bool:
-        """Keep every worker busy; False when nothing is left to do."""
+        """Send chunks to every free worker; False when no case is left."""
         width = place.width
-        seconds = PORTIONS.seconds * max(1.0, width / PORTIONS.served)
-        while len(self.running) < PORTIONS.ahead * width:
+        seconds = POOL.seconds * max(1.0, width / POOL.served)
+        while len(self.running) < POOL.ahead * width:
             chunk = self.waiting.popleft() if self.waiting else self.source.take(self.size)
             if chunk is None:
                 break
@@ -245,12 +245,12 @@ class _Work:
     def _next(self) -> Future[Any]:
         """The next future that has ended, in any order; the wait is interrupted by Ctrl-C."""
         while True:
-            try:
-                future = self.ended.get(timeout=PORTIONS.awake)
-            except Empty:
-                self._show()
-                continue
-            if future in self.running:
+            future = None
+            with suppress(Empty):
+                future = self.ended.get(timeout=POOL.awake)
+            if future is None:
+                self._show()  # outside the handler of Empty, so that Ctrl-C here prints one traceback, not two
+            elif future in self.running:
                 return future
 
     def _take_in(self, future: Future[Any]) -> None:
@@ -260,7 +260,7 @@ class _Work:
         except (BrokenExecutor, CancelledError):
             raise
         except Exception as error:
-            if type(error).__name__ == "KilledWorker":  # the cluster has given up
+            if type(error).__name__ == "KilledWorker":  # the cluster tries a task no more
                 raise Unfinished(
                     f"workers of the cluster were lost with case {chunk.start} = {shown(chunk.items[0])} and the "
                     f"{len(chunk.items) - 1} after it, as often as it allows; {self.store.done} others are done"
@@ -272,8 +272,8 @@ class _Work:
         if rest.items:
             self.waiting.appendleft(rest)
             self.size = max(1, len(done.items))
-        elif spent < PORTIONS.seconds / 2:
-            self.size = min(PORTIONS.most, max(self.size, 2 * len(done.items)))
+        elif spent < POOL.seconds / 2:
+            self.size = min(POOL.most, max(self.size, 2 * len(done.items)))
         self._keep(done, values)
 
     def _keep(self, done: _Chunk, values: Array) -> None:
@@ -285,7 +285,7 @@ class _Work:
         self.line.show(self.store.done, self.count, "cases")
 
     def _put_back(self, lost: bool) -> None:
-        """Keep what has ended well; what has not waits again."""
+        """Store the finished chunks; the others wait again."""
         for future, chunk in sorted(self.running.items(), key=lambda pair: pair[1].start, reverse=True):
             if future.done() and not future.cancelled() and future.exception() is None:
                 values, _ = future.result()
@@ -298,14 +298,14 @@ class _Work:
         self.running = {}
 
     def _alone(self, place: Place, suspect: _Chunk) -> None:
-        """Compute in pools of one worker, halving what ends it, down to the cases that do."""
+        """Run a chunk in pools of one worker, and halve it each time the worker ends, down to single cases."""
         deaths, stack = Counter[int](), [suspect]
-        while stack and len(self.guilty) < PORTIONS.guilty:
+        while stack and len(self.fatal) < POOL.fatal:
             single = place.again(1)
             try:
                 with single.opened():
                     while stack:
-                        values = self._waited(single.submit(self.function, stack[-1].items, PORTIONS.seconds))
+                        values = self._waited(single.submit(self.function, stack[-1].items, POOL.seconds))
                         done, rest = stack.pop().cut(len(values))
                         self._keep(done, values)
                         stack += [rest] if rest.items else []
@@ -316,13 +316,13 @@ class _Work:
                     stack += reversed(chunk.cut(half))
                     continue
                 deaths[chunk.start] += 1
-                if deaths[chunk.start] < PORTIONS.deaths:
+                if deaths[chunk.start] < POOL.deaths:
                     stack.append(chunk)
                 else:
-                    self.guilty.append((chunk.start, chunk.items[0]))
+                    self.fatal.append((chunk.start, chunk.items[0]))
 
     def _waited(self, future: Future[Any]) -> Array:
-        while not wait([future], PORTIONS.awake).done:
+        while not wait([future], POOL.awake).done:
             self._show()
         values: Array = future.result()[0]
         return values

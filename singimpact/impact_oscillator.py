@@ -1,4 +1,4 @@
-"""What a user holds: `ImpactOscillator`, the model with methods, each one call into the room that does the work."""
+"""`ImpactOscillator`: the model with methods, each a call of one function of a sub-package."""
 
 from __future__ import annotations
 
@@ -41,16 +41,16 @@ class ImpactOscillator(Oscillator):
         self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
         steps: int | None = None, out: Mapping[str, Any] | None = None,
     ) -> Flight:  # fmt: skip
-        """The first hit F of the wall by flights from (tau, v).
+        """The first hit F of the wall for flights from (tau, v).
 
         Parameters
         ----------
-        tau : launch times. v : launch velocities >= 0; they broadcast. Floats mean their binary values, text what is
-            written.
-        digits : decimal digits of the answer, which then holds mpmath numbers. horizon : flight time after which no
-            impact is looked for (1000 periods).
-        tolerance : relative error of a step of a nonlinear flight. steps : Taylor steps after which one is given up
-            (16000). out : arrays that take the results, by field.
+        tau : launch times. v : launch velocities >= 0; they broadcast. A float is its binary value, the text "0.3" is
+            exactly 3/10.
+        digits : decimal digits of the result, which then holds mpmath numbers. horizon : flight time at which the
+            search ends (1000 periods).
+        tolerance : relative error of a step of a nonlinear flight. steps : Taylor steps at most (16000). out : arrays
+            to write the results to, by field.
 
         Returns
         -------
@@ -80,7 +80,7 @@ class ImpactOscillator(Oscillator):
         Returns
         -------
         Step : `.tau` and `.v` of the next impact, and the fields of `first_hit`. Without an impact tau is inf or nan
-            and v nan; `.status` says which.
+            and v is nan; `.status` gives the reason.
 
         Examples
         --------
@@ -93,7 +93,7 @@ class ImpactOscillator(Oscillator):
         return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
     def flight(self, tau: Any, v: Any, t: Any) -> Path:
-        """x and x' along one flight, which does not feel the wall.
+        """x and x' along one flight, continued behind the wall.
 
         Parameters
         ----------
@@ -124,16 +124,17 @@ class ImpactOscillator(Oscillator):
         return acceleration(self, np.atleast_1d(times).ravel(), order).reshape(times.shape)[()]
 
     def iterate(self, tau: Any, v: Any, impacts: int = 100, *, keep: bool = False) -> Iterates:
-        """G again and again for arrays of states.
+        """Many impacts of each of many states: iterates of the impact map G.
 
         Parameters
         ----------
-        tau, v : states that broadcast. impacts : flown from each. keep : all states, with a first axis of impacts + 1.
+        tau, v : states that broadcast. impacts : for each state. keep : return all states, with a first axis of
+            length impacts + 1.
 
         Returns
         -------
-        tau, v, status : the last states (an orbit that meets no further impact stays where it is), and 0 or the status
-            of the flight that ended an orbit before.
+        tau, v, status : the last states, and 0; or, of an orbit that ended early, its last impact and the status of
+            the flight after it.
 
         Examples
         --------
@@ -190,7 +191,7 @@ class ImpactOscillator(Oscillator):
         Parameters
         ----------
         tau, v : states, v >= 0; they broadcast. digits : decimal digits of the time, certified for linear models.
-        impacts : flown at most before the status is `unresolved`.
+        impacts : at most; the status is then `unresolved`.
 
         Returns
         -------
@@ -215,7 +216,7 @@ class ImpactOscillator(Oscillator):
 
         Returns
         -------
-        list of PeriodicOrbit : with `.complete`, whether there are shown to be no others, and `.notes`.
+        list of PeriodicOrbit : with `.complete`, True if it is shown that there are no others, and `.notes`.
 
         Examples
         --------
@@ -236,7 +237,7 @@ class ImpactOscillator(Oscillator):
         Parameters
         ----------
         tau, v : the state just after an impact; or x, xdot, t : a start off the wall.
-        impacts : flights at most; a chatter that is summed up counts as one. horizon : as for `first_hit`.
+        impacts : flights at most; a complete chatter counts as one. horizon : as for `first_hit`.
 
         Returns
         -------
@@ -253,12 +254,12 @@ class ImpactOscillator(Oscillator):
             return orbit(self, tau, v, impacts, horizon=horizon)
         if tau is not None or v is not None or x is None or xdot is None or t is None:
             raise InputError(
-                "an orbit starts from tau and v, or off the wall from x=, xdot= and t=: give either, whole"
+                "an orbit starts from tau and v, or off the wall from x=, xdot= and t=: give all of one kind"
             )
         return dropped_orbit(self, (x, xdot, t), impacts, horizon=horizon)
 
     def release(self, tau: float) -> float:
-        """When a mass at rest on the wall at tau lifts off: where a_c > 0 at once, else at its next rise through 0.
+        """The lift-off time of a mass at rest at tau: tau if a_c(tau) > 0, else the next rise of a_c through 0.
 
         Examples
         --------
@@ -275,7 +276,7 @@ class ImpactOscillator(Oscillator):
 
         Parameters
         ----------
-        x, xdot, t : places at or above the wall, velocities of either sign, times; they broadcast.
+        x, xdot, t : displacements x >= c, velocities of either sign, times; they broadcast.
 
         Returns
         -------
@@ -320,7 +321,7 @@ def linear(
     amplitude: Any = 1,
     phase: Any = 0,
 ) -> ImpactOscillator:
-    """x'' + damping x' + stiffness x = amplitude cos(omega t + phase); terms at their defaults are left out.
+    """x'' + damping x' + stiffness x = amplitude cos(omega t + phase); terms with default values are left out.
 
     Parameters
     ----------
@@ -363,11 +364,12 @@ def shaken_wall(
 
     Parameters
     ----------
-    f, g, restitution, parameters, period : as for `ImpactOscillator`. wall : the place of the wall, an expression in t.
+    f, g, restitution, parameters, period : as for `ImpactOscillator`. wall : position of the wall, an expression in t.
 
     Returns
     -------
-    ShakenWall : `.oscillator`, the model of x - wall(t) >= 0, and `.back(t, x, xdot)`, which undoes the change.
+    ShakenWall : `.oscillator`, the model of x - wall(t) >= 0, and `.back(t, x, xdot)`, the motion in the frame at
+        rest.
 
     Examples
     --------

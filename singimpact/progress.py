@@ -1,4 +1,4 @@
-"""A live line on a terminal or in a notebook that says what is being worked on; nothing when nobody looks."""
+"""A progress line on a terminal or in a notebook; none if standard error is neither."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from singimpact.notebook import CellLine, in_notebook
 
 @dataclass(frozen=True)
 class ProgressSettings:
-    """When a line of progress is worth showing."""
+    """When a progress line appears."""
 
-    delay: float = 1.0  # seconds; what is done sooner needs no line, and rich takes 0.1 s to import
+    delay: float = 1.0  # s of work before the line appears; the import of rich takes 0.1 s
 
 
-PACE = ProgressSettings()
+PROGRESS = ProgressSettings()
 
 
 def watched() -> bool:
-    """Whether a person sees standard error, or the cell of a notebook."""
+    """Whether standard error is a terminal, or the process runs a notebook."""
     return in_notebook() or (sys.stderr.isatty() and os.environ.get("TERM") != "dumb")
 
 
 class ProgressLine:
-    """Shows ``done/total text`` on standard error, or under the cell of a notebook; it is gone when the work ends.
+    """Shows ``done/total text`` on standard error, or under the cell of a notebook, until the work ends.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class ProgressLine:
     ...     line.show(1, 2, "first")
     """
 
-    def __init__(self, delay: float = PACE.delay) -> None:
+    def __init__(self, delay: float = PROGRESS.delay) -> None:
         self._after = time.monotonic() + delay
         self._watched = watched()
         self._bar: Any = None
@@ -54,7 +54,7 @@ class ProgressLine:
             self._bar.stop()
 
     def show(self, done: int, total: int | None, text: str) -> None:
-        """Say what is being done now; total is None where nobody knows it."""
+        """Show the number of finished items and a text; total is None if it is unknown."""
         if not self._watched or (self._bar is None and time.monotonic() < self._after):
             return
         if self._bar is None:

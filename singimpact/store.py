@@ -1,4 +1,4 @@
-"""Results on disk: a file appears under its name when it is whole, or not at all."""
+"""Output files and folders. Output files appear only when complete."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ def written(path: str | Path) -> Iterator[Path]:
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Put a text under a name, whole or not at all."""
+    """Write a text to a file, which appears only when complete."""
     with written(path) as draft:
         draft.write_text(text, encoding="utf-8", newline="\n")
 
 
 def write_table(path: str | Path, columns: Mapping[str, Iterable[Any]]) -> None:
-    """Put columns of equal length into a file of comma-separated values, under a line with their names.
+    """Write columns of equal length to a file of comma-separated values, below a line with their names.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def write_table(path: str | Path, columns: Mapping[str, Iterable[Any]]) -> None:
 
 
 def require_writable(path: str | Path) -> None:
-    """Refuse a place where no file can be put.
+    """Check that a file can be written at a path.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def require_writable(path: str | Path) -> None:
 
 
 def folder(path: str | Path) -> Path:
-    """A folder to write into, made when it is not there; one of the cache is made for its user alone."""
+    """A folder to write into, created if it is missing; a cache folder is created with access for its user alone."""
     place = Path(path)
     try:
         if place.is_relative_to(cache_folder()):
@@ -95,7 +95,7 @@ def folder(path: str | Path) -> Path:
 
 
 def cache_folder() -> Path:
-    """Where results that do not change are kept: `SINGIMPACT_CACHE`, else the system's folder for a user's caches.
+    """The cache folder: `SINGIMPACT_CACHE`, else the folder of the system for the caches of a user.
 
     Notes
     -----
@@ -120,7 +120,7 @@ def _users_folder() -> Path:
 
 
 def changeable(place: Path) -> str | None:
-    """Why another user could change what lies in a folder; None for one that is safe, or not there yet.
+    """The reason why another user could change files in a folder; None for a folder that is safe or does not exist.
 
     Examples
     --------
@@ -162,7 +162,7 @@ def passing_folder() -> Path:
 
 
 def _target(path: str | Path) -> tuple[Path, bool]:
-    """Where to write, links followed; and whether a device or a pipe is there, which must not be replaced by a file."""
+    """The path with links resolved, and whether it is a device or a pipe, which must not be replaced by a file."""
     try:
         mode = os.stat(path).st_mode
     except FileNotFoundError:
@@ -181,7 +181,7 @@ def _followed(path: str | Path) -> Path:
 def _draft(target: Path, special: bool) -> Path:
     import tempfile  # 4 ms, and most processes write nothing
 
-    # the ending stays, because writers of pictures read the format from it
+    # the suffix is kept, because matplotlib reads the format from it
     try:
         place = tempfile.gettempdir() if special else target.parent
         handle, name = tempfile.mkstemp(prefix=DRAFT, suffix=target.suffix, dir=place)

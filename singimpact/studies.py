@@ -1,6 +1,6 @@
-"""What is asked of a model as a whole: its swans, singular points, gamma, basins and bifurcation diagrams.
+"""Studies of a model as a whole: swans, singular points, gamma, basins and bifurcation diagrams.
 
-Each is one call into the room that does the work, with windows and intervals as a user writes them.
+Each function calls one function of a sub-package, and reads windows and intervals as a user writes them.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def swan_points(
     Parameters
     ----------
     f, g, parameters : as for `ImpactOscillator`. over : "clearance".
-    between : (low, high), clearances to look between; None for all, where f(x, 0) is a polynomial.
+    between : (low, high), the interval of clearances; None for all, if f(x, 0) is a polynomial.
 
     Returns
     -------
@@ -77,13 +77,13 @@ def clearances(between: Any) -> tuple[Fraction, Fraction]:
 
 
 def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: Any = None, output: Any = None) -> Basins:
-    """What the orbits of a grid of launches do for ever: n impacts in k periods, chatter, rest, chaos.
+    """Basins of attraction: the attractor of each state of a grid: an (n, k) orbit, repeated chatter, rest, chaos.
 
     Parameters
     ----------
     osc : a model with a period. window : ((tau_low, tau_high), (v_low, v_high)); one period and (0, 2) without it.
-    size : states a side, from 2 to 10000. executor, output : as for `sweep`, where some rows of the grid are a case;
-        without an executor threads, as many as there are cores.
+    size : states on a side, from 2 to 10000. executor, output : as for `sweep`; a case is some rows of the grid.
+        The default executor is one thread for each core.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: An
 
     Raises
     ------
-    InputError : a model without a period, or a window or a size that is none.
+    InputError : a model without a period, or a window or a size that is not valid.
 
     Examples
     --------
@@ -111,14 +111,14 @@ def bifurcation(
     osc: Oscillator, over: str, between: Any, points: int = 300, *, start: Any = (0, "0.1"), impacts: int = 200,
     kept: int = 60, direction: str | None = None, **sweeping: Any,
 ) -> Bifurcation:  # fmt: skip
-    """Where orbits settle as a number of the model moves: the last events of one orbit for each value.
+    """A bifurcation diagram: the last events of one orbit for each value of a parameter.
 
     Parameters
     ----------
     osc : a model with a period. over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or
-        "phase" (the model need not name them). between : its ends. points : values, evenly spaced.
-    start : the first state (tau, v) of each orbit. impacts : flown for each value.
-    kept : events of the end of an orbit that are returned. sweeping : `executor` and `output` of `sweep`.
+        "phase" (also if the model does not name them). between : its interval. points : values, evenly spaced.
+    start : the first state (tau, v) of each orbit. impacts : number for each value.
+    kept : last events of each orbit that are returned. sweeping : `executor` and `output` of `sweep`.
     direction : "up", "down", "both": each orbit starts from the last state of the one before, so hysteresis shows.
 
     Returns
@@ -128,7 +128,7 @@ def bifurcation(
 
     Raises
     ------
-    InputError : a model without a period, a number it does not have, ends that are none.
+    InputError : a model without a period, an unknown parameter, or an interval that is not valid.
 
     Examples
     --------
@@ -155,12 +155,12 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classi
     Parameters
     ----------
     osc : the model. window : ((tau_low, tau_high), (t_low, t_high)); without it one period of tau and as much on both
-        sides of t = 0, or what holds all zeros of a_c when g is a polynomial.
-    between : two clearances to look for swans between; all where they can be isolated, when it is not given.
+        sides of t = 0, or a window with all zeros of a_c if g is a polynomial.
+    between : interval of clearances in which swans are searched; by default all, where they can be isolated.
 
     Returns
     -------
-    Classification : `.points`, `.folds`, `.swans`, and `.notes` on what was not decided.
+    Classification : `.points`, `.folds`, `.swans`, and `.notes` on undecided points.
 
     Examples
     --------
@@ -175,21 +175,21 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classi
 
 
 def transitions(osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None) -> Transitions:
-    """Where P changes its kind as a number of the model moves: swans, swallowtails, lips and beaks.
+    """The transitions of the outline P over a parameter: swans, swallowtails, lips and beaks.
 
     Parameters
     ----------
-    osc : the model. over : "clearance" or a parameter. between : its ends. t : ends of the flight times; as for
-        `classify` when they are not given.
+    osc : the model. over : "clearance" or a parameter. between : its interval. t : interval of the flight times; by
+        default as for `classify`.
 
     Returns
     -------
-    Transitions : a tuple in order of the number, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` says whether it
-        is proved that no swan is missing, `.notes` why one may be.
+    Transitions : a tuple in order of the parameter, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` is True if
+        it is proved that no swan is missing, else `.notes` gives the reason.
 
     Raises
     ------
-    InputError : no number of the model, or ends that are no two numbers in rising order.
+    InputError : an unknown parameter, or an interval that is not two numbers in rising order.
 
     Examples
     --------
@@ -205,12 +205,12 @@ def transitions(osc: Oscillator, over: str = "clearance", between: Any = None, t
 
 
 def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Curve]:
-    """gamma from its series at a tangency or swan point to the edge of a window of the plane of states.
+    """gamma as curves: from its series at a tangency or swan point to the edge of a window of states.
 
     Parameters
     ----------
     osc : the model. window : ((tau_low, tau_high), (v_low, v_high)); without it a period on both sides of tau = 0 (the
-        zeros of a_c with room about them, when g is a polynomial) and (0, 2).
+        zeros of a_c with a margin, if g is a polynomial) and (0, 2).
     tau : the point; without one the first that has an invariant curve.
 
     Returns
@@ -219,7 +219,7 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Cu
 
     Raises
     ------
-    InputError : no such point, or a window that is none.
+    InputError : no such point, or a window that is not valid.
 
     Examples
     --------

@@ -237,7 +237,7 @@ def test_a_sweep_in_a_sweep():
 def test_all_cases_that_end_their_process_are_not_sought_for_ever(monkeypatch):
     from singimpact import cases
 
-    monkeypatch.setattr(cases, "PORTIONS", cases.PoolSettings(guilty=2, deaths=1))
+    monkeypatch.setattr(cases, "POOL", cases.PoolSettings(fatal=2, deaths=1))
     with WorkerPool(1) as pool, pytest.raises(Unfinished, match="2 cases and perhaps more ended their process"):
         sweep(os._exit, range(1, 100), pool)
 
@@ -312,7 +312,7 @@ def test_the_width_of_a_cluster_is_its_cores_and_not_ours(cluster, monkeypatch):
     assert place.width == 4
     assert place_of(cluster.get_executor(), abs, [1]).width == 4
     cluster.cluster.scale(2)
-    monkeypatch.setattr(case_pools, "CLUSTER", case_pools.ClusterSettings(asked=0.0))
+    monkeypatch.setattr(case_pools, "CLUSTER", case_pools.ClusterSettings(interval=0.0))
     for _ in range(300):
         if place.width == 2:
             break

@@ -19,7 +19,7 @@ from singimpact.case_files import InMemory, NpzFile
 from singimpact.case_journal import Journal, Record
 from singimpact.case_keys import cases_key, function_key
 from singimpact.case_pools import Place, computed
-from singimpact.cases import PORTIONS, _Source, _Work, sweep
+from singimpact.cases import POOL, _Source, _Work, sweep
 from singimpact.impact_oscillator import linear
 from singimpact.inputs import InputError, Unfinished
 from singimpact.progress import ProgressLine
@@ -290,8 +290,8 @@ def test_the_case_that_kills_its_worker_is_found_and_no_other(bad, guilty, count
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cases, "place_of", lambda *_: Pool())
         work.run(None)
-    assert sorted(number for number, _ in work.guilty) == [index for index in guilty if index < count]
-    assert store.done == count - len(work.guilty)
+    assert sorted(number for number, _ in work.fatal) == [index for index in guilty if index < count]
+    assert store.done == count - len(work.fatal)
 
 
 def test_fewer_cases_than_results_are_refused(tmp_path):
@@ -395,8 +395,8 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(name, tmp_path):
         found = sweep(partial(slow, log), range(300), pool, output)
     assert found[:].tolist() == [[case, 0.5 * case] for case in range(300)]
     assert sorted(map(int, log.read_text().split())) == sorted(set(range(300)) - kept)
-    chunk = PORTIONS.seconds / 0.01 + 1
-    assert len(before - kept) <= 2 * PORTIONS.ahead * chunk
+    chunk = POOL.seconds / 0.01 + 1
+    assert len(before - kept) <= 2 * POOL.ahead * chunk
     assert {path.name for path in tmp_path.iterdir()} == {"log", name}
 
 
@@ -440,7 +440,7 @@ def test_two_processes_do_not_write_one_output(tmp_path):
 
 def test_cases_are_read_as_they_are_needed(monkeypatch):
     """Of a generator, no more than some chunks a worker are in memory."""
-    monkeypatch.setattr(cases, "PORTIONS", cases.PoolSettings(most=50))
+    monkeypatch.setattr(cases, "POOL", cases.PoolSettings(most=50))
     done, most = [], []
 
     def counted():
@@ -451,7 +451,7 @@ def test_cases_are_read_as_they_are_needed(monkeypatch):
     with ThreadPoolExecutor(2) as pool:
         found = sweep(lambda case: (done.append(case), case)[1], counted(), pool)
     assert found.tolist() == list(range(5000))
-    assert max(most) <= 50 * 2 * PORTIONS.ahead
+    assert max(most) <= 50 * 2 * POOL.ahead
 
 
 def test_chunks_end_after_a_time_and_not_after_a_count():

@@ -26,6 +26,7 @@ def test_pages_are_there(site):
     ideas = ["index", "impact_surface", "regular", "tangency", "swan", "unfolding", "one_structure"]
     ideas += ["branches", "manifolds"]
     computed = ["errata", "claims", "commands", "figures"]
+    pages += ["changelog", "citation", "bibliography"]
     pages += [f"explanation/{name}" for name in ideas] + [f"computed/{name}" for name in computed]
     assert [page for page in pages if (site / f"{page}.html").stat().st_size < 3000] == []
 
@@ -35,6 +36,14 @@ def test_every_command_and_figure_is_there(site):
     told = (site / "computed" / "commands.html").read_text()
     assert [name for name in COMMANDS if f"singimpact {name}" not in told] == []
     assert len(list((site / "_images").glob("figure[0-9]*.png"))) == 17
+
+
+@pytest.mark.slow
+def test_every_task_of_the_list_is_a_section(site):
+    told = (site / "how_to.html").read_text()
+    links = re.findall(r'href="#([\w-]+)"', told.partition("<h2>")[0])
+    assert len(set(links)) > 20
+    assert [link for link in links if f'id="{link}"' not in told] == []
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""A periodic orbit followed as a number of the model moves, through its grazes, with what happens on the way."""
+"""A branch of periodic orbits over a parameter, through its grazes, with its events."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class BranchSettings:
-    """How a branch is followed."""
+    """Step sizes and tolerances of a branch."""
 
-    # the largest step, of the width of the interval, of a period and of the largest velocity
+    # largest step, as a part of the width of the interval, of a period and of the largest velocity
     step: float = 0.02
-    # an interval that is not given reaches so far on either side, of the number, or of 1 where it is 0
+    # half width of the default interval, as a part of the parameter, or of 1 if it is 0
     around: float = 0.5
-    # a flight shorter than this, of a period, is said to have collapsed
+    # flight time, in periods, below which two impacts have met
     shortest: float = 1e-9
-    # a height above the wall that is rounding
+    # height above the wall that is a rounding error
     touching: float = 1e-12
-    # |product of the multipliers| - 1 that is rounding: with r = 1 and no damping it is 0 all along
+    # |product of the multipliers| - 1 that is a rounding error: for r = 1 without damping it is 0 everywhere
     neutral: float = 1e-9
 
 
@@ -48,11 +48,11 @@ SETTINGS = BranchSettings()
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """Orbits along a number of the model.
+    """Periodic orbits over a parameter.
 
     Parameters
     ----------
-    oscillator : the model where the branch began. over : the number that moves. n, k : impacts in k periods.
+    oscillator : the model where the branch began. over : the parameter. n, k : impacts in k periods.
     parameter : shape (m,). tau, v : shape (m, n), states after the impacts; of orbits without impact x and x' at time
         0, shape (m, 1). multipliers : shape (m, 2), the larger first. visible : shape (m,), bool.
     events : in the order of the branch. notes : where and why it ends.
@@ -86,7 +86,7 @@ class Branch:
         return orbit_of(closing, at)
 
     def csv_lines(self) -> list[str]:
-        """The names of the columns, then a line a point: the number, the states, multipliers, stable and visible."""
+        """The names of the columns, then one line for each point: parameter, states, multipliers, stable, visible."""
         names = [self.over, *(f"{name}_{i + 1}" for name in ("tau", "v") for i in range(self.tau.shape[1]))]
         names += ["multiplier_1_re", "multiplier_1_im", "multiplier_2_re", "multiplier_2_im", "stable", "visible"]
         lines = [",".join(names)]
@@ -98,7 +98,7 @@ class Branch:
         return lines
 
     def to_csv(self, file: str | Path) -> None:
-        """Write `csv_lines` to a file, which is whole or absent."""
+        """Write `csv_lines` to a file, which appears only when complete."""
         write_text(file, "\n".join(self.csv_lines()) + "\n")
 
     def __repr__(self) -> str:
@@ -113,7 +113,7 @@ class Branch:
 def branch(
     orbit: PeriodicOrbit, over: str = CLEARANCE, between: Any = None, *, points: int = 2000, step: float | None = None
 ) -> Branch:
-    """The branch of periodic orbits through an orbit, as a number of its model moves.
+    """The branch of periodic orbits through an orbit, over a parameter of its model.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def branch(
     -----
     The branch is followed on the surface of flights that do not feel the wall, where it is smooth through a graze.
     Beyond the graze it is virtual: `visible` says so. Points of a model without a closed form are kept in the cache: a
-    call that was interrupted goes on where it was when it is made again.
+    call that was interrupted continues from its stored points.
 
     Examples
     --------
@@ -212,7 +212,7 @@ class _Walk:
         return any(flight[3] < SETTINGS.shortest * period for flight in self.closing.flights(point))
 
     def branch(self, guess: Array, osc: Oscillator, over: str) -> Branch:
-        """Both ways from a guess."""
+        """Follow the branch in both directions from a guess."""
         scales = self.closing.scales(guess)
         scales[-1] = self.ends[1] - self.ends[0]
         upwards = np.zeros(len(guess))
@@ -287,7 +287,7 @@ class _Walk:
         return rows, events
 
     def _asked(self, start: Point, over: str) -> tuple[Any, ...] | None:
-        """What a side depends on; None of a linear model, whose branches take less than a second."""
+        """The key of a side in the cache; None for a linear model, whose branches take less than 1 s."""
         family = self.closing.family
         if not isinstance(family, SteppedFamily):
             return None
@@ -295,7 +295,7 @@ class _Walk:
         return family.osc, self.closing.n, self.closing.k, over, numbers
 
     def _steps(self, curve: Curve, start: Point, kept: KeptSide) -> Iterator[tuple[Point, float, Point]]:
-        """The steps that are known, and those after them."""
+        """The stored steps, then new ones."""
         here = start
         known = list(kept.points)
         for each in known:
@@ -356,7 +356,7 @@ class _Walk:
         return found
 
     def _tests(self, point: Point) -> dict[tuple[str, int], float]:
-        """Numbers that change sign at events."""
+        """Test functions, which change sign at events."""
         zero, one, two = self.closing.at(point.at).characteristic()
         tests = {("fold", 0): float(point.tangent[-1]), ("period-doubling", 0): zero - one + two}
         if one * one < 4 * zero * two:
@@ -387,7 +387,7 @@ class _Walk:
                 continue
             located = curve.located(here, length, partial(self._test, key), (value, later))
             if located is None and key[0] == "torus":
-                continue  # the multipliers have become real before their product is 1
+                continue  # the multipliers are real where their product is 1, so this is no torus bifurcation
             if located is None:
                 notes.append(f"a {key[0]} near {here.at[-1]:.9g} could not be located")
                 continue
@@ -411,7 +411,7 @@ class _Walk:
         return np.concatenate([(times - k // 2 * period) / scales[0], speeds / scales[n]])
 
     def _real(self, key: tuple[str, int], point: Point) -> bool:
-        """A hidden impact on an orbit with v <= 0 is one of flights that begin below the wall: it says nothing."""
+        """Drop hidden impacts of orbits with v <= 0: their flights start behind the wall."""
         n = self.closing.n
         small = 1e-9 * float(self.closing.scales(point.at)[n])
         return key[0] == "graze" or float(point.at[n : 2 * n].min()) > small

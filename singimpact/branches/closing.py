@@ -1,8 +1,8 @@
-"""The closing conditions of a periodic orbit, on the surface of flights that do not feel the wall.
+"""The closing conditions of a periodic orbit, for flights that continue behind the wall.
 
     x(T_i) = c,   rho(x'(T_i)) = v_{i+1},   T_i = tau_{i+1} - tau_i,   tau_{n+1} = tau_1 + k P       i = 1, ..., n
 
-They are smooth in tau_i, v_i and in every number of the model, through v_i = 0 too, where the orbit grazes: no square
+They are smooth in tau_i, v_i and in every parameter, also at v_i = 0, where the orbit grazes: no square
 root.  A solution with some v_i < 0, or with a flight that is below the wall somewhere, is virtual.
 """
 
@@ -56,7 +56,9 @@ class Loop:
         if abs(two) <= 1e-14 * size:
             return np.array([np.inf, -zero / one if one else np.nan], dtype=complex)
         root = np.sqrt(complex(one * one - 4 * zero * two))
-        far = -one - root if one > 0 else -one + root  # nothing cancels
+        far = (
+            -one - root if one > 0 else -one + root
+        )  # the sum without cancellation; the other root follows from the product
         first = far / (2 * two)
         second = 2 * zero / far if far else first
         return np.array([first, second])
@@ -75,11 +77,11 @@ class Closing:
 
     @property
     def over(self) -> tuple[str, ...]:
-        """Names of the numbers that move."""
+        """Names of the free parameters."""
         return self.family.over
 
     def values(self, point: Array) -> dict[str, float]:
-        """The numbers that move."""
+        """The free parameters."""
         return dict(zip(self.family.over, point[2 * self.n :].tolist(), strict=True))
 
     def flights(self, point: Array) -> list[tuple[float, float, float, float]]:
@@ -117,7 +119,7 @@ class Closing:
         return Loop(miss, slope, wrap)
 
     def newton(self, point: Array, rounds: int = 30, tolerance: float = 4e-15) -> tuple[Array, Loop] | None:
-        """The orbit near a point at its numbers; None where Newton's method does not get there."""
+        """The orbit near a point at its numbers; None if Newton's method does not converge."""
         at, size, n = point.copy(), np.inf, 2 * self.n
         for _ in range(rounds):
             loop = self.at(at)

@@ -1,4 +1,4 @@
-"""A curve of solutions followed by pseudo-arclength: predictor along the tangent, Newton's method across it."""
+"""Pseudo-arclength continuation: a predictor along the tangent, then Newton's method across it (Keller 1977)."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class ContinuationSettings:
 
     # the first step, of the largest one
     first: float = 0.3
-    # below this part of the largest step the curve is said to end
+    # the curve ends if the step falls below this part of the largest step
     least: float = 1e-6
-    # Newton's method: rounds, and when it has arrived, relative to the scales
+    # Newton's method: rounds, and the tolerance relative to the scales
     rounds: int = 8
     arrived: float = 1e-13
-    # a step that takes so many rounds is followed by a longer one, or by a shorter one
+    # numbers of rounds after which the next step is longer, or shorter
     easy: int = 4
     longer: float = 1.5
     # the largest angle between two tangents, as a cosine

@@ -1,4 +1,4 @@
-"""Curves of folds, doublings and grazes in two numbers of the model."""
+"""Curves of folds, doublings and grazes in two parameters."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from singimpact.store import write_text
 
 Array = np.ndarray[Any, Any]
 NUDGE = 1e-6
-"""Half the width of a central difference, in scaled unknowns: a slope is then known to 1e-10."""
+"""Half the width of a central difference, in scaled unknowns: the derivative then has a relative error of 1e-10."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Special:
 
 @dataclass(frozen=True, eq=False)
 class EventCurve:
-    """Events of one kind in two numbers.
+    """Events of one kind in two parameters.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class EventCurve:
         return len(self.parameters)
 
     def csv_lines(self) -> list[str]:
-        """The names of the columns, then a line a point: the two numbers, the states, visible."""
+        """The names of the columns, then one line for each point: both parameters, the states, visible."""
         names = [*self.over, *(f"{name}_{i + 1}" for name in ("tau", "v") for i in range(self.tau.shape[1])), "visible"]
         rows = zip(self.parameters, self.tau, self.v, self.visible, strict=True)
         lines = [
@@ -76,7 +76,7 @@ class EventCurve:
         return [",".join(names), *lines]
 
     def to_csv(self, file: str | Path) -> None:
-        """Write `csv_lines` to a file, which is whole or absent."""
+        """Write `csv_lines` to a file, which appears only when complete."""
         write_text(file, "\n".join(self.csv_lines()) + "\n")
 
     def __repr__(self) -> str:
@@ -90,7 +90,7 @@ def event_curve(
     event: Event, over: Sequence[str] = (CLEARANCE, RESTITUTION), between: Any = None, *, points: int = 1000,
     step: float | None = None,
 ) -> EventCurve:  # fmt: skip
-    """The curve of a fold, doubling, graze or hidden impact in two numbers of the model.
+    """The curve of a fold, doubling, graze or hidden impact in two parameters.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def event_curve(
 
 
 def _grazing(closing: AnyClosing, event: Event, states: Array) -> int:
-    """Which impact or flight of the orbit grazes: the orbit begins at its least phase, a branch where it likes."""
+    """The index of the impact or flight that grazes: an orbit starts at its least phase, a branch at any impact."""
     if event.kind == "graze":
         return int(np.argmin(np.abs(states[closing.n :])))
     if event.kind == "hidden impact":
@@ -161,7 +161,7 @@ class _Walk:
     # ---- equations
 
     def test(self, point: Array) -> float:
-        """What vanishes at the event."""
+        """The test function, which vanishes at the event."""
         if self.kind == "graze":
             return float(point[self.closing.n + self.impact]) / float(self.scales[self.closing.n])
         if self.kind == "hidden impact":
@@ -176,7 +176,7 @@ class _Walk:
         return float(np.linalg.det(square / np.abs(self.scales[: self.closing.n].max())))
 
     def gradient(self, point: Array) -> Array:
-        """The derivative of the test by each unknown: central differences, which move no root of the test."""
+        """The derivative of the test by each unknown: central differences, as their error does not move its root."""
         if self.kind == "graze":
             found = np.zeros(len(point))
             found[self.closing.n + self.impact] = 1.0 / self.scales[self.closing.n]
@@ -206,7 +206,7 @@ class _Walk:
     # ---- the curve
 
     def curve(self, guess: Array, osc: Oscillator, most: int, step: float) -> EventCurve:
-        """Both ways from a guess."""
+        """Follow the curve in both directions from a guess."""
         self.scales = self.closing.scales(guess)
         self.scales[-2:] = [high - low for low, high in self.ends]
         speeds = slice(self.closing.n, 2 * self.closing.n)
@@ -276,7 +276,7 @@ class _Walk:
     # ---- points of codimension two
 
     def _tests(self, point: Point) -> dict[str, float]:
-        """Numbers that change sign at points of codimension two."""
+        """Test functions, which change sign at points of codimension two."""
         at, n = point.at, self.closing.n
         tests: dict[str, float] = {}
         if self.kind == "graze":

@@ -1,4 +1,4 @@
-"""What happens to a periodic orbit at a point of its branch."""
+"""Events of a branch of periodic orbits."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from singimpact.inputs import refuse
 
 @dataclass(frozen=True, eq=False)
 class Event:
-    """What happens at a point of a branch.
+    """An event at a point of a branch.
 
     Parameters
     ----------
     kind : "fold" (two orbits meet), "period-doubling" (multiplier -1), "torus" (two multipliers on the unit circle),
         "graze" (an impact of the orbit has no velocity), "hidden impact" (a flight touches the wall on its way).
-    parameter : the number of the model there. orbit : the orbit. index : it lies after this point of the branch.
+    parameter : the value of the parameter. orbit : the orbit. index : it lies after this point of the branch.
     impact : which impact grazes, or after which one the flight does, from 0: a column of `tau` and `v` of the branch
         (an orbit itself begins at its least phase). time : of a hidden impact after its launch.
     """

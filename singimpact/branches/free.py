@@ -16,12 +16,12 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class FreeClosing:
-    """Points are x and x' at time 0, and the numbers that move.
+    """Points are x and x' at time 0, and the free parameters.
 
     Parameters
     ----------
     family : over the clearance, which stands for the place of the launch, and the numbers that move flights.
-    over : the numbers that move; the clearance among them moves the wall alone.
+    over : the free parameters; the clearance among them changes the wall alone.
     """
 
     family: Family
@@ -30,7 +30,7 @@ class FreeClosing:
     n: int = 0
 
     def values(self, point: Array) -> dict[str, float]:
-        """The numbers that move."""
+        """The free parameters."""
         return dict(zip(self.over, point[2:].tolist(), strict=True))
 
     def launch(self, point: Array) -> dict[str, float]:

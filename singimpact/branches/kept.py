@@ -1,4 +1,4 @@
-"""Points of a branch in the user's cache, so that one that was interrupted goes on where it was."""
+"""Points of a branch in the user's cache, from which an interrupted branch continues."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from singimpact.store import cache_folder
 Array = np.ndarray[Any, Any]
 Tests = dict[tuple[str, int], float]
 ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/")
-"""Rooms that no branch depends on."""
+"""Sub-packages that no branch depends on."""
 EVERY = 1.0
 """Seconds of work between two writings."""
 
 
 @dataclass(frozen=True)
 class KeptPoint:
-    """A point with what was computed there.
+    """A point with its computed values.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class KeptPoint:
     tests: dict[str, float]
 
     def named_tests(self) -> Tests:
-        """The numbers that change sign at events, by kind and impact."""
+        """The test functions of events, by kind and impact."""
         return {(name.rpartition(" ")[0], int(name.rpartition(" ")[2])): value for name, value in self.tests.items()}
 
 
@@ -70,7 +70,7 @@ class KeptSide:
             self.write()
 
     def write(self) -> None:
-        """Put the points on disk, whole, if there are new ones."""
+        """Write the points to disk, if there are new ones."""
         if self.place is not None and self._new:
             cache.keep(self.place, cache.packed(self.points))
             self._written, self._new = time.monotonic(), False

@@ -1,4 +1,4 @@
-"""What a periodic orbit is: impacts, complete chatter with rest, or no impact at all."""
+"""`PeriodicOrbit`: with impacts, with complete chatter and rest, or without impact."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class PeriodicOrbit:
 
 
 class PeriodicOrbits(list[PeriodicOrbit]):
-    """Periodic orbits, with whether they are all there are.
+    """Periodic orbits, and whether the list is shown to be complete.
 
     Parameters
     ----------
@@ -77,10 +77,10 @@ class PeriodicOrbits(list[PeriodicOrbit]):
 
 @dataclass
 class Notes:
-    """What is to be said beside a result, each sentence once."""
+    """Notes on a result, each sentence once."""
 
     sentences: dict[str, None] = field(default_factory=dict)
 
     def add(self, sentence: str) -> None:
-        """One sentence more."""
+        """Add a sentence."""
         self.sentences[sentence] = None

@@ -31,9 +31,9 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class PeriodicSettings:
-    """When orbits are one, and when one is real."""
+    """When two orbits are the same, and when one is a graze."""
 
-    # two states nearer than this are one, relative to a period and to the largest velocity of the orbit
+    # distance of equal states, relative to a period and to the largest velocity of the orbit
     apart: float = 1e-7
     # an orbit of smaller v is a graze and is not listed
     least: float = 1e-13
@@ -102,7 +102,7 @@ def _count(name: str, value: Any, least: int) -> int:
 
 
 def _all(osc: Oscillator, n: int, k: int, notes: Notes) -> tuple[list[Array], bool]:
-    """Points of all solutions that are found, and whether there are no others."""
+    """Points of all solutions found, and whether there are no others."""
     constant = not names_in(osc.restitution)
     if n == 1 and constant and linear_form(osc) is not None:
         solutions = phases_and_speeds(osc, k)
@@ -164,7 +164,7 @@ def _phases(orbit: PeriodicOrbit, period: float) -> Array:
 
 
 def _same(one: PeriodicOrbit, other: PeriodicOrbit, closing: Closing) -> bool:
-    """Whether two orbits have the same states, wherever they begin."""
+    """Whether two orbits have the same states up to a cyclic shift."""
     period = closing.family.period({}).value
     fast = max(float(np.max(other.v)), 1e-300)
     for shift in range(closing.n):

@@ -23,9 +23,9 @@ Array = np.ndarray[Any, Any]
 SAME_PHASE = 1e-9
 """Lift-offs whose phases differ by less than this, of the period, are one."""
 TOUCHING = 1e-12
-"""An orbit that is so little below the wall, of the larger of |c| and 1, touches it."""
+"""Depth below the wall of an orbit that touches it, in units of the larger of |c| and 1."""
 FAR = 30.0
-"""Newton's method is given up there, in units of the starts: flights of a hardening spring cost ever more."""
+"""Size of x and x', in units of the starts, at which Newton's method stops: stiff flights are slow."""
 ROUNDS = 40
 """Steps of Newton's method at most."""
 FLOWN = 4000
@@ -66,7 +66,7 @@ def free_orbits(osc: Oscillator, k: int, lowest_only: bool = False) -> PeriodicO
 
 
 def _closed(moving: Family, start: tuple[float, float], span: float, far: float) -> tuple[float, float] | None:
-    """x and x' at time 0 of an orbit that closes after the span; None where Newton's method goes too far away."""
+    """x and x' at time 0 of an orbit that closes after the span; None if Newton's method diverges."""
     x, u = start
     for _ in range(ROUNDS):
         end = moving.end({CLEARANCE: x}, 0.0, u, span)
@@ -84,7 +84,7 @@ def _closed(moving: Family, start: tuple[float, float], span: float, far: float)
 
 
 def _at_its_lowest(moving: Family, osc: Oscillator, state: tuple[float, float], k: int) -> PeriodicOrbit | None:
-    """The orbit with its lowest place; of one that moves up and down once a period that is a turning point."""
+    """The orbit with its lowest point, which is a turning point if the orbit has one minimum in each period."""
     x, u = state
     period = moving.period({CLEARANCE: x}).value
     # a turn and a half shows every turning point inside

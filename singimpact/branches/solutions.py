@@ -25,11 +25,11 @@ AnyClosing = Closing | FreeClosing
 
 @dataclass(frozen=True)
 class VisibleSettings:
-    """When the next impact of the true map is the one of a closed orbit."""
+    """When the next impact of the impact map is that of a closed orbit."""
 
-    # flight times that differ by less than this, relative: a graze next to the hit moves it by a square root
+    # relative difference of equal flight times: next to a graze a rounding error changes the hit by its square root
     near: float = 1e-6
-    # a flight that is so little below the wall touches it
+    # depth below the wall of a flight that touches it
     touching: float = 1e-9
 
 
@@ -102,7 +102,7 @@ def visible(closing: Closing, point: Array, osc: Oscillator) -> bool:
 
 
 def _plain(multipliers: Array) -> Array:
-    """Real numbers where they are."""
+    """Real numbers if all imaginary parts vanish."""
     return multipliers.real if not multipliers.imag.any() else multipliers
 
 

@@ -24,7 +24,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class StartSettings:
-    """Where Newton's method starts, and when it has arrived."""
+    """Starts and tolerances of Newton's method."""
 
     # phases of the grid, and velocities from 1e-3 of the fastest to the fastest
     phases: int = 48
@@ -33,18 +33,18 @@ class StartSettings:
     # the shortest first steps, are followed
     fewer: tuple[int, int] = (20, 8)
     kept: int = 80
-    # velocities below, for orbits that nearly graze
+    # further, smaller velocities, for orbits that nearly graze
     weak: tuple[float, ...] = (1e-12, 1e-8, 1e-5)
     # a start is flown when its n impacts take this part of the time in which it must close
     span: tuple[float, float] = (0.4, 1.8)
     rounds: int = 25
-    # after so many rounds, points whose steps are larger than this, relative, are given up
+    # rounds after which points with larger relative steps are dropped
     slow: tuple[int, float] = (9, 0.1)
-    # the largest change of a phase in one round, of a period
+    # largest change of a phase in one round, in periods
     longest: float = 0.15
-    # arrived, relative
+    # relative tolerance
     arrived: float = 1e-12
-    # points nearer than this are one
+    # distance of equal points
     apart: float = 1e-8
 
 
@@ -151,7 +151,7 @@ def closed_from(closing: Closing, points: Array) -> list[Array]:
         step, regular = _solved(slope, miss)
         at, step = at[regular], step[regular]
         fast = np.maximum(np.abs(at[:, n:]).max(axis=1, initial=0.0), 1e-300)
-        with np.errstate(over="ignore"):  # a start of no velocity
+        with np.errstate(over="ignore"):  # a start with v = 0
             size = np.maximum(np.abs(step[:, :n]).max(axis=1) / period, np.abs(step[:, n:]).max(axis=1) / fast)
         if count == 0 and isinstance(closing.family, SteppedFamily) and len(at) > SETTINGS.kept:
             best = np.argsort(size, kind="stable")[: SETTINGS.kept]

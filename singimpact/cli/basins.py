@@ -1,4 +1,4 @@
-"""`singimpact basins`: where the orbits of a grid of states end."""
+"""`singimpact basins`: the attractor of each state of a grid."""
 
 from __future__ import annotations
 
@@ -13,27 +13,30 @@ from singimpact.cli.pictures import save, save_once, suffix_of
 from singimpact.store import require_writable
 
 
-@click.command(short_help="where the orbits of a grid of states end, as a picture")
+@click.command(short_help="the attractor of each state of a grid, as a picture")
 @model_options
-@click.option("--tau", nargs=2, metavar="LOW HIGH", help="Window of launch phases; a period without it.")
+@click.option("--tau", nargs=2, metavar="LOW HIGH", help="Window of launch phases.  [default: one period]")
 @click.option("--v", nargs=2, metavar="LOW HIGH", default=("0", "2"), show_default=True, help="Window of velocities.")
 @click.option("--size", type=click.IntRange(2, 10_000), default=600, show_default=True, help="States a side.")
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; threads, one a core, without it.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: threads, one for each core]")
 @click.option(
     "--layer",
     type=click.Choice(["for-ever", "first-chatter"]),
     default="for-ever",
     show_default=True,
-    help="What is drawn: what orbits do for ever, or where the first chatter completes.",
+    help="Draw the attractors, or the states whose first chatter completes.",
 )
-@click.option("--keep", metavar="FILE", help="Keep results there (.npz or .zarr) as they come, and resume from it.")
+@click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
 def command(
     tau: tuple[str, str] | None, v: tuple[str, str], size: int, workers: int | None, layer: str, output: str,
     as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Basins: orbits of n impacts in k periods, chatter again and again, rest, chaos, for a grid of launches."""
+    """Basins of attraction on a grid of launches: (n, k) orbits, repeated chatter, rest, chaos.
+
+    An (n, k) orbit has n impacts in k periods of the forcing.
+    """
     suffix_of(output)
     require_writable(output)
     keep = options.pop("keep")

@@ -1,4 +1,4 @@
-"""`singimpact bench`: run time against error beside what a user would pick instead."""
+"""`singimpact bench`: run time against error, compared with other programs that a user could take."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from singimpact.bench.measuring import Effort, Measured
 
 
-@click.command(short_help="run time against error, beside other tools")
+@click.command(short_help="run time against error, compared with other tools")
 @click.argument("groups", metavar="[GROUP]...", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
-@click.option("--plots", metavar="DIR", help="Draw time against error there, a picture a group.")
+@click.option("--plots", metavar="DIR", help="Write a picture of time against error for each group into this folder.")
 @click.option("--picture", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
 @click.option("--format", "form", type=click.Choice(["text", "markdown", "page"]), default="text", show_default=True,
               help="`page` writes the page of the documentation, with the pictures of --plots.")  # fmt: skip
 @click.option("--states", type=click.IntRange(1, 10**9), default=100_000, show_default=True, help="How many states.")
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Which states.")
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
-@click.option("--keep", metavar="FILE.npz", help="Keep results there as they come, and resume from it.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the random states.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
+@click.option("--keep", metavar="FILE.npz", help="Store results in this file, and resume from it.")
 @click.option("--family", type=click.Choice(["reference", "steep"]), default="reference", show_default=True,
               help="Of random states: linear and cubic, or steep layers.")  # fmt: skip
 @click.option("--balls", type=click.IntRange(0), default=1000, show_default=True, help="Steep states flown in balls.")
@@ -43,13 +43,14 @@ def command(
     workers: int | None, keep: str | None, family: str, balls: int, digits_checks: int, as_json: bool,
     output: str | None,
 ) -> None:  # fmt: skip
-    """Measure in one run, in CPU time, beside other tools: map, orbit, regimes, chatter, threshold, series,
-    fixed-points, emitted, figures, growth, commands, sweep, scale, branches, start; all of them without a GROUP (with
-    --quick all but the last).
+    """Measure CPU times and compare them with other tools. The groups are map, orbit, regimes, chatter, threshold,
+    series, fixed-points, emitted, figures, growth, commands, sweep, scale, branches, start. The default is all of
+    them (with --quick all but the last).
 
-    The group `states` flies random states and the same ones by a slow solver of 60 digits; --states, --seed, --workers
-    and --keep are its own. With `--family steep` it flies 20 families with steep layers beside a solver of small fixed
-    steps, and --balls of the states in balls; --quick leaves out the run times. Exit code 1 when an impact is wrong.
+    The group `states` compares random states with a slow solver of 60 digits; --states, --seed, --workers and --keep
+    belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed steps,
+    and --balls of the states with ball arithmetic; --quick omits the run times. The exit code is 1 if an impact is
+    wrong.
     """
     from singimpact.bench.groups import GROUPS, usual
     from singimpact.bench.measuring import FULL, QUICK

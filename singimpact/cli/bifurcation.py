@@ -1,4 +1,4 @@
-"""`singimpact bifurcation`: where an orbit settles as a number of the model moves."""
+"""`singimpact bifurcation`: settled orbits for many values of a parameter."""
 
 from __future__ import annotations
 
@@ -13,17 +13,33 @@ from singimpact.cli.pictures import save, suffix_of
 from singimpact.store import require_writable
 
 
-@click.command(short_help="where an orbit settles as a number of the model moves")
+@click.command(short_help="settled orbits for many values of a parameter, as a picture")
 @model_options
-@click.option("--over", metavar="NAME", default="clearance", show_default=True, help="What moves: also a parameter.")
+@click.option(
+    "--over",
+    metavar="NAME",
+    default="clearance",
+    show_default=True,
+    help="The parameter, or clearance, restitution, ...",
+)
 @click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")
 @click.option("--to", "high", metavar="NUMBER", required=True, help="Its last value.")
-@click.option("--points", type=click.IntRange(2, 100_000), default=300, show_default=True, help="How many values.")
+@click.option("--points", type=click.IntRange(2, 100_000), default=300, show_default=True, help="Number of values.")
 @click.option("--start", nargs=2, metavar="TAU V", default=("0", "0.1"), show_default=True, help="The first state.")
-@click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Flown for each.")
-@click.option("--kept", type=click.IntRange(1, 100_000), default=60, show_default=True, help="Of them, shown.")
 @click.option(
-    "--direction", type=click.Choice(["up", "down", "both"]), help="Carry the last state over, one value after another."
+    "--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Impacts for each value."
+)
+@click.option(
+    "--kept",
+    type=click.IntRange(1, 100_000),
+    default=60,
+    show_default=True,
+    help="Last impacts of each that are drawn.",
+)
+@click.option(
+    "--direction",
+    type=click.Choice(["up", "down", "both"]),
+    help="Start each orbit from the last state of the one before.",
 )
 @click.option(
     "--follow",
@@ -33,8 +49,8 @@ from singimpact.store import require_writable
     metavar="N K",
     help="Also draw the branches of the model's orbits of N impacts in K periods; may be repeated.",
 )
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
-@click.option("--keep", metavar="FILE", help="Keep results there (.npz or .zarr) as they come, and resume from it.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
+@click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give phase, v and end of chatter for each value as JSON.")
 def command(
@@ -42,7 +58,7 @@ def command(
     direction: str | None, follow: tuple[tuple[int, int], ...], workers: int | None, keep: str | None, output: str,
     as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """The last impacts of an orbit for values of a number of the model, the clearance if no other is named.
+    """The last impacts of one orbit for each value of a parameter.
 
     amplitude, damping, stiffness and phase move without being named before. Drawn are velocities and phases; with
     --follow also the periodic orbits through the model's own value, stable and unstable ones.

@@ -1,4 +1,4 @@
-"""`singimpact branch`: periodic orbits as a number of the model moves, with their events."""
+"""`singimpact branch`: branches of periodic orbits over a parameter, with their events."""
 
 from __future__ import annotations
 
@@ -21,21 +21,37 @@ if TYPE_CHECKING:
 @click.command(short_help="follow periodic orbits through grazes, folds and doublings")
 @model_options
 @orbit_options
-@click.option("--over", metavar="NAME", default="clearance", show_default=True, help="What moves: also a parameter.")
-@click.option("--from", "low", metavar="NUMBER", help="Its least value; half of the model's value without it.")
-@click.option("--to", "high", metavar="NUMBER", help="Its largest value; one and a half of the model's without it.")
-@click.option("--points", type=click.IntRange(2, 1_000_000), default=2000, show_default=True, help="At most, each way.")
-@click.option("--height", type=click.Choice(["v", "phase"]), default="v", show_default=True, help="What is drawn.")
-@click.option("--csv", metavar="FILE.csv", help="Write a line a point: branch, number, states, multipliers, ...")
+@click.option(
+    "--over",
+    metavar="NAME",
+    default="clearance",
+    show_default=True,
+    help="The parameter, or clearance, restitution, ...",
+)
+@click.option("--from", "low", metavar="NUMBER", help="Its least value.  [default: half of the model's value]")
+@click.option("--to", "high", metavar="NUMBER", help="Its largest value.  [default: 1.5 times the model's]")
+@click.option(
+    "--points",
+    type=click.IntRange(2, 1_000_000),
+    default=2000,
+    show_default=True,
+    help="Points at most, in each direction.",
+)
+@click.option(
+    "--height", type=click.Choice(["v", "phase"]), default="v", show_default=True, help="Vertical axis of the picture."
+)
+@click.option(
+    "--csv", metavar="FILE.csv", help="Write one line for each point: branch, parameter, states, multipliers, ..."
+)
 @click.option("-o", "--output", metavar="FILE.png", help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give points and events as JSON.")
 def command(
     orbit: tuple[int, int], start: tuple[str, str] | None, over: str, height: str, csv: str | None, output: str | None,
     as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Orbits of N impacts in K periods, followed as a number of the model moves.
+    """Follow orbits of N impacts in K periods as a parameter changes.
 
-    Printed are folds, period doublings, tori, grazes and hidden impacts, and where each branch ends.
+    Prints folds, period doublings, tori, grazes and hidden impacts, and the end of each branch.
     """
     for path in (output, csv):
         if path is not None:
@@ -76,7 +92,7 @@ def told(branch: Branch) -> dict[str, Any]:
 
 
 def shown(branches: list[Branch]) -> str:
-    """Branches for people: events as a table, then how each ends."""
+    """Branches as text: a table of events, then the end of each branch."""
     parts = []
     for number, each in enumerate(branches, 1):
         ends = f"{each.over} from {each.parameter.min():.9g} to {each.parameter.max():.9g}"

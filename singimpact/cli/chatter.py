@@ -1,4 +1,4 @@
-"""`singimpact chatter`: when infinitely many impacts accumulate."""
+"""`singimpact chatter`: the time at which infinitely many impacts accumulate."""
 
 from __future__ import annotations
 
@@ -14,17 +14,19 @@ if TYPE_CHECKING:
     from singimpact.algebra.certified import Certified
 
 
-@click.command(short_help="when infinitely many impacts accumulate")
+@click.command(short_help="the time at which infinitely many impacts accumulate")
 @model_options
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
-@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits; a double is given without it.")
-@click.option("--impacts", type=click.IntRange(1, 10_000_000), default=1_000_000, show_default=True, help="At most.")
+@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits.  [default: a double]")
+@click.option(
+    "--impacts", type=click.IntRange(1, 10_000_000), default=1_000_000, show_default=True, help="Impacts at most."
+)
 @output_options
 def command(
     tau: str, v: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: Any
 ) -> None:
-    """The accumulation time of a chatter sequence, its error, and the impacts flown before the rest was summed up."""
+    """The accumulation time of a chatter sequence, its error, and the impacts flown before a series gave the rest."""
     oscillator = take_model(options)
     found = oscillator.chatter_limit(tau, v, digits=digits, impacts=impacts)
     status = Status(int(found.status))

@@ -1,4 +1,4 @@
-"""`singimpact cite`: what to cite."""
+"""`singimpact cite`: references to cite."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ ENTRY = f"""@software{{singimpact,
 }}"""
 
 
-@click.command(short_help="what to cite")
+@click.command(short_help="references to cite")
 @output_options
 def command(as_json: bool, output: str | None) -> None:
-    """What to cite: this version, with a BibTeX entry, and the paper."""
+    """References to cite: this version, with a BibTeX entry, and the paper."""
     if as_json:
         emit(as_json_text({"software": SOFTWARE, "paper": PAPER, "bibtex": ENTRY}), output)
     else:

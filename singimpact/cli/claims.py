@@ -1,4 +1,4 @@
-"""`singimpact claims`: the list of claims, one of them, the graph of what rests on what, what falls with one."""
+"""`singimpact claims`: the list of claims, one claim, the graph of their dependences, the claims that need one."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def listed(as_json: bool, output: str | None) -> None:
 @click.argument("name", metavar="ID")
 @output_options
 def show(name: str, as_json: bool, output: str | None) -> None:
-    """One claim: what is printed, its verdict, its evidence, what it rests on and what rests on it."""
+    """One claim: the printed statement, the verdict, the evidence, the claims it rests on and those that rest on it."""
     from singimpact.paper.claims import BEYOND, CLAIMS, INDEX, run, select
     from singimpact.paper.claims.graph import dependants
 
@@ -67,7 +67,7 @@ def _item(item: dict[str, Any]) -> str:
 @click.option("--svg", is_flag=True, help="Draw it.")
 @output_options
 def graph(svg: bool, as_json: bool, output: str | None) -> None:
-    """What each claim rests on, as text, as JSON or as an SVG picture."""
+    """The claims that each claim rests on, as text, as JSON or as an SVG picture."""
     from singimpact.paper.claims import INDEX
     from singimpact.paper.claims.graph import as_svg, as_text
 
@@ -89,7 +89,7 @@ def _kinds() -> dict[str, str]:
 @click.argument("name", metavar="ID")
 @output_options
 def impact(name: str, as_json: bool, output: str | None) -> None:
-    """What falls if a claim falls."""
+    """The claims that would fail with one claim."""
     from singimpact.paper.claims import INDEX, select
     from singimpact.paper.claims.graph import dependants
 

@@ -1,4 +1,4 @@
-"""`singimpact classify`: the singular points of a model, and where P changes its kind."""
+"""`singimpact classify`: the singular points of a model, and the transitions of the outline P."""
 
 from __future__ import annotations
 
@@ -20,8 +20,13 @@ if TYPE_CHECKING:
 @model_options
 @click.option("--window-tau", nargs=2, metavar="LOW HIGH", help="Ends of tau.  [default: one period]")
 @click.option("--window-t", nargs=2, metavar="LOW HIGH", help="Ends of t.  [default: one period to both sides]")
-@click.option("--over", metavar="NAME", help="Where P changes its kind as this moves: clearance or a parameter.")
-@click.option("--between", nargs=2, metavar="LOW HIGH", help="Ends of --over; without it, clearances of swans.")
+@click.option("--over", metavar="NAME", help="Also list the transitions of P over this: clearance or a parameter.")
+@click.option(
+    "--between",
+    nargs=2,
+    metavar="LOW HIGH",
+    help="Interval of --over; without --over, clearances in which swans are searched.",
+)
 @output_options
 def command(
     window_tau: tuple[str, str] | None, window_t: tuple[str, str] | None, over: str | None,

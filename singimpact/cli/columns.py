@@ -1,4 +1,4 @@
-"""Rows of cells as aligned text, for people and for pipes."""
+"""Rows of cells as aligned text or as a Markdown table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`singimpact derive`: the derivations, written from the derived objects."""
+"""`singimpact derive`: the derivations and the series of a model, in several formats."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from singimpact.progress import ProgressLine
 from singimpact.store import folder
 
 if TYPE_CHECKING:
-    from singimpact.documents.series import Asked
+    from singimpact.documents.series import SeriesRequest
     from singimpact.documents.steps import Mark, Section
 
 FORMATS = ("latex", "pdf", "markdown", "json", "sympy", "numpy")
@@ -21,13 +21,17 @@ FORMATS = ("latex", "pdf", "markdown", "json", "sympy", "numpy")
 
 @click.command(short_help="write the derivations as LaTeX, PDF, Markdown or JSON")
 @click.argument("names", metavar="[SECTION]...", nargs=-1)
-@click.option("--format", "form", type=click.Choice(FORMATS), default="latex", show_default=True, help="What to write.")
-@click.option("--order", type=int, help="The series to this order, in place of the derivations.  [default: 6]")
-@click.option("--model", metavar="FILE", help="The series of this model.")
+@click.option(
+    "--format", "form", type=click.Choice(FORMATS), default="latex", show_default=True, help="Format of the output."
+)
+@click.option("--order", type=int, help="Write series to this order, not the derivations.  [default: 6]")
+@click.option("--model", metavar="FILE", help="Write the series of this model.")
 @click.option("--tau", help="With --model: the point of the series.  [default: tangency and swan points]")
 @click.option("--keep", metavar="NAME", multiple=True, help="With --model: a parameter that stays a letter.")
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
-@click.option("-o", "--output", metavar="DIR", help="Write files there instead of one text to standard output.")
+@click.option(
+    "-o", "--output", metavar="DIR", help="Write files into this folder instead of one text to standard output."
+)
 def command(
     names: tuple[str, ...],
     form: str,
@@ -40,10 +44,10 @@ def command(
 ) -> None:
     """Write the derivations: steps in order, each equation with its label and the verdict of its claim.
 
-    A SECTION is a number (4), a name (section4) or a subject (tangency); all of them without one.
-    LaTeX goes into DIR as one file a section and derivations.tex, which takes them in.
-    With --order or --model the series v_c, gamma and more are written instead, in any format; sympy and numpy write
-    them alone.
+    A SECTION is a number (4), a name (section4) or a subject (tangency); the default is all sections.
+    LaTeX files are one for each section, and derivations.tex, which includes them.
+    With --order or --model the series v_c, gamma and more are written instead, in any format. The formats sympy and
+    numpy always write series. The numpy file of a model holds tau_* and the radius in which each series is accurate.
     """
     form = "json" if as_json else form
     if form == "pdf" and output is None:
@@ -53,11 +57,11 @@ def command(
 
         require_latex()
     if output is not None:
-        folder(output)  # a place that cannot be written is refused before anything is computed
+        folder(output)  # an error in the output path is raised before the computation, not after it
     if form in ("sympy", "numpy") or order is not None or model is not None:
         if names:
             raise InputError(f"{names[0]} is a section of the derivations: a series takes --order and --model alone")
-        _series(_asked(order, model, tau, keep), form, output)
+        _series(_request(order, model, tau, keep), form, output)
         return
     if tau is not None or keep:
         raise InputError("--tau and --keep belong to --model")
@@ -79,18 +83,18 @@ def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
         _write(told, marks, form, output)
 
 
-def _asked(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> Asked:
-    from singimpact.documents.series import Asked
+def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> SeriesRequest:
+    from singimpact.documents.series import SeriesRequest
 
     given = None
     if model is not None:
         from singimpact.impact_oscillator import read_model
 
         given = read_model(model)
-    return Asked(6 if order is None else order, given, tau, keep)
+    return SeriesRequest(6 if order is None else order, given, tau, keep)
 
 
-def _series(asked: Asked, form: str, output: str | None) -> None:
+def _series(request: SeriesRequest, form: str, output: str | None) -> None:
     """The series as text to standard output, or as files in the folder."""
     from singimpact.documents.formats import as_text
     from singimpact.documents.series import series_section, series_text
@@ -98,7 +102,7 @@ def _series(asked: Asked, form: str, output: str | None) -> None:
     from singimpact.store import written
 
     if form in ("sympy", "numpy", "json"):
-        text = series_text(asked, form)
+        text = series_text(request, form)
         if output is None:
             click.echo(text, nl=False)
             return
@@ -106,7 +110,7 @@ def _series(asked: Asked, form: str, output: str | None) -> None:
         with written(Path(output) / name) as draft:
             draft.write_bytes(text.encode())
         return
-    told = [NOTATION, series_section(asked)]
+    told = [NOTATION, series_section(request)]
     if output is None:
         click.echo(as_text(told, {}, form), nl=False)
     else:

@@ -1,4 +1,4 @@
-"""`singimpact errata`: what is misprinted, what holds instead, and why."""
+"""`singimpact errata`: misprints of the paper, their corrections, and the reasons."""
 
 from __future__ import annotations
 
@@ -15,12 +15,14 @@ from singimpact.store import require_writable, written
 FORMATS = ("text", "markdown", "latex", "pdf", "json")
 
 
-@click.command(short_help="what is misprinted, what holds instead, and why")
-@click.option("--format", "form", type=click.Choice(FORMATS), default="text", show_default=True, help="What to write.")
+@click.command(short_help="misprints of the paper, their corrections, and the reasons")
+@click.option(
+    "--format", "form", type=click.Choice(FORMATS), default="text", show_default=True, help="Format of the output."
+)
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
-@click.option("-o", "--output", metavar="FILE", help="Write there instead of standard output.")
+@click.option("-o", "--output", metavar="FILE", help="Write to this file instead of standard output.")
 def command(form: str, as_json: bool, output: str | None) -> None:
-    """Every statement that fails as printed, with the corrected one, its witness and what survives downstream."""
+    """Every statement that fails as printed, with its correction, a witness, and the effect on later statements."""
     from singimpact.paper.sections.errata import errata
 
     form = "json" if as_json else form

@@ -1,4 +1,4 @@
-"""`singimpact events`: curves of grazes, folds and doublings in two numbers of the model."""
+"""`singimpact events`: curves of grazes, folds and doublings in two parameters."""
 
 from __future__ import annotations
 
@@ -25,26 +25,34 @@ NEAR = 0.05
 KINDS = ("fold", "period-doubling", "graze", "hidden impact")
 
 
-@click.command(short_help="curves of grazes, folds and doublings in two numbers of the model")
+@click.command(short_help="curves of grazes, folds and doublings in two parameters")
 @model_options
 @orbit_options
 @click.option("--over", nargs=2, metavar="A B", default=("clearance", "restitution"), show_default=True,
-              help="Two numbers of the model; the orbits are followed over A first.")  # fmt: skip
-@click.option("--from", "low", nargs=2, metavar="A B", help="Their least values; half of the model's without them.")
+              help="Two parameters; the orbits are followed over A first.")  # fmt: skip
+@click.option("--from", "low", nargs=2, metavar="A B", help="Their least values.  [default: half of the model's]")
 @click.option("--to", "high", nargs=2, metavar="A B", help="Their largest values.")
-@click.option("--event", "kinds", type=click.Choice(KINDS), multiple=True, help="Events of this kind; all without it.")
-@click.option("--index", type=click.IntRange(1), help="The one event of that place in the list of `branch`.")
-@click.option("--points", type=click.IntRange(2, 1_000_000), default=1000, show_default=True, help="At most, each way.")
-@click.option("--csv", metavar="FILE.csv", help="Write a line a point: curve, kind, the two numbers, states, visible.")
+@click.option("--event", "kinds", type=click.Choice(KINDS), multiple=True, help="Events of this kind.  [default: all]")
+@click.option("--index", type=click.IntRange(1), help="Only the event with this number in the list of `branch`.")
+@click.option(
+    "--points",
+    type=click.IntRange(2, 1_000_000),
+    default=1000,
+    show_default=True,
+    help="Points at most, in each direction.",
+)
+@click.option(
+    "--csv", metavar="FILE.csv", help="Write one line for each point: curve, kind, both parameters, states, visible."
+)
 @click.option("-o", "--output", metavar="FILE.png", help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give points and points of codimension two as JSON.")
 def command(
     orbit: tuple[int, int], start: tuple[str, str] | None, over: tuple[str, str], kinds: tuple[str, ...],
     csv: str | None, output: str | None, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Events of the orbits of N impacts in K periods, as curves in the plane of two numbers of the model.
+    """Follow events of the orbits of N impacts in K periods as curves in the plane of two parameters.
 
-    Points of codimension two are printed: resonant grazes, cusps, two grazes at once, and others.
+    Prints the points of codimension two: resonant grazes, cusps, two grazes at once, and others.
     """
     for path in (output, csv):
         if path is not None:

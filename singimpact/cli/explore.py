@@ -1,4 +1,4 @@
-"""`singimpact explore`: a page with a slider for the clearance, from one side of a swan to the other."""
+"""`singimpact explore`: a page with a slider for the clearance, on both sides of a swan."""
 
 from __future__ import annotations
 
@@ -21,16 +21,18 @@ if TYPE_CHECKING:
 @click.command(short_help="a page with a slider for the clearance")
 @click.argument("path", metavar="[MODEL]", required=False)
 @model_options
-@click.option("--between", nargs=2, metavar="LOW HIGH", help="Ends of the clearance.  [default: both sides of a swan]")
-@click.option("--steps", type=click.IntRange(2, 1001), default=41, show_default=True, help="Places of the slider.")
-@click.option("--html", metavar="FILE", help="Write the page there; a browser opens it without this.")
+@click.option(
+    "--between", nargs=2, metavar="LOW HIGH", help="Interval of the clearance.  [default: both sides of a swan]"
+)
+@click.option("--steps", type=click.IntRange(2, 1001), default=41, show_default=True, help="Positions of the slider.")
+@click.option("--html", metavar="FILE", help="Write the page to this file.  [default: open it in a browser]")
 @click.option("--json", "as_json", is_flag=True, help="Give the curves as JSON instead of a page.")
-@click.option("-o", "--output", metavar="FILE", help="The same as --html; with --json, the file for that.")
+@click.option("-o", "--output", metavar="FILE", help="The same as --html; with --json, the JSON file.")
 def command(
     path: str | None, between: tuple[str, str] | None, steps: int, html: str | None, as_json: bool,
     output: str | None, **options: Any,
 ) -> None:  # fmt: skip
-    """See Z, H, P and gamma change as the clearance moves through the swan nearest to the model's clearance.
+    """Show Z, H, P and gamma for clearances around the swan that is nearest to the clearance of the model.
 
     A model without a swan is shown around its clearance. MODEL is a TOML file, as for --model. The page is one file
     that needs no network.

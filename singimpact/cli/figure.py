@@ -23,9 +23,9 @@ from singimpact.store import folder, require_writable, write_text
               help="A folder for the pictures, or for one figure a file ending in .png, .pdf or .svg.")  # fmt: skip
 @click.option("--format", "kind", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
 @click.option("--data", is_flag=True, help="Write the curves as JSON beside each picture.")
-@click.option("--json", "as_json", is_flag=True, help="Print what was written, with seconds of CPU, as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print the written files and the CPU time in s as JSON.")
 def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> None:
-    """Draw figure N of the paper, 1 to 17, or all, each from a real oscillator, with the claims that it illustrates.
+    """Draw figure N of the paper, 1 to 17, or all, each computed from an oscillator, and list the claims that it shows.
 
     What a figure shows is kept in the cache as numbers: a run that was cut off goes on where it was.
     """

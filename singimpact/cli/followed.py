@@ -22,7 +22,7 @@ SAME = 1e-6
 def orbit_options(function: Function) -> Function:
     """``--orbit N K`` and ``--start TAU V``."""
     function = click.option(
-        "--start", nargs=2, metavar="TAU V", help="A state near the orbit; every orbit that is found, without it."
+        "--start", nargs=2, metavar="TAU V", help="A state near the orbit.  [default: every orbit found]"
     )(function)
     return click.option(
         "--orbit", nargs=2, type=int, metavar="N K", default=(1, 1), show_default=True,

@@ -1,4 +1,4 @@
-"""The group `singimpact`: its commands by name, and one line on standard error for every mistake of the caller."""
+"""The group `singimpact`: its commands by name; every mistake of the caller gives one line on standard error."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ import click
 from singimpact import __version__
 from singimpact.inputs import InputError, Unfinished, meant, unknown
 
-# The short helps stand here, so that `singimpact --help` opens no command and no room.
+# The short helps are here, so that `singimpact --help` imports no command and no sub-package.
 COMMANDS = {
-    "verify": "derive, prove and cross-check every claim",
+    "verify": "check every claim of the paper and print its verdict",
     "derive": "write the derivations as LaTeX, PDF, Markdown or JSON",
     "map": "fly from an impact to the next one",
     "orbit": "fly many impacts; -o draws x(t)",
     "section": "the states of an orbit once a period; -o draws them",
     "lyapunov": "both Lyapunov exponents of an orbit",
-    "chatter": "when infinitely many impacts accumulate",
+    "chatter": "the time at which infinitely many impacts accumulate",
     "figure": "the paper's figures, from computed data",
     "scene": "draw the layers that a scene file names",
-    "threshold": "the velocity that separates complete from incomplete chatter",
+    "threshold": "the velocity below which chatter completes",
     "classify": "tangency, swan, fold and cusp points of a model",
     "explore": "a page with a slider for the clearance",
-    "sweep": "one question for many values of a number of the model",
-    "basins": "where the orbits of a grid of states end, as a picture",
-    "bifurcation": "where an orbit settles as a number of the model moves",
+    "sweep": "the last state of an orbit for many values of a parameter",
+    "basins": "the attractor of each state of a grid, as a picture",
+    "bifurcation": "settled orbits for many values of a parameter, as a picture",
     "branch": "follow periodic orbits through grazes, folds and doublings",
     "border": "where a released orbit returns onto gamma, and the cascade beside it",
-    "events": "curves of grazes, folds and doublings in two numbers of the model",
-    "bench": "run time against error, beside other tools",
-    "stress": "errors towards the bad places, in units of rounding",
-    "selftest": "random states of your model against independent computations",
-    "errata": "what is misprinted, what holds instead, and why",
+    "events": "curves of grazes, folds and doublings in two parameters",
+    "bench": "run time against error, compared with other tools",
+    "stress": "errors near singular points, in units of the rounding error",
+    "selftest": "compare random states of your model with independent computations",
+    "errata": "misprints of the paper, their corrections, and the reasons",
     "claims": "the claims: list, show, graph, impact",
     "fixed-points": "fixed points and multipliers, certified, to any digits",
-    "cite": "what to cite",
+    "cite": "references to cite",
 }
 
 
@@ -61,8 +61,8 @@ class Commands(click.Group):
             formatter.write_dl(list(COMMANDS.items()))
 
     def main(self, args: Sequence[str] | None = None, *_: Any, **__: Any) -> NoReturn:
-        """Run and leave with an exit code: 2 for the caller's mistakes, each in one line without a traceback."""
-        # a plain end by SIGTERM would leave drafts behind; an exception lets every block that writes clean up
+        """Run, and exit with a code: 2 for mistakes of the caller, each printed as one line without a traceback."""
+        # the default action of SIGTERM would leave temporary files; an exception lets their owners remove them
         signal.signal(signal.SIGTERM, _ended)
         sys.exit(self._code(args))
 
@@ -90,7 +90,7 @@ def _ended(number: int, frame: Any) -> NoReturn:  # noqa: ARG001
 
 
 def _in_our_words(error: click.ClickException, args: Sequence[str] | None) -> str:
-    """What click says, with the option that was meant, the value, and what would be accepted."""
+    """The message of click, with the option that was meant, its value, and the accepted values."""
     match error:
         case click.NoSuchOption(ctx=click.Context() as ctx):
             names = [name.lstrip("-") for each in ctx.command.params for name in each.opts if name.startswith("--")]
@@ -116,6 +116,9 @@ def _refused(message: str) -> int:
 @click.version_option(__version__, prog_name="singimpact")
 @click.pass_context
 def main(ctx: click.Context) -> None:
-    """An impact oscillator near a degenerate graze: theory that is executable, exact and checkable."""
+    """Impact oscillators x'' + f(x, x') = g(t), x >= c: simulation, periodic orbits, and exact theory near grazes.
+
+    Output files appear only when complete. A mistake in the input gives one line and exit code 2.
+    """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())

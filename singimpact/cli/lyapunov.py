@@ -15,8 +15,10 @@ from singimpact.status import Status
 @model_options
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
-@click.option("--impacts", type=click.IntRange(1, 100_000_000), default=10_000, show_default=True, help="How many.")
-@click.option("--transient", type=click.IntRange(0, 100_000_000), default=0, show_default=True, help="Flown before.")
+@click.option("--impacts", type=click.IntRange(1, 100_000_000), default=10_000, show_default=True, help="Impacts used.")
+@click.option(
+    "--transient", type=click.IntRange(0, 100_000_000), default=0, show_default=True, help="Impacts flown before."
+)
 @output_options
 def command(
     tau: str, v: str, impacts: int, transient: int, as_json: bool, output: str | None, **options: Any

@@ -19,14 +19,14 @@ FIELDS = ("tau", "v", "flight_time", "status")
 @model_options
 @click.option("--tau", "taus", metavar="NUMBER", multiple=True, required=True, help="Launch phase; may be repeated.")
 @click.option("--v", "vs", metavar="NUMBER", multiple=True, required=True, help="Launch velocity; may be repeated.")
-@click.option("--digits", type=click.IntRange(1, 10_000), help="Significant digits; a double is given without it.")
-@click.option("--horizon", metavar="NUMBER", help="Look no further than this flight time.")
+@click.option("--digits", type=click.IntRange(1, 10_000), help="Significant digits.  [default: a double]")
+@click.option("--horizon", metavar="NUMBER", help="Longest flight time that is searched.")
 @output_options
 def command(
     taus: tuple[str, ...], vs: tuple[str, ...], digits: int | None, horizon: str | None, as_json: bool,
     output: str | None, **options: Any,
 ) -> None:  # fmt: skip
-    """The impact map G: the next impact's phase and velocity, the flight time, and what became of the flight.
+    """The impact map G: phase and velocity of the next impact, the flight time, and the status of the flight.
 
     Numbers may be expressions such as pi/2.8.
     """

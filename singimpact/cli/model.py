@@ -17,7 +17,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 NEEDED = ("omega", "clearance", "restitution")
 LINEAR = {
     "omega": "frequency of the forcing",
-    "clearance": "place of the obstacle",
+    "clearance": "position of the wall",
     "restitution": "coefficient of restitution, in (0, 1]",
     "damping": "coefficient of x'",
     "stiffness": "coefficient of x",
@@ -39,7 +39,7 @@ def model_options(function: Function) -> Function:
 
 
 def take_model(options: dict[str, Any]) -> ImpactOscillator:
-    """The oscillator that the options name; its options leave the mapping.
+    """The oscillator that the options name; its options are removed from the mapping.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""`singimpact orbit`: flights after flights, as numbers or as a picture of x(t)."""
+"""`singimpact orbit`: an orbit of many impacts, as numbers or as a picture."""
 
 from __future__ import annotations
 
@@ -19,13 +19,15 @@ from singimpact.store import written
 @model_options
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
-@click.option("--impacts", type=click.IntRange(1, 10_000_000), default=200, show_default=True, help="How many.")
-@click.option("--horizon", metavar="NUMBER", help="Look no further than this flight time.")
+@click.option(
+    "--impacts", type=click.IntRange(1, 10_000_000), default=200, show_default=True, help="Number of impacts."
+)
+@click.option("--horizon", metavar="NUMBER", help="Longest flight time that is searched.")
 @output_options
 def command(
     tau: str, v: str, impacts: int, horizon: str | None, as_json: bool, output: str | None, **options: Any
 ) -> None:
-    """An orbit of the impact map: impacts, rests on the obstacle, chatter.
+    """An orbit of the impact map: impacts, chatter, rest on the wall.
 
     With -o FILE.png (or .pdf, .svg) the orbit is drawn. Numbers may be expressions such as pi/2.8.
     """
@@ -41,7 +43,7 @@ def command(
 
 
 def check_ending(output: str | None, as_json: bool) -> None:
-    """A file's ending says what is in it: a table is not put under the name of a picture of another format."""
+    """Refuse a file name whose suffix is that of a picture format which is not written."""
     known = (".json", "") if as_json else (*PICTURES, ".txt", "")
     if output is not None and Path(output).suffix.lower() not in known:
         what = ".json" if as_json else ".png, .pdf or .svg for a picture, or in .txt for a table"

@@ -1,4 +1,4 @@
-"""What a command gives back: text or JSON, on standard output or in a file that is whole or absent."""
+"""The output of a command: text or JSON, on standard output or in a file, which appears only when complete."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def output_options(function: Function) -> Function:
     """The options ``--json`` and ``-o`` of a command that gives text."""
     function = click.option(
-        "-o", "--output", metavar="FILE", callback=_checked, help="Write there instead of standard output."
+        "-o", "--output", metavar="FILE", callback=_checked, help="Write to this file instead of standard output."
     )(function)
-    return click.option("--json", "as_json", is_flag=True, help="Give JSON.")(function)
+    return click.option("--json", "as_json", is_flag=True, help="Print JSON.")(function)
 
 
 def _checked(ctx: click.Context, option: click.Parameter, path: str | None) -> str | None:  # noqa: ARG001
-    """Refuse a place that cannot be written before the work is done, not after it."""
+    """Check the output path before the computation, not after it."""
     if path is not None:
         require_writable(path)
     return path
 
 
 def emit(text: str, output: str | None) -> None:
-    """Print a text, or put it into the file that was named."""
+    """Print a text, or write it to the given file."""
     if output is None:
         click.echo(text)
     else:
@@ -38,7 +38,7 @@ def emit(text: str, output: str | None) -> None:
 
 
 def as_json_text(data: Any) -> str:
-    """JSON that any reader accepts: nan and inf become null, and the status beside them says which it was.
+    """Valid JSON: nan and inf become null, and the status beside them tells them apart.
 
     Examples
     --------

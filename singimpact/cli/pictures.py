@@ -1,4 +1,4 @@
-"""Pictures as files: the format is read from the ending, the file is whole or absent."""
+"""Pictures as files: the suffix gives the format, and the file appears only when complete."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def suffix_of(output: str) -> str:
 
 
 def save(figure: Any, output: str | Path, dpi: int = 150) -> None:
-    """Write a figure; without a date, so that the same picture is the same file."""
+    """Write a figure, without a date, so that the same picture gives the same file."""
     kind = suffix_of(str(output))[1:]
     import matplotlib
 
@@ -38,7 +38,7 @@ def save(figure: Any, output: str | Path, dpi: int = 150) -> None:
 
 
 def save_once(asked: tuple[Any, ...], output: str | Path, make: Callable[[], tuple[Any, Any]], dpi: int = 150) -> Any:
-    """Write a picture, from the cache when it was drawn before; what is to be said of it is returned.
+    """Write a picture, from the cache if it was drawn before, and return the text that is printed with it.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from singimpact.store import require_writable
 @click.command(short_help="draw the layers that a scene file names")
 @click.argument("file", metavar="FILE.toml")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
-@click.option("--json", "as_json", is_flag=True, help="Give the report as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
 def command(file: str, output: str, as_json: bool) -> None:
     """Draw a scene: a model, a window and layers, from a TOML file.
 

@@ -1,4 +1,4 @@
-"""`singimpact section`: the states of an orbit once a period, as numbers or as a picture."""
+"""`singimpact section`: the states of an orbit once in each period, as numbers or as a picture."""
 
 from __future__ import annotations
 
@@ -18,14 +18,22 @@ from singimpact.cli.pictures import PICTURES
 @model_options
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
-@click.option("--impacts", type=click.IntRange(1, 10_000_000), default=2000, show_default=True, help="How many.")
+@click.option(
+    "--impacts", type=click.IntRange(1, 10_000_000), default=2000, show_default=True, help="Number of impacts."
+)
 @click.option("--at", "at", metavar="NUMBER", default="0", show_default=True, help="Time after the start of a period.")
-@click.option("--skip", type=click.IntRange(0, 10_000_000), default=0, show_default=True, help="First states left out.")
+@click.option(
+    "--skip",
+    type=click.IntRange(0, 10_000_000),
+    default=0,
+    show_default=True,
+    help="Number of first states that are left out.",
+)
 @output_options
 def command(
     tau: str, v: str, impacts: int, at: str, skip: int, as_json: bool, output: str | None, **options: Any
 ) -> None:  # fmt: skip
-    """x and x' of an orbit once a period of the forcing: a stroboscopic section.
+    """x and x' of an orbit once in each period of the forcing: a stroboscopic section.
 
     With -o FILE.png (or .pdf, .svg) the section is drawn. Numbers may be expressions such as pi/2.8.
     """

@@ -1,4 +1,4 @@
-"""`singimpact selftest`: random states of the user's own model, judged against independent computations."""
+"""`singimpact selftest`: random states of your own model, compared with independent computations."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.inputs import InputError
 
 
-@click.command(short_help="random states of your model against independent computations")
+@click.command(short_help="compare random states of your model with independent computations")
 @click.argument("file", metavar="[MODEL]", required=False)
 @model_options
-@click.option("--states", type=click.IntRange(1, 10**6), default=1000, show_default=True, help="How many states.")
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Which states.")
+@click.option("--states", type=click.IntRange(1, 10**6), default=1000, show_default=True, help="Number of states.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the random states.")
 @output_options
 def command(file: str | None, states: int, seed: int, as_json: bool, output: str | None, **options: Any) -> None:
     """Fly random states of a model forward and back, against small fixed steps, with more digits and in balls; try its
     orbits, chatter limits, basins and tangency points.
 
-    MODEL is a TOML file, as for --model. Exit code 1 where something is wrong.
+    MODEL is a TOML file, as for --model. The exit code is 1 if a result is wrong.
     """
     if file is not None:
         if options["model"] is not None:

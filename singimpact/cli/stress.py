@@ -1,4 +1,4 @@
-"""`singimpact stress`: public functions towards their bad places, against 60 digits."""
+"""`singimpact stress`: errors of public functions near singular points and parameters, against 60 digits."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.progress import ProgressLine
 
 
-@click.command(short_help="errors towards the bad places, in units of rounding")
+@click.command(short_help="errors near singular points, in units of the rounding error")
 @click.argument("functions", metavar="[FUNCTION]...", nargs=-1)
-@click.option("--place", metavar="PLACE", help="One place alone, as the table names it, such as 'a -> 0'.")
-@click.option("--quick", is_flag=True, help="Fewer points of every sweep.")
+@click.option("--place", metavar="PLACE", help="One row of the table alone, such as 'a -> 0'.")
+@click.option("--quick", is_flag=True, help="Fewer points in every sequence.")
 @click.option("--format", "form", type=click.Choice(["text", "markdown"]), default="text", show_default=True)
 @output_options
 def command(
     functions: tuple[str, ...], place: str | None, quick: bool, form: str, as_json: bool, output: str | None
 ) -> None:
-    """The worst error of every public numerical function near every place that is hard for it, beside 60 digits.
+    """The largest error of every public numerical function near its singular points, compared with 60 digits.
 
-    Exit code 1 when one is over 100 units of condition times epsilon, or has a wrong status.
+    The exit code is 1 if an error exceeds 100 units of condition times epsilon, or a status is wrong.
     """
     from singimpact.bench.stress.table import NOTE, POINTS, QUICK, as_data, chosen, stressed, table, worst_states
 

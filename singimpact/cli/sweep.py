@@ -1,4 +1,4 @@
-"""`singimpact sweep`: the last state after many impacts, for many values of one number of the model."""
+"""`singimpact sweep`: the state after many impacts, for many values of one parameter."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from singimpact.inputs import InputError
 from singimpact.status import Status
 
 
-@click.command(short_help="one question for many values of a number of the model")
+@click.command(short_help="the last state of an orbit for many values of a parameter")
 @model_options
 @click.option("--over", metavar="NAME", required=True, help="clearance, restitution or a parameter.")
 @click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")
 @click.option("--to", "high", metavar="NUMBER", required=True, help="Its last value.")
-@click.option("--points", type=click.IntRange(2, 1_000_000), default=21, show_default=True, help="How many values.")
+@click.option("--points", type=click.IntRange(2, 1_000_000), default=21, show_default=True, help="Number of values.")
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
 @click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Impacts flown.")
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes; as many as there are cores without it.")
-@click.option("--keep", metavar="FILE", help="Keep results there (.npz or .zarr) as they come, and resume from it.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
+@click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
 @output_options
 def command(
     over: str, low: str, high: str, points: int, tau: str, v: str, impacts: int, workers: int | None,
     keep: str | None, as_json: bool, output: str | None, **options: Any,
 ) -> None:  # fmt: skip
-    """The state after the last of many impacts, for values of one number of the model.
+    """The state after the last of many impacts, for values of one parameter.
 
-    A model named by options needs the option of the swept number too.
+    A model named by options needs the option of the swept parameter too.
     """
     import numpy as np
 
@@ -58,7 +58,7 @@ def command(
 
 
 def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int, value: float) -> Any:
-    """tau, v and status after the last impact; a function of this module, so that another process can be sent it."""
+    """tau, v and status after the last impact. A module-level function, so that it can be pickled."""
     import numpy as np
 
     from singimpact.flights.orbits import iterate

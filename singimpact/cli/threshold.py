@@ -1,4 +1,4 @@
-"""`singimpact threshold`: the velocity that separates complete from incomplete chatter."""
+"""`singimpact threshold`: the velocity below which chatter completes."""
 
 from __future__ import annotations
 
@@ -12,14 +12,16 @@ from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.status import Status
 
 
-@click.command(short_help="the velocity that separates complete from incomplete chatter")
+@click.command(short_help="the velocity below which chatter completes")
 @model_options
-@click.option("--tau", metavar="NUMBER", required=True, help="A phase at which the mass is pressed, a_c < 0.")
-@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits; a double is given without it.")
-@click.option("--impacts", type=click.IntRange(1, 10_000_000), default=640_000, show_default=True, help="At most.")
+@click.option("--tau", metavar="NUMBER", required=True, help="A phase with a_c < 0.")
+@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits.  [default: a double]")
+@click.option(
+    "--impacts", type=click.IntRange(1, 10_000_000), default=640_000, show_default=True, help="Impacts at most."
+)
 @output_options
 def command(tau: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: Any) -> None:
-    """The v on gamma over tau: just below it chatter completes, just above it contact is lost before."""
+    """The velocity of gamma at tau: chatter completes below it, and is interrupted by lift-off above it."""
     oscillator = take_model(options)
     from singimpact.dynamics.threshold import threshold
 

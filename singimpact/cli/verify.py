@@ -1,4 +1,4 @@
-"""`singimpact verify`: every claim, its verdict, and what is misprinted."""
+"""`singimpact verify`: every claim, its verdict, and the misprints."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from singimpact.progress import ProgressLine
 COLOURS = {"proved": "green", "certified": "green", "corrected": "yellow", "open": "cyan", "error": "red"}
 
 
-@click.command(short_help="derive, prove and cross-check every claim")
+@click.command(short_help="check every claim of the paper and print its verdict")
 @click.argument("ids", metavar="[ID]...", nargs=-1)
-@click.option("--beyond", is_flag=True, help="The claims that the paper does not have, and what they rest on.")
+@click.option("--beyond", is_flag=True, help="The claims that are not in the paper, and those they rest on.")
 @output_options
 @click.pass_context
 def command(ctx: click.Context, ids: tuple[str, ...], beyond: bool, as_json: bool, output: str | None) -> None:
-    """Derive, prove and cross-check every claim, or those named and what they rest on.
+    """Derive, prove and cross-check every claim, or the named ones and those that they rest on.
 
-    Ends with the list of what is misprinted. The exit code is 1 when a claim ends in `error`.
+    Prints the misprints at the end. The exit code is 1 if a claim ends in `error`.
     """
     from singimpact.paper.claims.verdicts import verify
 

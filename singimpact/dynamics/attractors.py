@@ -1,4 +1,4 @@
-"""Periodic attractors that orbits settle on, and how near an orbit must come to one to be caught."""
+"""Periodic attractors, and a neighbourhood of each from which orbits converge to it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PLACES = 1000  # a class (n, k) is coded n * PLACES + k
 
 @dataclass(frozen=True)
 class AttractorSettings:
-    """most_impacts : n of the orbits that are told apart. close : two states nearer than this are the same, relative.
+    """most_impacts : largest n of an (n, k) orbit that is recognised. close : relative distance of equal states.
     catch : how near to an attractor an orbit is looked upon as caught, relative, when the corners of that neighbourhood
         are seen to come in; a tenth of it is tried next, down to `close`.
     turns : of the attractor, in which they must come into half of it.
@@ -38,7 +38,7 @@ SETTINGS = AttractorSettings()
 
 @dataclass(frozen=True)
 class Attractor:
-    """code : its class. tau, v : its states, tau within a period. catch : how near an orbit is caught, relative."""
+    """code : its class. tau, v : its states, tau within a period. catch : relative size of its neighbourhood."""
 
     code: int
     tau: Array
@@ -47,7 +47,7 @@ class Attractor:
 
 
 def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """(n, k) of states that come back to themselves, else OTHER; of the orbit that they come to, where n is less."""
+    """(n, k) of states that return to themselves, else OTHER; of the orbit they converge to, if its n is smaller."""
     codes = _returns(model, tau, v, fast)
     several = np.flatnonzero(codes // PLACES > 1)
     if several.size:
@@ -61,7 +61,7 @@ def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float) -> Arra
 
 
 def _returns(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """(n, k) of states that come back to themselves, else OTHER."""
+    """(n, k) of states that return to themselves, else OTHER."""
     assert model.period is not None
     period = as_float(model.period)
     codes = np.full(tau.size, OTHER, dtype=np.int32)
@@ -84,7 +84,7 @@ def _returns(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
 
 
 def caught(known: list[Attractor], model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """The place in `known` of the attractor that holds a state in the neighbourhood seen to come in, else -1."""
+    """The index in `known` of the attractor whose converging neighbourhood holds a state, else -1."""
     places = np.full(tau.size, -1, dtype=np.int32)
     for place, attractor in enumerate(known):
         places[within(attractor, model, tau, v, fast, attractor.catch)] = place
@@ -122,7 +122,7 @@ def states_of(model: Oscillator, code: int, tau: float, v: float) -> tuple[Array
 
 
 def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float) -> Attractor:
-    """An attractor with the largest neighbourhood whose border is seen to come in."""
+    """An attractor with the largest neighbourhood whose border is observed to contract."""
     assert model.period is not None
     period, count = as_float(model.period), code // PLACES
     times, speeds = states_of(model, code, tau, v)

@@ -1,4 +1,4 @@
-"""What the orbits of a grid of states do for ever: n impacts in k periods, chatter again and again, rest, chaos."""
+"""Basins: the attractor of each state of a grid: an (n, k) orbit, repeated chatter, rest, chaos."""
 
 from __future__ import annotations
 
@@ -41,33 +41,22 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class BasinSettings:
-    """When an orbit is called decided, and how many are flown together.
+    """When the class of an orbit is decided, and sizes of blocks."""
 
-    Attributes
-    ----------
-    rest : an impact slower than this share of the fastest state shown, with a_c < 0, is in complete chatter.
-    slow : slower than this share, it is so too if what is left of chatter is short and a_c keeps pressing.
-    lasting : the part of a period that such a rest of chatter may last.
-    transient : impacts flown before an orbit is looked at, beyond those that chatter takes to get so slow.
-    block : impacts flown before it is looked again which orbits are decided.
-    sample : of those that are not, looked at for an attractor that others are caught by.
-    tolerance : of a Taylor step: no class of 18 000 states moves at 1e-6, and a flight costs a quarter less than at a
-        rounding.
-    rows : of states a case; a call costs 3 ms before it flies.
-    limit : of impacts flown; r = 0.99 wants 2000.
-    same : two periodic orbits nearer than this, relative, are one.
-    """
-
+    # v of an impact in complete chatter where a_c < 0, as a share of the largest v of the window
     rest: float = 1e-7
+    # the same if the remaining chatter is shorter than `lasting` and a_c stays negative until then
     slow: float = 1e-2
-    lasting: float = 0.02
+    lasting: float = 0.02  # periods of the forcing
+    # impacts before the first test, in addition to those that chatter needs to become so slow
     transient: int = 40
-    block: int = 6
-    sample: int = 24
+    block: int = 6  # impacts between two tests
+    sample: int = 24  # undecided orbits that are tested for a new attractor after each block
+    # of a Taylor step: at 1e-6 no class of 18 000 states changes; a flight costs a quarter less than at full accuracy
     tolerance: float = 1e-10
-    rows: int = 10
-    limit: int = 3000
-    same: float = 1e-3
+    rows: int = 10  # of the grid in a case; a call costs 3 ms before its first flight
+    limit: int = 3000  # impacts at most; r = 0.99 needs 2000
+    same: float = 1e-3  # relative distance below which two periodic orbits are one
 
 
 SETTINGS = BasinSettings()
@@ -75,7 +64,7 @@ SETTINGS = BasinSettings()
 
 @dataclass(frozen=True)
 class LongRun:
-    """What orbits do for ever.
+    """An attractor, or another long-term behaviour.
 
     Attributes
     ----------
@@ -92,7 +81,7 @@ class LongRun:
 
     @property
     def name(self) -> str:
-        """As in the picture's key."""
+        """The name in the legend of the picture."""
         if self.kind == "orbit":
             return f"({self.n:.0f}, {self.k}) orbit"
         return {"chatter": f"(inf, {self.k}) chatter for ever", "rest": "rest for ever"}.get(self.kind, self.kind)
@@ -100,13 +89,13 @@ class LongRun:
 
 @dataclass(frozen=True)
 class Basins:
-    """Classes of a grid of states: what their orbits do for ever.
+    """The attractors of a grid of states.
 
     Attributes
     ----------
-    tau, v : the axes. attractors : the classes that occur. codes : shape (len(v), len(tau)), places in `attractors`.
-    first_chatter_completes : of the same shape: the first chatter of the orbit completes, whatever follows.
-    boundary : places between neighbours of unlike class.
+    tau, v : the axes. attractors : the classes that occur. codes : shape (len(v), len(tau)), indices into `attractors`.
+    first_chatter_completes : of the same shape, bool: the first chatter of the orbit completes.
+    boundary : points between neighbouring states of different class.
     """
 
     model: Oscillator
@@ -118,7 +107,7 @@ class Basins:
 
     @property
     def classes(self) -> list[tuple[int, str, float]]:
-        """Code, name and share of the classes, the largest first; orbits of equal (n, k) are told apart by their v."""
+        """Code, name and share of the classes, the largest first; orbits of equal (n, k) are named with their v."""
         counts = np.bincount(self.codes.ravel(), minlength=len(self.attractors))
         order = np.argsort(-counts, kind="stable")
         names = [each.name for each in self.attractors]
@@ -143,7 +132,7 @@ class Basins:
         return f"Basins({self.tau.size} x {self.v.size} states: {shares}{more})"
 
     def to_csv(self, path: Any) -> None:
-        """Write tau, v, the class and whether the first chatter completes, a line a state."""
+        """Write one line for each state: tau, v, the class, and whether the first chatter completes."""
         names = {code: name for code, name, _ in self.classes}
         tau, v = np.meshgrid(self.tau, self.v)
         write_table(path, {
@@ -204,7 +193,7 @@ def basins(
 
 
 def _named(model: Oscillator, rows: Array, phases: tuple[float, ...], fast: float) -> tuple[tuple[LongRun, ...], Array]:
-    """The classes that occur, and the place of each row among them; rows near one orbit are one class."""
+    """The classes that occur, and the index of each row among them; rows near one orbit are one class."""
     found, codes, left = list[LongRun](), np.full(len(rows), -1), np.ones(len(rows), dtype=bool)
     none = np.zeros(0)
     while left.any():
@@ -231,7 +220,7 @@ def classified(
     fields: Mapping[str, Any], phases: tuple[float, ...], times: tuple[float, ...], fast: float,
     speeds: tuple[float, ...],
 ) -> Array:  # fmt: skip
-    """The classes of some rows of states; a function of this module, so that another process can be sent it."""
+    """The classes of some rows of states. A module-level function, so that it can be pickled."""
     tau, v = np.tile(times, len(speeds)), np.repeat(speeds, len(times))
     return classify(Oscillator(**fields), phases, fast, tau, v)
 
@@ -275,7 +264,7 @@ def classify(model: Oscillator, phases: tuple[float, ...], fast: float, tau: Arr
 
 
 def _at_rest(model: Oscillator, tau: Array, v: Array) -> Array:
-    """Within a period, where what is left of chatter ends, to first order."""
+    """The phase, within a period, at which the remaining chatter ends, to first order."""
     assert model.period is not None
     left = -2 * v / (acceleration(model, tau) * (1 - as_float(model.slope_at_rest())))
     period = as_float(model.period)
@@ -295,7 +284,7 @@ def _caught(known: list[Attractor], model: Oscillator, tau: Array, v: Array, fas
 
 
 def _chattering(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """CHATTER where an orbit is slow, pressed to the obstacle, and at rest before the pressure can have gone.
+    """CHATTER where an orbit is slow, a_c < 0, and the mass comes to rest before a_c can become positive.
 
     What is left of chatter lasts about 2 v/((1 - r)|a|); over eight times that, a_c must keep its sign.
     """

@@ -1,4 +1,4 @@
-"""Where orbits settle as a number of the model moves: the last impacts of one long orbit for each value."""
+"""Bifurcation diagrams: the last impacts of one long orbit for each value of a parameter."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
 FEW = 200_000
-"""Impacts in all, below which no processes are started: about five seconds."""
+"""Total of impacts below which no processes are started: about 5 s of work."""
 
 
 @dataclass(frozen=True)
 class CarrySettings:
-    """How the last state of an orbit is carried over."""
+    """How the last state of an orbit becomes the first of the next one."""
 
     # periods after which a motion without impact is taken as settled
     free: int = 200
@@ -44,7 +44,7 @@ class Bifurcation:
 
     Attributes
     ----------
-    over : the number that moves. values : of it, in the order in which they were taken. events : shape (values, kept,
+    over : the parameter. values : its values in the order of computation. events : shape (values, kept,
         3): phase, v, 1 where chatter ended; nan where an orbit had fewer.
     direction : "up", "down" or "both" where each orbit starts from the last state of the one before: with "both" the
         values go up, then down. Empty where each starts from one state.
@@ -64,7 +64,7 @@ class Bifurcation:
         return f"Bifurcation(over {self.over}: {count} values from {ends}{carried}, {kept} events of each)"
 
     def to_csv(self, path: Any) -> None:
-        """Write value, phase, v and whether chatter ended there, a line an event."""
+        """Write one line for each event: value, phase, v, and 1 for an end of chatter."""
         phase, v, ended = self.events.reshape(-1, 3).T
         there = np.isfinite(phase)
         values = np.repeat(self.values, self.events.shape[1])[there]
@@ -76,7 +76,7 @@ def bifurcation(
     model: Oscillator, over: str, between: Any, points: int = 300, start: Any = (0, "0.1"), impacts: int = 200,
     kept: int = 60, direction: str | None = None, **sweeping: Any,
 ) -> Bifurcation:  # fmt: skip
-    """The last events of an orbit for evenly spaced values of a number of the model.
+    """The last events of an orbit for evenly spaced values of a parameter.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def bifurcation(
 
 
 def _periods(model: Oscillator, over: str, values: Array) -> Array:
-    """The period of the forcing at each value; only a parameter of g moves it."""
+    """The period of the forcing at each value; only parameters of g change it."""
     if over not in names_in(model.g):
         assert model.period is not None
         return np.full(values.size, as_float(model.period))
@@ -135,7 +135,7 @@ def _periods(model: Oscillator, over: str, values: Array) -> Array:
 def settled(
     fields: Mapping[str, Any], over: str, start: tuple[str, ...], impacts: int, kept: int, value: float
 ) -> Array:
-    """The last events of one orbit; a function of this module, so that another process can be sent it."""
+    """The last events of one orbit. A module-level function, so that it can be pickled."""
     model = Oscillator(**fields).replace(**{over: value})
     return _last_events(orbit(model, start[0], start[1], impacts), impacts, kept)
 
@@ -157,7 +157,7 @@ def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tup
 
 
 def _continued(moved: Oscillator, last: Orbit, impacts: int) -> Orbit:
-    """The orbit of a model from the last state of another one; where the period moves, the phase is carried over."""
+    """The orbit of a model from the last state of another one; the phase within the period is kept."""
     assert moved.period is not None and last.oscillator.period is not None  # noqa: PT018
     period, before = as_float(moved.period), as_float(last.oscillator.period)
     away = bool(last.phases) and last.phases[-1][0] == "no_return"

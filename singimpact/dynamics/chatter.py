@@ -1,4 +1,4 @@
-"""Complete chatter: impacts are flown until the completion map sums up the rest below rounding; or contact is lost."""
+"""Chatter limits: impacts are flown until the series of the completion map gives the rest to rounding."""
 
 from __future__ import annotations
 
@@ -42,20 +42,14 @@ ENDED = {
 
 @dataclass(frozen=True)
 class Ending:
-    """When chatter is summed up, and what its error is called.
+    """When the series of the completion map replaces further impacts, and the error estimate."""
 
-    Parameters
-    ----------
-    order, many : terms of the completion map in doubles and with digits=; its cost grows with the fourth power.
-    near : the rest must be below this part of the time on which a_c changes; the terms then fall by more than ten.
-    impacts : impacts flown at most unless told otherwise; r = 0.9999 from v = 1 to 1e-17 takes 400 000.
-    trust : the error is called so many times the last term and the rounding of every impact carried to the end.
-    """
-
-    order: int = 4
-    many: int = 8
+    order: int = 4  # terms of the series in doubles; the cost grows with the fourth power
+    many: int = 8  # terms with digits=
+    # longest remaining time, as a part of the time scale of a_c; successive terms then fall by a factor above 10
     near: float = 1 / 64
-    impacts: int = 1_000_000
+    impacts: int = 1_000_000  # default limit; r = 0.9999 from v = 1 to 1e-17 takes 400 000
+    # factor on the error estimate: the last term, and the rounding error of every impact carried to the end
     trust: float = 4.0
 
 
@@ -64,13 +58,13 @@ ENDING = Ending()
 
 @dataclass(frozen=True, repr=False)
 class ChatterLimit:
-    """Where a chatter sequence ends.
+    """The end of a chatter sequence.
 
     Parameters
     ----------
-    tau : the accumulation time; at `lifts_off` the impact at which the acceleration no longer presses; nan when neither
-        was seen.
-    impacts : flown before the rest was summed up.
+    tau : the accumulation time; at `lifts_off` the first impact with a_c >= 0; nan if neither
+        was reached.
+    impacts : flown before the series gave the rest.
     error : estimate of the error of tau, rounding of the given state included.
     status : `complete`, `lifts_off`, or the status of a flight that ended the sequence.
     certified : tau with a proved radius, when digits were asked for and the model is linear; else None.
@@ -88,7 +82,7 @@ class ChatterLimit:
 
     @property
     def sentence(self) -> Any:
-        """What became of the sequence, and what to type next.
+        """The status or cause in words, and the remedy.
 
         Examples
         --------
@@ -112,7 +106,7 @@ def chatter_limit(
     ----------
     osc : the model. tau, v : states, v >= 0; they broadcast, and the fields have their shape.
     digits : decimal digits of tau, which is then an mpmath number.
-    impacts : flown at most before the status is `unresolved`; a number bounds the time that an unknown state can take.
+    impacts : at most; the status is then `unresolved`. The limit bounds the time of a call.
 
     Notes
     -----
@@ -140,7 +134,7 @@ def chatter_limit(
 
 
 def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
-    """The limits of states: by the compiled loop of a linear model, else one after the other."""
+    """The limits of states: by the compiled loop for a linear model, else one after the other."""
     model, count = compiled_model(osc), states.v.size
     at = np.flatnonzero((states.v > 0) & (np.abs(states.tau) < model.nearest))
     near = 0.0 if compare(osc.slope_at_rest(), 1) == 0 else ENDING.near
@@ -176,13 +170,13 @@ def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | No
 
 
 def _covering(found: Certified) -> Any:
-    """The radius, and the rounding of the value to its digits."""
+    """The radius plus the error of rounding the value to its digits."""
     with bits_at(53) as mp:
         return mp.convert(found.radius) + abs(mp.convert(found.value)) * mp.mpf(10) ** -found.digits
 
 
 def chatter_left(osc: Oscillator, tau: float, v: float) -> tuple[float, float] | None:
-    """The time left of a complete chatter and the last term of its series; None where a_c does not press."""
+    """The remaining time of a complete chatter and the last term of its series; None where a_c >= 0."""
     a = acceleration(osc, np.array([tau]))
     if not a[0] < 0 or compare(osc.slope_at_rest(), 1) == 0:
         return None
@@ -191,7 +185,7 @@ def chatter_left(osc: Oscillator, tau: float, v: float) -> tuple[float, float] |
 
 
 def impacts_until(osc: Oscillator, error: float, wanted: float) -> int:
-    """Impacts after which the last term of the series, now `error`, is below `wanted`; one where it is no number."""
+    """Impacts after which the last term of the series, now `error`, is below `wanted`; 1 if it is not finite."""
     if not np.isfinite(error):
         return 1
     r = as_float(osc.slope_at_rest())
@@ -199,12 +193,12 @@ def impacts_until(osc: Oscillator, error: float, wanted: float) -> int:
 
 
 def _last(terms: list[Any]) -> Any:
-    """The size of the last term, as the one before it lets expect where a coefficient happens to be small."""
+    """The size of the last term; extrapolated from the term before it if its own coefficient happens to be small."""
     return max(abs(terms[-1]), abs(terms[-2]) * abs(terms[-2] / terms[0]) ** (terms[0] * 0 + 1 / (len(terms) - 2)))
 
 
 class _Flown:
-    """A chatter sequence in doubles, of any model: `kernels.chatter` does the same for linear ones."""
+    """A chatter sequence in doubles, for any model; `kernels.chatter` is the compiled version for linear models."""
 
     def __init__(self, osc: Oscillator, states: States, most: int, index: int = 0) -> None:
         self.osc, self.given, self.most = osc, states.given(index), most
@@ -235,11 +229,11 @@ class _Flown:
         return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status), cause=np.int8(self.cause))
 
     def _left(self) -> int:
-        """Impacts that may still be flown."""
+        """The number of impacts that are left of the limit."""
         return self.most - (len(self.times) - 1)
 
     def _first(self) -> Status:
-        """A start at rest is flown by the map, which knows what follows."""
+        """Fly the first impact of a start at rest by the impact map, which handles rest and lift-off."""
         if self.speeds[0] > 0:
             return Status.hit
         step = impact_map(self.osc, *self.given)
@@ -250,9 +244,9 @@ class _Flown:
         return Status(int(step.status))
 
     def _fly(self, count: int, near: float, short: bool) -> tuple[Status, bool]:
-        """Fly on; where the acceleration changes sign the sequence is cut just after the first impact there.
+        """Fly further impacts; the sequence is cut after the first impact with a_c >= 0.
 
-        The status, and whether the chatter left is short.
+        Returns the status, and whether the remaining chatter is short.
         """
         found = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), near)
         kept = self._kept(found)
@@ -262,7 +256,10 @@ class _Flown:
         if kept != found.tau.size:
             return Status.hit, False
         if found.status and len(self.times) > 1 and acceleration(self.osc, np.array(self.times[-1:]))[0] >= 0:
-            return Status.hit, False  # contact is lost at this impact, wherever the mass goes from there
+            return (
+                Status.hit,
+                False,
+            )  # the mass lifts off at this impact, so the status of its next flight does not matter
         self.cause = Cause(found.cause)
         return Status(found.status), found.short or (short and near == 0.0)
 
@@ -275,7 +272,7 @@ class _Flown:
         return ChatterLimit(np.float64(tau), len(self.times) - 1, np.float64(total), np.int8(status))
 
     def rounding(self, end: float, status: Status) -> float:
-        """The rounding of every impact, carried to the end by D G."""
+        """The rounding errors of all impacts, carried to the end by D G: an adjoint sweep from the last impact."""
         first, times, speeds = self.times[0], self.times, self.speeds
         by_tau, by_v = 1.0, 0.0
         if status == Status.complete:
@@ -305,7 +302,7 @@ class _Flown:
 
 
 def _precise(osc: Oscillator, states: States, found: ChatterLimit, digits: int) -> ChatterLimit:
-    """The same sequence in many digits, flown on until the last term is below them."""
+    """The same sequence in many digits, continued until the last term is below them."""
     amplified = max(float(found.error) / (EPSILON * max(abs(float(found.tau)), 1e-300)), 1.0)
     precision = digits + 10 + ceil(log(amplified, 10))
     with digits_at(precision) as mp:

@@ -1,7 +1,7 @@
-"""A curve that a map carries over itself, grown image by image from a fundamental piece, and cut where it is torn.
+"""An invariant curve of a map, grown image by image from a fundamental piece, and cut at discontinuities.
 
-The images of a fundamental piece follow one another without a gap.  A piece is a function of one number s; where two
-neighbours in s are torn apart, the flight between them grazes, and the curve is split there by its hit history.
+The images of a fundamental piece follow one another without a gap.  A piece is a function of one parameter s. At a
+discontinuity between two neighbours in s the flight grazes, and the curve is split there by its hit history.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """How curves are grown; lengths are in resolutions of the window."""
+    """How curves are grown; lengths are in units of the resolution of the window."""
 
-    start: int = 100  # resolutions between two points of the fundamental piece
-    least: int = 4  # points of the fundamental piece
-    longest: float = 8.0  # a chord
+    start: int = 100  # distance of two points of the fundamental piece
+    least: int = 4  # points of the fundamental piece at least
+    longest: float = 8.0  # maximal chord length
     bend: float = 0.5  # deviation of a vertex from the chord of its neighbours that is refined
-    jump: float = 8.0  # a step between neighbours in s that are torn apart
+    jump: float = 8.0  # distance of neighbours in s beyond which there is a discontinuity between them
     graze: float = 0.01  # an arc ends at a graze like a square root: its end is located to within this length
-    most: int = 4000  # points of a piece
-    distinct: float = 0.25  # a piece nearer than this to the generation before is the end of the growth
+    most: int = 4000  # points of a piece at most
+    distinct: float = 0.25  # distance from the generation before below which the growth ends
     generations: int = 60  # images at most
-    halvings: int = 60  # of s at a tear
+    halvings: int = 60  # of s at a discontinuity
 
 
 SETTINGS = GrowthSettings()

@@ -1,7 +1,7 @@
 """Invariant curves beyond their series: gamma and the stable manifolds W^s_tau, grown by the inverse of the map.
 
-A fundamental piece lies where the series is good; its inverse images follow one another (`growth`), and errors across
-the curve shrink.
+A fundamental piece lies where the series is accurate; its inverse images follow one another (`growth`), and errors
+across the curve shrink.
 """
 
 from __future__ import annotations
@@ -111,13 +111,13 @@ def stable_manifold(model: Oscillator, window: Window, tau: Any) -> list[Curve]:
         raise refuse("tau", tau, "a time with a_c < 0: chatter comes to rest there, and W^s_tau exists")
     series, _ = arc_in_numbers(SETTINGS.order, 0, model, tau)
     size = series.valid_within(SETTINGS.trust)
-    # along the fibre the map contracts by r to first order; the exact image bounds the fundamental piece
+    # along the fibre the map contracts by r to first order; the computed image bounds the fundamental piece
     landed = model_step(model, np.array([[foot - size, float(series(-size))]]))[0, 0] - foot
     return _grown(model, window, foot, series, -size, float(landed))
 
 
 def _curved(model: Oscillator, tau: Any) -> str:
-    """Whether the point is a tangency or a swan; a swan is asked for first, for a_c vanishes there too."""
+    """Whether the point is a tangency or a swan. A swan is tested first, because a_c vanishes there too."""
     order = points_of(model, tau)[0]
     if order == 0:
         raise InputError(f"tau = {tau}: a_c does not vanish there, so that no invariant curve ends there")
@@ -194,7 +194,7 @@ def _grown(
 
 
 def _joined(pieces: list[Piece], window: Window) -> list[Curve]:
-    """Pieces that follow one another as curves, cut to the window."""
+    """Curves made of consecutive pieces, cut to the window."""
     chains: list[list[Piece]] = []
     for piece in pieces:
         for chain in chains:

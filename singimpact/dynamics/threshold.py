@@ -1,4 +1,4 @@
-"""The velocity on gamma over a phase: just below it chatter completes, just above it contact is lost before."""
+"""The velocity of gamma at a phase: chatter completes below it, and is interrupted by lift-off above it."""
 
 from __future__ import annotations
 
@@ -34,34 +34,26 @@ EPSILON = 2.0**-52
 
 @dataclass(frozen=True)
 class Search:
-    """How the two sides are told apart, and how v is refined.
+    """How the side of gamma is decided, and how the bracket of v is refined."""
 
-    Parameters
-    ----------
-    narrow : the last bracket, relative; narrower ones are decided by rounding.
-    block, longest : impacts flown at a time, twice as many each time up to the longest; blocks of 64 spent three
-        quarters of the time between the blocks.
-    impacts : flown at most from one velocity, unless told otherwise; r = 0.9999 takes 400 000.
-    short : chatter that would end in this part of the time to the end of gamma does; on gamma the part is above
-        2/(j + 2) at contact order j.
-    edges : halvings towards velocities whose side doubles do not decide. widest : the relative error of a v, at most.
-    first, more, rounds : impacts of the first refinement, more each time, at most.
-    coarse : the relative width of a bracket in which Newton's method begins; the series of gamma is met where such a
-        distance is ten times larger. bits : of the balls in which that series is computed.
-    """
-
-    narrow: float = 4 * EPSILON
+    narrow: float = 4 * EPSILON  # relative width of the last bracket; rounding errors decide in narrower ones
+    # impacts of the first block; each block is twice as long as the one before, up to the longest: with blocks of 64
+    # alone the overhead was three quarters of the time
     block: int = 64
     longest: int = 4096
-    impacts: int = 640_000
+    impacts: int = 640_000  # default limit for one velocity; r = 0.9999 takes 400 000
+    # chatter completes if its predicted time is below this part of the time to the end of gamma; on gamma the part is
+    # above 2/(j + 2) at contact order j
     short: float = 1 / 64
-    edges: int = 40
-    widest: float = 1e-3
-    first: int = 6
-    more: int = 4
-    rounds: int = 2000
+    edges: int = 40  # bisections towards velocities whose side doubles do not decide
+    widest: float = 1e-3  # relative error of v at most; the status is `unresolved` beyond it
+    first: int = 6  # impacts in the first refinement with digits=
+    more: int = 4  # additional impacts in each further refinement
+    rounds: int = 2000  # impacts at most in a refinement
+    # relative width of the bracket in which Newton's method starts; the series of gamma applies at a distance ten times
+    # larger
     coarse: float = 2.0**-12
-    bits: int = 128
+    bits: int = 128  # of the balls in which that series is computed
 
 
 SEARCH = Search()
@@ -72,8 +64,8 @@ class Threshold:
     """The velocity `v`, an estimate of its `error`, and a status: `complete`; `none` where no gamma lies ahead;
     `unresolved` where the next zero of a_c, its contact order or the two sides of gamma are not decided.
 
-    `certified` has v with a proved radius, when digits were asked for and the model is linear: within it lie a velocity
-    from which chatter completes and one from which contact is lost before.
+    `certified` is v with a proved radius, for a linear model with digits=: the interval contains a velocity from which
+    chatter completes and one from which the mass lifts off before.
     """
 
     v: Any
@@ -85,7 +77,7 @@ class Threshold:
 
 
 def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = SEARCH.impacts) -> Threshold:
-    """The v whose orbit runs along gamma into the next zero of a_c.
+    """The velocity on gamma at tau: its orbit converges to the next zero of a_c.
 
     Gamma ends where a_c rises through zero (contact order 1, 3, ...) or touches it from below (2, 4, ...: a swan).
 
@@ -93,7 +85,7 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     ----------
     osc : the model, r < 1. tau : a phase with a_c(tau) < 0, or an array of them: the fields then have its shape.
     digits : decimal digits; v is then an mpmath number.
-    impacts : flown at most from one velocity; where they do not tell the sides apart the status is `unresolved`.
+    impacts : at most for one velocity; if they do not decide the side the status is `unresolved`.
 
     Examples
     --------
@@ -106,7 +98,9 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
         return gathered(Threshold, each, np.shape(tau))  # type: ignore[no-any-return]
     place, most = constant("tau", tau), whole("impacts", impacts, 1, 10**7)
     if sign_of_acceleration(osc, place) >= 0:
-        raise InputError(f"tau = {tau} is not accepted: give a phase at which a_c presses, a_c(tau) < 0")
+        raise InputError(
+            f"tau = {tau} is not accepted: give a phase with a_c(tau) < 0, at which a mass at rest stays on the wall"
+        )
     if compare(osc.slope_at_rest(), 1) == 0:
         raise InputError(f"restitution = {osc.restitution} is not accepted: chatter completes only for rho'(0) > -1")
     ahead = next_zero(osc, place)
@@ -136,8 +130,8 @@ def _enclosed(osc: Oscillator, place: Expression, rough: Threshold, end: Contact
 
 
 class _Side(Enum):
-    """What an orbit does: chatter completes before the end of gamma; it passes the end; doubles do not decide one of
-    its flights; or the impacts flown are too few to tell."""
+    """The side of an orbit: chatter completes before the end of gamma; the orbit passes the end; doubles do not decide
+    one of its flights; or the impacts flown do not decide."""
 
     below = auto()
     above = auto()
@@ -165,7 +159,7 @@ def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> T
             break
         low, high = (low, middle) if side == _Side.above else (middle, high)
     v = (low + high) / 2
-    # gamma goes as the power j + 1 of the distance to its end: a rounding of tau moves v by (j + 1) v/(end - tau) of it
+    # v on gamma is proportional to (end - tau)^(j + 1): a rounding error of tau is multiplied by (j + 1) v/(end - tau)
     error = high - low + EPSILON * (8 * v + 2 * (zero.order + 1) * v * abs(tau) / (end - tau))
     if not error < SEARCH.widest * v:
         return _without(Status.unresolved)
@@ -175,7 +169,7 @@ def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> T
 def _bracket(
     osc: Oscillator, tau: float, low: float, high: float, zero: ContactZero, impacts: int
 ) -> tuple[float, float]:
-    """Velocities on both sides of gamma, as near as the compiled loop of a linear model decides them."""
+    """The narrowest bracket of gamma that the compiled loop of a linear model decides."""
     model = compiled_model(osc)
     if abs(tau) >= model.nearest or not model.linear:
         return low, high
@@ -187,19 +181,19 @@ def _bracket(
 
 @lru_cache(maxsize=256)
 def _series(osc: Oscillator, zero: ContactZero) -> tuple[float, ...]:
-    """The distance from the end of gamma at which the series is as good as doubles, 0 for none; j; the coefficients."""
+    """The distance from the end of gamma within which the series has full accuracy, or 0; j; the coefficients."""
     first, last = zero.order + 1, zero.order + TERMS_OF_GAMMA
     graph = curve_at(Place(osc, zero.order, None, zero), last, Balls(SEARCH.bits)).graph
     g = [float(graph[n].mid()) for n in range(first, last + 1)]
     if not (np.isfinite(g).all() and g[0]):
         return 0.0, float(zero.order), *[0.0] * TERMS_OF_GAMMA
-    # two coefficients, as every other one is zero where the forcing is symmetric; those left out are taken for as large
+    # the last two coefficients, because every other one vanishes for symmetric forcing; further ones are taken as large
     sizes = [(EPSILON / 4 * abs(g[0] / g[n])) ** (1 / (n + 1)) for n in (len(g) - 2, len(g) - 1) if g[n]]
     return min(sizes, default=1.0), float(zero.order), *g
 
 
 def _edge(osc: Oscillator, tau: float, decided: float, near: float, end: float, impacts: int) -> float:
-    """A velocity whose side is decided, close to those next to gamma whose side doubles do not decide."""
+    """A velocity whose side is decided, next to the interval around gamma in which doubles do not decide."""
     for _ in range(SEARCH.edges):
         middle = (decided + near) / 2
         if _side(osc, tau, middle, end, impacts) in (_Side.below, _Side.above):
@@ -210,7 +204,7 @@ def _edge(osc: Oscillator, tau: float, decided: float, near: float, end: float, 
 
 
 def _side(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> _Side:
-    """On which side of gamma (tau, v) lies."""
+    """The side of gamma on which (tau, v) lies."""
     lost = 1 - as_float(osc.slope_at_rest())
     block, remaining = SEARCH.block, impacts
     while remaining > 0:
@@ -226,7 +220,7 @@ def _side(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> _S
         if found.status:
             if found.status != Status.unresolved:
                 return _Side.above
-            # undecided, or out of the range of numbers long after the end: only what it does before the end matters
+            # undecided, or an overflow long after the end: only the motion before the end of gamma matters
             step = impact_map(osc, tau, v, horizon=max(end - tau, EPSILON * abs(end)))
             if step.status in (Status.no_return, Status.escaped):
                 return _Side.above
@@ -238,7 +232,7 @@ def _side(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> _S
 
 
 def _refined(osc: Oscillator, place: Any, rough: Threshold, end: ContactZero, digits: int) -> Threshold:
-    """Gamma repels: the more impacts are flown, the less it matters how well its end is known."""
+    """The threshold in many digits. Gamma repels, so each impact reduces the effect of an error at its end."""
     with digits_at(digits + 20) as mp:
         tau, v = as_mpf(place, mp), mp.mpf(float(rough.v))
         goal = _Gamma(osc, end, mp)

@@ -1,4 +1,4 @@
-"""Thresholds of the impact map, each with its reason."""
+"""Limits and tolerances of the impact map, each with its reason."""
 
 from __future__ import annotations
 
@@ -7,62 +7,55 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Limits:
-    """Where a flight is cut, and how much rounding is allowed for.
+    """Horizons, allowances for rounding errors, and budgets of a flight."""
 
-    Parameters
-    ----------
-    horizon_periods, horizon_time : default horizon with and without a period of g.
-    horizon_radians : of the fastest motion of the model: no default horizon is later. A flight that long takes 0.6 s;
-        where the forcing is a million times slower than the free motion, a thousand periods would take hours.
-    longest_radians : of that motion: a horizon that is asked for beyond it is refused, as a flight that long takes half
-        a minute, in compiled code that hears no interruption.
-    safety : rounding allowed for, in units of epsilon times the size of the terms; a Horner sum of 25 terms is
-        within 2.5 units in practice, a restart of the closed form within 3, so 8 covers both.
-    likely : the same, as it is usually: hits of linear models with more than their condition explains are refined in
-        balls (70 us), 22 of 100 random states.
-    rough : a rounding of the flight time and of x' below this, relative, is never refined.
-    polish_bits : of the balls that place a hit which double-double arithmetic leaves open (70 us).
-    derivatives_at_rest : how many derivatives of a_c are tried for a mass at rest before it is called at rest for good.
-    settled : launches at most that double arithmetic leaves undecided and that are settled in many digits; a settled
-        launch costs about 20 ms, so a grid laid along a graze does not hang.
-    settling_digits : digits of the first and of the last attempt; a touch that 120 digits do not tell from a graze is
-        called a graze.
-    cancelled : where x'' at a hit is below this part of g, it has lost ten bits and is computed in balls (40 us);
-        next to a swan, 1e-12 from it, D G was off by 4e6 roundings without it.
-    steps : Taylor steps of a flight at most, where the caller gives no number: about 0.8 s when they are interpreted; a
-        thousand periods of an ordinary model take 10 000.
-    settling_steps : the same in many digits, where a step takes milliseconds.
-    longest : steps at most of a linear model, which its horizon ends before.
-    traced : steps kept for the errors of a flight; longer flights, one of 10^4, are flown again with more room.
-    judging : tolerance of the steps that carry errors and conditions along.
-    margin : times the estimate of the error of a Taylor flow: of 720 hits the true error was at most 1.3 times it.
-    interpreted_linear, interpreted_taylor : seconds of a flight whose kernels are interpreted.
-    patience : seconds of interpreted iterations after which this process compiles them itself.
-    guard : digits beyond those asked for; half of the digits go in a square root at a graze, so agreement of two
-        runs is what is trusted, not this number.
-    """
-
+    # default horizon, in periods of g; in units of time for a g without a period
     horizon_periods: float = 1000.0
     horizon_time: float = 1e4
+    # default horizon at most, in radians of the fastest motion of the model: such a flight takes 0.6 s. With a forcing
+    # a million times slower than the free motion, 1000 periods would take hours
     horizon_radians: float = 2e5
+    # horizon that may be requested, in the same radians: such a flight takes 30 s, in compiled code that does not stop
+    # at an interruption
     longest_radians: float = 1e7
+    # bound of the rounding error, in units of epsilon times the size of the terms: measured are 2.5 for a Horner sum of
+    # 25 terms and 3 for a restart of the closed form
     safety: float = 8.0
+    # the same in practice; hits of linear models above it, 22 % of random states, are refined in balls (70 us)
     likely: float = 4.0
+    # relative rounding errors of the flight time and of x' below which a hit is never refined
     rough: tuple[float, float] = (1e-14, 1e-13)
+    # bits of the balls that refine a hit which double-double arithmetic leaves open (70 us)
     polish_bits: int = 192
+    # derivatives of a_c that are tested before a mass at rest is said to rest for ever
     derivatives_at_rest: int = 12
+    # launches in one call that are decided in many digits after doubles left them undecided: 20 ms each, so a grid
+    # along a graze ends within seconds
     settled: int = 200
+    # digits of the first and the last attempt; a touch that 120 digits do not separate from a graze is a graze
     settling_digits: tuple[int, int] = (50, 120)
+    # x'' at a hit below this part of g has lost ten bits and is computed in balls (40 us): at 1e-12 from a swan D G had
+    # an error of 4e6 roundings without this
     cancelled: float = 2.0**-10
+    # Taylor steps of a flight by default: 0.8 s if interpreted; 1000 periods of an ordinary model take 10 000 steps
     steps: int = 16_000
+    # steps of a linear model, which its horizon ends before
     longest: int = 10_000_000
+    # Taylor steps in many digits, at some milliseconds each
     settling_steps: int = 400
+    # steps stored for the error estimate; a longer flight, one of 10^4, is flown again with more memory
     traced: int = 400
+    # tolerance of the steps of the variational equation, which carries errors and condition numbers
     judging: float = 1e-12
+    # factor on the error estimate of a Taylor flow: on 720 hits the true error was at most 1.3 times the estimate
     margin: float = 2.5
+    # digits beyond the requested ones; at a graze the square root loses half of all digits, so the result is accepted
+    # by the agreement of two runs, not by this number
     guard: int = 15
+    # s of one flight with interpreted kernels: linear, and by Taylor steps
     interpreted_linear: float = 8e-5
     interpreted_taylor: float = 3e-3
+    # s of interpreted iterations after which this process compiles the kernels itself
     patience: float = 3.0
 
 

@@ -33,7 +33,7 @@ NEAR = 1e-9  # a cusp this near to a degenerate zero in tau stands above it
 
 @dataclass(frozen=True)
 class SingularPoint:
-    """A point of V_c' where p or phi is no local diffeomorphism, other than a fold on the way.
+    """A point of V_c' where p or phi is no local diffeomorphism, other than a fold.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class FoldLine:
 
 @dataclass(frozen=True)
 class Classification:
-    """What `classify` finds.
+    """The result of `classify`.
 
     Attributes
     ----------
@@ -122,7 +122,7 @@ def classify(model: Oscillator, tau: Any = None, t: Any = None, between: Any = N
 
 
 def default_window(model: Oscillator) -> tuple[Point, Point]:
-    """One period in tau and in t to both sides; or, of a polynomial, the zeros of a_c with room about them."""
+    """One period in tau and in t to both sides; or, of a polynomial, the zeros of a_c with a margin."""
     if model.period is not None:
         period = as_float(model.period)
         return (0.0, period), (-period, period)

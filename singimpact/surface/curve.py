@@ -1,4 +1,4 @@
-"""`Window` and `Curve`: where to look, and an ordered polyline on an exact curve."""
+"""`Window` and `Curve`: a part of a plane, and an ordered polyline on an exact curve."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def window_ends(name: str, given: Any) -> tuple[float, float]:
 
     Parameters
     ----------
-    name : of what runs between them, for the refusal. given : two numbers in any form that the package takes.
+    name : of the quantity, for the error message. given : two numbers in any form that the package takes.
 
     Raises
     ------
@@ -43,10 +43,10 @@ def window_ends(name: str, given: Any) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class ResolutionSettings:
-    """What lengths a curve may be resolved to, as shares of its window."""
+    """Resolutions of curves, as parts of the window."""
 
-    usual: float = 1 / 800  # drawn across a page, half the width of a line
-    coarsest: float = 1 / 16  # fewer chords than this show no curve
+    usual: float = 1 / 800  # half the width of a line in a picture as wide as a page
+    coarsest: float = 1 / 16  # a coarser polyline does not show a curve
     finest: float = 1e-6  # a curve through the window has about 1/(6 resolution) vertices
 
 
@@ -149,7 +149,7 @@ class Curve:
         return self.points[[mark.index for mark in self.marks if mark.name == name]]
 
     def parts(self, chosen: Array) -> Iterable[Curve]:
-        """The stretches of consecutive vertices that are chosen."""
+        """The parts of consecutive chosen vertices."""
         edges = np.flatnonzero(np.diff(np.concatenate(([0], chosen.astype(np.int8), [0]))))
         for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
             marks = tuple(Mark(m.index - start, m.name) for m in self.marks if start <= m.index < stop)
@@ -159,7 +159,7 @@ class Curve:
 
 
 def distances(points: Array, line: Array) -> Array:
-    """Of points, shape (n, 2), from a polyline, shape (m, 2) with m > 1.
+    """Distances of points, shape (n, 2), from a polyline, shape (m, 2) with m > 1.
 
     Examples
     --------

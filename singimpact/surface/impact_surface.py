@@ -89,7 +89,7 @@ class ImpactSurface:
         )
 
     def take(self, **found: list[Any]) -> None:
-        """Use lines, horizon, ... of the same model and window that were computed before: they are not flown again."""
+        """Use lines, horizon, ... of the same model and window that were computed before."""
         vars(self).update(found)
 
     @property
@@ -116,7 +116,7 @@ class ImpactSurface:
 
     @cached_property
     def lines(self) -> list[NamedLine]:
-        """Z with its named points and x' at the other end; everything else follows from it."""
+        """Z with its named points and x' at the other end; H and P follow from it by symmetry."""
         cell = 1 / (CELLS_A_RADIAN * fastest_rate(self.model))
         made = traced(self._rest.grid, self._rest.y_and_gradient, self.window, cell, self._speed)
         zeros = [tau for _, tau in self.placed_tangencies]
@@ -149,7 +149,7 @@ class ImpactSurface:
 
     @cached_property
     def discontinuities(self) -> list[Curve]:
-        """Where G jumps: the visible part of P."""
+        """The discontinuities of G: the visible part of P."""
         return [part for curve in self.outline for part in curve.parts(_to_the_end(curve)) if len(part) > 1]
 
     @cached_property
@@ -184,7 +184,7 @@ class ImpactSurface:
         return _is_first(self._hits(backwards(self.model), -tau, t < 0), -t)
 
     def _hits(self, model: Oscillator, tau: Array, asked: Array) -> Array:
-        """The times of first hits from rest; nan where there is none or it is not asked for."""
+        """The times of first hits from rest; nan where there is none or it is not requested."""
         self._rest.flown += int(asked.sum())
         found = np.full(len(tau), np.nan)
         hit = first_hit(model, tau[asked], np.zeros(int(asked.sum())))
@@ -204,7 +204,7 @@ def _is_first(found: Array, t: Array) -> Array:
 
 
 def _to_the_end(curve: Curve) -> Array:
-    """The visible stretches with the named vertices next to them, where they end: a tangency, a cusp, rest."""
+    """The visible parts, extended to the named vertices at their ends: a tangency, a cusp, rest."""
     chosen = curve.visible.copy()
     for mark in curve.marks:
         beside = [mark.index - 1, mark.index + 1]

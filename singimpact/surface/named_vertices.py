@@ -68,7 +68,7 @@ def named(line: Polyline, zeros: Sequence[float], flights: RestFlights) -> Named
 def _without_crowds(
     points: Array, column: Array, found: list[_Named], closed: bool
 ) -> tuple[Array, Array, list[_Named]]:
-    """Vertices that a named one would nearly repeat are dropped."""
+    """The line without vertices that nearly coincide with a named one."""
     kept = np.ones(len(points), dtype=bool)
     for each in found:
         pair = np.array([each.after, each.after + 1])
@@ -85,7 +85,7 @@ def _without_crowds(
 
 
 def _tangencies(points: Array, zeros: Sequence[float]) -> list[_Named]:
-    """Where the line crosses the axis; nearest crossing for each zero of a_c."""
+    """The crossing of the line with the axis that is nearest to each zero of a_c."""
     made = []
     sides = np.flatnonzero(points[:-1, 1] * points[1:, 1] < 0)
     for tau in zeros:

@@ -1,4 +1,4 @@
-"""Swans of a model as one of its numbers moves, isolated with proof, and their curves as two move."""
+"""Swans of a model over one parameter, isolated with proof, and their curves over two."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Transition:
 
 @dataclass(frozen=True)
 class Family:
-    """A model in which one number moves."""
+    """A model with one free parameter."""
 
     model: Oscillator
     over: str
@@ -51,14 +51,14 @@ class Family:
         return self.model.replace(**{self.over: value})
 
     def acceleration(self) -> Expression:
-        """a_c as a tree in t and the moving number."""
+        """a_c as a tree in t and the free parameter."""
         if self.over != "clearance":
             return acceleration(self.model, (self.over,))
         return rest_acceleration(self.model.force(), self.model.forcing(), Name("clearance"))
 
 
 def swans_met(family: Family, values: Array) -> tuple[list[Transition], tuple[str, ...]]:
-    """Where a_c gets a double zero, isolated with proof; with the reasons why one may be missing."""
+    """Double zeros of a_c, isolated with proof, and the reasons why one may be missing."""
     between = Fraction(float(values[0])), Fraction(float(values[-1]))
     if family.over == "clearance":
         known = swan_points_over_clearance(family.model, between)
@@ -102,7 +102,7 @@ def _doubts(made: DoubleZeros, over: str, periods: int) -> tuple[str, ...]:
 
 
 def swan_curves(model: Oscillator, over: tuple[str, str], between: tuple[Any, Any]) -> list[Curve]:
-    """Curves of swan points in the plane of two numbers of a model.
+    """Curves of swan points in the plane of two parameters.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def swan_curves(model: Oscillator, over: tuple[str, str], between: tuple[Any, An
 
 
 def _linked(rows: list[list[tuple[float, float, Transition]]]) -> list[list[tuple[float, float]]]:
-    """Swans of neighbouring rows joined when their times and kinds agree."""
+    """Join swans of adjacent rows whose times and kinds agree."""
     open_: list[tuple[Transition, list[tuple[float, float]]]] = []
     done: list[list[tuple[float, float]]] = []
     for row in rows:

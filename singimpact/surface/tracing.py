@@ -1,7 +1,7 @@
-"""A level set y = 0 in the plane as polylines: a sketch on a grid, then Newton onto it, then the spacing.
+"""A level set y = 0 in the plane as polylines: contour lines of a grid, then Newton's method, then refinement.
 
-The sketch is contourpy's.  What a grid can miss is looked for: a sample of |y| smaller than its neighbours', and of one
-sign with them, is followed to the extremum, and where the sign changes there a finer grid is laid.
+The contour lines are contourpy's. Small components between the samples are searched: a sample with smaller |y| than
+all neighbours, and the same sign, is followed to the extremum on finer grids until the sign changes.
 """
 
 from __future__ import annotations
@@ -24,28 +24,24 @@ Grid = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True)
 class TraceSettings:
-    """close : Newton's last step, relative to 1 + |place|, of a vertex that counts as on the curve.
-    rounds : of Newton, and of halving. deviation : of a chord from the curve, in resolutions of the window.
-    longest : chord, in resolutions: the end of the visible part is located to within one chord length.
-    finest : times a grid is made finer around an extremum of y. least_cells, most_cells : of the sketch, a side.
-    finer_tau, finer_t : parts of a cell in the sketch, along tau at most. A thin piece that is cut there is walked
-        along, which costs far more flights than further columns; and one flight gives all of a column.
-    most_steps : along a small piece. turn : the least cosine of the turn in one step.
-    across : the largest sine of a chord of the sketch with the curve, at the end where it is smaller.
-    """
+    """Accuracy, spacing and cost of a traced curve."""
 
-    close: float = 4e-13
-    rounds: int = 12
-    halvings: int = 10
-    deviation: float = 0.5
-    longest: float = 6.0
-    finest: int = 3
-    most_steps: int = 2000
-    turn: float = 0.9
-    across: float = 0.8
+    close: float = 4e-13  # last Newton step of a vertex on the curve, relative to 1 + |coordinates|
+    rounds: int = 12  # of Newton's method
+    halvings: int = 10  # of a chord at most
+    deviation: float = 0.5  # of a chord from the curve, in units of the resolution of the window
+    longest: float = 6.0  # chord length, in the same units: the end of a visible part is located to within one chord
+    finest: int = 3  # refinements of the grid around an extremum of y
+    most_steps: int = 2000  # of the continuation along a small component
+    turn: float = 0.9  # smallest cosine of the angle between the tangents of two steps
+    across: float = (
+        0.8  # largest sine between a chord of the contour lines and the curve, at the end where it is smaller
+    )
+    # divisions of a cell along tau (at most) and along t. Contour lines cut a thin component to pieces; following it by
+    # continuation costs more flights than further columns, and one flight gives a whole column
     finer_tau: int = 8
     finer_t: int = 4
-    least_cells: int = 40
+    least_cells: int = 40  # on a side of the grid
     most_cells: int = 600
 
 
@@ -58,7 +54,7 @@ class Untraced(Unfinished):
 
 @dataclass(frozen=True)
 class Polyline:
-    """Vertices on the curve, what came with them (x' there), whether it closes, the worst last step of Newton."""
+    """Vertices on the curve, a further column (x' there), whether the curve is closed, the largest last Newton step."""
 
     points: Array
     column: Array
@@ -88,7 +84,7 @@ def traced(grid: Grid, gradient: Gradient, window: Window, cell: float, scale: f
 
 
 def _repeats(new: Polyline, old: Polyline) -> bool:
-    """Whether a line lies on another: a piece may be found from two extrema."""
+    """Whether a line lies on another: a component may be found from two extrema."""
     near = np.abs(old.points[:, None] - new.points[None, :: max(len(new.points) // 4, 1)]).max(axis=2).min(axis=0)
     step = np.abs(np.diff(old.points, axis=0)).max()
     return bool((near <= step).all())
@@ -101,7 +97,7 @@ def _axes(window: Window, cell: float) -> tuple[Array, Array]:
     def cells(ends: tuple[float, float]) -> int:
         return max(int(np.ceil((ends[1] - ends[0]) / cell)), SETTINGS.least_cells)
 
-    # columns no wider than the longest chord: at a finer resolution smaller pieces are looked for
+    # columns no wider than the longest chord: a finer resolution finds smaller components
     chords = window.sides[0] / (SETTINGS.longest * window.least)
     finer = float(np.clip(chords / cells(window.x), 1, SETTINGS.finer_tau))
     return axis(window.x, finer), axis(window.y, SETTINGS.finer_t)
@@ -115,7 +111,7 @@ def _sketched(axes: tuple[Array, Array], values: Array) -> list[Array]:
 
 
 def _thinned(line: Array, least: float) -> Array:
-    """Every vertex of a sketch costs flights: those within the resolution, a length, are left out."""
+    """The contour line without vertices that deviate by less than half the resolution; every vertex costs flights."""
     if len(line) < 8:
         return line
     limit, kept = 0.5 * least, {0, len(line) // 3, 2 * len(line) // 3, len(line) - 1}
@@ -137,7 +133,7 @@ def _thinned(line: Array, least: float) -> Array:
 def _small_ones(
     grid: Grid, axes: tuple[Array, Array], values: Array, window: Window, depth: int = 0
 ) -> list[tuple[Array, float]]:
-    """A place beside a piece that the sketch may have missed, and a size to begin with, for each extremum."""
+    """For each extremum a point beside a component that the contour lines may have missed, and a first step length."""
     tau, t = axes
     found: list[tuple[Array, float]] = []
     for i, j in _extrema(values):
@@ -209,7 +205,7 @@ def _on_curve(line: Array, gradient: Gradient, window: Window, scale: float, cel
     if len(line) < 2:
         return None
     points, column, step, slope = newton(line, gradient)
-    if not _in_order(points, step, slope):  # thinner than a cell: the sketch has cut it to pieces
+    if not _in_order(points, step, slope):  # thinner than a cell: the contour lines have cut it to pieces
         line = _followed(line[0], gradient, window, max(cell / 4, SETTINGS.longest * window.least))
         if len(line) < 3:
             return None
@@ -222,7 +218,7 @@ def _on_curve(line: Array, gradient: Gradient, window: Window, scale: float, cel
 
 
 def _in_order(points: Array, step: Array, slope: Array) -> bool:
-    """Whether all vertices have settled, and every chord runs along the curve at an end: at a tip it cannot at both."""
+    """Whether all vertices have converged, and every chord is nearly tangent at one end; at a tip not at both."""
     if step.max() > SETTINGS.close:
         return False
     chord = np.diff(points, axis=0)
@@ -233,7 +229,7 @@ def _in_order(points: Array, step: Array, slope: Array) -> bool:
 
 
 def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array, Array]:
-    """Points moved onto the curve, the further column and the gradient there; the last step over 1 + |place|.
+    """Points moved onto the curve, the further column and the gradient there; the last step over 1 + |coordinates|.
 
     In the order points, column, last step, gradient.
     """
@@ -256,16 +252,16 @@ def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array, Arra
 
 
 def _step(y: Array, slope: Array, column: Array, bend: Array) -> tuple[Array, Array]:
-    """The step to the curve, to first order, and the column there."""
+    """The Newton step to the curve, and the column there to first order."""
     with np.errstate(all="ignore"):
         move = -(y / (slope**2).sum(axis=1))[:, None] * slope
         return move, column + (bend * move).sum(axis=1)
 
 
 def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, scale: float) -> tuple[Array, Array]:
-    """Vertices added where a chord leaves the curve by more than the resolution allows, dropped where they crowd."""
+    """Insert vertices until no chord deviates from the curve by more than half the resolution."""
     limit = SETTINGS.deviation * window.least
-    checked = np.zeros(len(points) - 1, dtype=bool)  # chords known to be good
+    checked = np.zeros(len(points) - 1, dtype=bool)  # chords that are accurate enough
     for _ in range(SETTINGS.halvings):
         open_ = np.flatnonzero(~checked)
         if not open_.size:
@@ -276,14 +272,14 @@ def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, sc
         long = chord > SETTINGS.longest * window.least
 
         def shows(away: Array, apart: Array) -> Array:
-            """Whether the curve leaves a chord by more than the resolution allows."""
+            """Whether the deviation of a chord exceeds the limit."""
             return np.hypot(away, apart / scale * window.longer) > limit
 
-        # one step towards the curve tells how far it is: most chords are good, and cost no more than that
+        # the deviation of a chord is estimated by one Newton step from its midpoint; most chords need no more
         move, value = _step(*gradient(middle))
         near = np.hypot(*move.T) < chord
         added = ~near | shows(np.hypot(*move.T), value - half) | long
-        start = np.where(near[:, None], middle + move, middle)  # a step beyond the chord tells nothing
+        start = np.where(near[:, None], middle + move, middle)  # a step longer than the chord is no estimate
         place, value, step, _ = newton(start[added], gradient)
         away = np.hypot(*(place - middle[added]).T)
         sound = (step < SETTINGS.close) & (away < chord[added]) & (shows(away, value - half[added]) | long[added])

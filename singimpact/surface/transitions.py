@@ -1,4 +1,4 @@
-"""Where P changes its kind as the clearance, or a parameter, moves: swans, swallowtails, lips and beaks.
+"""Transitions of P over the clearance or a parameter: swans, swallowtails, lips and beaks.
 
 In flights launched at rest at a tangency point tau_*, a_c(tau_*) = 0:
 
@@ -29,7 +29,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class TransitionSettings:
-    """same : two of them nearer than this are one; Newton's method ends a thousand times nearer.
+    """same : relative distance below which two of them are one; Newton's method ends at a thousandth of it.
     samples : of a flight in the window of t. settled : Newton's last step. flat : a Hessian below this share of its
     terms decides nothing.
     """
@@ -44,7 +44,7 @@ SETTINGS = TransitionSettings()
 
 
 class Transitions(tuple[Transition, ...]):
-    """Transitions in order, with what is argued of them.
+    """Transitions in order, with notes on their completeness.
 
     Swans are isolated by balls, so that `complete` is a proof; the other kinds are met on a grid of the parameter.
     Flights from rest to rest with dx/dv = 0, over which V_c' itself is singular, are no transitions of this list:
@@ -55,12 +55,12 @@ class Transitions(tuple[Transition, ...]):
 
     @property
     def complete(self) -> bool:
-        """Whether it is argued that no swan between the ends is missing."""
+        """Whether it is proved that no swan between the ends is missing."""
         return not self.notes
 
 
 def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) -> Transitions:
-    """The transitions of P as a parameter moves, one period of tau, in order of the parameter.
+    """The transitions of P over a parameter, for one period of tau, in order of the parameter.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) ->
 
 
 def _each_once(found: Iterable[Transition], ends: tuple[float, float]) -> list[Transition]:
-    """Those between the ends; Newton's method may leave them, or come to one place from two."""
+    """The distinct ones between the ends: Newton's method may leave the interval, or find one point twice."""
     kept: list[Transition] = []
     for each in found:
         twice = any(
@@ -131,7 +131,7 @@ def _crossings(flights: RestFlights, tau: float, times: tuple[float, float]) -> 
 
 
 def _root(ends: Callable[[float], tuple[Array, Array]], low: float, high: float) -> float:
-    """Newton's method kept between two ends of unlike sign."""
+    """Newton's method, kept in a bracket."""
     start = float(ends(low)[0][0])
     at = (low + high) / 2
     for _ in range(80):

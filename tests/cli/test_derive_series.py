@@ -82,6 +82,44 @@ def test_numpy_text_runs_by_itself(model_file):
     assert scope["v_c_tangency"](-0.1, 0.05) > 0
 
 
+def test_numpy_text_says_its_point_and_where_it_is_accurate(model_file):
+    osc = si.linear(2, "0.3", "0.5")
+    text = told("--format", "numpy", "--order", "6", "--model", model_file)
+    scope = {}
+    exec(text, scope)
+    point, valid = scope["TAU_STAR"]["tangency"], scope["VALID_WITHIN"]
+    assert "tau_* = 2.50854081720004368283298401807, a tangency point with a' > 0" in scope["__doc__"]
+    assert point == si.tangency_points(osc).tau[1]
+    assert set(valid) == {name for name in SERIES if name.endswith("tangency")}
+    true = {
+        "gamma_tangency": si.theory.gamma(24, model=osc),
+        "motion_tangency": si.theory.dynamics_on_gamma(24, model=osc),
+    }
+    for name, series in true.items():
+        near, far = -valid[name], -8 * valid[name]
+        assert abs(scope[name](near) / float(series(near)) - 1) < 1e-12
+        assert abs(scope[name](far) / float(series(far)) - 1) > 1e-12  # the radius is not much too small
+    radius = valid["v_c_tangency"]
+    sigma, t = -radius, radius / 2
+    flight = osc.first_hit(point - radius, scope["v_c_tangency"](sigma, t))
+    assert flight.flight_time == pytest.approx(t, rel=1e-9)
+    longer = si.theory.v_c(20, "tangency", osc)
+    exact = float(longer.subs({"sigma": sigma, "t": t}))
+    assert abs(scope["v_c_tangency"](sigma, t) - exact) < 1e-12 * 3 * abs(exact)
+
+
+def test_json_says_its_point_and_a_regular_point_is_written_as_given(model_file):
+    found = json.loads(told("--format", "json", "--order", "4", "--model", model_file))
+    assert found["tau_star"] == {"tangency": "2.50854081720004368283298401807"}
+    assert all(0 < each["valid_within"] < 0.1 for each in found["series"])
+    text = told("--format", "numpy", "--order", "4", "--model", model_file, "--tau", "6/5")
+    assert "tau_* = 1.2 = 1.2000" in text
+    assert "a regular point" in text
+    symbols = json.loads(told("--format", "json", "--order", "3"))
+    assert symbols["tau_star"] == {}
+    assert {each["valid_within"] for each in symbols["series"]} == {None}
+
+
 def test_numpy_for_symbols_and_a_file(tmp_path):
     text = told("--format", "numpy", "--order", "4")
     assert "def v_c_swan(sigma: Any, t: Any, a_d2" in text

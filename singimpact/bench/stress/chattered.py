@@ -1,4 +1,4 @@
-"""Flights after flights: chatter limits, thresholds, grown curves; the truth is `digits=`, by balls."""
+"""Chatter limits, thresholds and grown curves; the reference values are those of `digits=`, by ball arithmetic."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from singimpact.impact_oscillator import linear
 from singimpact.status import Status
 from singimpact.surface.curve import Window
 
-FEW = 5  # each of these truths takes a tenth of a second or more
+FEW = 5  # each reference value takes 0.1 s or more
 START = Launch("linear", tau=0.9, v=0.005)
 GAMMA, END = Launch("linear", tau=0.9, restitution=0.5), 1.5 * np.pi / 2.8
 NEAR: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
@@ -73,7 +73,7 @@ def _threshold(place: str, points: int) -> Iterator[Trial]:
         yield Trial(str(slow), [float(found.v)], [true.v], [(kappa - 1) * true.v], status)
 
 
-RATES = {"r -> 0": 1e-3, "r -> 1": 0.9}  # of curves, which are costly
+RATES = {"r -> 0": 1e-3, "r -> 1": 0.9}  # of curves, which cost many flights
 
 
 def _gamma_grown(place: str, points: int) -> Iterator[Trial]:
@@ -90,7 +90,7 @@ def _gamma_grown(place: str, points: int) -> Iterator[Trial]:
 
 
 def _stable_manifold(place: str, points: int) -> Iterator[Trial]:
-    """Chatter from a vertex ends at the foot, to the condition of its end."""
+    """Chatter from a vertex ends at the foot, within the error that the condition number allows."""
     rate, foot = RATES.get(place, 0.5), END - 1e-3 if place == "a -> 0" else 1.0
     osc = linear("2.8", 0, rate)
     vertices = np.vstack([curve.points for curve in stable_manifold(osc, Window((0.2, 1.5), (0.0, 1.0)), foot)])

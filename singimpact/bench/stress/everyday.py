@@ -1,4 +1,4 @@
-"""Starts off the wall beside free fall, and sums of Lyapunov exponents beside the rate at which areas shrink."""
+"""Starts off the wall against free fall, and sums of Lyapunov exponents against the contraction rate of areas."""
 
 from __future__ import annotations
 

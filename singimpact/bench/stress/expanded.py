@@ -1,4 +1,4 @@
-"""Series at doubles: v_c on arrays, emitted source, gamma, the completion; the truth is the same cut series."""
+"""Series at doubles: v_c on arrays, emitted source, gamma, the completion, against the same series in 60 digits."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _emitted() -> dict[str, Any]:
 
 
 def _emitted_numpy(place: str, points: int) -> Iterator[Trial]:
-    """The emitted text on doubles beside the same text on numbers of 60 digits; the jets are inputs too."""
+    """The emitted code on doubles against the same code on numbers of 60 digits; the jets are inputs too."""
     impact, states = PLACES[place]
     function = _emitted()["xdot_c_tangency" if impact else "v_c_tangency"]
     names = function.__code__.co_varnames[2 : function.__code__.co_argcount]
@@ -105,7 +105,7 @@ def _cut(series: Any) -> Callable[[Any], list[Any]]:
 
 
 def _series(made: Any, name: str, states: list[float]) -> Iterator[Trial]:
-    """A series at doubles beside its certified coefficients summed in 60 digits."""
+    """A series at doubles against its certified coefficients summed in 60 digits."""
     true = _cut(made)
     for at in states:
         values, rounding = moved(true, [at])

@@ -1,4 +1,4 @@
-"""Impacts in balls of 60 digits from `bench.truth`, with their derivatives, and the sweeps of what flies."""
+"""Impacts in balls of 60 digits from `bench.truth`, with their derivatives, and the sequences of flights."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from singimpact.bench.truth.first_hit import first_hit
 from singimpact.status import Status
 
 SQUARED = 1e-140  # the height of a flight is of the size of v squared, and below 1e-300 doubles lose digits
-IMPACTS = 4  # of an orbit: every impact multiplies the condition, and further ones would hide errors in it
+IMPACTS = 4  # of an orbit: every impact multiplies the condition number, so more impacts would hide errors
 GONE = (Status.no_return, Status.escaped)
 
 
@@ -31,7 +31,7 @@ class Landing:
     by_state: tuple[tuple[Any, Any], tuple[Any, Any]]
 
     def moved(self, sizes: tuple[float, float]) -> list[Any]:
-        """What a change of the state by its size does to time and velocity."""
+        """The change of time and velocity for a change of the state by its size."""
         return [sum(abs(part) * size for part, size in zip(row, sizes, strict=True)) for row in self.by_state]
 
 
@@ -56,7 +56,7 @@ def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
 
 
 def sizes(launch: Launch, time: Any) -> tuple[float, float]:
-    """What a rounding of the state is relative to: phases are counted from the nearest period, and while it flies."""
+    """The sizes to which rounding errors of the state are relative; phases are taken from the nearest period."""
     period = 2 * pi / launch.omega
     return max(abs(launch.tau - period * round(launch.tau / period)), float(time)), launch.v
 
@@ -117,7 +117,7 @@ def _inverse(launch: Launch) -> Trial:
 
 
 def _flight(launch: Launch) -> Trial | None:
-    """Where the mass is halfway to its hit, just before it, and soon after the launch."""
+    """Times soon after the launch, halfway to the hit, and just before it."""
     import flint
 
     true = landing(launch, launch.tau, launch.v)
@@ -178,7 +178,7 @@ def _matrix(launch: Launch, by_tau: Any, by_v: Any) -> tuple[list[Any], Any] | i
 def _orbit(launch: Launch) -> Trial | None:
     found = launch.model.orbit(launch.tau, launch.v, IMPACTS)
     if found.kind.tolist() != ["start"] + ["impact"] * IMPACTS:
-        return None  # chatter summed up, rest and lost contact are judged as chatter limits
+        return None  # complete chatter, rest and lift-off are tested as chatter limits
     return _chained(launch, found.tau[-1], found.v[-1])
 
 

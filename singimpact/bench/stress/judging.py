@@ -1,4 +1,4 @@
-"""A trial: numbers in doubles beside 60 digits, the error in units of what one rounding of the given state does.
+"""A trial: doubles against 60 digits. The unit of an error is the effect of one rounding error of the given state.
 
     units = |found - true| / (epsilon (|true| + sum |d true/d input| |input|))
 
@@ -20,7 +20,7 @@ STEP = 25  # differences of 60-digit numbers over 10^-STEP are right to 25 digit
 
 @dataclass(frozen=True)
 class Limits:
-    """failure : units above which a function fails: its error is then no rounding of a few operations.
+    """failure : units above which a function fails: a few operations do not round that much.
     spare : decimal digits beside the 60, for what cancels in a truth.
     """
 
@@ -33,7 +33,7 @@ LIMITS = Limits()
 
 @dataclass(frozen=True)
 class Trial:
-    """What a function gave at a state, and what is true there.
+    """The value of a function at a state, and the reference value.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Trial:
 
     @property
     def units(self) -> float:
-        """The worst of its numbers.
+        """The largest error of its numbers.
 
         Examples
         --------
@@ -117,7 +117,7 @@ def moved(function: Callable[..., Any], inputs: Sequence[Any], sizes: Sequence[A
 
 
 Sweep = Callable[[int], Iterator[Trial]]
-"""From how many points are wanted to trials that run towards a bad place."""
+"""A function of the number of points: trials that approach a singular point."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ class Function:
 
 @dataclass(frozen=True)
 class Cell:
-    """The worst trial of a function towards a place. failed : over the limit, or no trial was run."""
+    """The worst trial of a function near a singular point. failed : over the limit, or no trial was run."""
 
     function: str
     place: str
@@ -167,7 +167,7 @@ def worst(function: str, place: str, sweep: Sweep, points: int) -> Cell:
 
 
 def powers(points: int, last: float, first: float = 1.0) -> list[float]:
-    """10^-first to 10^-last in equal ratios: how a sweep runs to its place.
+    """10^-first to 10^-last in equal ratios: the distances of a sequence from its singular point.
 
     Examples
     --------

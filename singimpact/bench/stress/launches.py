@@ -1,4 +1,4 @@
-"""Launches that run towards the bad places of a flight, of the linear, of the cubic and of steep oscillators.
+"""Launches that approach the singular points of a flight, for linear, cubic and steep oscillators.
 
 Places: v -> 0 pressed and free, short flights, near resonance, r -> 0 and 1, next to zeros of a and of a', next to the
 outline P (flights that graze) and to Z (launches that nearly rest), late phases, many periods without impact, forces
@@ -20,7 +20,10 @@ from singimpact.impact_oscillator import ImpactOscillator, linear
 
 CUBIC = "x + xdot/10 + 3*x**3/10"
 BITS = 320
-HORIZON = {"linear": 20000.0, "cubic": 60.0}  # the cubic one is damped: its truth follows slowly what never returns
+HORIZON = {
+    "linear": 20000.0,
+    "cubic": 60.0,
+}  # a flight that does not return is slow in 60 digits; the cubic model is damped
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ class Launch:
 
     @property
     def bits(self) -> int:
-        """Of the balls: small v take more."""
+        """Precision of the balls in bits; small v need more."""
         from math import log2
 
         return BITS + (int(4 * max(-log2(self.v), 0)) if self.v else 0)
@@ -135,7 +138,7 @@ def _swan(family: str, points: int) -> Iterator[Launch]:
 
 
 def _grazing(family: str, points: int) -> Iterator[Launch]:
-    """A flight run backwards from a touch, moved off it."""
+    """A backward flight from a state next to a graze."""
     for touch in (0.1, 1.0):
         at = Launch(family, clearance=-0.4, tau=touch)
         with balls_at(BITS):

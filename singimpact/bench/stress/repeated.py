@@ -1,4 +1,4 @@
-"""Periodic orbits of one impact a period beside their closed form; grazes of their branches beside theirs."""
+"""Periodic orbits of one impact in each period, and grazes of their branches, against closed forms."""
 
 from __future__ import annotations
 

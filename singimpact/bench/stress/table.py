@@ -1,4 +1,4 @@
-"""What `singimpact stress` runs, and its table: a row a function, a column a place, the worst units in each cell.
+"""The runs of `singimpact stress`, and its table: a row for each function, a column for each singular point.
 
 A new public function: a `Function` in one of the files here; a test compares the rows with the public names.
 """
@@ -27,7 +27,7 @@ NOTE = (
 
 
 def chosen(names: Sequence[str], place: str | None) -> list[tuple[Function, str]]:
-    """The sweeps that are asked for, refused by name where there is none of that name.
+    """The requested sequences; an unknown name is refused.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def chosen(names: Sequence[str], place: str | None) -> list[tuple[Function, str]
 def stressed(
     pairs: Sequence[tuple[Function, str]], points: int = POINTS, told: Callable[[int, str], None] = lambda *_: None
 ) -> list[Cell]:
-    """A cell for each sweep; `told` hears its number and name before it runs."""
+    """A cell for each sweep; `told` is called with its number and name before it runs."""
     cells = []
     for number, (function, place) in enumerate(pairs):
         told(number, f"{function.name}, {place}")
@@ -69,7 +69,7 @@ def _shown(cell: Cell | None) -> str:
 
 
 def worst_states(cells: Sequence[Cell]) -> tuple[list[str], list[list[str]]]:
-    """Where each function is at its worst, where its 60 digits come from, and why places are left out."""
+    """The largest error of each function, the source of its 60 digits, and the reasons for omitted points."""
     rows = []
     for name in dict.fromkeys(cell.function for cell in cells):
         at = max((cell for cell in cells if cell.function == name), key=lambda cell: cell.units)

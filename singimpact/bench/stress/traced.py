@@ -1,4 +1,4 @@
-"""Vertices of the zero set and of the outline beside the closed form of the flight from rest, solved in mpmath."""
+"""Vertices of the zero set and of the outline against the closed form of the flight from rest, solved in mpmath."""
 
 from __future__ import annotations
 
