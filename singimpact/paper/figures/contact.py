@@ -65,9 +65,9 @@ def figure_3() -> Picture:
     )
     (through,) = stable_manifold(model, frame, repr(centre))[:1]
     panels = [
-        Panel(((low, high), (-0.05 * v, v)), title="(a) linearised at $w_*$", lines=[*straight, chosen],
+        Panel(((low, high), (-0.1 * v, v)), title="(a) linearised at $w_*$", lines=[*straight, chosen],
               dots=[Dot("$w_*$", (centre, 0.0))]),
-        Panel(((low, high), (-0.05 * v, v)), title=r"(b) stable manifolds $W^s_\tau$",
+        Panel(((low, high), (-0.1 * v, v)), title=r"(b) stable manifolds $W^s_\tau$",
               lines=[*curved, Line(through.points[::-1], "loop", "W^s", at=0.6, arrow=True, words=chosen.words)],
               dots=[Dot("$w_*$", (centre, 0.0))]),
     ]  # fmt: skip
@@ -116,7 +116,8 @@ def _actions(tau: float, edges: dict[str, tuple[Array, str, str]], boxes: list[t
     panels = []
     for n, (title, y, turn) in enumerate(maps):
         made = {name: turn(points) - np.array([tau, 0.0]) for name, (points, _, _) in edges.items()}
-        lines = [Line(made[name], pen, f"image of {name}", label if pen != "hidden" else "", 0.35,
+        lines = [Line(made[name], pen, f"image of {name}", label if pen != "hidden" else "",
+                      0.7 if pen == "rest" else 0.35,
                       words=WORDS.get(pen, "")) for name, (_, pen, label) in edges.items()]  # fmt: skip
         region = Region(np.vstack(list(made.values())), words="part of $V'$ and its images")
         panels.append(Panel(boxes[n], x=r"$\sigma$", y=y, title=title, lines=lines, regions=[region],
@@ -186,7 +187,7 @@ def figure_5() -> Picture:
     near = curve.points[(curve.points[:, 0] < tau - 0.02) & (curve.points[:, 0] > tau - 0.2)]
     below = np.interp(near[:, 0], *jump[np.argsort(jump[:, 0])].T)
     facts = {"gamma_below_P": float((near[:, 1] / below).max()), "order": _order(near, tau)}
-    panel = Panel(((low, high), (-0.05 * v, v)), lines=lines, dots=[Dot("$w_*$", (tau, 0.0))])
+    panel = Panel(((low, high), (-0.1 * v, v)), lines=lines, dots=[Dot("$w_*$", (tau, 0.0))])
     caption = (
         r"Near a tangency with $a' > 0$ the curve $\gamma$ ends at $w_*$ with a quadratic tangency and is the "
         "threshold: below it each orbit stays on its stable manifold and the mass comes to rest before $w_*$; "
@@ -228,13 +229,13 @@ def figure_7() -> Picture:
     rest = np.stack([np.linspace(start, tau, 80)[:-1], np.zeros(79)], axis=1)
     epsilon = np.vstack([model_step(model, rest), [[tau, 0.0]]])
     lines = leaves(model, frame, (tau + np.linspace(0.03, 0.85, 20)).tolist())
-    lines += [Line(epsilon, "epsilon", "epsilon", r"$\varepsilon$", 0.45,
+    lines += [Line(epsilon, "epsilon", "epsilon", r"$\varepsilon$", 0.12,
                    words=r"$\varepsilon$: image of $[w_1, w_*]$ under $G$"),
               Line(np.array([[start, 0.0], [tau, 0.0]]), "rest", "[w_1, w_*]",
                    words="interval $[w_1, w_*]$ of $\\Pi_0$")]  # fmt: skip
     part = epsilon[-30:-3]
     facts = {"order": float(np.polyfit(np.log(part[:, 0] - tau), np.log(part[:, 1]), 1)[0])}
-    panel = Panel(((low, high), (-0.06 * v, v)), lines=lines,
+    panel = Panel(((low, high), (-0.1 * v, v)), lines=lines,
                   dots=[Dot("$w_*$", (tau, 0.0)), Dot("$w_1$", (start, 0.0)),
                         Dot("$G(w_1)$", (float(epsilon[0, 0]), float(epsilon[0, 1])))])  # fmt: skip
     caption = (
@@ -255,9 +256,9 @@ def figure_8() -> Picture:
     frame = Window((low, high), (0.0, v), 1 / ARCS)
     (curve, *_) = gammas_within(model, frame)
     lines = leaves(model, frame, [*np.linspace(-0.42, -0.1, 7).tolist(), *np.linspace(0.1, 0.58, 9).tolist()])
-    lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, -0.36)))
+    lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, -0.13)))
     near = curve.points[(curve.points[:, 0] < -0.02) & (curve.points[:, 0] > -0.2)]
-    panel = Panel(((low, high), (-0.05 * v, v)), lines=lines, dots=[Dot("$w_*$", (0.0, 0.0))])
+    panel = Panel(((low, high), (-0.1 * v, v)), lines=lines, dots=[Dot("$w_*$", (0.0, 0.0))])
     caption = (
         "At a negative swan point the acceleration at the wall has a double zero with $a'' < 0$. The curve "
         r"$\gamma$ ends there with a cubic tangency. Stable manifolds of later times flatten as they pass above "

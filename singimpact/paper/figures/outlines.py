@@ -103,7 +103,7 @@ class Change:
 
 CHANGES = (
     Change("lips", "w", 2.2346139563997207, 0.5665872036436089, 4.089046551292352, 0.2, 0.0001, 3, 0.03, 3000),
-    Change("beaks", "w", 1.9669260638735848, 2.5507220258801437, 5.89964018967169, 0.42, 0.003, 3, 0.25, 600),
+    Change("beaks", "w", 1.9669260638735848, 2.5507220258801437, 5.89964018967169, 0.6, 0.003, 3, 0.25, 600),
     Change("swallowtail", "clearance", 1.0, 0.0, 5.1927096149235386, 0.6, 0.04, 1, 0.03, 1500),
 )
 
@@ -130,8 +130,8 @@ def figure_2() -> Picture:
 
 
 def _equally_high(panels: list[Panel]) -> list[Panel]:
-    """Panels with one vertical scale: their lower ends go down to the height of the highest."""
-    height = max(panel.box[1][1] - panel.box[1][0] for panel in panels)
+    """Panels with one vertical scale: their lower ends come up to the height of the least high."""
+    height = min(panel.box[1][1] - panel.box[1][0] for panel in panels)
     return [replace(panel, box=(panel.box[0], (panel.box[1][1] - height, panel.box[1][1]))) for panel in panels]
 
 
@@ -190,4 +190,7 @@ def _box(change: Change, middle: float, lines: list[Array]) -> tuple[Point, Poin
     points = np.vstack(lines)
     points = points[np.abs(points[:, 0] - middle) < change.shown]
     low, high = float(points[:, 1].min()), float(points[:, 1].max())
-    return (middle - change.shown, middle + change.shown), (1.1 * low - 0.1 * high, 1.1 * high - 0.1 * low)
+    margin = 0.1 * (high - low)
+    ends = [end[1] for line in lines for end in line[[0, -1]] if abs(end[0] - middle) < change.shown]
+    cut = [float(y) for y in ends if y < (low + high) / 2 and change.kind != "lips"]  # so that no curve ends in mid-air
+    return (middle - change.shown, middle + change.shown), (max([low - margin, *cut]), high + margin)

@@ -24,6 +24,7 @@ class PrintSettings:
     width: float = 6.9  # inches of several panels beside each other: the text of a journal's page
     single: float = 4.8  # inches of one panel
     ratio: float = 0.76  # height of a panel over its width
+    small_ratio: float = 1.0  # the same of panels that are narrower than 2 inches
     type: float = 8.0  # points, of all letters but those along the axes
     small: float = 7.0  # points, of the numbers along the axes and the legend
     line: float = 0.68  # of the pens' widths, which are made for pictures of 8 inches on a screen
@@ -88,8 +89,9 @@ def drawn(picture: Picture, look: Look | None = None) -> Any:
     entries = _entries(picture, look)
     across = _columns([words for _, words in entries], width)
     legend = 0.17 * -(-len(entries) // across) + 0.1  # inches
+    ratio = PRINT.ratio if width / columns > 2 else PRINT.small_ratio
     with look.settings():
-        figure = Figure(figsize=(width, PRINT.ratio * width / columns * rows + legend), dpi=200, layout="constrained")
+        figure = Figure(figsize=(width, ratio * width / columns * rows + legend), dpi=200, layout="constrained")
         flat = []
         for n, panel in enumerate(picture.panels):
             if panel.mesh is not None:
@@ -159,7 +161,7 @@ def _flat(axes: Any, panel: Panel, look: Look) -> None:
     axes.set_xlabel(panel.x)
     axes.set_ylabel(panel.y)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.locator_params(nbins=5)
+    axes.locator_params(nbins=5 if axes.bbox.width > 150 * axes.figure.dpi / 72 else 4)
 
 
 def _arrow(axes: Any, line: Line, panel: Panel, look: Look) -> None:

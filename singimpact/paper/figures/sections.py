@@ -12,28 +12,21 @@ from singimpact.paper.figures.sheet import launch_and_landing
 from singimpact.paper.figures.swans import box, half, negative, positive, ring
 
 PLACES = (-4.0, -3.0, -2.4, -(3**0.5), -1.35, -1.0, -0.5, 0.0)  # of tau, in half distances of A and B
-WORDS = ("before", "at", "after")
+VALUES = ("-1.03", "-1", "-0.97"), ("1.03", "1", "0.97")  # of c, before, at and after c_0
+WORDS = tuple(f"$a_c$ for $c = {a}$ in (a), ${b}$ in (b)" for a, b in zip(*VALUES, strict=True))
 NAMED = {-3.0: "D", -(3**0.5): "E", -1.0: "A"}
 
 
 def figure_9() -> Picture:
     """As c passes c_0 two zeros of a appear, and the outline is born with two cusps."""
     panels, facts = [], {}
-    for letter, swan, values in (("a", positive(), ("-1.03", "-1", "-0.97")), ("b", negative(), ("1.03", "1", "0.97"))):
+    for letter, swan, values in (("a", positive(), VALUES[0]), ("b", negative(), VALUES[1])):
         kind = swan.kind
         middle, size = (swan.A + swan.B) / 2, half(swan)
         tau = np.linspace(middle - 2.4 * size, middle + 2.4 * size, 121)
-        curves = [
-            Line(
-                np.stack([tau, acceleration(linear(2, c, "0.5"), tau)], axis=1),
-                pen,
-                f"a for c = {c}",
-                f"$c={c}$",
-                at,
-                words=f"$a_c$ {words} $c_0$",
-            )
-            for c, pen, at, words in zip(values, ("before", "at", "graph"), (0.5, 0.38, 0.62), WORDS, strict=True)
-        ]
+        curves = [Line(np.stack([tau, acceleration(linear(2, c, "0.5"), tau)], axis=1), pen, f"a for c = {c}",
+                       words=words)
+                  for c, pen, words in zip(values, ("before", "at", "graph"), WORDS, strict=True)]  # fmt: skip
         height = 1.3 * max(float(np.abs(curve.points[30:91, 1]).max()) for curve in curves)
         bounds = (-0.6 * height, height) if kind == "positive" else (-height, 0.6 * height)
         letters = [Dot("$A$", (swan.A, 0.0)), Dot("$B$", (swan.B, 0.0))]
@@ -57,7 +50,7 @@ def figure_10() -> Picture:
     """v against t for tau <= tau_*: where the return time folds, and which part is a first hit."""
     swan, size = positive(), half(positive())
     middle, panels = (swan.A + swan.B) / 2, []
-    for place in PLACES:
+    for n, place in enumerate(PLACES):
         tau = {"A": swan.A, "D": swan.points["D"][0], "E": swan.points["E"][0]}.get(
             NAMED.get(place, ""), middle + place * size
         )
@@ -73,13 +66,14 @@ def figure_10() -> Picture:
         lines += [Line(part, "graph", "first hits", words="first hits with $v > 0$") for part in _visible(tau, curve)]
         letter = NAMED.get(place)
         dots = [] if letter is None else [Dot(f"${letter}$", _on(letter))]
-        title = f"$\\sigma = {place:.3g}$" if letter is None else f"$\\sigma = {place:.3g}$, through ${letter}$"
-        panels.append(Panel(((-3.2 * size, 7.2 * size), (1.1 * low, 1.1 * high)), x="$t$", title=title, lines=lines,
-                            dots=dots))  # fmt: skip
+        title = f"$\\sigma = {place:.3g}$" if letter is None else f"$\\sigma = {place:.3g}$, ${letter}$"
+        panels.append(Panel(((-3.2 * size, 7.2 * size), (1.1 * low, 1.1 * high)), "$t$" if n >= 4 else "",
+                            "$v$" if n % 4 == 0 else "", title,
+                            lines, dots=dots))  # fmt: skip
     caption = (
         r"Sections of $V'$ for launch times $\tau = \tau_* + \sigma$, with $\sigma$ in half distances of $A$ and "
         r"$B$: the velocity $v$ of the flight that is back at the wall after the time $t$. A state $(\tau, v)$ has "
-        "as many returns as the horizontal line at $v$ has crossings with $t > 0$; the thick part is the first of "
+        "as many returns as the horizontal line at $v$ has crossings with $t > 0$; the blue part is the first of "
         "them. To the right of $D$ the section has two folds, whose flights land with velocity zero. The numbers "
         "on the vertical axes show that each panel has a scale of its own."
     )

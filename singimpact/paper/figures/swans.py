@@ -181,7 +181,7 @@ def figure_12() -> Picture:
         [Line(outline, "P", "P"), Line(arc_p, "jump", "arc BE'")],
         [Dot("$D'$", places["D"])],
         [Dot("$A'=C'$", places["A"]), Dot("$B'$", places["B"]), Dot("$E'$", places["E"])],
-        [Region(arc_p, label=r"$\mathcal{S}'$", words=IMAGES, place=(swan.A + 0.4 * size, 0.07 * v))],
+        [Region(arc_p, label=r"$\mathcal{S}'$", words=IMAGES, place=(swan.A + 0.1 * size, 0.1 * v))],
     )
     second = _views(
         swan,
@@ -190,7 +190,7 @@ def figure_12() -> Picture:
         [Line(outline, "P", "P"), Line(arc_phi, "Z", "arc AE''", words=r"$\phi$ of the visible arc $AE$ of $Z$")],
         [Dot("$C''$", images["C"])],
         [Dot("$A''$", images["A"]), Dot("$B''=D''$", images["B"]), Dot("$E''$", images["E"])],
-        [Region(arc_phi, label=r"$\mathcal{S}''$", words=IMAGES, place=(swan.B - 0.4 * size, -0.07 * v))],
+        [Region(arc_phi, label=r"$\mathcal{S}''$", words=IMAGES, place=(swan.B - 0.1 * size, -0.1 * v))],
     )
     panels = [first[0], second[0], first[1], second[1]]
     caption = (

@@ -24,7 +24,7 @@ def figure_13() -> Picture:
     places = swan.projected
     edge = arc(outline, places["E"], places["B"], places["D"])
     v = 1.35 * float(edge[:, 1].max())
-    window = box(swan, -2.2, 1.7, -0.08 * v, v)
+    window = box(swan, -2.2, 1.7, -0.1 * v, v)
     frame = Window(window[0], (0.0, v), 1 / ARCS)
     lines = [Line(edge, "jump", "arc BE' of P", "$P$", 0.35, words="arc $BE'$ of the outline $P$")]
     for foot in np.linspace(swan.A, swan.B, LEAVES + 2)[1:-1].tolist():
@@ -37,7 +37,7 @@ def figure_13() -> Picture:
             "epsilon",
             "epsilon",
             r"$\varepsilon$",
-            0.6,
+            0.85,
             words=r"$\varepsilon$: image of the interval from $E'$ to $A$",
         )
     )
@@ -121,7 +121,7 @@ def figure_16() -> Picture:
     )
     return Picture(16, "The action of the map on the segments of a negative swan",
                    ("s6n-maps", "s6n-AB", "s2-discontinuity"),
-                   str(model), panels, 3, caption=caption)  # fmt: skip
+                   str(model), panels, 2, caption=caption)  # fmt: skip
 
 
 def _landed_right(length: float) -> Array:
@@ -134,7 +134,7 @@ def figure_17() -> Picture:
     """W^s(X) with its loops, the inverse images of delta, and gamma on which they accumulate."""
     swan, size = negative(), half(negative())
     v = 1.12 * swan.projected["D"][1]
-    window = box(swan, -4.2, 5.6, -0.06 * v, v)
+    window = box(swan, -4.2, 5.6, -0.1 * v, v)
     frame = Window((window[0][0] - size, window[0][1]), (0.0, 1.3 * v), 1 / ARCS)
     manifold = stable_manifold(swan.model, frame, repr(swan.X))
     lines = [
@@ -161,8 +161,7 @@ def figure_17() -> Picture:
             points,
             "preimage",
             f"G^-{n}(delta)",
-            rf"$G^{{-{n}}}(\delta)$" if n == 1 else "",
-            0.6,
+            at=0.6,
             words=r"$G^{-n}(\delta)$, $n = 1, 2, 3$",
         )
         for n, points in enumerate(_preimages(frame), 1)
@@ -184,12 +183,12 @@ def figure_17() -> Picture:
         "What an unfolded negative swan creates. The orbit from $A$ lands at $Q$ and comes to rest at $X$, so the "
         r"stable manifold of $X$ contains the arc $\lambda$ from $Q$ to $A$. The inverse images of $\lambda$ are "
         r"loops at $A$ that wrap around $\delta$ and its inverse images; they accumulate on $\gamma$, the "
-        "threshold of complete chatter, each nearer by one and the same factor in the limit. (b) The lower left of "
-        r"(a), with the distance from $\gamma$ along $\tau$ instead of $\tau$: there the loops are seen apart."
+        "threshold of complete chatter, each nearer by one and the same factor in the limit. (b) The lower left "
+        r"of (a), with the distance from $\gamma$ along $\tau$ instead of $\tau$: there the loops are seen apart."
     )
     return Picture(17, "Dynamics created at the unfolding of a negative swan",
                    ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate"), str(swan.model),
-                   panels, 2, facts, caption)  # fmt: skip
+                   panels, 1, facts, caption)  # fmt: skip
 
 
 def _beside_gamma(lines: list[Line], gamma: Array, height: float) -> Panel:
@@ -200,10 +199,9 @@ def _beside_gamma(lines: list[Line], gamma: Array, height: float) -> Panel:
         v = np.clip(line.points[:, 1], 0.0, None)
         points = np.stack([line.points[:, 0] - np.interp(v, gamma[order, 1], gamma[order, 0]), v], axis=1)
         if line.pen != "epsilon" and line.points[:, 0].min() < negative().A:
-            nearby.append(replace(line, points=points, name=f"{line.name}, beside gamma", label=""))
-    return Panel(
-        ((-0.04 * wide, wide), (-0.06 * height, height)), r"$\tau - \tau_\gamma(v)$", title="(b)", lines=nearby
-    )
+            label = r"$G^{-1}(\delta)$" if line.name == "G^-1(delta)" else line.label
+            nearby.append(replace(line, points=points, name=f"{line.name}, beside gamma", label=label))
+    return Panel(((-0.04 * wide, wide), (-0.1 * height, height)), r"$\tau - \tau_\gamma(v)$", title="(b)", lines=nearby)
 
 
 def _foot_and_lambda(points: Array, foot: float, crossing: tuple[float, float]) -> list[Line]:
