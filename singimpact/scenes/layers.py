@@ -46,8 +46,7 @@ def _first_hits(pen: str) -> Drawer:
 
 def _steps(axes: Any, curves: list[Curve], label: str) -> None:
     for n, curve in enumerate(curves):
-        look = PENS["orbit"].line()
-        axes.plot(*curve.points.T, **look, marker="o", markersize=3, label=label if n == 0 else None)
+        axes.plot(*curve.points.T, **PENS["orbit"].beads(), label=label if n == 0 else None)
 
 
 LAYERS: dict[str, Layer] = {

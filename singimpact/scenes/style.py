@@ -39,6 +39,11 @@ class Pen:
         """The arguments of matplotlib."""
         return {"color": self.color, "linestyle": self.style, "linewidth": self.width}
 
+    def beads(self) -> dict[str, Any]:
+        """The arguments of matplotlib for an orbit: dots in this colour, joined in their order by a thin grey line."""
+        return {"color": GREY, "linewidth": 0.6, "marker": "o", "markersize": 3.5,
+                "markerfacecolor": self.color, "markeredgecolor": self.color}  # fmt: skip
+
 
 PENS = {
     "H": Pen(BLUE, width=2.0, words="horizon $H$"),
@@ -52,7 +57,7 @@ PENS = {
     "loop": Pen(BLUE, DASH_DOT, 1.6, "one stable manifold"),
     "preimage": Pen(GREEN, width=1.2, words=r"preimages of the discontinuity"),
     "epsilon": Pen(VERMILLION, width=2.2, words=r"$\varepsilon$: image of an interval of $\Pi_0$"),
-    "orbit": Pen(ORANGE, DASH_DOT, 1.0, "orbits"),
+    "orbit": Pen(ORANGE, width=1.0, words="impacts of an orbit, joined in their order"),
     "axis": Pen(GREY, width=0.8),
     "hidden": Pen(GREY, DASHES, 0.9, "edge of the part that is shown"),
     "graph": Pen(BLUE, width=1.8, words="graph"),

@@ -64,6 +64,7 @@ class Look:
             "xtick.labelsize": PRINT.small, "ytick.labelsize": PRINT.small, "legend.fontsize": PRINT.small,
             "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6, "figure.facecolor": ground,
             "axes.facecolor": ground, "savefig.facecolor": ground,
+            **dict.fromkeys((f"axes3d.{axis}axis.panecolor" for axis in "xyz"), ground),
             **dict.fromkeys(("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color"), ink),
         }  # fmt: skip
         if self.serif:
@@ -137,10 +138,8 @@ def _columns(entries: list[str], width: float) -> int:
 def _stroke(line: Line, look: Look) -> dict[str, Any]:
     if not line.beads:
         return look.pen(line.pen)
-    color = look.pen(line.pen)["color"]
     joined = "solid" if len(line.points) > 1 else "none"
-    return look.pen("axis") | {"linestyle": joined, "marker": "o", "markersize": PRINT.dot, "markerfacecolor": color,
-                               "markeredgecolor": color}  # fmt: skip
+    return PENS[line.pen].beads() | {"color": look.color(GREY), "linestyle": joined, "markersize": PRINT.dot}
 
 
 def _flat(axes: Any, panel: Panel, look: Look) -> None:
@@ -178,7 +177,7 @@ def _letters(axes: Any, panel: Panel, look: Look) -> None:
     for region in panel.regions:
         if region.label:
             place = region.place if region.place is not None else tuple(region.points.mean(axis=0))
-            axes.annotate(region.label, place, ha="center", va="center", path_effects=look.halo(), zorder=8)
+            axes.text(*place, region.label, ha="center", va="center", path_effects=look.halo(), zorder=8)
     if panel.note:
         axes.text(0.5, 0.62, panel.note, transform=axes.transAxes, ha="center", color=look.color(GREY))
     named = [(*dot.place, dot.letter) for dot in panel.dots if dot.letter]
