@@ -51,10 +51,10 @@ def figures(place: Path) -> str:
     parts = ["# The figures", "", "Drawn from computed data by `singimpact figure all -o FOLDER`.", ""]
     for number in FIGURES:
         shown = picture(number)
-        drawn(shown).savefig(place / f"figure{number}.png", dpi=110)
+        drawn(shown).savefig(place / f"figure{number}.png", dpi=200)
         told = ", ".join(f"`{claim}`" for claim in shown.claims)
         parts += [f"## {number}. {shown.title}", "", f"![{shown.title}](figure{number}.png)", "",
-                  f"Model: `{shown.model}`. Claims: {told}.", ""]  # fmt: skip
+                  shown.caption, "", f"Model: `{shown.model}`. Claims: {told}.", ""]  # fmt: skip
     return "\n".join(parts)
 
 

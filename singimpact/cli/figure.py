@@ -16,16 +16,22 @@ from singimpact.paper.figures import FIGURES
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, require_writable, write_text
 
+DPI = 200  # of a PNG: figures are as small as they are printed
+
 
 @click.command(short_help="the paper's figures, from computed data")
 @click.argument("which", metavar="N|all")
 @click.option("-o", "--output", metavar="DIR", default=".", show_default=True,
               help="A folder for the pictures, or for one figure a file ending in .png, .pdf or .svg.")  # fmt: skip
 @click.option("--format", "kind", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
+@click.option("--serif", is_flag=True, help="Serif letters (STIX), as in a journal.")
+@click.option("--dark", is_flag=True, help="Light lines on a dark ground.")
 @click.option("--data", is_flag=True, help="Write the curves as JSON beside each picture.")
 @click.option("--json", "as_json", is_flag=True, help="Print the written files and the CPU time in s as JSON.")
-def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> None:
+def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: bool, as_json: bool) -> None:
     """Draw figure N of the paper, 1 to 17, or all, each computed from an oscillator, and list the claims that it shows.
+
+    Letters are 8 points high at the size of the file, which is at most 6.9 inches wide.
 
     What a figure shows is kept in the cache as numbers: a run that was cut off goes on where it was.
     """
@@ -35,7 +41,7 @@ def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> No
         for done, number in enumerate(numbers):
             line.show(done, len(numbers), f"figure {number}")
             start, target = process_time(), targets[done]
-            title, claims = save_once(("figure", number), target, partial(_made, number))
+            title, claims = save_once(("figure", number, serif, dark), target, partial(_made, number, serif, dark), DPI)
             if data:
                 write_text(target.with_suffix(".json"), as_json_text(_data(number)) + "\n")
             written.append((number, title, claims, str(target), round(process_time() - start, 3)))
@@ -47,12 +53,12 @@ def command(which: str, output: str, kind: str, data: bool, as_json: bool) -> No
             click.echo(f"{file}  {title} ({', '.join(claims)})")
 
 
-def _made(number: int) -> tuple[Any, Any]:
+def _made(number: int, serif: bool, dark: bool) -> tuple[Any, Any]:
     from singimpact.paper.figures.cached import kept_picture
-    from singimpact.paper.figures.rendering import drawn
+    from singimpact.paper.figures.rendering import Look, drawn
 
     picture = kept_picture(number)
-    return drawn(picture), [picture.title, list(picture.claims)]
+    return drawn(picture, Look(serif, dark)), [picture.title, list(picture.claims)]
 
 
 def _data(number: int) -> Any:

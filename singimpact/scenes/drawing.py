@@ -89,7 +89,7 @@ def _curves(curves: Sequence[Curve], axes: Any) -> Any:
 
 def _curve(curve: Curve, axes: Any) -> None:
     pen = PENS.get(curve.name, PENS["graph"])
-    axes.plot(*curve.points.T, **pen.line(), label=f"${curve.name}$" if curve.name in PENS else curve.name)
+    axes.plot(*curve.points.T, **pen.line(), label=pen.words if curve.name in PENS else curve.name)
     for mark in curve.marks:
         place = curve.points[mark.index]
         axes.plot(*place, "o", color="black", markersize=4)

@@ -28,6 +28,10 @@ class LabelSettings:
     together: float = 8.0
     # curves are sampled so densely
     sample: float = 2.0
+    # between a point and its name no other curve should pass nearer to the straight line than this
+    clear: float = 1.5
+    # the point's own curves are near to it by themselves
+    own: float = 3.0
 
 
 SETTINGS = LabelSettings()
@@ -107,6 +111,7 @@ def _offset(point: Array, half: Array, obstacles: Array, taken: list[Array], spa
     edges, pixel = space
     margin = SETTINGS.margin * pixel
     best, least = np.array([0.0, SETTINGS.distances[0]]), np.inf
+    nearby = obstacles[np.abs(obstacles - point).max(axis=1) < SETTINGS.distances[-1] * pixel]
     for rank, distance in enumerate(SETTINGS.distances):
         for angle in np.pi * (0.25 + 2 * np.arange(SETTINGS.directions) / SETTINGS.directions):
             direction = np.array([np.cos(angle), np.sin(angle)])
@@ -115,13 +120,23 @@ def _offset(point: Array, half: Array, obstacles: Array, taken: list[Array], spa
             low, high = middle - half - margin, middle + half + margin
             hidden = int(((obstacles > low) & (obstacles < high)).all(axis=1).sum())
             crossed = sum(bool((low < other[2:]).all() and (high > other[:2]).all()) for other in taken)
+            between = _between(
+                point, direction, (SETTINGS.own * pixel, distance * pixel), nearby, SETTINGS.clear * pixel
+            )
             outside = bool((low < edges[:2]).any() or (high > edges[2:]).any())
-            cost = hidden + 50 * crossed + 100 * outside + 0.2 * rank
+            cost = hidden + 3 * between + 50 * crossed + 100 * outside + 0.2 * rank
             if cost < least:
                 best, least = offset, cost
         if least < len(SETTINGS.distances) * 0.2:
             break
     return best
+
+
+def _between(point: Array, direction: Array, ends: tuple[float, float], obstacles: Array, clear: float) -> int:
+    """How many obstacles lie on the straight line from a point to its name, from one distance to another."""
+    along = (obstacles - point) @ direction
+    aside = (obstacles - point) @ np.array([-direction[1], direction[0]])
+    return int(((along > ends[0]) & (along < ends[1]) & (np.abs(aside) < clear)).sum())
 
 
 def _curve_points(axes: Any, step: float) -> Array:

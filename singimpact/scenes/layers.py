@@ -46,19 +46,18 @@ def _first_hits(pen: str) -> Drawer:
 
 def _steps(axes: Any, curves: list[Curve], label: str) -> None:
     for n, curve in enumerate(curves):
-        look = PENS["orbit"].line()
-        axes.plot(*curve.points.T, **look, marker="o", markersize=3, label=label if n == 0 else None)
+        axes.plot(*curve.points.T, **PENS["orbit"].beads(), label=label if n == 0 else None)
 
 
 LAYERS: dict[str, Layer] = {
-    "horizon": Layer("horizon", SURFACE, "horizon $H$", _strokes("H")),
-    "zero-set": Layer("zero-set", SURFACE, "zero set $Z$", _strokes("Z")),
+    "horizon": Layer("horizon", SURFACE, PENS["H"].words, _strokes("H")),
+    "zero-set": Layer("zero-set", SURFACE, PENS["Z"].words, _strokes("Z")),
     "visible": Layer("visible", SURFACE, "visible part of $H$", _first_hits("H")),
-    "shadow": Layer("shadow", SURFACE, "shadow of $H$", _strokes("shadow")),
-    "outline": Layer("outline", STATES, "outline $P$", _strokes("P")),
-    "discontinuities": Layer("discontinuities", STATES, "discontinuities of $G$", _strokes("jump")),
-    "gamma": Layer("gamma", STATES, r"invariant arc $\gamma$", _strokes("gamma")),
+    "shadow": Layer("shadow", SURFACE, PENS["shadow"].words, _strokes("shadow")),
+    "outline": Layer("outline", STATES, PENS["P"].words, _strokes("P")),
+    "discontinuities": Layer("discontinuities", STATES, PENS["jump"].words, _strokes("jump")),
+    "gamma": Layer("gamma", STATES, PENS["gamma"].words, _strokes("gamma")),
     "stable-manifolds": Layer("stable-manifolds", STATES, r"$W^s_\tau$", _strokes("loop")),
-    "foliation": Layer("foliation", STATES, r"leaves $W^s_\tau$", _strokes("manifold")),
-    "orbits": Layer("orbits", STATES, "orbits", _steps),
+    "foliation": Layer("foliation", STATES, PENS["manifold"].words, _strokes("manifold")),
+    "orbits": Layer("orbits", STATES, PENS["orbit"].words, _steps),
 }

@@ -11,39 +11,63 @@ DASHES, DOTS, DASH_DOT = (0, (5, 2)), (0, (1, 1.4)), (0, (6, 2, 1, 2))
 INK = 0.85  # of a letter's halo, so that a curve behind it does not cut it
 
 
+ON_DARK = {BLACK: "#FFFFFF", GREY: "#A6A6A6", BLUE: "#4DA6DE", SHADE: "#3C3C3C"}
+"""What the darkest and the lightest colours become on a dark ground; the others are bright enough for both."""
+
+
+def on_dark(color: str) -> str:
+    """A colour of this table as it is drawn on a dark ground.
+
+    Examples
+    --------
+    >>> on_dark(BLACK), on_dark(ORANGE) == ORANGE
+    ('#FFFFFF', True)
+    """
+    return ON_DARK.get(color, color)
+
+
 @dataclass(frozen=True)
 class Pen:
-    """Colour, line style and width of a kind of curve."""
+    """Colour, line style and width of a kind of curve, and what a legend calls it (empty: it is not named)."""
 
     color: str
     style: Any = "solid"
     width: float = 1.4
+    words: str = ""
 
     def line(self) -> dict[str, Any]:
         """The arguments of matplotlib."""
         return {"color": self.color, "linestyle": self.style, "linewidth": self.width}
 
+    def beads(self) -> dict[str, Any]:
+        """The arguments of matplotlib for an orbit: dots in this colour, joined in their order by a thin grey line."""
+        return {"color": GREY, "linewidth": 0.6, "marker": "o", "markersize": 3.5,
+                "markerfacecolor": self.color, "markeredgecolor": self.color}  # fmt: skip
+
 
 PENS = {
-    "H": Pen(BLUE, width=2.0),
-    "Z": Pen(VERMILLION, DASHES, 1.8),
-    "P": Pen(BLACK, width=1.2),
-    "jump": Pen(BLACK, width=2.8),
-    "shadow": Pen(GREEN, DOTS, 2.4),
-    "gamma": Pen(PURPLE, width=2.8),
-    "manifold": Pen(SKY, width=1.0),
-    "loop": Pen(BLUE, DASH_DOT, 1.6),
-    "epsilon": Pen(VERMILLION, width=2.2),
-    "orbit": Pen(ORANGE, DASH_DOT, 1.0),
+    "H": Pen(BLUE, width=2.0, words="horizon $H$"),
+    "Z": Pen(VERMILLION, DASHES, 1.8, "zero set $Z$"),
+    "P": Pen(BLACK, width=1.2, words="apparent outline $P$"),
+    "jump": Pen(BLACK, width=2.8, words="discontinuities of $G$: visible part of $P$"),
+    "rest": Pen(GREY, width=3.2, words=r"$\Pi_0$: velocity $v = 0$"),
+    "shadow": Pen(GREEN, DOTS, 2.4, "shadow of $H$"),
+    "gamma": Pen(PURPLE, width=2.8, words=r"$\gamma$: threshold of complete chatter"),
+    "manifold": Pen(SKY, width=1.0, words=r"stable manifolds $W^s_\tau$"),
+    "loop": Pen(BLUE, DASH_DOT, 1.6, "one stable manifold"),
+    "preimage": Pen(GREEN, width=1.2, words=r"preimages of the discontinuity"),
+    "epsilon": Pen(VERMILLION, width=2.2, words=r"$\varepsilon$: image of an interval of $\Pi_0$"),
+    "orbit": Pen(ORANGE, width=1.0, words="impacts of an orbit, joined in their order"),
     "axis": Pen(GREY, width=0.8),
-    "hidden": Pen(GREY, DASHES, 0.9),
-    "graph": Pen(BLUE, width=1.8),
-    "W^s": Pen(BLUE, width=1.0),
-    "W^u": Pen(VERMILLION, width=1.0),
-    "crossing": Pen(BLACK),
-    "before": Pen(GREY, DASHES, 1.4),
-    "at": Pen(GREY, DASH_DOT, 1.4),
+    "hidden": Pen(GREY, DASHES, 0.9, "edge of the part that is shown"),
+    "graph": Pen(BLUE, width=1.8, words="graph"),
+    "W^s": Pen(BLUE, width=1.0, words="stable manifold"),
+    "W^u": Pen(VERMILLION, width=1.0, words="unstable manifold"),
+    "crossing": Pen(BLACK, words="crossing"),
+    "before": Pen(GREY, DASHES, 1.4, "before"),
+    "at": Pen(BLACK, DASH_DOT, 1.4, "at the transition"),
 }
+"""Curves of scenes, figures and notebooks: one look and one name wherever they are drawn."""
 
 
 LINES: dict[str, tuple[Any, float]] = {"stable": ("solid", 1.8), "unstable": (DASHES, 1.5), "virtual": (DOTS, 1.3)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -15,7 +15,7 @@ from singimpact.paper.figures.sheet import launch_and_landing
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 
-LEFT, RIGHT, HIGH, LOW, LONG = 1.95, 2.8, 0.25, -0.1, 1.6  # times, velocities and flight times shown
+LEFT, RIGHT, HIGH, LOW, LONG = 1.95, 2.65, 0.25, -0.06, 1.6  # times, velocities and flight times shown
 
 
 def figure_1() -> Picture:
@@ -26,15 +26,31 @@ def figure_1() -> Picture:
              for horizon, outline in zip(surface.horizon, surface.outline, strict=True)]  # fmt: skip
     fold = max(folds, key=len)
     fold = fold[np.argsort(fold[:, 0])]
-    lines = [Line(fold, "H", "H", "$H$", 0.1), Line(fold * [1, 1, 0], "P", "P", "$P$", 0.12)]
-    for n, share in enumerate((0.2, 0.45, 0.7)):
+    lines = [Line(fold, "H", "H", "$H$", 0.1), Line(fold * [1, 1, 0], "P", "P", "$P$", 0.04)]
+    for n, share in enumerate((0.2, 0.5, 0.8)):
         place = fold[int(share * (len(fold) - 1))]
-        over = np.array([place * [1, 1, 0], place + np.array([0, 0, 0.4])])
-        lines.append(Line(over, "epsilon", f"line over w_{n + 1}", f"$w_{n + 1}$", 0.0))
+        over = np.array([place * [1, 1, 0], place + np.array([0, 0, 0.25])])
+        words = "lines $w = $ const. that touch the surface on $H$"
+        lines.append(Line(over, "hidden", f"line over w_{n + 1}", words=words))
+        lines.append(
+            Line(
+                place[None],
+                "orbit",
+                f"touching point over w_{n + 1}",
+                f"$w_{n + 1}$",
+                beads=True,
+                words="touching points",
+            )
+        )
     panel = Panel(((LEFT, RIGHT), (LOW, HIGH)), mesh=_mesh(), lines=lines)
-    return Picture(
-        1, "The impact surface and its horizon", ("s2-smooth", "s2-horizon", "s2-two-sheets"), str(model), [panel]
+    caption = (
+        r"The impact surface: for each launch time $\tau$ and flight time $t$ the velocity $v$ with which the "
+        "flight comes back to the wall. Over states below $P$ it has two sheets, which meet in the fold $H$, the "
+        "horizon, where flights land with velocity zero: a vertical line over a state $w_1$, $w_2$ or $w_3$ of "
+        "$P$ touches the surface there. $P$ is the image of $H$ in the plane of states."
     )
+    return Picture(1, "The impact surface and its horizon", ("s2-smooth", "s2-horizon", "s2-two-sheets"), str(model),
+                   [panel], caption=caption)  # fmt: skip
 
 
 def _shown(points: Array, t: Array) -> Array:
@@ -87,7 +103,7 @@ class Change:
 
 CHANGES = (
     Change("lips", "w", 2.2346139563997207, 0.5665872036436089, 4.089046551292352, 0.2, 0.0001, 3, 0.03, 3000),
-    Change("beaks", "w", 1.9669260638735848, 2.5507220258801437, 5.89964018967169, 0.42, 0.003, 3, 0.25, 600),
+    Change("beaks", "w", 1.9669260638735848, 2.5507220258801437, 5.89964018967169, 0.6, 0.003, 3, 0.25, 600),
     Change("swallowtail", "clearance", 1.0, 0.0, 5.1927096149235386, 0.6, 0.04, 1, 0.03, 1500),
 )
 
@@ -99,9 +115,24 @@ def figure_2() -> Picture:
         rows = [(told, _outline(change, sign)) for sign, told in ((-1, "<"), (0, "="), (1, ">"))]
         facts |= {f"{change.kind} {told}": float(sum(len(c.marked("cusp")) for c in made)) for told, made in rows}
         together = [rows] if change.kind != "swallowtail" else [[row] for row in rows]  # its tip moves away at once
-        panels += [panel for part in together for panel in _panels(letter, change, part)]
+        panels += _equally_high([panel for part in together for panel in _panels(letter, change, part)])
+    caption = (
+        "How the apparent outline $P$ changes as one number of the model moves through a value where two cusps "
+        "(dots) meet. (a) Lips: a closed piece with two cusps shrinks to a point at the frequency $w_0$ = "
+        f"{CHANGES[0].value:.6f} and is gone. (b) Beaks: two cusps meet at $w_0$ = {CHANGES[1].value:.6f} and two "
+        "smooth branches are left. (c) Swallowtail: two cusps and a crossing merge at the clearance $c_0$ = "
+        rf"{CHANGES[2].value:g}. Vertically $v - q(\tau)$ is shown, $q$ a polynomial fitted to the branches (of "
+        "degree 3 in (a) and (b), 1 in (c)), since branches that nearly coincide are not seen apart otherwise. In "
+        "each row the scales are equal, and in (c) the window moves with the tip."
+    )
     return Picture(2, "The three generic transitions of the outline", ("s2-fold-cusp-forms", "s6-lips"), str(damped()),
-                   panels, 3, facts)  # fmt: skip
+                   panels, 3, facts, caption)  # fmt: skip
+
+
+def _equally_high(panels: list[Panel]) -> list[Panel]:
+    """Panels with one vertical scale: their lower ends come up to the height of the least high."""
+    height = min(panel.box[1][1] - panel.box[1][0] for panel in panels)
+    return [replace(panel, box=(panel.box[0], (panel.box[1][1] - height, panel.box[1][1]))) for panel in panels]
 
 
 def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) -> list[Panel]:
@@ -117,8 +148,17 @@ def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) ->
         cusps += [point] if told == "=" and change.kind == "lips" else []
         dots = [Dot("", (float(x), float(y))) for each in cusps for x, y in each]
         lines = [Line(shear(curve.points), "P", "P") for curve in made]
-        panels.append(Panel(box, y="$v$, sheared", title=f"({letter}) {change.kind}: ${name} {told} {name}_0$",
-                            lines=lines, dots=dots))  # fmt: skip
+        note = {"=": "one point", ">": "no outline here"}.get(told, "") if change.kind == "lips" else ""
+        panels.append(
+            Panel(
+                box,
+                y=r"$v - q(\tau)$",
+                note=note,
+                title=f"({letter}) {change.kind}: ${name} {told} {name}_0$",
+                lines=lines,
+                dots=dots,
+            )
+        )
     return panels
 
 
@@ -150,4 +190,7 @@ def _box(change: Change, middle: float, lines: list[Array]) -> tuple[Point, Poin
     points = np.vstack(lines)
     points = points[np.abs(points[:, 0] - middle) < change.shown]
     low, high = float(points[:, 1].min()), float(points[:, 1].max())
-    return (middle - change.shown, middle + change.shown), (1.1 * low - 0.1 * high, 1.1 * high - 0.1 * low)
+    margin = 0.1 * (high - low)
+    ends = [end[1] for line in lines for end in line[[0, -1]] if abs(end[0] - middle) < change.shown]
+    cut = [float(y) for y in ends if y < (low + high) / 2 and change.kind != "lips"]  # so that no curve ends in mid-air
+    return (middle - change.shown, middle + change.shown), (max([low - margin, *cut]), high + margin)

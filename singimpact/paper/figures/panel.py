@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.scenes.style import SHADE
+
 Array = np.ndarray[Any, Any]
 ARCS = 500  # points across, for invariant arcs: half of what a panel has, less than the width of a line
 Point = tuple[float, float]
@@ -14,40 +16,49 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Line:
-    """A polyline. pen : its look. name : for the data. label : a letter set at the vertex `at` (a share of them)."""
+    """A polyline.
+
+    pen : its look. name : for the data. label : a letter set beside the vertex `at` (a share of the vertices). arrow :
+    at that vertex. words : what the legend calls it, if that is not what the pen is called. beads : the vertices are an
+    orbit, drawn as dots that a thin grey line joins.
+    """
 
     points: Array
     pen: str
     name: str = ""
     label: str = ""
     at: float = 0.5
-    shift: Point = (5, 5)
     arrow: bool = False
+    words: str = ""
+    beads: bool = False
 
 
 @dataclass(frozen=True)
 class Region:
-    """A filled polygon. tone : a colour. hatch : tells it apart without colour."""
+    """A filled polygon. tone : a colour. label : set at `place`. words : in the legend."""
 
     points: Array
-    tone: str = "#E3E3E3"
+    tone: str = SHADE
     label: str = ""
     place: Point | None = None
-    hatch: str = ""
+    words: str = ""
 
 
 @dataclass(frozen=True)
 class Dot:
-    """A named point; `shift` of its letter is in points of print."""
+    """A named point."""
 
     letter: str
     place: Point
-    shift: Point = (5, 5)
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One plane of a figure. box : what is shown, (x, y). lines, regions, dots : in the order of drawing."""
+    """One plane of a figure.
+
+    box : what is shown, (x, y). lines, regions, dots : in the order of drawing. mesh : a surface in space, seen from
+    the side. note : words in the middle of a panel that shows little or nothing.
+    """
 
     box: tuple[Point, Point]
     x: str = r"$\tau$"
@@ -56,8 +67,8 @@ class Panel:
     lines: list[Line] = field(default_factory=list)
     regions: list[Region] = field(default_factory=list)
     dots: list[Dot] = field(default_factory=list)
-    mesh: tuple[Array, Array, Array] | None = None  # a surface in space, seen from the side
-    ticks: bool = True
+    mesh: tuple[Array, Array, Array] | None = None
+    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -67,7 +78,8 @@ class Picture:
     Attributes
     ----------
     number : in the paper. title : what it shows. claims : ids of what it illustrates. model : text of the oscillator.
-    panels : with their rows and columns. facts : numbers that the figure shows, for tests.
+    panels : with their rows and columns. facts : numbers that the figure shows, for tests. caption : what is seen
+    where, in sentences with formulas between dollars.
     """
 
     number: int
@@ -77,12 +89,13 @@ class Picture:
     panels: list[Panel]
     columns: int = 1
     facts: dict[str, float] = field(default_factory=dict)
+    caption: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """The data as plain lists and numbers."""
         return {
-            "figure": self.number, "title": self.title, "claims": list(self.claims), "model": self.model,
-            "facts": self.facts,
+            "figure": self.number, "title": self.title, "caption": self.caption, "claims": list(self.claims),
+            "model": self.model, "facts": self.facts,
             "panels": [
                 {"title": panel.title, "axes": [panel.x, panel.y], "box": panel.box,
                  "curves": [{"name": line.name or line.label, "points": line.points.tolist()} for line in panel.lines],
@@ -103,7 +116,7 @@ def arc(points: Array, start: Point, end: Point, avoid: Point) -> Array:
     Examples
     --------
     >>> square = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], dtype=float)
-    >>> arc(square, (0, 0), (1, 1), (0, 1)).tolist()
+    >>> arc(square, (0, 0), (1, 1)).tolist()
     [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]
     """
     ring = points[:-1]

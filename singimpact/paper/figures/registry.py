@@ -49,14 +49,18 @@ def picture(number: Any) -> Picture:
     return _function(number)()
 
 
-def figure(number: Any) -> Any:
-    """One of the paper's figures as a matplotlib figure.
+def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
+    """One of the paper's figures as a matplotlib figure, at the size of a printed page.
+
+    Parameters
+    ----------
+    number : from 1 to 17. serif : letters as in a journal (STIX). dark : light lines on a dark ground.
 
     Examples
     --------
     >>> len(figure(12).axes)
     4
     """
-    from singimpact.paper.figures.rendering import drawn
+    from singimpact.paper.figures.rendering import Look, drawn
 
-    return drawn(picture(number))
+    return drawn(picture(number), Look(serif, dark))

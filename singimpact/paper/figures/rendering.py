@@ -1,113 +1,215 @@
-"""Pictures drawn by matplotlib: letters with a halo, regions with hatches, no legend where a letter can stand."""
+"""Pictures drawn by matplotlib at the size of a printed page: letters clear of curves, a legend in words below."""
 
 from __future__ import annotations
 
-from typing import Any
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 
-from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
-from singimpact.scenes.style import PENS
+from singimpact.paper.figures.panel import Line, Panel, Picture
+from singimpact.scenes.label_places import place_labels
+from singimpact.scenes.style import BLACK, GREY, PENS, on_dark
 
-WIDTH, HEIGHT = 4.3, 3.4  # of a panel, in inches
-LETTER = 12
+Array = np.ndarray[Any, Any]
 
 
-def drawn(picture: Picture) -> Any:
-    """The matplotlib figure of a picture."""
+@dataclass(frozen=True)
+class PrintSettings:
+    """Sizes on paper."""
+
+    width: float = 6.9  # inches of several panels beside each other: the text of a journal's page
+    single: float = 4.8  # inches of one panel
+    ratio: float = 0.76  # height of a panel over its width
+    small_ratio: float = 1.0  # the same of panels that are narrower than 2 inches
+    type: float = 8.0  # points, of all letters but those along the axes
+    small: float = 7.0  # points, of the numbers along the axes and the legend
+    line: float = 0.68  # of the pens' widths, which are made for pictures of 8 inches on a screen
+    dot: float = 3.2  # points, the diameter of a named point
+    edge: float = 0.03  # of a panel: an arrow nearer to its edge than this would be cut
+    letter: float = 3.7  # points, the mean width of a letter of the legend
+
+
+PRINT = PrintSettings()
+DARK_GROUND, LIGHT_GROUND = "#14181C", "#FFFFFF"
+
+
+@dataclass(frozen=True)
+class Look:
+    """serif : letters as in a journal (STIX). dark : light lines on a dark ground."""
+
+    serif: bool = False
+    dark: bool = False
+
+    def color(self, name: str) -> str:
+        """A colour of the table on this ground."""
+        return on_dark(name) if self.dark else name
+
+    def pen(self, name: str) -> dict[str, Any]:
+        """The arguments of matplotlib for a pen, at the size of print."""
+        look = PENS[name].line()
+        return look | {"color": self.color(look["color"]), "linewidth": PRINT.line * look["linewidth"]}
+
+    @contextmanager
+    def settings(self) -> Iterator[None]:
+        """matplotlib's own, while a figure is drawn."""
+        import matplotlib
+
+        ink, ground = self.color(BLACK), DARK_GROUND if self.dark else LIGHT_GROUND
+        chosen: dict[str, Any] = {
+            "font.size": PRINT.type, "axes.titlesize": PRINT.type, "axes.labelsize": PRINT.type,
+            "xtick.labelsize": PRINT.small, "ytick.labelsize": PRINT.small, "legend.fontsize": PRINT.small,
+            "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6, "figure.facecolor": ground,
+            "axes.facecolor": ground, "savefig.facecolor": ground,
+            **dict.fromkeys((f"axes3d.{axis}axis.panecolor" for axis in "xyz"), ground),
+            **dict.fromkeys(("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color"), ink),
+        }  # fmt: skip
+        if self.serif:
+            chosen |= {"font.family": "STIXGeneral", "mathtext.fontset": "stix"}
+        with matplotlib.rc_context(cast(Any, chosen)):
+            yield
+
+    def halo(self) -> list[Any]:
+        """The ground around letters."""
+        from matplotlib import patheffects
+
+        return [patheffects.withStroke(linewidth=2, foreground=DARK_GROUND if self.dark else LIGHT_GROUND)]
+
+
+def drawn(picture: Picture, look: Look | None = None) -> Any:
+    """The matplotlib figure of a picture, at the size at which it is printed."""
     from matplotlib.figure import Figure
 
-    count = len(picture.panels)
-    columns = min(picture.columns, count)
-    rows = -(-count // columns)
-    size = (6.6, 5.0) if count == 1 else (WIDTH * columns, HEIGHT * rows)
-    figure = Figure(figsize=size, dpi=150, layout="constrained")
-    for n, panel in enumerate(picture.panels):
-        if panel.mesh is not None:
-            _solid(figure.add_subplot(rows, columns, n + 1, projection="3d"), panel)
-        else:
-            _flat(figure.add_subplot(rows, columns, n + 1), panel)
+    look = look or Look()
+    columns = min(picture.columns, len(picture.panels))
+    rows = -(-len(picture.panels) // columns)
+    width = PRINT.single if columns == 1 else PRINT.width
+    entries = _entries(picture, look)
+    across = _columns([words for _, words in entries], width)
+    legend = 0.17 * -(-len(entries) // across) + 0.1  # inches
+    ratio = PRINT.ratio if width / columns > 2 else PRINT.small_ratio
+    with look.settings():
+        figure = Figure(figsize=(width, ratio * width / columns * rows + legend), dpi=200, layout="constrained")
+        flat = []
+        for n, panel in enumerate(picture.panels):
+            if panel.mesh is not None:
+                _solid(figure.add_subplot(rows, columns, n + 1, projection="3d"), panel, look)
+            else:
+                flat.append((figure.add_subplot(rows, columns, n + 1), panel))
+                _flat(*flat[-1], look)
+        if entries:
+            figure.legend(*zip(*entries, strict=True), loc="outside lower center", ncols=across, frameon=False,
+                          handlelength=3, columnspacing=1.5)  # fmt: skip
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")  # the letters are placed for this layout, and the numbers of the axes are made
+        for axes, panel in flat:
+            _letters(axes, panel, look)
     return figure
 
 
-def _halo() -> list[Any]:
-    from matplotlib import patheffects
+def legend_words(picture: Picture) -> list[str]:
+    """What the legend of a picture names, in the order of its lines."""
+    return [words for _, words in _entries(picture, Look())]
 
-    return [patheffects.withStroke(linewidth=3, foreground="white")]
+
+def _entries(picture: Picture, look: Look) -> list[tuple[Any, str]]:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    found: dict[str, Any] = {}
+    for panel in picture.panels:
+        for line in panel.lines:
+            found.setdefault(line.words or PENS[line.pen].words, Line2D([], [], **_stroke(line, look)))
+        for region in panel.regions:
+            found.setdefault(region.words, Patch(facecolor=look.color(region.tone)))
+    found.pop("", None)
+    return [(handle, words) for words, handle in found.items()]
 
 
-def _flat(axes: Any, panel: Panel) -> None:
+def _columns(entries: list[str], width: float) -> int:
+    """How many columns of a legend fit into a width in inches."""
+    longest = max((len(re.sub(r"\\[a-z]+|[${}^]", "", words)) for words in entries), default=1)
+    return int(np.clip(72 * width / (PRINT.letter * longest + 45), 1, max(len(entries), 1)))
+
+
+def _stroke(line: Line, look: Look) -> dict[str, Any]:
+    if not line.beads:
+        return look.pen(line.pen)
+    joined = "solid" if len(line.points) > 1 else "none"
+    return PENS[line.pen].beads() | {"color": look.color(GREY), "linestyle": joined, "markersize": PRINT.dot}
+
+
+def _flat(axes: Any, panel: Panel, look: Look) -> None:
     (left, right), (low, high) = panel.box
     for region in panel.regions:
-        _region(axes, region)
+        white = region.tone == LIGHT_GROUND
+        tone = axes.get_facecolor() if white else look.color(region.tone)
+        axes.fill(*region.points.T, facecolor=tone, edgecolor="none", linewidth=0, zorder=1)
     if low <= 0 <= high:
-        axes.axhline(0, color="0.35", linewidth=0.9, zorder=1.5)
-    for line in panel.lines:
-        _line(axes, line)
-    for dot in panel.dots:
-        _dot(axes, dot)
+        axes.axhline(0, color=look.color(GREY), linewidth=0.6, zorder=1.5)
     axes.set(xlim=(left, right), ylim=(low, high), title=panel.title)
+    for line in panel.lines:
+        axes.plot(*line.points.T, **_stroke(line, look), zorder=3)
+        if line.arrow:
+            _arrow(axes, line, panel, look)
+    for dot in panel.dots:
+        axes.plot(*dot.place, "o", color=look.color(BLACK), markersize=PRINT.dot, zorder=10, clip_on=False)
     axes.set_xlabel(panel.x)
     axes.set_ylabel(panel.y)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.locator_params(nbins=5)
-    if not panel.ticks:
-        axes.set_xticks([])
-        axes.set_yticks([])
+    axes.locator_params(nbins=5 if axes.bbox.width > 150 * axes.figure.dpi / 72 else 4)
 
 
-def _region(axes: Any, region: Region) -> None:
-    axes.fill(*region.points.T, facecolor=region.tone, edgecolor="0.55" if region.hatch else "none", hatch=region.hatch,
-              linewidth=0, zorder=1)  # fmt: skip
-    if region.label:
-        place = region.place if region.place is not None else tuple(region.points.mean(axis=0))
-        axes.annotate(region.label, place, ha="center", va="center", fontsize=LETTER, path_effects=_halo(), zorder=8)
-
-
-def _line(axes: Any, line: Line) -> None:
-    x, y = line.points.T
-    axes.plot(x, y, **PENS[line.pen].line(), zorder=3)
+def _arrow(axes: Any, line: Line, panel: Panel, look: Look) -> None:
+    """An arrowhead, where it is not cut by the edge."""
     place, back = _place(line.points, line.at), _place(line.points, line.at - 1e-3)
-    if line.label:
-        dark = line.pen in ("gamma", "manifold", "before", "at", "hidden")
-        axes.annotate(line.label, place, line.shift, textcoords="offset points", fontsize=LETTER,
-                      color="black" if dark else PENS[line.pen].color, path_effects=_halo(), zorder=9,
-                      annotation_clip=True)  # fmt: skip
-    if line.arrow:
-        look = {"arrowstyle": "-|>", "color": PENS[line.pen].color, "linewidth": 1.2, "mutation_scale": 13}
-        axes.annotate("", place, back, arrowprops=look, zorder=7, annotation_clip=True)
+    sides = [(low + PRINT.edge * (high - low), high - PRINT.edge * (high - low)) for low, high in panel.box]
+    if all(low < x < high for (low, high), x in zip(sides, place, strict=True)):
+        style = {"arrowstyle": "-|>", "color": look.pen(line.pen)["color"], "linewidth": 0.8, "mutation_scale": 8}
+        axes.annotate("", place, back, arrowprops=style, zorder=7, annotation_clip=True)
 
 
-def _place(points: Any, share: float) -> tuple[float, float]:
+def _letters(axes: Any, panel: Panel, look: Look) -> None:
+    """Names of regions where they were put, those of points and curves clear of what is drawn."""
+    for region in panel.regions:
+        if region.label:
+            place = region.place if region.place is not None else tuple(region.points.mean(axis=0))
+            axes.text(*place, region.label, ha="center", va="center", path_effects=look.halo(), zorder=8)
+    if panel.note:
+        axes.text(0.5, 0.62, panel.note, transform=axes.transAxes, ha="center", color=look.color(GREY))
+    named = [(*dot.place, dot.letter) for dot in panel.dots if dot.letter]
+    lettered = {line.label: line for line in panel.lines if line.label}
+    named += [(*_place(line.points, line.at), label) for label, line in lettered.items()]
+    for text in place_labels(axes, named, size=PRINT.type):
+        line = lettered.get(text.get_text())
+        text.set(color=look.pen(line.pen)["color"] if line else look.color(BLACK), path_effects=look.halo(), zorder=9)
+
+
+def _place(points: Array, share: float) -> tuple[float, float]:
     """A place on a polyline, by a share of its vertices."""
     at = np.clip(share, 0, 1) * (len(points) - 1)
     x, y = (float(np.interp(at, np.arange(len(points)), column)) for column in points.T)
     return x, y
 
 
-def _dot(axes: Any, dot: Dot) -> None:
-    axes.plot(*dot.place, "o", color="black", markersize=4.5, zorder=10, clip_on=False)
-    axes.annotate(dot.letter, dot.place, dot.shift, textcoords="offset points", fontsize=LETTER, path_effects=_halo(),
-                  zorder=11, ha="right" if dot.shift[0] < 0 else "left",
-                  va="top" if dot.shift[1] < 0 else "bottom")  # fmt: skip
-
-
-def _solid(axes: Any, panel: Panel) -> None:
+def _solid(axes: Any, panel: Panel, look: Look) -> None:
     """A surface in (tau, v, t), lines on it as polylines in space."""
     assert panel.mesh is not None
-    tau, v, t = panel.mesh
-    axes.plot_surface(tau, v, t, color="#BBD9EE", alpha=0.5, linewidth=0.25, edgecolor="0.5", shade=False,
+    axes.plot_surface(*panel.mesh, color="#BBD9EE", alpha=0.5, linewidth=0.2, edgecolor="0.5", shade=False,
                       rstride=3, cstride=3)  # fmt: skip
     for line in panel.lines:
-        axes.plot(*line.points.T, **PENS[line.pen].line(), zorder=10)
+        axes.plot(*line.points.T, **_stroke(line, look), zorder=10)
         if line.label:
             place = line.points[int(line.at * (len(line.points) - 1))]
-            axes.text(
-                *(place + np.array([0.015, 0.004, 0.02])), line.label, fontsize=LETTER, path_effects=_halo(), zorder=20
-            )
+            axes.text(*place, f"  {line.label}", va="center", path_effects=look.halo(), zorder=20)
     (left, right), (low, high) = panel.box
     axes.set(xlim=(left, right), ylim=(low, high))
     axes.set_xlabel(panel.x)
     axes.set_ylabel(panel.y)
     axes.set_zlabel("$t$")
-    axes.view_init(elev=26, azim=-68)
+    axes.locator_params(nbins=4)
+    axes.view_init(elev=22, azim=-22)
+    axes.set_box_aspect(None, zoom=0.95)

@@ -11,8 +11,9 @@ from singimpact.dynamics.swan_configuration import SwanConfiguration, swan_confi
 from singimpact.impact_oscillator import linear
 from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture, Point, Region, arc
 from singimpact.paper.figures.sheet import reset
+from singimpact.surface.impact_surface import ImpactSurface
 
-SHIFTS = {"A": (-6, -6), "B": (6, 6), "C": (6, 4), "D": (-6, 6), "E": (6, 6)}
+FINE = 1 / 3000  # of the window of the configuration: its outline is magnified until the usual chords would show
 
 
 @lru_cache(maxsize=2)
@@ -32,9 +33,16 @@ def half(swan: SwanConfiguration) -> float:
     return (swan.B - swan.A) / 2
 
 
+@lru_cache(maxsize=2)
+def fine_surface(swan: SwanConfiguration) -> ImpactSurface:
+    """V' of a configuration, its curves smooth at the size of a panel."""
+    return ImpactSurface(swan.model, swan.surface.window.x, swan.surface.window.y, FINE)
+
+
 def ring(swan: SwanConfiguration, name: str) -> Array:
     """The closed piece of H, Z or P through A and B."""
-    curves = {"H": swan.surface.horizon, "Z": swan.surface.zero_set, "P": swan.surface.outline}[name]
+    surface = fine_surface(swan)
+    curves = {"H": surface.horizon, "Z": surface.zero_set, "P": surface.outline}[name]
     return next(curve.points for curve in curves if curve.closed and len(curve.marked("tangency")) == 2)
 
 
@@ -46,7 +54,7 @@ def box(swan: SwanConfiguration, left: float, right: float, low: float, high: fl
 
 def on_surface(swan: SwanConfiguration) -> list[Dot]:
     """A to E on V'."""
-    return [Dot(f"${name}$", place, SHIFTS[name]) for name, place in swan.points.items()]
+    return [Dot(f"${name}$", place) for name, place in swan.points.items()]
 
 
 def stretch(swan: SwanConfiguration, name: str, start: str, end: str) -> Array:
@@ -80,20 +88,37 @@ def figure_11() -> Picture:
     """The visible part S of an unfolded positive swan."""
     swan, size = positive(), half(positive())
     dots = on_surface(swan)
-    panel = Panel(box(swan, -4.4, 4.4, -6 * size, 6 * size), y="$t$", lines=_lettered(swan), dots=dots,
-                  regions=[Region(visible_positive(), label=r"$\mathcal{S}$",
-                                  place=(swan.A - 0.1 * size, 1.3 * size))])  # fmt: skip
+    panel = Panel(
+        box(swan, -4.4, 4.4, -6 * size, 6 * size),
+        y="$t$",
+        lines=_lettered(swan),
+        dots=dots,
+        regions=[
+            Region(
+                visible_positive(),
+                label=r"$\mathcal{S}$",
+                words=r"$\mathcal{S}$: visible part of $V'$",
+                place=(swan.A - 0.1 * size, 1.3 * size),
+            )
+        ],
+    )
+    caption = (
+        "The unfolded positive swan on the impact surface. The horizon $H$ and the zero set $Z$ are closed curves "
+        r"through the tangency points $A$ and $B$, each the image of the other under $(\tau, t) \to (\tau + t, "
+        "-t)$. Flights of the grey part $S$ hit the wall for the first time; $D$ and $C$ are the cusp points of "
+        r"$p$ and $\phi$, and $E$ is the flight from rest to rest."
+    )
     return Picture(11, "Positive swan: the visible part S of V'", ("s6p-BE", "s6p-AE", "s6-lips"), str(swan.model),
-                   [panel], facts={"tangencies": 2.0})  # fmt: skip
+                   [panel], facts={"tangencies": 2.0}, caption=caption)  # fmt: skip
 
 
 def _lettered(swan: SwanConfiguration) -> list[Line]:
     """H and Z with their letters where they are far apart, in t < 0."""
     found = []
-    for name, shift in (("H", (8, 0)), ("Z", (-16, -10))):
+    for name in ("H", "Z"):
         points = ring(swan, name)
         at = int(np.argmax(points[:, 0] if name == "H" else -points[:, 1]))
-        found.append(Line(points, name, name, f"${name}$", at / (len(points) - 1), shift))
+        found.append(Line(points, name, name, f"${name}$", at / (len(points) - 1)))
     return found
 
 
@@ -104,14 +129,25 @@ def figure_14() -> Picture:
     (left, right), (_, high) = window
     whole = np.array([[left, 0], [right, 0], [right, high], [left, high]])
     dots = on_surface(swan)
-    lines = [*_lettered(swan), Line(shadow(), "shadow", "shadow DC", "shadow", 0.5, (-10, 8)),
-             Line(stretch(swan, "H", "A", "D"), "jump", "visible arc AD of H")]  # fmt: skip
+    lines = [
+        *_lettered(swan),
+        Line(shadow(), "shadow", "shadow DC", "shadow", 0.5, words="shadow: next hits behind the visible arc $AD$"),
+        Line(stretch(swan, "H", "A", "D"), "jump", "visible arc AD of H", words="visible arc $AD$ of $H$"),
+    ]
     panel = Panel(window, y="$t$", lines=lines, dots=dots,
-                  regions=[Region(whole, label=r"$\mathcal{T}$ (visible)", place=(right - 1.9 * size, 4.6 * size)),
+                  regions=[Region(whole, label=r"$\mathcal{T}$", words=r"$\mathcal{T}$: visible part of $V'$",
+                                  place=(right - 1.9 * size, 4.6 * size)),
                            Region(hidden_negative(), "#FFFFFF")])  # fmt: skip
-    return Picture(14, "Negative swan: what is visible of V'", ("s6n-visible", "s6n-corr"), str(swan.model), [panel])
+    caption = (
+        "The unfolded negative swan on the impact surface: all of $t > 0$ is visible but the loop through $A$, "
+        "$D$, $C$ and $B$. The arc $AD$ of the horizon is grazed by first hits, and hides the sheet behind it as "
+        "far as the shadow $DC$. The map is discontinuous at the states of that arc."
+    )
+    return Picture(14, "Negative swan: what is visible of V'", ("s6n-visible", "s6n-corr"), str(swan.model), [panel],
+                   caption=caption)  # fmt: skip
 
 
+IMAGES = r"images of the visible part $\mathcal{S}$"
 ZOOM = 5.0  # the swan's body is so much flatter than its cusps are high
 
 
@@ -125,7 +161,7 @@ def _views(swan: SwanConfiguration, title: str, y: str, lines: list[Line], far: 
     lower = [region for region in regions if region.label]
     return [
         Panel(box(swan, -4.2, 4.2, -v, v), title=title, y=y, lines=plain, dots=far,
-              regions=[Region(each.points, each.tone) for each in lower]),
+              regions=[Region(each.points, each.tone, words=each.words) for each in lower]),
         Panel(box(swan, -3.0, 3.0, -v / ZOOM, v / ZOOM), title=f"{title}, magnified", y=y, lines=lines, dots=near,
               regions=regions),
     ]  # fmt: skip
@@ -138,20 +174,33 @@ def figure_12() -> Picture:
     places, images = swan.projected, swan.reset
     arc_p = arc(outline, places["E"], places["B"], places["D"])
     arc_phi = arc(outline, images["A"], images["E"], places["D"])
-    first = _views(swan, "(a) under $p$", "$v$", [Line(outline, "P", "P"), Line(arc_p, "jump", "arc BE'")],
-                   [Dot("$D'$", places["D"], (6, 0))],
-                   [Dot("$A'=C'$", places["A"], (4, -8)), Dot("$B'$", places["B"], (4, 4)),
-                    Dot("$E'$", places["E"], (-5, 4))],
-                   [Region(arc_p, label=r"$\mathcal{S}'$", place=(swan.A + 0.4 * size, 0.07 * v))])  # fmt: skip
-    second = _views(swan, r"(b) under $\phi$", r"$\dot x$",
-                    [Line(outline, "P", "P"), Line(arc_phi, "jump", "arc AE''")],
-                    [Dot("$C''$", images["C"], (-6, 2))],
-                    [Dot("$A''$", images["A"], (-4, 4)), Dot("$B''=D''$", images["B"], (-14, 8)),
-                     Dot("$E''$", images["E"], (5, -4))],
-                    [Region(arc_phi, label=r"$\mathcal{S}''$", place=(swan.B - 0.4 * size, -0.07 * v))])  # fmt: skip
+    first = _views(
+        swan,
+        "(a) under $p$",
+        "$v$",
+        [Line(outline, "P", "P"), Line(arc_p, "jump", "arc BE'")],
+        [Dot("$D'$", places["D"])],
+        [Dot("$A'=C'$", places["A"]), Dot("$B'$", places["B"]), Dot("$E'$", places["E"])],
+        [Region(arc_p, label=r"$\mathcal{S}'$", words=IMAGES, place=(swan.A + 0.1 * size, 0.1 * v))],
+    )
+    second = _views(
+        swan,
+        r"(b) under $\phi$",
+        r"$\dot x$",
+        [Line(outline, "P", "P"), Line(arc_phi, "Z", "arc AE''", words=r"$\phi$ of the visible arc $AE$ of $Z$")],
+        [Dot("$C''$", images["C"])],
+        [Dot("$A''$", images["A"]), Dot("$B''=D''$", images["B"]), Dot("$E''$", images["E"])],
+        [Region(arc_phi, label=r"$\mathcal{S}''$", words=IMAGES, place=(swan.B - 0.1 * size, -0.1 * v))],
+    )
     panels = [first[0], second[0], first[1], second[1]]
+    caption = (
+        "The images of the visible part $S$ of the positive swan: under $p$, the states that hit before they "
+        r"leave the swan, and under $\phi$, their landings. Both are bounded by arcs of the same curve $P$ with "
+        "cusps $D'$ and $C''$. The two branches of $P$ are closer than a line's width near the cusps; below, the "
+        f"velocities are magnified {ZOOM:g} times."
+    )
     return Picture(12, "Images of the positive swan under p and phi", ("s6p-BE", "s6p-AE", "p:phising-cusp"),
-                   str(swan.model), panels, 2)  # fmt: skip
+                   str(swan.model), panels, 2, caption=caption)  # fmt: skip
 
 
 def figure_15() -> Picture:
@@ -162,17 +211,34 @@ def figure_15() -> Picture:
     jump = reset(swan.model, shadow())
     bottom = arc(outline, images["C"], images["B"], places["D"])
     rest = np.array([images["A"], images["D"]])
-    first = _views(swan, "(a) under $p$", "$v$",
-                   [Line(outline, "P", "P"), Line(delta, "jump", "arc AD'", r"$\delta$", 0.12, (10, 8))],
-                   [Dot("$D'$", places["D"], (6, 0))],
-                   [Dot("$A'=C'$", places["A"], (2, -8)), Dot("$B'$", places["B"], (4, 6)),
-                    Dot("$E'$", places["E"], (-6, -5))], [])  # fmt: skip
-    lines = [Line(outline, "P", "P"), Line(rest, "jump", "interval A''D''"),
-             Line(jump, "shadow", "arc D''C''", r"$\phi(DC)$", 0.7, (-70, -6)),
-             Line(bottom, "Z", "arc C''B''", r"$\phi(CB)$", 0.4, (14, 0))]  # fmt: skip
-    second = _views(swan, r"(b) under $\phi$", r"$\dot x$", lines, [Dot("$C''$", images["C"], (-8, 0))],
-                    [Dot("$A''$", images["A"], (-4, 5)), Dot("$B''=D''$", images["B"], (-8, 8)),
-                     Dot("$E''$", images["E"], (6, 4))], [])  # fmt: skip
+    first = _views(
+        swan,
+        "(a) under $p$",
+        "$v$",
+        [
+            Line(outline, "P", "P"),
+            Line(delta, "jump", "arc AD'", r"$\delta$", 0.2, words=r"$\delta$: $G$ is discontinuous"),
+        ],
+        [Dot("$D'$", places["D"])],
+        [Dot("$A'=C'$", places["A"]), Dot("$B'$", places["B"]), Dot("$E'$", places["E"])],
+        [],
+    )
+    lines = [
+        Line(outline, "P", "P"),
+        Line(rest, "H", "interval A''D''", words=r"$\phi$ of the visible arc $AD$ of $H$"),
+        Line(jump, "shadow", "arc D''C''", words=r"$\phi(DC)$, $DC$ the shadow"),
+        Line(bottom, "Z", "arc C''B''", r"$\phi(DC)$, $\phi(CB)$", 0.4, words=r"$\phi(CB)$, $CB$ on $Z$: the same arc"),
+    ]
+    second = _views(swan, r"(b) under $\phi$", r"$\dot x$", lines, [Dot("$C''$", images["C"])],
+                    [Dot("$A''$", images["A"]), Dot("$B''=D''$", images["B"]),
+                     Dot("$E''$", images["E"])], [])  # fmt: skip
     facts = {"gap": float(np.hypot(*(jump[0] - np.array(images["D"]))))}
+    caption = (
+        r"The plane of states is cut along $\delta$, the image of the grazing arc $AD$ under $p$. Landing after "
+        r"the graze, $\phi$ takes one edge of the cut to the interval $A''D''$ and the other, which passes the "
+        "graze and hits on the shadow, to the arc $D''C''$. The arc $CB$ of the zero set lands on the same arc, "
+        "which is drawn green and orange in turn. The two branches of $P$ are closer than a line's width near the "
+        f"cusps; below, the velocities are magnified {ZOOM:g} times."
+    )
     return Picture(15, "Images of the negative swan under p and phi", ("s6n-maps", "s6n-cusp", "s6n-AB"),
-                   str(swan.model), [first[0], second[0], first[1], second[1]], 2, facts)  # fmt: skip
+                   str(swan.model), [first[0], second[0], first[1], second[1]], 2, facts, caption)  # fmt: skip

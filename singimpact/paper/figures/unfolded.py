@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -24,20 +25,40 @@ def figure_13() -> Picture:
     places = swan.projected
     edge = arc(outline, places["E"], places["B"], places["D"])
     v = 1.35 * float(edge[:, 1].max())
-    window = box(swan, -2.2, 1.7, -0.08 * v, v)
+    window = box(swan, -2.2, 1.7, -0.1 * v, v)
     frame = Window(window[0], (0.0, v), 1 / ARCS)
-    lines = [Line(edge, "jump", "arc BE' of P", "$P$", 0.35, (-16, 6))]
+    lines = [Line(edge, "jump", "arc BE' of P", "$P$", 0.35, words="arc $BE'$ of the outline $P$")]
     for foot in np.linspace(swan.A, swan.B, LEAVES + 2)[1:-1].tolist():
         lines += [Line(curve.points, "manifold", "leaf") for curve in stable_manifold(swan.model, frame, repr(foot))]
     curve = next(each for each in gammas_within(swan.model, frame) if abs(each.points[0, 0] - swan.B) < 1e-6)
-    lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", 0.55, (-4, 6)))
-    lines.append(Line(_epsilon(), "epsilon", "epsilon", r"$\varepsilon$", 0.5, (4, -12)))
-    dots = [Dot("$A$", places["A"], (0, -6)), Dot("$B$", places["B"], (0, -6)), Dot("$E'$", places["E"], (-2, -6)),
-            Dot("$N$", swan.N, (6, 4))]  # fmt: skip
+    lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", 0.55))
+    lines.append(
+        Line(
+            _epsilon(),
+            "epsilon",
+            "epsilon",
+            r"$\varepsilon$",
+            0.85,
+            words=r"$\varepsilon$: image of the interval from $E'$ to $A$",
+        )
+    )
+    dots = [Dot("$A$", places["A"]), Dot("$B$", places["B"]), Dot("$E'$", places["E"]),
+            Dot("$N$", swan.N)]  # fmt: skip
     facts = {"gamma_end": float(curve.points[-1, 0]), "E": places["E"][0], "A": swan.A, "N": float(swan.N[0])}
-    panel = Panel(window, lines=lines, dots=dots, regions=[Region(edge)])
+    panel = Panel(
+        window,
+        lines=lines,
+        dots=dots,
+        regions=[Region(edge, words=r"$\mathcal{S}'$: states that hit before they leave the swan")],
+    )
+    caption = (
+        r"The curve $\gamma$, which touches the axis at $B$, divides the states $S'$ of an unfolded positive swan. "
+        "Below it each orbit stays on its stable manifold, and the mass comes to rest between $A$ and $B$; above "
+        r"it the impacts leave $S'$. The map takes the interval from $E'$ to $A$ to the curve $\varepsilon$, which "
+        "ends on $P$ at $N$."
+    )
     return Picture(13, "Invariant foliation of S' at an unfolded positive swan", ("s6p-gamma", "s6p-eps", "t:t1"),
-                   str(swan.model), [panel], facts={**facts, "size": size})  # fmt: skip
+                   str(swan.model), [panel], facts={**facts, "size": size}, caption=caption)  # fmt: skip
 
 
 def _epsilon() -> Array:
@@ -64,31 +85,44 @@ def figure_16() -> Picture:
     left = np.array([[swan.A - 3 * size, 0.0], [swan.A, 0.0]])
     between, right = np.array([[swan.A, 0.0], [swan.B, 0.0]]), np.array([[swan.B, 0.0], [swan.B + 3 * size, 0.0]])
     onto = _landed_right(4 * size)
-    first = [Line(left, "axis", "left of A", "1", 0.5, (-4, 6)),
-             Line(jump, "graph", "lower edge", "2", 0.6, (-18, -8), True),
-             Line(jump + np.array([0.09 * size, 0.035 * v]), "shadow", "upper edge", "3", 0.55, (10, 4), True),
-             Line(between, "Z", "AB", "4", 0.5, (-4, 6), True),
-             Line(right, "gamma", "right of B", "5", 0.5, (-4, 6))]  # fmt: skip
-    second = [Line(left, "axis", "image of 1", "1", 0.5, (-4, 6)),
-              Line(np.array([swan.reset["A"], swan.reset["D"]]), "graph", "image of 2", "2", 0.5, (-4, 6), True),
-              Line(landed[::-1], "shadow", "image of 3", "3", 0.5, (-20, -12), True),
-              Line(bottom + np.array([0.2 * size, 0.0]), "Z", "image of 4, moved right", "4", 0.4, (10, 4), True),
-              Line(onto, "gamma", "image of 5", "5", 0.5, (-4, 6))]  # fmt: skip
-    third = [Line(rebounded(line.points, 0.5), line.pen, line.name, line.label, line.at, line.shift, line.arrow)
-             for line in second]  # fmt: skip
-    letters = [Dot("$A$", (swan.A, 0.0), (-4, -6)), Dot("$B$", (swan.B, 0.0), (-2, -6))]
+    words = {"1": "1, 5: on $\\Pi_0$ outside $AB$, at rest", "2": r"2: lower edge of the cut $\delta$, and its image",
+             "3": r"3: upper edge of $\delta$ (drawn moved away), and its image",
+             "4": "4: interval $AB$, and its image (drawn moved right)"}  # fmt: skip
+
+    def step(points: Array, name: str, number: str, at: float = 0.5, arrow: bool = True) -> Line:
+        pen = {"2": "graph", "3": "shadow", "4": "Z"}.get(number, "rest")
+        told = words.get(number, words["1"])
+        return Line(points, pen, name, number, at, arrow and pen != "rest", told)
+
+    first = [step(left, "left of A", "1"), step(jump, "lower edge", "2", 0.6),
+             step(jump + np.array([0.09 * size, 0.035 * v]), "upper edge", "3", 0.55),
+             step(between, "AB", "4"), step(right, "right of B", "5")]  # fmt: skip
+    second = [step(left, "image of 1", "1"),
+              step(np.array([swan.reset["A"], swan.reset["D"]]), "image of 2", "2"),
+              step(landed[::-1], "image of 3", "3"),
+              step(bottom + np.array([0.2 * size, 0.0]), "image of 4, moved right", "4", 0.4),
+              step(onto, "image of 5", "5")]  # fmt: skip
+    third = [replace(line, points=rebounded(line.points, 0.5)) for line in second]
+    letters = [Dot("$A$", (swan.A, 0.0)), Dot("$B$", (swan.B, 0.0))]
     panels = [
         Panel(box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"$\Pi^+$, cut along $\delta$", lines=first,
-              dots=[*letters, Dot("$D'$", swan.projected["D"], (6, 0))]),
+              dots=[*letters, Dot("$D'$", swan.projected["D"])]),
         Panel(box(swan, -4, 4.2, -1.1 * v, 0.25 * v), title=r"after $\phi\circ F$", y=r"$\dot x$", lines=second,
-              dots=[Dot("$A''$", swan.reset["A"], (-4, -6)), Dot("$D''=B''$", swan.reset["B"], (2, 14)),
-                    Dot("$C''$", swan.reset["C"], (-8, -2))]),
+              dots=[Dot("$A''$", swan.reset["A"]), Dot("$D''=B''$", swan.reset["B"]),
+                    Dot("$C''$", swan.reset["C"])]),
         Panel(box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"after $R$", lines=third,
-              dots=[*letters, Dot("$Q$", swan.Q, (6, 2))]),
+              dots=[*letters, Dot("$Q$", swan.Q)]),
     ]  # fmt: skip
+    caption = (
+        "How the map acts on five segments at an unfolded negative swan. The two edges 2 and 3 of the cut are one "
+        r"arc $\delta$, and the map is discontinuous there: 2 goes to the interval $A''D''$ of the axis, 3 to the "
+        "arc from $D''$ to $C''$. The segment 4 goes to that same arc. Edge 3 on the left and the image of 4 are "
+        "drawn beside their true places, so that they can be seen. The rebound $R$ turns the velocities around "
+        "and halves them, and $C''$ becomes $Q$."
+    )
     return Picture(16, "The action of the map on the segments of a negative swan",
                    ("s6n-maps", "s6n-AB", "s2-discontinuity"),
-                   str(model), panels, 3)  # fmt: skip
+                   str(model), panels, 2, caption=caption)  # fmt: skip
 
 
 def _landed_right(length: float) -> Array:
@@ -101,32 +135,74 @@ def figure_17() -> Picture:
     """W^s(X) with its loops, the inverse images of delta, and gamma on which they accumulate."""
     swan, size = negative(), half(negative())
     v = 1.12 * swan.projected["D"][1]
-    window = box(swan, -4.2, 5.6, -0.06 * v, v)
+    window = box(swan, -4.2, 5.6, -0.1 * v, v)
     frame = Window((window[0][0] - size, window[0][1]), (0.0, 1.3 * v), 1 / ARCS)
     manifold = stable_manifold(swan.model, frame, repr(swan.X))
-    lines = [Line(curve.points, "manifold", "beyond X") for foot in (1.02, 1.08, 1.16)
-             for curve in stable_manifold(swan.model, frame, repr(swan.X + (foot - 1) * 5 * size))]  # fmt: skip
+    lines = [
+        Line(curve.points, "manifold", "beyond X", words="stable manifolds of times after $X$")
+        for foot in (1.02, 1.08, 1.16)
+        for curve in stable_manifold(swan.model, frame, repr(swan.X + (foot - 1) * 5 * size))
+    ]
     loops = _loops([curve.points for curve in manifold], swan.A)
     lines += _foot_and_lambda(manifold[0].points, swan.A, swan.Q)
     lines += [
-        Line(part, "loop", f"G^-{n}(lambda), {side} branch", r"$G^{-1}(\lambda)$" if label else "", 0.45, (14, 2))
+        Line(
+            part,
+            "loop",
+            f"G^-{n}(lambda), {side} branch",
+            r"$G^{-1}(\lambda)$" if label else "",
+            0.45,
+            words="$W^s(X)$: stable manifold of $X$",
+        )
         for n, branches in enumerate(loops, 1)
         for side, part, label in (("right", branches[0], n == 1), ("left", branches[1], False))
     ]
-    lines += [Line(points, "P", f"G^-{n + 1}(delta)", at=0.5) for n, points in enumerate(_preimages(frame))]
-    lines.append(Line(delta(), "jump", "delta", r"$\delta$", 0.75, (8, 2)))
+    lines += [
+        Line(
+            points,
+            "preimage",
+            f"G^-{n}(delta)",
+            at=0.6,
+            words=r"$G^{-n}(\delta)$, $n = 1, 2, 3$",
+        )
+        for n, points in enumerate(_preimages(frame), 1)
+    ]
+    lines.append(Line(delta(), "jump", "delta", r"$\delta$", 0.75, words=r"$\delta$: $G$ is discontinuous"))
     arcs = gammas_within(swan.model, frame)
-    lines.append(Line(arcs[0].points, "gamma", "gamma", r"$\gamma$", 0.35, (-16, -12)))
+    lines.append(Line(arcs[0].points, "gamma", "gamma", r"$\gamma$", 0.35))
     across = rebounded(reset(swan.model, shadow()), 0.5)
-    lines.append(Line(across, "epsilon", "R(D''C'')", r"$R(D''C'')$", 0.45, (6, -14)))
-    dots = [Dot("$A$", (swan.A, 0.0), (-4, -6)), Dot("$B=D''$", (swan.B, 0.0), (-4, -6)),
-            Dot("$X$", (swan.X, 0.0), (2, -6)),
-            Dot("$Q$", swan.Q, (6, 3)), Dot("$D'$", swan.projected["D"], (5, 2))]  # fmt: skip
+    lines.append(
+        Line(across, "epsilon", "R(D''C'')", r"$R(D''C'')$", 0.45, words=r"$R(D''C'')$: image of $\delta$ from above")
+    )
+    dots = [Dot("$A$", (swan.A, 0.0)), Dot("$B=D''$", (swan.B, 0.0)),
+            Dot("$X$", (swan.X, 0.0)),
+            Dot("$Q$", swan.Q), Dot("$D'$", swan.projected["D"])]  # fmt: skip
     facts = {"X": swan.X, "Q": swan.Q[0], "pieces": float(len(manifold)), "generations": float(len(loops))}
     facts |= _accumulation(loops, arcs[0].points, swan.projected["D"][1] / 2)
+    panels = [Panel(window, title="(a)", lines=lines, dots=dots), _beside_gamma(lines, arcs[0].points, window[1][1])]
+    caption = (
+        "What an unfolded negative swan creates. The orbit from $A$ lands at $Q$ and comes to rest at $X$, so the "
+        r"stable manifold of $X$ contains the arc $\lambda$ from $Q$ to $A$. The inverse images of $\lambda$ are "
+        r"loops at $A$ that wrap around $\delta$ and its inverse images; they accumulate on $\gamma$, the "
+        "threshold of complete chatter, each nearer by one and the same factor in the limit. (b) The lower left "
+        r"of (a), with the distance from $\gamma$ along $\tau$ instead of $\tau$: there the loops are seen apart."
+    )
     return Picture(17, "Dynamics created at the unfolding of a negative swan",
                    ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate"), str(swan.model),
-                   [Panel(window, lines=lines, dots=dots)], facts=facts)  # fmt: skip
+                   panels, 1, facts, caption)  # fmt: skip
+
+
+def _beside_gamma(lines: list[Line], gamma: Array, height: float) -> Panel:
+    """The curves left of A, with tau reckoned from gamma at the same velocity."""
+    order = np.argsort(gamma[:, 1])
+    nearby, wide = [], 0.16
+    for line in lines:
+        v = np.clip(line.points[:, 1], 0.0, None)
+        points = np.stack([line.points[:, 0] - np.interp(v, gamma[order, 1], gamma[order, 0]), v], axis=1)
+        if line.pen != "epsilon" and line.points[:, 0].min() < negative().A:
+            label = r"$G^{-1}(\delta)$" if line.name == "G^-1(delta)" else line.label
+            nearby.append(replace(line, points=points, name=f"{line.name}, beside gamma", label=label))
+    return Panel(((-0.04 * wide, wide), (-0.1 * height, height)), r"$\tau - \tau_\gamma(v)$", title="(b)", lines=nearby)
 
 
 def _foot_and_lambda(points: Array, foot: float, crossing: tuple[float, float]) -> list[Line]:
@@ -137,8 +213,15 @@ def _foot_and_lambda(points: Array, foot: float, crossing: tuple[float, float]) 
     first, second = np.vstack([points[: at + 1], [crossing]]), np.vstack([[crossing], points[at + 1 : turn + 1]])
     end = np.array([[foot, 0.0]])
     return [
-        Line(first, "loop", "W^s(X)"),
-        Line(np.vstack([second, end]), "loop", "lambda", r"$\lambda\subset W^s(X)$", 0.5, (10, -10)),
+        Line(first, "loop", "W^s(X)", words="$W^s(X)$: stable manifold of $X$"),
+        Line(
+            np.vstack([second, end]),
+            "loop",
+            "lambda",
+            r"$\lambda\subset W^s(X)$",
+            0.4,
+            words="$W^s(X)$: stable manifold of $X$",
+        ),
     ]
 
 

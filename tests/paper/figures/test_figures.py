@@ -165,3 +165,87 @@ def test_the_command(tmp_path):
 def test_no_such_figure(wrong):
     with pytest.raises(InputError, match="a number from 1 to 17"):
         si.figure(wrong)
+
+
+@pytest.mark.parametrize("number", FIGURES)
+def test_every_line_is_in_the_legend_and_the_figure_has_a_caption(number):
+    """A curve that no legend names is the axis t = 0 alone; captions are sentences with closed formulas."""
+    from singimpact.paper.figures.rendering import legend_words
+    from singimpact.scenes.scene import LONGEST_TEXT
+    from singimpact.scenes.style import PENS
+
+    found, words = made(number), legend_words(made(number))
+    drawn = {line.words or PENS[line.pen].words for panel in found.panels for line in panel.lines if line.pen != "axis"}
+    assert drawn <= set(words)
+    assert len(words) == len(set(words))
+    assert all(len(each) < LONGEST_TEXT / 3 for each in words)
+    assert found.caption.endswith(".")
+    assert found.caption.count("$") % 2 == 0
+    assert found.to_dict()["caption"] == found.caption
+
+
+@pytest.mark.parametrize("number", [4, 5, 9, 13, 15, 16])
+def test_letters_are_clear_of_curves_and_of_one_another(number):
+    """The box of each letter, less its margins, holds no part of a curve, and no other letter."""
+    from matplotlib.text import Text
+
+    figure = si.figure(number)
+    figure.canvas.draw()
+    for axes in figure.axes:
+        texts = [text for text in axes.texts if text.get_text()]
+        for text in texts:
+            text.get_window_extent()  # an annotation moves to its place when it is asked for its extent
+        boxes = [Text.get_window_extent(text) for text in texts]  # without the lines to their points
+        curves = np.vstack([dense(line) for line in axes.lines])
+        for n, (text, box) in enumerate(zip(texts, boxes, strict=True)):
+            inside = (curves > [box.x0 + 2, box.y0 + 3]) & (curves < [box.x1 - 2, box.y1 - 3])
+            assert not inside.all(axis=1).any(), text.get_text()
+            assert not any(box.overlaps(other) for other in boxes[:n]), text.get_text()
+
+
+def dense(line):
+    """Points of a drawn line, in pixels, one a pixel."""
+    points = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
+    length = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    share = np.arange(0, min(length[-1], 1e5), 1.0)
+    return np.stack([np.interp(share, length, column) for column in points.T], axis=1)
+
+
+def test_outlines_are_smooth_at_the_size_of_print():
+    """A chord of P in figures 5 and 13 deviates from the curve by less than a tenth of a point of print."""
+    for number, name in ((5, "P_*"), (13, "arc BE' of P")):
+        (box,) = [panel.box for panel in made(number).panels]
+        points = lines(number, name)[0] / [side[1] - side[0] for side in box] * 72 * 4
+        inner = points[(points[:, 1] > 0) & (points[:, 1] < 72 * 4)]
+        first, middle, last = inner[:-2], inner[1:-1], inner[2:]
+        chord = last - first
+        aside = np.abs(chord[:, 0] * (middle - first)[:, 1] - chord[:, 1] * (middle - first)[:, 0]) / np.hypot(*chord.T)
+        assert aside.max() < 0.4, number  # two chords together: four times one
+
+
+@pytest.mark.parametrize("look", [{}, {"serif": True}, {"dark": True}])
+def test_letters_are_eight_points_high_on_a_journals_page(look):
+    figure = si.figure(11, **look)
+    axes = figure.axes[0]
+    assert figure.get_size_inches()[0] <= 7
+    assert {text.get_fontsize() for text in (axes.xaxis.label, axes.yaxis.label, *axes.texts)} == {8.0}
+    assert axes.xaxis.label.get_fontfamily() == (["STIXGeneral"] if look.get("serif") else ["sans-serif"])
+    ticks = axes.xaxis.get_ticklabels()
+    assert all(tick.get_fontfamily() == axes.xaxis.label.get_fontfamily() for tick in ticks)
+    ground, ink = np.mean(figure.get_facecolor()[:3]), axes.texts[0].get_color()
+    assert (ground < 0.2) == bool(look.get("dark"))
+    assert ink != figure.get_facecolor()
+
+
+def test_the_command_takes_serif_and_dark(tmp_path):
+    from singimpact.cli.figure import command
+
+    written = []
+    for n, options in enumerate([[], ["--serif"], ["--dark"]]):
+        target = tmp_path / f"{n}.svg"
+        told = CliRunner().invoke(command, ["11", "-o", str(target), *options])
+        assert told.exit_code == 0, told.output
+        written.append(target.read_text())
+    assert "STIX" in written[1]
+    assert len(set(written)) == 3
+    assert "#14181c" in written[2]
