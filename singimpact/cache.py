@@ -160,7 +160,7 @@ SOURCES = (".py", ".js", ".css", ".html")
 
 @lru_cache(maxsize=8)
 def source_digest(folder: Path, without: tuple[str, ...] = ()) -> str:
-    """The digest of the sources in a folder (Python, and the parts of pages); paths that begin as `without` are left out.
+    """The digest of the sources of a folder, pages too, those whose path begins with one of `without` left out.
 
     Examples
     --------

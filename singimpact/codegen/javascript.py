@@ -14,7 +14,8 @@ from singimpact.algebra.expressions import Call, Expression, Name, Number, Pi, P
 from singimpact.algebra.numbers import as_float
 from singimpact.codegen.over_lists import FUNCTIONS, nested
 
-BINARY = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
+# % of numbers that are not negative: the languages differ elsewhere
+BINARY = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Mod: "%"}
 COMPARED = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "===", ast.NotEq: "!=="}
 CALLED = {**{name: f"Math.{name}" for name in FUNCTIONS}, "abs": "Math.abs", "min": "Math.min", "max": "Math.max",
           "int": "Math.trunc", "float": ""}  # fmt: skip
@@ -32,7 +33,7 @@ def translated(source: str, wanted: Collection[str] | None = None) -> dict[str, 
 
     Raises
     ------
-    NotImplementedError : a wanted function holds something that has no translation here.
+    TypeError : a wanted function holds something that has no translation here.
 
     Examples
     --------
@@ -83,14 +84,11 @@ def formula(tree: Expression, table: str) -> str:
 
 def _function(part: ast.FunctionDef) -> str:
     given = [argument.arg for argument in part.args.args]
-    own = sorted({_name(node.id) for node in ast.walk(part) if _is_stored(node)} - {_name(name) for name in given})
+    stored = {node.id for node in ast.walk(part) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    own = sorted(_name(name) for name in stored - set(given))
     lines = [f"  let {', '.join(own)};"] if own else []
     lines += _block(part.body)
     return "\n".join([f"function {_name(part.name)}({', '.join(map(_name, given))}) {{", *lines, "}"])
-
-
-def _is_stored(node: ast.AST) -> bool:
-    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
 
 
 def _name(name: str) -> str:
@@ -134,7 +132,7 @@ def _statement(part: ast.stmt) -> Iterator[str]:
             yield from _block(body)
             yield "}"
         case _:
-            raise NotImplementedError(f"no JavaScript for {ast.unparse(part)!r}")
+            raise TypeError(f"no JavaScript for {ast.unparse(part)!r}")
 
 
 def _loop(variable: str, ends: list[str], given: list[ast.expr]) -> str:
@@ -144,7 +142,7 @@ def _loop(variable: str, ends: list[str], given: list[ast.expr]) -> str:
     return f"for ({variable} = {start}; {variable} {'<' if step > 0 else '>'} {stop}; {variable} += {step}) {{"
 
 
-def _text(node: ast.expr) -> str:  # noqa: C901 one case a kind of expression
+def _text(node: ast.expr) -> str:
     match node:
         case ast.Constant(bool(value)):
             return "true" if value else "false"
@@ -158,29 +156,33 @@ def _text(node: ast.expr) -> str:  # noqa: C901 one case a kind of expression
             return f"{_text(value)}.{name}"
         case ast.Subscript(value, at):
             return f"{_text(value)}[{_text(at)}]"
+        case ast.Call(ast.Name("len"), [part]):
+            return f"{_text(part)}.length"
+        case ast.Call(ast.Name(name), given, []):
+            return f"{CALLED.get(name, _name(name))}({', '.join(map(_text, given))})"
+    return _operation(node)
+
+
+def _operation(node: ast.expr) -> str:
+    match node:
         case ast.UnaryOp(ast.USub(), part):
             return f"(-{_text(part)})"
         case ast.UnaryOp(ast.Not(), part):
             return f"!({_text(part)})"
+        case ast.BinOp(base, ast.Pow(), ast.Constant(0.5)):
+            return f"Math.sqrt({_text(base)})"
         case ast.BinOp(base, ast.Pow(), exponent):
-            half = isinstance(exponent, ast.Constant) and exponent.value == 0.5
-            return f"Math.sqrt({_text(base)})" if half else f"Math.pow({_text(base)}, {_text(exponent)})"
-        case ast.BinOp(left, ast.Mod(), right):  # of numbers that are not negative: the languages differ elsewhere
-            return f"({_text(left)} % {_text(right)})"
+            return f"Math.pow({_text(base)}, {_text(exponent)})"
         case ast.BinOp(left, op, right) if type(op) in BINARY:
             return f"({_text(left)} {BINARY[type(op)]} {_text(right)})"
         case ast.BoolOp(op, parts):
             return f"({(' && ' if isinstance(op, ast.And) else ' || ').join(map(_text, parts))})"
-        case ast.Compare(left, ops, rights):
+        case ast.Compare(left, ops, rights) if all(type(op) in COMPARED for op in ops):
             parts = [left, *rights]
-            links = [f"{_text(a)} {COMPARED[type(op)]} {_text(b)}" for a, op, b in zip(parts, ops, rights, strict=False)]
+            links = [
+                f"{_text(a)} {COMPARED[type(op)]} {_text(b)}" for a, op, b in zip(parts, ops, rights, strict=False)
+            ]
             return f"({' && '.join(links)})"
         case ast.IfExp(test, body, orelse):
             return f"({_text(test)} ? {_text(body)} : {_text(orelse)})"
-        case ast.Call(ast.Name("len"), [part]):
-            return f"{_text(part)}.length"
-        case ast.Call(ast.Name(name), given, []):
-            if any(isinstance(each, ast.Starred) for each in given):
-                raise NotImplementedError(f"no JavaScript for {ast.unparse(node)!r}")
-            return f"{CALLED.get(name, _name(name))}({', '.join(map(_text, given))})"
-    raise NotImplementedError(f"no JavaScript for {ast.unparse(node)!r}")
+    raise TypeError(f"no JavaScript for {ast.unparse(node)!r}")

@@ -92,7 +92,8 @@ def grown_gamma(model: Oscillator, window: Window, tau: Any = None) -> list[Curv
     at = _curved(model, tau)
     series, motion = arc_in_numbers(SETTINGS.order, CURVED[at], model, tau)
     foot = _foot(model, tau, at)
-    size = min(series.valid_within(SETTINGS.trust), motion.valid_within(SETTINGS.trust))
+    # a series that ends is exact everywhere
+    size = min(series.valid_within(SETTINGS.trust), motion.valid_within(SETTINGS.trust), window.sides[0])
     return _grown(model, window, foot, series, -size, float(motion(-size)))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import evaluate, names_in, number, substitute
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import as_float, compare
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.dynamics.invariant_arcs import grown_gamma
@@ -183,9 +183,7 @@ def _across(model: Oscillator, between: tuple[Fraction, Fraction] | None, steps:
     return [(clearance, view) for clearance in np.linspace(low, high, steps).tolist()]
 
 
-def _through(
-    swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: int
-) -> list[tuple[float, View]]:
+def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: int) -> list[tuple[float, View]]:
     """The clearances with c_0 among them; windows and the size of P from half the distance of A and B.
 
     a = a'' (sigma^2 - half^2)/2 and a = -f_x (c - c_0) at the swan, to leading order.
@@ -229,8 +227,10 @@ def _frame(surface: ImpactSurface, clearance: float, view: View) -> ClearanceFra
 
 def _gammas(surface: ImpactSurface, size: float) -> list[Curve]:
     """gamma at each point of the window that has one, cut to the picture."""
-    found = []
+    found: list[Curve] = []
     low, high = surface.window.x
+    if compare(surface.model.slope_at_rest(), 1) == 0:  # no invariant curve attracts then
+        return found
     for point, tau in surface.placed_tangencies:
         turns = tau - point.tau  # whole periods
         swan = point.kind == "degenerate" and acceleration(surface.model, np.array([tau]), 2)[0] < 0

@@ -34,11 +34,11 @@ CURVES = {
 DIGITS = 6  # of the coordinates in the page: below a hundredth of a pixel
 PARTS = Path(__file__).with_name("page")
 METHOD = (
-    "The page computes orbits in double precision with the package's own Taylor method for this f and g: the first root "
-    "of x - c on a step is found from bounds of its derivatives, so no impact is stepped over. A flight that touches "
-    "x = c so nearly that rounding decides ends the orbit, and the page says so; after a near graze the later states "
-    "have fewer digits. Chatter is summed when less than 1e-7 of the forcing's time scale is left of it. For certified "
-    "digits use osc.orbit of the Python package singimpact."
+    "Orbits are computed in this page, in double precision, with the Taylor method of the package for this f and g. "
+    "The first root of x - c on a step is found from bounds of its derivatives, so no impact is stepped over. "
+    "A flight that touches x = c so nearly that rounding decides ends the orbit, and the page says so; after a near "
+    "graze the later states have fewer digits. Chatter is summed when less than 1e-7 of the forcing's time scale is "
+    "left of it. For certified digits use osc.orbit of the Python package singimpact."
 )
 
 
@@ -57,7 +57,7 @@ class ExplorePage:
     def __repr__(self) -> str:
         low, high = self.film.frames[0].clearance, self.film.frames[-1].clearance
         megabytes = len(self.html) / 1e6
-        return f"ExplorePage({len(self.film.frames)} clearances from {low:.6g} to {high:.6g}, {megabytes:.1f} MB)"
+        return f"ExplorePage({len(self.film.frames)} clearances from {low:.6g} to {high:.6g}, {megabytes:.2g} MB)"
 
     def _repr_html_(self) -> str:
         return f'<iframe srcdoc="{escape(self.html)}" width="100%" height="800" frameborder="0"></iframe>'
@@ -88,8 +88,8 @@ def explore(osc: Oscillator, between: Any = None, steps: int = SETTINGS.steps) -
     Examples
     --------
     >>> page = explore(Oscillator("x", "cos(2*t)", "0.9", "1/2"), steps=2)
-    >>> print(page)
-    ExplorePage(2 clearances from 1 to 1.13708, 0.1 MB)
+    >>> print(repr(page).partition(", ")[0])
+    ExplorePage(2 clearances from 1 to 1.13708
     """
     if not isinstance(osc, Oscillator):
         raise refuse("osc", osc, "an ImpactOscillator")
@@ -102,14 +102,14 @@ def explore(osc: Oscillator, between: Any = None, steps: int = SETTINGS.steps) -
 def explore_page(film: ClearanceFilm) -> str:
     """The page of a film."""
     model = film.model
-    text = f"x'' + f(x, x') = g(t), x >= c, with f = {model.f}, g = {model.g}, restitution {model.restitution}."
+    text = f"x'' + f(x, x') = g(t), x \u2265 c, with f = {model.f}, g = {model.g}, restitution {model.restitution}."
     if model.parameters:
         text += f" Parameters: {', '.join(f'{name} = {value}' for name, value in model.parameters.items())}."
     page = (PARTS / "page.html").read_text(encoding="utf-8")
     filled = {
         "title": "Across clearances" if film.swan is None else "Through a swan",
         "model": escape(text),
-        "sentence": escape(film.sentence),
+        "sentence": escape(film.sentence.replace("c_0", "c\u2080").replace("tau =", "\u03c4 =")),
         "method": escape(METHOD),
         "style": (PARTS / "page.css").read_text(encoding="utf-8"),
         "script": _script(film),
@@ -145,8 +145,11 @@ def _film(film: ClearanceFilm) -> dict[str, Any]:
 
 
 def _frame(frame: ClearanceFrame) -> dict[str, Any]:
-    curves = {CURVES[name][0]: [_short(curve.points.ravel()) for curve in parts] for name, parts in frame.curves.items()}
-    empty = "" if any(curves.values()) else "At this clearance no flight at rest meets x = c again in this window."
+    curves = {
+        CURVES[name][0]: [_short(curve.points.ravel()) for curve in parts] for name, parts in frame.curves.items()
+    }
+    none = [CURVES[name][0] for name in ("Z", "H", "P") if not frame.curves[name]]
+    empty = f"At this clearance the window has no {' and no '.join(none)}." if none else ""
     return {"c": frame.clearance, "tau": frame.view.tau, "t": frame.view.t, "v": frame.view.v,
             "tangencies": frame.tangencies, "curves": curves, "empty": empty}  # fmt: skip
 

@@ -36,7 +36,7 @@ def model_in_javascript(osc: Oscillator) -> str:
     --------
     >>> text = model_in_javascript(Oscillator("x", "cos(w*t)", 0, "1/2", {"w": 2}))
     >>> [line for line in text.splitlines() if line.startswith("const constants_of")]
-    ['const constants_of = (given) => [given["w"]];']
+    ['const constants_of = (given) => [given["w"], (-1 * given["w"]), 1];']
     """
     flow = recurrence_of(osc)
     functions: dict[str, str] = {}

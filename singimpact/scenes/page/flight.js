@@ -101,22 +101,22 @@ function followed(fly, tau, v, times) {
   return out;
 }
 
-// x(t) of an orbit up to a time: [t, x] of points, a dozen and more a flight.
+// x - c of an orbit up to a time: [t, x - c] of points, a dozen and more a flight.
 function motion(fly, orbit, until) {
   const points = [];
   for (let n = 0; n < orbit.tau.length && orbit.tau[n] < until; n += 1) {
     const start = orbit.tau[n], rests = orbit.kind[n] === "complete" || (orbit.kind[n] === "start" && orbit.kind[n + 1] === "release");
-    points.push([start, fly.p[0]]);
+    points.push([start, 0]);
     if (rests || orbit.kind[n + 1] === "complete") continue;
     const last = n + 1 < orbit.tau.length ? orbit.tau[n + 1] : orbit.ending === 3 || orbit.ending === 5 ? until : start;
     const count = Math.min(200, 12 + Math.ceil(24 * (last - start) / (fly.period || 1)));
     const times = Array.from({ length: count - 1 }, (_, k) => (k + 1) * (last - start) / count);
-    followed(fly, start, orbit.v[n], times).forEach((each, k) => points.push([start + times[k], fly.p[0] + each[0]]));
+    followed(fly, start, orbit.v[n], times).forEach((each, k) => points.push([start + times[k], each[0]]));
   }
   return points;
 }
 
-// Z, H and P as segments, from the signs of y = (x - c)/t^2 of flights at rest on a grid.
+// Z, H and P as lines [x, y, x, y, ...], from the signs of y = (x - c)/t^2 of flights at rest on a grid.
 function sketched(fly, window, across, up) {
   const [t0, t1] = window.t, taus = [], times = [];
   for (let i = 0; i <= across; i += 1) taus.push(window.tau[0] + (window.tau[1] - window.tau[0]) * i / across);
@@ -126,27 +126,47 @@ function sketched(fly, window, across, up) {
     const flights = [...followed(fly, tau, 0, back).reverse(), ...followed(fly, tau, 0, ahead)];
     return flights.map(([z, u], j) => [tau, times[j], z / (times[j] * times[j]), u]);
   });
-  const found = { Z: [], H: [], P: [] };
-  const cut = (a, b) => {
+  // the crossing of an edge, and its name: neighbouring cells share it
+  const crossing = (i, j, upwards) => {
+    const a = columns[i][j], b = upwards ? columns[i][j + 1] : columns[i + 1][j];
+    if ((a[2] < 0) === (b[2] < 0)) return null;
     const s = a[2] / (a[2] - b[2]);
-    return [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[3] + s * (b[3] - a[3])];
+    return { name: `${i} ${j} ${upwards}`, place: [0, 1, 3].map((k) => a[k] + s * (b[k] - a[k])) };
   };
+  const places = new Map(), links = new Map();
   for (let i = 0; i < across; i += 1) {
     for (let j = 0; j < up; j += 1) {
-      const corners = [columns[i][j], columns[i + 1][j], columns[i + 1][j + 1], columns[i][j + 1]];
-      if (!corners.every((each) => Number.isFinite(each[2]))) continue;
-      const ends = [];
-      corners.forEach((a, n) => {
-        const b = corners[(n + 1) % 4];
-        if ((a[2] < 0) !== (b[2] < 0)) ends.push(cut(a, b));
-      });
+      if (![columns[i][j], columns[i + 1][j], columns[i + 1][j + 1], columns[i][j + 1]].every((each) => Number.isFinite(each[2]))) continue;
+      const ends = [crossing(i, j, false), crossing(i + 1, j, true), crossing(i, j + 1, false), crossing(i, j, true)].filter((each) => each);
       for (let n = 0; n + 1 < ends.length; n += 2) {
-        const [a, b] = [ends[n], ends[n + 1]];
-        found.Z.push([a[0], a[1], b[0], b[1]]);
-        found.H.push([a[0] + a[1], -a[1], b[0] + b[1], -b[1]]);
-        found.P.push([a[0] + a[1], a[2], b[0] + b[1], b[2]]);
+        for (const [from, to] of [[ends[n], ends[n + 1]], [ends[n + 1], ends[n]]]) {
+          places.set(from.name, from.place);
+          links.set(from.name, [...(links.get(from.name) || []), to.name]);
+        }
       }
     }
   }
-  return found;
+  const lines = chained(links).map((line) => line.map((name) => places.get(name)));
+  return { Z: lines.map((line) => line.flatMap(([tau, t]) => [tau, t])),
+    H: lines.map((line) => line.flatMap(([tau, t]) => [tau + t, -t])),
+    P: lines.map((line) => line.flatMap(([tau, t, u]) => [tau + t, u])) };
+}
+
+// Names that are linked in pairs, as lines from end to end; a closed line ends where it begins.
+function chained(links) {
+  const left = new Set(links.keys()), lines = [];
+  for (const open of [true, false]) {
+    for (const first of links.keys()) {
+      if (!left.has(first) || (open && links.get(first).length !== 1)) continue;
+      const line = [first];
+      left.delete(first);
+      for (let next = first; next !== undefined;) {
+        next = links.get(next).find((name) => left.has(name));
+        if (next !== undefined) { line.push(next); left.delete(next); }
+      }
+      if (!open) line.push(first);
+      lines.push(line);
+    }
+  }
+  return lines;
 }

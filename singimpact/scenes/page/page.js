@@ -125,7 +125,7 @@ function show() {
   const points = fresh ? [] : own.tangencies.map((tau) => [tau, 0, 4.5]);
   for (const here of [surface, states]) dots(here, points, "tangencies", { fill: "#000" });
   show_orbit(states, view);
-  at("clearance-now").textContent = `${short(own.c, 9)}${state.frame === FILM.swan ? " = c₀, the swan" : ""}`;
+  at("clearance-now").textContent = `${short(own.c)}${state.frame === FILM.swan ? " = c₀, the swan" : ""}`;
   at("clearance").setAttribute("aria-valuetext", at("clearance-now").textContent);
   at("curves-note").textContent = note(changed);
   PAGE_NOW.states = states; PAGE_NOW.surface = surface;
@@ -133,7 +133,8 @@ function show() {
 
 function note(changed) {
   if (changed.length) {
-    return `Z, H and P are sketched here for these parameters, to about one cell of a grid of 160 by 160; γ and the visible part of P are drawn at ${changed.map((name) => `${name} = ${short(MODEL.parameters[name])}`).join(", ")} only.`;
+    const own = changed.map((name) => `${name} = ${short(MODEL.parameters[name])}`).join(", ");
+    return `Z, H and P are sketched here for these parameters, to about one cell of a grid of 160 by 160. γ, the visible part of P${FILM.swan === null ? "" : ", c₀"} and the tangency points are those of ${own}; they are drawn there only.`;
   }
   if (state.r !== MODEL.r) return `γ depends on r and is drawn at r = ${short(MODEL.r)} only; Z, H and P do not depend on r.`;
   return frame().empty;
@@ -177,18 +178,18 @@ function show_orbit(states, view) {
   const impacts = orbit.kind.filter((kind) => kind === "impact").length;
   const ends = orbit.tau[orbit.tau.length - 1] + (orbit.ending ? 0.5 * (turn || 1) : 0);
   const until = Math.min(start + span, Math.max(ends, start + 1e-6 * span));
-  const points = motion(fly(), orbit, until), clearance = frame().c;
-  const most = points.reduce((a, each) => Number.isFinite(each[1]) ? Math.max(a, each[1]) : a, clearance);
-  const rise = most - clearance || 1;
-  const here = panel("motion", [start, until], [clearance - 0.08 * rise, most + 0.06 * rise], { x: "time", y: "x", title: "x over time" }, (wide) => wide < 600 ? 0.62 : 0.26);
-  here.inside.append(made("line", { x1: here.box.left, x2: here.box.right, y1: here.y(clearance), y2: here.y(clearance), stroke: "#000", "stroke-width": 1.6 }));
+  const points = motion(fly(), orbit, until);
+  const rise = points.reduce((a, each) => Number.isFinite(each[1]) ? Math.max(a, each[1]) : a, 0) || 1;
+  const here = panel("motion", [start, until], [-0.08 * rise, 1.06 * rise], { x: "time t", y: "x − c", title: "x - c over time" }, (wide) => wide < 600 ? 0.62 : 0.26);
+  here.inside.append(made("line", { x1: here.box.left, x2: here.box.right, y1: here.y(0), y2: here.y(0), stroke: "#000", "stroke-width": 1.6 }));
   const path = points.filter((each) => Number.isFinite(each[1])).flat();
   here.inside.append(made("path", { d: path.reduce((text, value, n) => n % 2 ? text + here.y(value).toFixed(2) : `${text}${n ? "L" : "M"}${here.x(value).toFixed(2)} `, ""), "data-curve": "motion", ...stroke({ ...PENS.orbit, color: "#9a6700", dashes: "none" }) }));
-  dots(here, orbit.tau.flatMap((tau, n) => tau <= until && n ? [[tau, clearance, 2.4]] : []), "impacts", { fill: PENS.orbit.color, stroke: "#5a3d00", "stroke-width": 0.7 });
-  const told = [`${impacts} impacts until t = ${short(orbit.tau[orbit.tau.length - 1])}; ${WORDS[orbit.ending] || `flight ended with code ${orbit.ending}`}.`];
+  dots(here, orbit.tau.flatMap((tau, n) => tau <= until && n ? [[tau, 0, 2.4]] : []), "impacts", { fill: PENS.orbit.color, stroke: "#5a3d00", "stroke-width": 0.7 });
+  const several = (n, one, more) => `${n} ${n === 1 ? one : more}`;
+  const told = [`${several(impacts, "impact", "impacts")} until t = ${short(orbit.tau[orbit.tau.length - 1])}; ${WORDS[orbit.ending] || `flight ended with code ${orbit.ending}`}.`];
   const count = (kind) => orbit.kind.filter((each) => each === kind).length;
-  if (count("complete")) told.push(`${count("complete")} chatters came to rest.`);
-  if (count("release")) told.push(`${count("release")} lift-offs from rest.`);
+  if (count("complete")) told.push(`${several(count("complete"), "chatter", "chatters")} came to rest.`);
+  if (count("release")) told.push(`${several(count("release"), "lift-off", "lift-offs")} from rest.`);
   const grazing = orbit.before.map((hit, n) => Math.abs(hit) < NEAR_GRAZE * orbit.v[n - 1] ? n : 0).filter((n) => n > 0);
   if (grazing.length) told.push(`Impact ${grazing[0]} is nearly a graze, with x' = ${short(orbit.before[grazing[0]], 3)} before it: the later states are known to about ${Math.max(1, Math.round(15 + Math.log10(Math.abs(orbit.before[grazing[0]]) / orbit.v[grazing[0] - 1])))} digits or fewer.`);
   if (until < ends) told.push(`Shown: the first ${turn ? "8 periods" : "50 time units"}.`);
@@ -250,7 +251,7 @@ function begin() {
     const [tau, v] = here.data((event.clientX - corner.left) * scale, (event.clientY - corner.top) * scale);
     const { left, right } = here.box, px = (event.clientX - corner.left) * scale;
     if (px < left || px > right) return;
-    start_orbit(Number(tau.toPrecision(12)), Math.max(0, Number(v.toPrecision(12))));
+    start_orbit(Number(tau.toPrecision(6)), Math.max(0, Number(v.toPrecision(5))));
   });
   for (const line of LEGEND) {
     const item = document.createElement("li"), svg = made("svg", { width: 34, height: 10 });
