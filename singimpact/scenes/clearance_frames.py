@@ -15,6 +15,7 @@ from singimpact.algebra.numbers import as_float, compare
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.dynamics.invariant_arcs import grown_gamma
+from singimpact.flights.together import in_step
 from singimpact.inputs import refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -151,13 +152,18 @@ def clearance_film(
     ends = None if between is None else clearances(between)
     swan = _nearest_swan(model, ends)
     views = _across(model, ends, steps) if swan is None else _through(swan, ends, steps)
-    frames, flights = [], 0
-    for n, (clearance, view) in enumerate(views):
-        told(n, len(views), f"c = {clearance:.6g}")
+    surfaces, frames = [], []
+    for clearance, view in views:
         at = swan.place if swan is not None and clearance == swan.clearance else clearance
         surface = ImpactSurface(model.replace(clearance=at), view.tau, view.t, 1 / SETTINGS.pixels)
+        surface.placed_tangencies  # noqa: B018 found before the threads start: balls have one precision in a process
+        surfaces.append(surface)
+    told(0, len(views), "Z at all clearances")
+    in_step(model, [surface.trace for surface in surfaces])
+    for n, ((clearance, view), surface) in enumerate(zip(views, surfaces, strict=True)):
+        told(n, len(views), f"c = {clearance:.6g}")
         frames.append(_frame(surface, clearance, view))
-        flights += surface.flights
+    flights = sum(surface.flights for surface in surfaces)
     widest = max((view for _, view in views), key=lambda view: view.size)
     return ClearanceFilm(model, swan, tuple(frames), widest.tau, widest.t, widest.v, flights)
 
