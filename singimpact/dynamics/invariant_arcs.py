@@ -72,12 +72,13 @@ class Piece:
     generation: int
 
 
-def grown_gamma(model: Oscillator, window: Window, tau: Any = None) -> list[Curve]:
+def grown_gamma(model: Oscillator, window: Window, tau: Any = None, trust: float = SETTINGS.trust) -> list[Curve]:
     """gamma from its series at a tangency (or swan) point to the edge of the window [t:t2, t:t3].
 
     Parameters
     ----------
-    tau : the point; without one the first that has an invariant curve.
+    tau : the point; without one the first that has an invariant curve. trust : relative truncation error of the series
+        where its inverse images begin.
 
     Returns
     -------
@@ -93,7 +94,7 @@ def grown_gamma(model: Oscillator, window: Window, tau: Any = None) -> list[Curv
     series, motion = arc_in_numbers(SETTINGS.order, CURVED[at], model, tau)
     foot = _foot(model, tau, at)
     # a series that ends is exact everywhere
-    size = min(series.valid_within(SETTINGS.trust), motion.valid_within(SETTINGS.trust), window.sides[0])
+    size = min(series.valid_within(trust), motion.valid_within(trust), float(window.sides[0]))
     return _grown(model, window, foot, series, -size, float(motion(-size)))
 
 

@@ -83,7 +83,8 @@ def rest_flights(osc: Oscillator, clearance: Array, tau: Array, lane: Array, tim
     [[-1.0, 2.0, -1.0, 1.0], [-9.0, 6.0, -3.0, 1.0]]
     """
     flow, order = recurrence_of(osc), degree_for(EPSILON)
-    coefficients = plain(_unshared(flow.source), {name: getattr(np, _NUMPY.get(name, name)) for name in FUNCTIONS})["coefficients"]
+    functions = {name: getattr(np, _NUMPY.get(name, name)) for name in FUNCTIONS}
+    coefficients = plain(_unshared(flow.source), functions)["coefficients"]
     numbers = numbers_of_flow(osc, flow).tolist()
     found = np.full((times.size, 4), np.nan)
     ends = np.zeros(tau.size)
@@ -99,7 +100,9 @@ def rest_flights(osc: Oscillator, clearance: Array, tau: Array, lane: Array, tim
         work = _Work([0] * (order + 2), [[0] * (order + 2) for _ in range(flow.rows)])
         start = ahead[active] * gone[active]
         with np.errstate(all="ignore"):
-            coefficients([tau[active]], start, z[active], u[active], 0.0, order, [clearance[active], *numbers[1:]], work)
+            coefficients(
+                [tau[active]], start, z[active], u[active], 0.0, order, [clearance[active], *numbers[1:]], work
+            )
             X = [np.broadcast_to(part, active.shape) for part in work.X[: order + 1]]
             X[0] = z[active]
             h = np.minimum(_wished(X, order, ends[active]), ends[active] - gone[active])
@@ -211,7 +214,7 @@ class Meeting:
                 np.concatenate([each.lane + start for each, start in zip(asked, starts[:-1], strict=True)]),
                 np.concatenate([each.times for each in asked]),
             )
-            parts = np.split(made, np.cumsum([each.times.size for each in asked])[:-1])
+            parts: list[Any] = np.split(made, np.cumsum([each.times.size for each in asked])[:-1])
         except Exception as error:  # each thread raises it in its own place
             parts = [error] * len(asked)
         for each, part in zip(asked, parts, strict=True):

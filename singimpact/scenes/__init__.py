@@ -8,5 +8,23 @@ its layers), `layer_data` (what layers ask for), `layers`, `cached` (results on 
 what runs in the browser is in the folder `page`).
 """
 
-from singimpact.scenes.drawing import plot as plot
-from singimpact.scenes.scene import Scene as Scene
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from singimpact.scenes.drawing import plot as plot
+    from singimpact.scenes.scene import Scene as Scene
+
+
+def __getattr__(name: str) -> Any:
+    """`plot` and `Scene`, loaded when they are first used: the page needs neither."""
+    if name == "plot":
+        from singimpact.scenes.drawing import plot
+
+        return plot
+    if name == "Scene":
+        from singimpact.scenes.scene import Scene
+
+        return Scene
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

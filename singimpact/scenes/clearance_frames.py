@@ -51,7 +51,8 @@ class FilmSettings:
     # e^2 more for v, where e is half the distance of A and B in that of the ends, and at least `least`
     least: float = 0.15
     steps: int = 41
-    pixels: int = 500
+    pixels: int = 300  # a chord is then 12 pixels of a panel of 600, and leaves a smooth curve by much less than one
+    trust: float = 1e-8  # of the series of gamma, relative: inverse images shrink its error, and a line is wider
 
 
 SETTINGS = FilmSettings()
@@ -242,7 +243,7 @@ def _gammas(surface: ImpactSurface, size: float) -> list[Curve]:
         swan = point.kind == "degenerate" and acceleration(surface.model, np.array([tau]), 2)[0] < 0
         if point.kind == "gamma" or swan:
             frame = Window((low - turns, high - turns), (0.0, size), surface.window.resolution)
-            for curve in grown_gamma(surface.model, frame, point.tau):
+            for curve in grown_gamma(surface.model, frame, point.tau, SETTINGS.trust):
                 moved = curve.points + np.array([turns, 0.0])
                 found.append(Curve("gamma", moved, curve.axes, curve.marks))
     return found
