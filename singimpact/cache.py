@@ -155,9 +155,12 @@ def _changeable(place: Path) -> str | None:
     return None
 
 
+SOURCES = (".py", ".js", ".css", ".html")
+
+
 @lru_cache(maxsize=8)
 def source_digest(folder: Path, without: tuple[str, ...] = ()) -> str:
-    """The digest of the Python files of a folder, those whose path begins with one of `without` left out.
+    """The digest of the sources of a folder, pages too, those whose path begins with one of `without` left out.
 
     Examples
     --------
@@ -166,7 +169,7 @@ def source_digest(folder: Path, without: tuple[str, ...] = ()) -> str:
     False
     """
     digest = hashlib.sha256()
-    for path in sorted(folder.rglob("*.py")):
+    for path in sorted(path for path in folder.rglob("*") if path.suffix in SOURCES):
         part = path.relative_to(folder).as_posix()
         if not part.startswith(without):
             digest.update(part.encode() + b"\0" + path.read_bytes())

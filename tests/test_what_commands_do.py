@@ -101,7 +101,6 @@ def test_the_surface_is_drawn():
 
 
 def test_the_page_is_saved(tmp_path):
-    pytest.importorskip("plotly", reason="needs plotly, of the extra `interactive`")
     page = si.explore(UNIVERSAL, steps=2)
     page.save(tmp_path / "page.html")
     assert (tmp_path / "page.html").read_text() == page.html

@@ -35,17 +35,15 @@ def command(
     """Show Z, H, P and gamma for clearances around the swan that is nearest to the clearance of the model.
 
     A model without a swan is shown around its clearance. MODEL is a TOML file, as for --model. The page is one file
-    that needs no network.
+    that needs no network and no other program. It has sliders for r and the parameters too; a click in the plane of
+    launch phase and velocity starts an orbit, which the browser computes.
     """
     place = _place(html, output)
     oscillator = take_model(_with_path(options, path))
     if as_json:
         emit(as_json_text({"model": oscillator.to_dict(), **_told(_film(oscillator, between, steps))}), place)
         return
-    from singimpact.scenes.explore import require_plotly
-
-    require_plotly()
-    kept = kept_at(("explore", oscillator, between, steps), ("plotly", "contourpy"))
+    kept = kept_at(("explore", oscillator, between, steps), ("contourpy",))
     page = cache.recall(kept)
     if page is None:
         from singimpact.scenes.explore import explore_page
@@ -97,6 +95,7 @@ def _show(page: str, place: str | None) -> None:
 def _told(film: ClearanceFilm) -> dict[str, Any]:
     frames = [
         {"clearance": frame.clearance, "tangencies": frame.tangencies,
+         "window": {"tau": frame.view.tau, "t": frame.view.t, "v": frame.view.v},
          "curves": {name: [curve.points.tolist() for curve in curves] for name, curves in frame.curves.items()}}
         for frame in film.frames
     ]  # fmt: skip

@@ -2,6 +2,6 @@
 
 `recurrence` (x'' = g - f to a recurrence), `disc` and `radii` (bounds of it on complex discs), `scalar` (an
 expression), `formulas` and `rational_series` (polynomials and series), `over_lists` (text over any numbers),
-`object_code` (machine code, emitted and loaded).
+`javascript` (text for a browser), `object_code` (machine code, emitted and loaded).
 Not here: the expressions themselves (`algebra`), what a kernel is for (`flights`), frozen formulas (`generated`).
 """

@@ -43,12 +43,13 @@ SETTINGS = ArcSettings()
 CURVED = {"tangency": 1, "swan": 2}  # contact orders of the points where gamma may end
 
 
-def grown_gamma(model: Oscillator, window: Window, tau: Any = None) -> list[Curve]:
+def grown_gamma(model: Oscillator, window: Window, tau: Any = None, trust: float = SETTINGS.trust) -> list[Curve]:
     """gamma from its series at a tangency (or swan) point to the edge of the window [t:t2, t:t3].
 
     Parameters
     ----------
-    tau : the point; without one the first that has an invariant curve.
+    tau : the point; without one the first that has an invariant curve. trust : relative truncation error of the series
+        where its inverse images begin.
 
     Returns
     -------
@@ -63,7 +64,8 @@ def grown_gamma(model: Oscillator, window: Window, tau: Any = None) -> list[Curv
     at = _curved(model, tau)
     series, motion = arc_in_numbers(SETTINGS.order, CURVED[at], model, tau)
     foot = _foot(model, tau, at)
-    size = min(series.valid_within(SETTINGS.trust), motion.valid_within(SETTINGS.trust))
+    # a series that ends is exact everywhere
+    size = min(series.valid_within(trust), motion.valid_within(trust), float(window.sides[0]))
     return _grown(model, window, foot, series, -size, float(motion(-size)))
 
 

@@ -8,7 +8,7 @@ made from. `undecided` decides flights that end in no plain hit: `no_return/` pr
 one touches, `causes` says why one is open, `multiprecision`, `balls` and `short_balls` fly it with many digits;
 `in_digits` does so with all states.
 `response` and `rebound_law` are derivatives at a hit and what the impact makes of them; `counted` counts flights,
-`family` flies models with derivatives by their numbers, `blocks` cuts large arrays, `interruptible` makes long calls
-hear Ctrl-C.
+`together` makes many flights at rest at once on arrays, `family` flies models with derivatives by their numbers,
+`blocks` cuts large arrays, `interruptible` makes long calls hear Ctrl-C.
 Not here: flights after flights (`dynamics`), curves of flights (`surface`), power series (`theory`).
 """

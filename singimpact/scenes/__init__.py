@@ -5,8 +5,27 @@ Not here: what is drawn (`dynamics`, `surface`, `flights`), text with formulas (
 Files: `drawing` (`plot`: one call for everything that can be drawn), `orbit` (x(t), sections), `orbit_sheet` (three
 panels), `scene` (a window and its layers), `layer_data` (what layers ask for), `layers`, `cached` (results on disk),
 `style` (colours and lines), `basins`, `bifurcation`, `branches`, `manifolds` (W^s and W^u), `border` (the
-cascade of a border orbit), `label_places` (names beside points), `clearance_frames` and `explore` (the page).
+cascade of a border orbit), `label_places` (names beside points), `clearance_frames`,
+`flown_in_page` and `explore` (the page; what runs in the browser is in the folder `page`).
 """
 
-from singimpact.scenes.drawing import plot as plot
-from singimpact.scenes.scene import Scene as Scene
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from singimpact.scenes.drawing import plot as plot
+    from singimpact.scenes.scene import Scene as Scene
+
+
+def __getattr__(name: str) -> Any:
+    """`plot` and `Scene`, loaded when they are first used: the page needs neither."""
+    if name == "plot":
+        from singimpact.scenes.drawing import plot
+
+        return plot
+    if name == "Scene":
+        from singimpact.scenes.scene import Scene
+
+        return Scene
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

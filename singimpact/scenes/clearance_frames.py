@@ -11,10 +11,11 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import evaluate, names_in, number, substitute
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import as_float, compare
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.dynamics.invariant_arcs import grown_gamma
+from singimpact.flights.together import in_step
 from singimpact.inputs import refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -46,11 +47,29 @@ class FilmSettings:
     reach_tau: float = 4.0
     reach_t: float = 6.0
     height: float = 1.5  # a swan that is opened wide is higher than its leading part
+    # a window shrinks with the swan, but slower, so that one sees the swan open: by (1 + 3 e)/4 for tau and t, times
+    # e^2 more for v, where e is half the distance of A and B in that of the ends, and at least `least`
+    least: float = 0.15
     steps: int = 41
-    pixels: int = 500
+    pixels: int = 300  # a chord is then 12 pixels of a panel of 600, and leaves a smooth curve by much less than one
+    trust: float = 1e-8  # of the series of gamma, relative: inverse images shrink its error, and a line is wider
 
 
 SETTINGS = FilmSettings()
+
+
+@dataclass(frozen=True)
+class View:
+    """The window of a frame: tau, t : ends. size : of velocities, which are shown from -size to size."""
+
+    tau: Span
+    t: Span
+    size: float
+
+    @property
+    def v(self) -> Span:
+        """Ends of the velocity."""
+        return -self.size, self.size
 
 
 @dataclass(frozen=True)
@@ -60,11 +79,13 @@ class ClearanceFrame:
     Attributes
     ----------
     clearance : c. curves : "Z", "H", "P", "jumps" (the visible part of P), "gamma". tangencies : their times.
+    view : the window of this frame.
     """
 
     clearance: float
     curves: dict[str, list[Curve]]
     tangencies: tuple[float, ...]
+    view: View
 
     def line(self, name: str) -> tuple[Array, Array]:
         """All pieces of a curve as one line with gaps, where nan stands for a gap."""
@@ -80,7 +101,7 @@ class ClearanceFilm:
     Attributes
     ----------
     model : the oscillator. swan : the point that the slider goes through, or None. frames : the pictures.
-    tau, t, v : the window. flights : computed for Z, H and P.
+    tau, t, v : the widest of their windows. flights : computed for Z, H and P.
     """
 
     model: Oscillator
@@ -102,16 +123,6 @@ class ClearanceFilm:
         low, high = self.frames[0].clearance, self.frames[-1].clearance
         why = "" if _feels_clearance(self.model) else ": f does not contain x, and no curve depends on the clearance"
         return f"No swan lies between c = {low:.9g} and c = {high:.9g}{why}."
-
-
-@dataclass(frozen=True)
-class _View:
-    """places : of the slider. tau, t : the window. size : of velocities."""
-
-    places: list[float]
-    tau: Span
-    t: Span
-    size: float
 
 
 def clearance_film(
@@ -141,15 +152,21 @@ def clearance_film(
         raise refuse("steps", steps, "a whole number from 2 to 1001")
     ends = None if between is None else clearances(between)
     swan = _nearest_swan(model, ends)
-    view = _across(model, ends, steps) if swan is None else _through(swan, ends, steps)
-    frames, flights = [], 0
-    for n, clearance in enumerate(view.places):
-        told(n, len(view.places), f"c = {clearance:.6g}")
+    views = _across(model, ends, steps) if swan is None else _through(swan, ends, steps)
+    surfaces, frames = [], []
+    for clearance, view in views:
         at = swan.place if swan is not None and clearance == swan.clearance else clearance
         surface = ImpactSurface(model.replace(clearance=at), view.tau, view.t, 1 / SETTINGS.pixels)
-        frames.append(_frame(surface, clearance, view.size))
-        flights += surface.flights
-    return ClearanceFilm(model, swan, tuple(frames), view.tau, view.t, (-view.size, view.size), flights)
+        surface.placed_tangencies  # noqa: B018 found before the threads start: balls have one precision in a process
+        surfaces.append(surface)
+    told(0, len(views), "Z at all clearances")
+    in_step(model, [surface.trace for surface in surfaces])
+    for n, ((clearance, view), surface) in enumerate(zip(views, surfaces, strict=True)):
+        told(n, len(views), f"c = {clearance:.6g}")
+        frames.append(_frame(surface, clearance, view))
+    flights = sum(surface.flights for surface in surfaces)
+    widest = max((view for _, view in views), key=lambda view: view.size)
+    return ClearanceFilm(model, swan, tuple(frames), widest.tau, widest.t, widest.v, flights)
 
 
 def _feels_clearance(model: Oscillator) -> bool:
@@ -162,18 +179,19 @@ def _nearest_swan(model: Oscillator, between: tuple[Fraction, Fraction] | None) 
     return min(swans, key=lambda swan: abs(swan.clearance - here), default=None)
 
 
-def _across(model: Oscillator, between: tuple[Fraction, Fraction] | None, steps: int) -> _View:
+def _across(model: Oscillator, between: tuple[Fraction, Fraction] | None, steps: int) -> list[tuple[float, View]]:
     """The clearances around the model's own, or between the ends, in the window that `classify` looks at."""
     here = as_float(model.clearance)
     low, high = (here - SETTINGS.aside, here + SETTINGS.aside) if between is None else map(float, between)
     tau, t = default_window(model)
     outline = ImpactSurface(model, tau, t, 1 / SETTINGS.pixels).outline
     heights = [float(np.abs(curve.points[:, 1]).max()) for curve in outline]
-    return _View(np.linspace(low, high, steps).tolist(), tau, t, SETTINGS.height * max(heights, default=1.0))
+    view = View(tau, t, SETTINGS.height * max(heights, default=1.0))
+    return [(clearance, view) for clearance in np.linspace(low, high, steps).tolist()]
 
 
-def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: int) -> _View:
-    """The clearances with c_0 among them; the window and the size of P from half the distance of A and B at the end.
+def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: int) -> list[tuple[float, View]]:
+    """The clearances with c_0 among them; windows and the size of P from half the distance of A and B.
 
     a = a'' (sigma^2 - half^2)/2 and a = -f_x (c - c_0) at the swan, to leading order.
     """
@@ -190,9 +208,16 @@ def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: 
     half = min(widest, (2 * slope * away / curvature) ** 0.5)
     places = np.linspace(low, high, steps)
     places[np.argmin(np.abs(places - swan.clearance))] = swan.clearance
-    tau = (swan.tau - SETTINGS.reach_tau * half, swan.tau + SETTINGS.reach_tau * half)
-    t = (-SETTINGS.reach_t * half, SETTINGS.reach_t * half)
-    return _View(places.tolist(), tau, t, SETTINGS.height * 64 / 24 * curvature * half**3)
+    size = SETTINGS.height * 64 / 24 * curvature * half**3
+
+    def view(clearance: float) -> View:
+        open_ = (2 * slope * abs(clearance - swan.clearance) / curvature) ** 0.5 / half
+        share = float(np.clip(open_, SETTINGS.least, 1))
+        scale = (1 + 3 * share) / 4
+        tau, t = SETTINGS.reach_tau * half * scale, SETTINGS.reach_t * half * scale
+        return View((swan.tau - tau, swan.tau + tau), (-t, t), size * scale * share**2)
+
+    return [(clearance, view(clearance)) for clearance in places.tolist()]
 
 
 def _stiffness(swan: SwanPoint) -> float:
@@ -201,22 +226,24 @@ def _stiffness(swan: SwanPoint) -> float:
     return float(evaluate(derivative(rest, "x"), {"x": swan.clearance}, DOUBLES))
 
 
-def _frame(surface: ImpactSurface, clearance: float, size: float) -> ClearanceFrame:
+def _frame(surface: ImpactSurface, clearance: float, view: View) -> ClearanceFrame:
     curves = {"Z": surface.zero_set, "H": surface.horizon, "P": surface.outline, "jumps": surface.discontinuities}
     times = tuple(tau for _, tau in surface.placed_tangencies)
-    return ClearanceFrame(clearance, {**curves, "gamma": _gammas(surface, size)}, times)
+    return ClearanceFrame(clearance, {**curves, "gamma": _gammas(surface, view.size)}, times, view)
 
 
 def _gammas(surface: ImpactSurface, size: float) -> list[Curve]:
     """gamma at each point of the window that has one, cut to the picture."""
-    found = []
+    found: list[Curve] = []
     low, high = surface.window.x
+    if compare(surface.model.slope_at_rest(), 1) == 0:  # no invariant curve attracts then
+        return found
     for point, tau in surface.placed_tangencies:
         turns = tau - point.tau  # whole periods
         swan = point.kind == "degenerate" and acceleration(surface.model, np.array([tau]), 2)[0] < 0
         if point.kind == "gamma" or swan:
             frame = Window((low - turns, high - turns), (0.0, size), surface.window.resolution)
-            for curve in grown_gamma(surface.model, frame, point.tau):
+            for curve in grown_gamma(surface.model, frame, point.tau, SETTINGS.trust):
                 moved = curve.points + np.array([turns, 0.0])
                 found.append(Curve("gamma", moved, curve.axes, curve.marks))
     return found

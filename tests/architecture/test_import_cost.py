@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-HEAVY = {"sympy", "scipy", "numba", "mpmath", "flint", "matplotlib", "click", "rich", "jinja2", "plotly"}
+HEAVY = {"sympy", "scipy", "numba", "mpmath", "flint", "matplotlib", "click", "rich", "jinja2"}
 LOADED = "import sys; print(*sorted({name.partition('.')[0] for name in sys.modules}))"
 
 

@@ -1,7 +1,6 @@
 """explore: a page in a file, its curves as JSON, a browser, a line for a mistake."""
 
 import json
-import sys
 import webbrowser
 
 import pytest
@@ -10,7 +9,6 @@ LINEAR = ["--omega", "2", "--clearance", "0.9", "--restitution", "1/2", "--steps
 
 
 def test_page_in_a_file(singimpact, tmp_path):
-    pytest.importorskip("plotly")
     model = tmp_path / "model.toml"
     model.write_text('f = "x"\ng = "cos(2*t)"\nclearance = "0.9"\nrestitution = "1/2"\n')
     done = singimpact("explore", model, "--steps", "2", "--html", tmp_path / "page.html")
@@ -32,7 +30,6 @@ def test_a_range_without_a_swan_says_so(singimpact):
 
 @pytest.mark.parametrize("opens", [True, False])
 def test_window(singimpact, monkeypatch, opens):
-    pytest.importorskip("plotly")
     asked = []
     monkeypatch.setattr(webbrowser, "open", lambda place: asked.append(place) or opens)
     done = singimpact("explore", *LINEAR)
@@ -54,11 +51,3 @@ def test_refusals(singimpact, given, told):
     refused = singimpact("explore", *given)
     assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
     assert told in refused.stderr
-
-
-def test_without_plotly(singimpact, monkeypatch):
-    monkeypatch.setitem(sys.modules, "plotly", None)
-    monkeypatch.setitem(sys.modules, "plotly.graph_objects", None)
-    refused = singimpact("explore", *LINEAR)
-    assert refused.exit_code == 2
-    assert "extra `interactive`" in refused.stderr
