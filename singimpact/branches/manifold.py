@@ -1,4 +1,4 @@
-"""W^s and W^u of a periodic saddle in the plane (tau, v) of states after impacts, cut where the map is torn."""
+"""W^s and W^u of a periodic saddle in the plane (tau, v) of states after impacts, cut at discontinuities of the map."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class ManifoldSettings:
     # but a whole turn of a side is followed on, for so many turns, while it is longer than this
     lingering: int = 400
     least: float = 0.01
-    # a tear is said to be a graze when the slower side goes on to the other one, within so many resolutions
+    # a cut is a graze if the image of its slower side is its other side, within so many resolutions
     touching: float = 8.0
 
 
@@ -54,14 +54,14 @@ SETTINGS = ManifoldSettings()
 
 @dataclass(frozen=True)
 class Cut:
-    """Where the map tears a manifold.
+    """A cut of a manifold at a discontinuity of the map.
 
     Parameters
     ----------
     kind : "graze", when the slower side, which ends at v = 0, goes on to the other side: of two flights next to each
-        other one meets the wall and the other does not; "unresolved" otherwise. tau, v : the state that is torn apart.
+        other one meets the wall and the other does not; "unresolved" otherwise. tau, v : the state at the cut.
     sides : states that its two sides go to, by the map for W^u and by its inverse for W^s, shape (2, 2).
-    impacts : images that lie between the saddle and the torn state.
+    impacts : images that lie between the saddle and the cut.
     """
 
     kind: str
@@ -84,7 +84,7 @@ class Manifold:
     saddle : the orbit. stable : whether it is W^s. multiplier : the one that belongs to it.
     directions : unit tangents at the impacts of the orbit, shape (n, 2).
     pieces : curves in (tau, v), tau within a period (a vertex beyond its end is the next one of the piece); the marks
-        are "saddle", "cut" (the map is torn there), "leaves" (v passes the highest that is looked at) and "end".
+        are "saddle", "cut" (at a discontinuity of the map), "leaves" (v passes the limit) and "end".
     cuts : in the order in which they were met.
     window : what is looked at, with the resolution. length : of all pieces, in sides of the window.
     spacing : the longest chord, in the same unit. error : of the arc at the saddle, in periods and largest velocities.
@@ -183,8 +183,8 @@ def manifold(
     Notes
     -----
     Vertices are images of an arc at the saddle whose error is measured (`error`, about 1e-13); errors across the curve
-    shrink on the way, errors along it only move its vertices. The impact map is torn where a flight grazes; the flow is
-    not. W^u ends there at v = 0 and begins again on P, at the state to which that end goes next; W^s likewise,
+    shrink on the way, errors along it only move its vertices. The impact map is discontinuous where a flight
+    grazes; the flow is not. W^u ends there at v = 0 and begins again on P, at the image of that end; W^s likewise,
     backwards.
 
     Examples

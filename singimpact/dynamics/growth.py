@@ -35,8 +35,8 @@ class GrowthSettings:
 
 SETTINGS = GrowthSettings()
 NATURAL, TORN, LEFT, LOST = "", "torn", "left", "lost"
-"""How a piece ends: with its fundamental piece, or where the curve was cut before; at a tear; where it leaves what is
-followed; where the map has no image."""
+"""Ends of a piece: that of its fundamental piece, or an earlier cut; a discontinuity; the edge of the window that is
+followed; a point without an image."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Carried:
     start : points of the fundamental piece, from s. step : points of the next generation, from those of a generation
         and its number; nan where there are none.
     shown : which points lie where the curve is resolved. followed : which are carried on. most : points of a piece.
-    located : tears are located to the graze, or to rounding in s, not to where their ends are resolved.
+    located : discontinuities are located to the graze, or to rounding in s, not only to the resolution.
     """
 
     window: Window
@@ -90,12 +90,12 @@ class Carried:
         return Piece(s, self.start(s), 0)
 
     def refined(self, piece: Piece) -> Piece:
-        """A piece with points added to the resolution, where it is not torn."""
+        """A piece refined to the resolution, without a discontinuity."""
         s, points, coarse = self._refined(piece.s, piece.points, piece.generation)
         return Piece(s, points, piece.generation, piece.ends, coarse)
 
     def images(self, piece: Piece) -> list[Piece]:
-        """The image of a piece, with points added to the resolution, in stretches without a tear."""
+        """The image of a piece, refined to the resolution, in parts without a discontinuity."""
         generation = piece.generation + 1
         s, points, coarse = self._refined(piece.s, self.step(piece.points, piece.generation), generation)
         jump = np.hypot(*(np.diff(points, axis=0) / self.window.sides).T) > SETTINGS.jump * self.window.resolution
@@ -135,7 +135,7 @@ class Carried:
         return s, points, False
 
     def _located(self, s: Array, points: Array, at: Array, generation: int) -> tuple[Array, Array, Array]:
-        """Points more on both sides of tears, by bisection in s, and which chords are the tears then.
+        """Further points on both sides of discontinuities, by bisection in s, and the chords across them.
 
         A middle belongs to the end that it is nearer to. A curve that ends like a square root gets points in geometric
         sequence.
@@ -180,7 +180,7 @@ class Carried:
 
 
 def closest(window: Window) -> float:
-    """Neighbours in s nearer than this share of a piece, still far apart in the window, are torn.
+    """The step in s, as a part of a piece, below which neighbours far apart in the window lie beside a discontinuity.
 
     Examples
     --------

@@ -138,7 +138,7 @@ class LinearFlow:
                 return BallHit(None, None) if limit is not None and end < longest else None
             low, high = top, high * LIMITS.growth.numerator / LIMITS.growth.denominator
 
-    def polished(self, tau: Any, v: Any, near: float) -> tuple[Any, Any] | None:
+    def refined_hit(self, tau: Any, v: Any, near: float) -> tuple[Any, Any] | None:
         """Time and velocity of the hit next to a time that doubles have found, one step of Halley's method away.
 
         The model with its waves is one linear system, so resonance needs no care; None when the step is not small.

@@ -26,7 +26,7 @@ class Limits:
     # relative rounding errors of the flight time and of x' below which a hit is never refined
     rough: tuple[float, float] = (1e-14, 1e-13)
     # bits of the balls that refine a hit which double-double arithmetic leaves open (70 us)
-    polish_bits: int = 192
+    refine_bits: int = 192
     # derivatives of a_c that are tested before a mass at rest is said to rest for ever
     derivatives_at_rest: int = 12
     # launches in one call that are decided in many digits after doubles left them undecided: 20 ms each, so a grid

@@ -152,17 +152,17 @@ def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[i
     return None
 
 
-def polished(osc: Oscillator, states: States, index: int, time: float) -> list[float] | None:
+def refined_hit(osc: Oscillator, states: States, index: int, time: float) -> list[float] | None:
     """Flight time and velocity of a hit of a linear model, correctly rounded up to a unit.
 
     Which root is the first has been decided; here it is only placed. None where balls do not confirm it.
     """
-    balls = Balls(LIMITS.polish_bits)
+    balls = Balls(LIMITS.refine_bits)
     flow: Any = linear_flow(osc, balls.bits)
     with balls_at(balls.bits):
         tau, v = (evaluate(tree, {}, balls) for tree in (states.exact_tau(index), states.exact_v(index)))
         try:
-            found = flow.polished(tau, v, time)
+            found = flow.refined_hit(tau, v, time)
         except (ArithmeticError, ValueError, TypeError):  # a ball that left the domain of log or a root
             return None
         return None if found is None else [float(part.mid()) for part in found]

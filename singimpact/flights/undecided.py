@@ -11,7 +11,7 @@ from singimpact.flights.causes import decoded, explained
 from singimpact.flights.compiled_model import EPSILON, CompiledModel
 from singimpact.flights.kernels.hits import CANCELS, NOT_REFINED
 from singimpact.flights.limits import LIMITS
-from singimpact.flights.multiprecision import polished, settle
+from singimpact.flights.multiprecision import refined_hit, settle
 from singimpact.flights.no_return.averaged import stays_up
 from singimpact.flights.no_return.barrier import kept_up
 from singimpact.flights.no_return.linear import never_returns
@@ -176,7 +176,7 @@ def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array
     left = LIMITS.settled
     for index in np.flatnonzero(codes == NOT_REFINED).tolist():
         fates.status[index] = Status.hit
-        found = polished(osc, states, index, float(fates.rows[0, index]))
+        found = refined_hit(osc, states, index, float(fates.rows[0, index]))
         if found is None and left:
             left -= 1
             settled = settle(osc, states, index, model.allowance.horizon)

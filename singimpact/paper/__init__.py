@@ -1,4 +1,4 @@
-"""The paper, checked: whoever studies an oscillator of his own never needs this room.
+"""The paper, checked. A study of your own oscillator does not need this sub-package.
 
 Not here: the theory for any oscillator (`theory`), flights and orbits (`flights`, `dynamics`), formulas as text
 (`documents`), pictures of a user's model (`scenes`).

@@ -23,7 +23,7 @@ class ManifoldPictureSettings:
     saddle: float = 6.0
     cut: float = 3.2
     crossing: float = 4.5
-    # more tears than this are not marked
+    # more discontinuities than this are not marked
     marked: int = 60
     # orbits whose impacts are all marked, the first ones
     orbits: int = 1
@@ -33,7 +33,7 @@ SETTINGS = ManifoldPictureSettings()
 
 
 def draw_manifolds(found: Sequence[Manifold], axes: Any) -> Any:
-    """Draw manifolds of one model with their saddles, and where the map tears them.
+    """Draw manifolds of one model with their saddles and their cuts.
 
     Parameters
     ----------
@@ -110,12 +110,12 @@ def _saddle(found: Manifold, turn: float, axes: Any) -> None:
 
 
 def _cuts(found: Manifold, turn: float, axes: Any, entries: dict[str, Any]) -> None:
-    """The states that the map tears apart."""
+    """The states at which manifolds are cut."""
     if not found.cuts or len(found.cuts) > SETTINGS.marked:
         return
     places = np.array([(cut.tau + turn, cut.v) for cut in found.cuts])
     axes.plot(*places.T, "D", color=BLACK, markerfacecolor="white", markersize=SETTINGS.cut, zorder=5)
-    entries["torn by a graze"] = _mark("D", SETTINGS.cut, BLACK)
+    entries["cut by a graze"] = _mark("D", SETTINGS.cut, BLACK)
 
 
 def _entries(axes: Any) -> dict[str, Any]:

@@ -295,7 +295,9 @@ def _with_letters(
 ) -> PowerSeries:
     """A series in the generic symbols, or in the letters of a model."""
     if lettered is None:
-        return PowerSeries(variable, order, dict(coefficients))  # a copy: whoever changes it changes no other
+        return PowerSeries(
+            variable, order, dict(coefficients)
+        )  # a copy, so that a change by the caller does not change the cached series
     put_in = lettered.put_in(order + lettered.j)
     return PowerSeries(variable, order, {n: put_in(value) for n, value in coefficients.items()})
 

@@ -166,5 +166,5 @@ def test_refusals(found: Crossings) -> None:
 def test_drawn(found: Crossings) -> None:
     axes = si.plot(found)
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert labels[:2] == ["$W^u$ of the (1, 1) saddle", "torn by a graze"]
+    assert labels[:2] == ["$W^u$ of the (1, 1) saddle", "cut by a graze"]
     assert labels[-1] == "homoclinic points, one of each orbit"

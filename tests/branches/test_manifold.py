@@ -315,7 +315,7 @@ def test_drawn_alone_and_over_basins(found: si.basins, bounding: Manifold) -> No
     alone = si.plot(bounding)
     assert alone.get_xlim() == (0.0, pytest.approx(PERIOD))
     labels = [text.get_text() for text in alone.get_legend().get_texts()]
-    assert labels == ["$W^s$ of the (3, 3) saddle", "torn by a graze", "saddle"]
+    assert labels == ["$W^s$ of the (3, 3) saddle", "cut by a graze", "saddle"]
     axes = si.plot(found)
     limits = axes.get_xlim(), axes.get_ylim()
     both = si.plot([bounding, si.manifold(bounding.saddle, stable=False, v=1)], axes=axes)
