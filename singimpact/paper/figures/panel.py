@@ -116,7 +116,7 @@ def arc(points: Array, start: Point, end: Point, avoid: Point) -> Array:
     Examples
     --------
     >>> square = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], dtype=float)
-    >>> arc(square, (0, 0), (1, 1)).tolist()
+    >>> arc(square, (0, 0), (1, 1), (0, 1)).tolist()
     [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]
     """
     ring = points[:-1]

@@ -163,7 +163,7 @@ def figure_17() -> Picture:
             "preimage",
             f"G^-{n}(delta)",
             at=0.6,
-            words=r"$G^{-n}(\delta)$, $n = 1, 2, 3$",
+            words=rf"$G^{{-n}}(\delta)$, $n \leq {GENERATIONS}$",
         )
         for n, points in enumerate(_preimages(frame), 1)
     ]
