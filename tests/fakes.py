@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from importlib import import_module
 from types import ModuleType, SimpleNamespace
 
+import singimpact
 from singimpact.inputs import unknown
 
 
@@ -119,8 +120,9 @@ def oscillator_room():
 
 
 def scenes_room():
-    """A module whose `plot` draws a point."""
+    """A module whose `plot` and `orbit_sheet` draw a point."""
     room = ModuleType("singimpact.scenes")
+    room.__path__ = [f"{folder}/scenes" for folder in singimpact.__path__]  # its other files are the true ones
 
     def plot(orbit):
         from matplotlib.figure import Figure
@@ -130,4 +132,5 @@ def scenes_room():
         return axes
 
     room.plot = plot
+    room.orbit_sheet = lambda orbit: plot(orbit).figure
     return room

@@ -12,7 +12,9 @@ LINEAR = ["--omega", "pi/2.8", "--clearance", "-0.25", "--restitution", "4/5"]
 @pytest.fixture(autouse=True)
 def rooms(monkeypatch):
     monkeypatch.setitem(sys.modules, "singimpact.impact_oscillator", oscillator_room())
-    monkeypatch.setitem(sys.modules, "singimpact.scenes", scenes_room())
+    scenes = scenes_room()
+    monkeypatch.setitem(sys.modules, "singimpact.scenes", scenes)
+    monkeypatch.setitem(sys.modules, "singimpact.scenes.orbit_sheet", scenes)
 
 
 def test_map_as_a_table(singimpact):
