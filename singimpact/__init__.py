@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from singimpact.bench.selftest.run import selftest as selftest
     from singimpact.branches.homoclinic import homoclinic_points as homoclinic_points
     from singimpact.branches.manifold import manifold as manifold
+    from singimpact.branches.transitions import transitions as transitions
     from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
     from singimpact.impact_oscillator import basins as basins
     from singimpact.impact_oscillator import bifurcation as bifurcation
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from singimpact.impact_oscillator import sweep as sweep
     from singimpact.impact_oscillator import tangency_points as tangency_points
     from singimpact.impact_oscillator import threshold as threshold
-    from singimpact.impact_oscillator import transitions as transitions
     from singimpact.impact_oscillator import universal as universal
     from singimpact.paper.claims import Claims as _Claims
     from singimpact.paper.claims.verdicts import verify as verify
@@ -68,7 +68,7 @@ _HOMES = {
     "bifurcation": "singimpact.impact_oscillator",
     "classify": "singimpact.impact_oscillator",
     "grown_gamma": "singimpact.impact_oscillator",
-    "transitions": "singimpact.impact_oscillator",
+    "transitions": "singimpact.branches.transitions",
     "threshold": "singimpact.impact_oscillator",
     "ImpactSurface": "singimpact.surface.impact_surface",
     "plot": "singimpact.scenes",

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from singimpact.oscillator.shaken_wall import ShakenWall
     from singimpact.surface.classification import Classification
     from singimpact.surface.curve import Curve
-    from singimpact.surface.transitions import Transitions
 
 
 class ImpactOscillator(Oscillator):
@@ -497,35 +496,6 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classi
 
     tau, t = (None, None) if window is None else _two_ends(window, "((tau_low, tau_high), (t_low, t_high))")
     return classify(osc, tau, t, None if between is None else clearances(between))
-
-
-def transitions(osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None) -> Transitions:
-    """Where P changes its kind as a number of the model moves: swans, swallowtails, lips and beaks.
-
-    Parameters
-    ----------
-    osc : the model. over : "clearance" or a parameter. between : its ends. t : ends of the flight times; as for
-        `classify` when they are not given.
-
-    Returns
-    -------
-    Transitions : a tuple in order of the number, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` says whether it
-        is proved that no swan is missing, `.notes` why one may be.
-
-    Raises
-    ------
-    InputError : no number of the model, or ends that are no two numbers in rising order.
-
-    Examples
-    --------
-    >>> [(each.kind, each.value) for each in transitions(linear(2, 0, "0.5"), between=("0.9", "1.1"), t=(-1, 1))]
-    [('swan, negative', 1.0)]
-    """
-    from singimpact.surface.classification import default_window
-    from singimpact.surface.transitions import transitions
-
-    _require_model(osc)
-    return transitions(osc, over, between, default_window(osc)[1] if t is None else t)
 
 
 def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Curve]:

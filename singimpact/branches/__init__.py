@@ -8,5 +8,5 @@ closed form), `starts` (Newton's method from many starts), `resting` (orbits wit
 `periodic` (what a user asks), `continuation` (pseudo-arclength), `events`, `switching`
 (the other branches at an event), `branch`, `kept` (on disk), `event_curve` (events in two numbers), `saddle_arcs` (W^s
 and W^u next to a saddle), `manifold` (grown from there), `cylinder` (polylines of phases and velocities), `homoclinic`
-(where W^u and W^s cross).
+(where W^u and W^s cross), `transitions` (those of P with the orbits between them).
 """

@@ -130,7 +130,11 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
     phases = lift_offs(osc)
     complete = True
     for phase in phases:
-        flown = orbit(osc, phase, 0, impacts=FLOWN)
+        # an orbit of k periods is home by then: what an undamped one does later may be undecided in doubles, and slow
+        for impacts in (20, 200, FLOWN):
+            flown = orbit(osc, phase, 0, impacts=impacts)
+            if flown.tau[-1] > phase + (k + 1) * period or len(flown.tau) < impacts:
+                break
         times = flown.tau[flown.kind == "release"]
         home = np.abs(times - phase - period * np.rint((times - phase) / period)) < 1e-9 * period
         if home.any():

@@ -4,8 +4,8 @@ Not here: what is drawn (`dynamics`, `surface`, `flights`), text with formulas (
 (`paper.figures`).
 Files: `drawing` (`plot`: one call for everything that can be drawn), `orbit` (x(t), sections), `scene` (a window and
 its layers), `layer_data` (what layers ask for), `layers`, `cached` (results on disk), `style` (colours and lines),
-`basins`, `branches`, `manifolds` (W^s and W^u), `label_places` (names beside points), `clearance_frames` and `explore`
-(the page).
+`basins`, `branches`, `manifolds` (W^s and W^u), `both_sides` (of a transition), `label_places` (names beside points),
+`clearance_frames` and `explore` (the page).
 """
 
 from singimpact.scenes.drawing import plot as plot

@@ -9,12 +9,14 @@ from singimpact.branches.branch import Branch
 from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.homoclinic import Crossings
 from singimpact.branches.manifold import Manifold
+from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins import Basins
 from singimpact.dynamics.bifurcation import Bifurcation
 from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.sampling import Section
 from singimpact.inputs import refuse
 from singimpact.scenes.basins import draw_basins, draw_bifurcation
+from singimpact.scenes.both_sides import draw_both_sides
 from singimpact.scenes.branches import draw_branches, draw_event_curves
 from singimpact.scenes.manifolds import draw_crossings, draw_manifolds
 from singimpact.scenes.orbit import draw_orbit, draw_section
@@ -33,8 +35,8 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     Parameters
     ----------
     thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a branch or an event curve or a list of
-        them, W^s or W^u of a saddle or a list of them, the points where two cross, a curve or a list of curves of one
-        plane, or an impact surface, of which Z and H are drawn.
+        them, W^s or W^u of a saddle or a list of them, the points where two cross, both sides of a transition (on two
+        axes), a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
     axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
         manifolds on those of basins.
@@ -51,6 +53,8 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
         return thing.draw(axes)
     if isinstance(thing, ImpactSurface):
         thing = [*thing.zero_set, *thing.horizon]
+    if isinstance(thing, BothSides):
+        return draw_both_sides(thing, _two_axes() if axes is None else axes)
     for kind, size, draw in ALONE:
         if isinstance(thing, kind):
             return draw(thing, _new_axes(size) if axes is None else axes)
@@ -95,6 +99,12 @@ def _new_axes(size: tuple[float, float] = WIDE) -> Any:
     import matplotlib.pyplot
 
     return matplotlib.pyplot.figure(figsize=size, dpi=150, layout="constrained").add_subplot()
+
+
+def _two_axes() -> Any:
+    import matplotlib.pyplot
+
+    return matplotlib.pyplot.subplots(1, 2, figsize=(11.0, 5.2), dpi=150, layout="constrained", sharey=True)[1]
 
 
 Drawer = Callable[[Any, Any], Any]
