@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from singimpact.branches.event_curve import event_curve as event_curve
     from singimpact.branches.homoclinic import homoclinic_points as homoclinic_points
     from singimpact.branches.manifold import manifold as manifold
+    from singimpact.branches.transitions import transitions as transitions
     from singimpact.cases import sweep as sweep
     from singimpact.contact.points import tangency_points as tangency_points
     from singimpact.dynamics.lyapunov import lyapunov as lyapunov
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
     from singimpact.studies import classify as classify
     from singimpact.studies import grown_gamma as grown_gamma
     from singimpact.studies import swan_points as swan_points
-    from singimpact.studies import transitions as transitions
     from singimpact.surface.impact_surface import ImpactSurface as ImpactSurface
     from singimpact.theory import fixed_points as fixed_points
 
@@ -70,7 +70,7 @@ _HOMES = {
     "bifurcation": "singimpact.studies",
     "classify": "singimpact.studies",
     "grown_gamma": "singimpact.studies",
-    "transitions": "singimpact.studies",
+    "transitions": "singimpact.branches.transitions",
     "threshold": "singimpact.dynamics.threshold",
     "ImpactSurface": "singimpact.surface.impact_surface",
     "plot": "singimpact.scenes",

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from singimpact.dynamics.bifurcation import Bifurcation
     from singimpact.surface.classification import Classification
     from singimpact.surface.curve import Curve
-    from singimpact.surface.transitions import Transitions
 
 
 def swan_points(
@@ -172,36 +171,6 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classi
 
     tau, t = (None, None) if window is None else _two_ends(window, "((tau_low, tau_high), (t_low, t_high))")
     return classify(osc, tau, t, None if between is None else clearances(between))
-
-
-def transitions(osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None) -> Transitions:
-    """The transitions of the outline P over a parameter: swans, swallowtails, lips and beaks.
-
-    Parameters
-    ----------
-    osc : the model. over : "clearance" or a parameter. between : its interval. t : interval of the flight times; by
-        default as for `classify`.
-
-    Returns
-    -------
-    Transitions : a tuple in order of the parameter, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` is True if
-        it is proved that no swan is missing, else `.notes` gives the reason.
-
-    Raises
-    ------
-    InputError : an unknown parameter, or an interval that is not two numbers in rising order.
-
-    Examples
-    --------
-    >>> from singimpact.impact_oscillator import linear
-    >>> [(each.kind, each.value) for each in transitions(linear(2, 0, "0.5"), between=("0.9", "1.1"), t=(-1, 1))]
-    [('swan, negative', 1.0)]
-    """
-    from singimpact.surface.classification import default_window
-    from singimpact.surface.transitions import transitions
-
-    _require_model(osc)
-    return transitions(osc, over, between, default_window(osc)[1] if t is None else t)
 
 
 def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Curve]:

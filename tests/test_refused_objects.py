@@ -2,7 +2,6 @@
 
 import pickle
 
-import numpy as np
 import pytest
 
 import singimpact as si
@@ -115,15 +114,6 @@ def test_latex_runs_no_other_program(monkeypatch, tmp_path):
     with pytest.raises(compiling.CompileError):
         compiling._run(str(tmp_path))
     assert "-latexoption=-no-shell-escape" in asked
-
-
-def test_a_frame_without_tangencies_erases_their_marks():
-    from types import SimpleNamespace
-
-    from singimpact.scenes.explore import _dots
-
-    assert _dots(SimpleNamespace(tangencies=np.zeros(0)))["x"] == [None]
-    assert _dots(SimpleNamespace(tangencies=np.array([0.5])))["x"] == [0.5]
 
 
 def test_a_plot_is_a_figure_that_pyplot_shows():

@@ -58,6 +58,7 @@ def series(name, **more):
 
 
 # public name -> (calls with a number of digits, the digits)
+borders = functools.partial(si.border_orbits, si.linear("2.8", "0.6", "1/2"), between=("0.6", "0.61"), points=3)
 CALLS = {
     "ImpactOscillator.impact_map": (
         [lambda d: LINEAR.impact_map("1.2", "0.01", digits=d), lambda d: BENT.impact_map("0.3", "0.7", digits=d),
@@ -70,6 +71,12 @@ CALLS = {
         [lambda d: WAVES.chatter_limit("1.2", "0.01", digits=d), lambda d: BENT.chatter_limit("1.2", "0.01", digits=d)],
         (12, 30),
     ),
+    "theory.grazing_map": (
+        [lambda d: theory.grazing_map(3, model=BENT, at="0.25", digits=d).xdot[2],
+         lambda d: theory.grazing_map(4, model=si.linear(2, "-0.2", "0.5"), at="0.3", digits=d).xdot[4]],
+        (20, 40),
+    ),
+    "border_orbits": ([lambda d: borders(digits=d)[0].parameter], (20,)),
     "ImpactOscillator.periodic": ([lambda d: CLOSED.periodic(1, 2, digits=d)], (25,)),
     "threshold": ([lambda d: si.threshold(LINEAR, "pi/2.8", digits=d)], (10,)),
     "tangency_points": ([points], (12, 35)),

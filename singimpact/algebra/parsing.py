@@ -139,7 +139,7 @@ class _Parser:
             return "it ends too early"
         kind, before = self.before
         if (kind in ("number", "name") or before == ")") and (self.kind in ("number", "name") or self.token == "("):
-            return f"a product is written with its *, {before}*{self.token}"
+            return f"a product is written with its *, {shown(f'{before}*{self.token}')[1:-1]}"
         return f"{shown(self.token)} is out of place"
 
     def sum(self) -> Expression:

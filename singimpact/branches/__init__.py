@@ -9,5 +9,6 @@ closed form), `starts` (Newton's method from many starts), `resting` (orbits wit
 an event), `branch`, `kept` (on disk), `event_curve` (events in two parameters); `saddle_arcs` (W^s and W^u next to a
 saddle), `manifold` (grown from there), `cylinder` (polylines of phases and velocities), `homoclinic` (where W^u and W^s
 cross); `border` (released orbits that return onto gamma), `released` (that orbit), `border_digits`, `cascade` (the
-edges beside it), `settled` (the periodic orbit to which an orbit converges).
+edges beside it), `settled` (the periodic orbit to which an orbit converges), `transitions`
+(those of P with the orbits between them).
 """

@@ -254,4 +254,4 @@ def root_between(test: Callable[[float], float], low: float, high: float, ends: 
             raise ArithmeticError(f"no value at {length:.9g}")
         return value
 
-    return float(brentq(defined, low, high, xtol=1e-15 * max(high, 1e-300), rtol=8.9e-16, maxiter=100))
+    return float(brentq(defined, low, high, xtol=1e-15 * max(high, 1e-300), rtol=8.9e-16, maxiter=1000))

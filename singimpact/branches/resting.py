@@ -120,8 +120,7 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
     Notes
     -----
     The mass lifts off at finitely many phases, and what follows each is fixed: the next lift-off, rest for ever or no
-    return. So each orbit is a circle of phases. `.complete` where this is known of every phase: an orbit that does not
-    rest within `FLOWN` impacts leaves it open.
+    return. So each orbit is a circle of phases. `.complete` where this is known of every phase for k periods.
 
     Examples
     --------
@@ -132,7 +131,7 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
     assert osc.period is not None
     period, notes = as_float(osc.period), Notes()
     phases = list(lift_offs(osc))
-    following = [_next_lift_off(osc, phases, place, notes) for place in range(len(phases))]
+    following = [_next_lift_off(osc, phases, place, k, notes) for place in range(len(phases))]
     found = list[PeriodicOrbit]()
     for first, phase in enumerate(phases):
         circle, turns, miss, step = [first], 0, 0.0, following[first]
@@ -158,17 +157,24 @@ class _Lift:
     miss: float
 
 
-def _next_lift_off(osc: Oscillator, phases: list[float], place: int, notes: Notes) -> _Lift | None:
-    """The lift-off after the one at phases[place]; None where there is none, or none is known, which is noted."""
+def _next_lift_off(osc: Oscillator, phases: list[float], place: int, k: int, notes: Notes) -> _Lift | None:
+    """The lift-off within k periods after the one at phases[place]; None where there is none, or it is open: noted."""
     assert osc.period is not None
     period, phase = as_float(osc.period), phases[place]
-    flown = orbit(osc, phase, 0, impacts=FLOWN)
-    for time in flown.tau[flown.kind == "release"][:1].tolist():
+    end = phase + (k + 1) * period
+    # an orbit of k periods is home by then: what an undamped one does later may be undecided in doubles, and slow
+    for impacts in (20, 200, FLOWN):
+        flown = orbit(osc, phase, 0, impacts=impacts)
+        lifted = flown.tau[flown.kind == "release"][:1].tolist()
+        ended = flown.phases[-1][0] if flown.phases else ""
+        if lifted or flown.tau[-1] > end or ended in ("sticking", "no_return", "unresolved"):
+            break
+    for time in lifted:
         for other, zero in enumerate(phases):
             turns = round((time - zero) / period)
             miss = abs(time - zero - turns * period)
             if miss < SAME_PHASE * period:
                 return _Lift(other, turns, miss)
-    if not flown.phases or flown.phases[-1][0] not in ("sticking", "no_return"):
+    if flown.tau[-1] <= end and ended not in ("sticking", "no_return"):
         notes.add(f"what follows the lift-off at tau = {phase:.6g} is open: no rest within {FLOWN} impacts in doubles")
     return None

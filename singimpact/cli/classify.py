@@ -12,6 +12,7 @@ from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.inputs import InputError
 
 if TYPE_CHECKING:
+    from singimpact.branches.transitions import Interval
     from singimpact.surface.classification import Classification
     from singimpact.surface.transitions import Transitions
 
@@ -27,33 +28,53 @@ if TYPE_CHECKING:
     metavar="LOW HIGH",
     help="Interval of --over; without --over, clearances in which swans are searched.",
 )
+@click.option(
+    "--orbits",
+    type=click.IntRange(1, 8),
+    metavar="M",
+    help="With --over: also the orbits of n impacts in k periods, n, k <= M, between these transitions.",
+)
 @output_options
 def command(
     window_tau: tuple[str, str] | None, window_t: tuple[str, str] | None, over: str | None,
-    between: tuple[str, str] | None, as_json: bool, output: str | None, **options: Any,
+    between: tuple[str, str] | None, orbits: int | None, as_json: bool, output: str | None, **options: Any,
 ) -> None:  # fmt: skip
     """The points of V_c' where p or phi is singular: tangencies, swans, cusps, and the fold lines between them.
 
     Swan points are listed over the clearance. With --over and --between: the swans, swallowtails, lips and beaks met
-    on the way. Numbers may be expressions such as pi/2.8.
+    on the way, and with --orbits the periodic orbits between them, and where these graze, fold or double. Numbers may
+    be expressions such as pi/2.8.
     """
     oscillator = take_model(options)
     if over is not None and between is None:
         raise InputError(f"--over {over} needs its ends: --between LOW HIGH")
+    if orbits is not None and over is None:
+        raise InputError("--orbits needs the number that moves: --over NAME --between LOW HIGH")
+    from singimpact.branches.transitions import transitions
     from singimpact.studies import clearances
     from singimpact.surface.classification import classify
-    from singimpact.surface.transitions import transitions
 
     swans_between = clearances(between) if between is not None and over in (None, "clearance") else None
     found = classify(oscillator, window_tau, window_t, swans_between)
-    changes = None if over is None else transitions(oscillator, over, between, found.t)
+    changes = None if over is None else transitions(oscillator, over, between, found.t, orbits=orbits)
     if as_json:
         emit(as_json_text({"model": oscillator.to_dict(), **_told(found, over, changes)}), output)
     else:
         emit(_text(found, over, changes), output)
 
 
+def _interval(each: Interval) -> dict[str, Any]:
+    orbits = [{"n": None if orbit.kind == "chatter" else int(orbit.n), "k": orbit.k, "kind": orbit.kind,
+               "stable": orbit.stable, "tau": [float(tau) for tau in orbit.tau], "v": [float(v) for v in orbit.v]}
+              for orbit in each.orbits]  # fmt: skip
+    events = [{"kind": change.kind, "value": change.value, "n": change.n, "k": change.k, "below": change.below,
+               "above": change.above} for change in each.changes]  # fmt: skip
+    return {"from": each.low, "to": each.high, "orbits_in_the_middle": orbits, "changes": events}
+
+
 def _told(found: Classification, over: str | None, changes: Transitions | None) -> dict[str, Any]:
+    from singimpact.branches.transitions import OrbitTransitions
+
     told: dict[str, Any] = {
         "window": {"tau": found.tau, "t": found.t},
         "points": [{"name": p.name, "maps": p.maps, "kind": p.kind, "tau": p.tau, "t": p.t, "image": p.image}
@@ -67,10 +88,14 @@ def _told(found: Classification, over: str | None, changes: Transitions | None) 
         listed = [{"kind": c.kind, "value": c.value, "tau": c.tau, "t": c.t} for c in changes]
         told["transitions"] = {"over": over, "found": listed, "swans_complete": changes.complete,
                                "notes": changes.notes}  # fmt: skip
+        if isinstance(changes, OrbitTransitions):
+            told["transitions"] |= {"intervals": [_interval(each) for each in changes.intervals], "told": changes.told}
     return told
 
 
 def _text(found: Classification, over: str | None, changes: Transitions | None) -> str:
+    from singimpact.branches.transitions import OrbitTransitions
+
     tables = [
         _table("points of V_c' where p or phi is singular", ["point", "of", "kind", "tau", "t", "image tau", "image v"],
                [[p.name, p.maps, p.kind, *_numbers(p.tau, p.t, *p.image)] for p in found.points]),
@@ -82,6 +107,8 @@ def _text(found: Classification, over: str | None, changes: Transitions | None) 
     if changes is not None:
         rows = [[c.kind, *_numbers(c.value, c.tau, c.t)] for c in changes]
         tables.append(_table(f"where P changes as {over} moves", ["kind", str(over), "tau", "t"], rows, changes.notes))
+        if isinstance(changes, OrbitTransitions):
+            tables.append(f"periodic orbits:\n{changes!r}")
         if changes.complete:
             tables.append("no swan between these ends is missing (by interval bounds)")
     low, high = _numbers(*found.tau), _numbers(*found.t)

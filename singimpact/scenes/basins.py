@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,17 +15,40 @@ CHATTERED = (BLACK, "#3D3D3D", "#6B6B6B")  # chatter for ever, of one lift-off o
 ORBITS = (ORANGE, BLUE, SKY, VERMILLION, GREEN, PURPLE, "#F0E442", "#8C8C8C")  # neighbours differ in lightness
 
 
-def draw_basins(found: Basins, axes: Any = None) -> Any:
-    """The classes of a grid of states as a picture; returns the matplotlib axes."""
-    colors, used = [], dict.fromkeys(("orbit", "chatter"), 0)
-    for code, _, _ in found.classes:
-        kind = found.attractors[code].kind
-        palette = ORBITS if kind == "orbit" else CHATTERED
-        colors.append(FIXED.get(kind) or palette[used[kind] % len(palette)])
-        if kind in used:
-            used[kind] += 1
+def draw_basins(found: Basins, axes: Any = None, colors: Sequence[str] | None = None) -> Any:
+    """The classes of a grid of states as a picture; returns the matplotlib axes.
+
+    `colors` : of the classes, in the order of `found.classes`; those of `class_colors` without it.
+    """
+    colors = class_colors([found])[0] if colors is None else list(colors)
     layers = [(found.codes == code, f"{name}, {100 * share:.3g} %") for code, name, share in found.classes]
     return _painted(found, layers, colors, axes)
+
+
+def class_colors(several: Sequence[Basins]) -> list[list[str]]:
+    """Colours of the classes of some basins, each in the order of its `classes`; one (n, k) has one colour in all.
+
+    Examples
+    --------
+    >>> class_colors([])
+    []
+    """
+    used, known, found = dict.fromkeys(("orbit", "chatter"), 0), dict[Any, str](), []
+    for each in several:
+        colors, names = [], list[Any]()
+        for code, _, _ in each.classes:
+            attractor = each.attractors[code]
+            kind, name = attractor.kind, (attractor.kind, attractor.n, attractor.k)
+            names.append(name)
+            key = (*name, names.count(name))  # the second of two equal (n, k)
+            if key not in known:
+                palette = ORBITS if kind == "orbit" else CHATTERED
+                known[key] = FIXED.get(kind) or palette[used[kind] % len(palette)]
+                if kind in used:
+                    used[kind] += 1
+            colors.append(known[key])
+        found.append(colors)
+    return found
 
 
 def draw_first_chatter(found: Basins, axes: Any = None) -> Any:

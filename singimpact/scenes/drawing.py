@@ -10,6 +10,7 @@ from singimpact.branches.branch import Branch
 from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.homoclinic import Crossings
 from singimpact.branches.manifold import Manifold
+from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins import Basins
 from singimpact.dynamics.bifurcation import Bifurcation
 from singimpact.dynamics.orbit import Orbit
@@ -18,6 +19,7 @@ from singimpact.inputs import refuse
 from singimpact.scenes.basins import draw_basins
 from singimpact.scenes.bifurcation import draw_bifurcation
 from singimpact.scenes.border import draw_border
+from singimpact.scenes.both_sides import draw_both_sides
 from singimpact.scenes.branches import draw_branches, draw_event_curves
 from singimpact.scenes.manifolds import draw_crossings, draw_manifolds
 from singimpact.scenes.orbit import draw_orbit, draw_section
@@ -37,7 +39,8 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     ----------
     thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a branch or an event curve or a list of
         them, W^s or W^u of a saddle or a list of them, the points where two cross, a border orbit, of which the cascade
-        is drawn, a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
+        is drawn, both sides of a transition (on two axes), a curve or a list of curves of one plane, or an impact
+        surface, of which Z and H are drawn.
     axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
         manifolds on those of basins.
@@ -56,6 +59,8 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
         thing = [*thing.zero_set, *thing.horizon]
     if isinstance(thing, Bifurcation):
         return draw_bifurcation(thing, _new_axes() if axes is None else axes, height)
+    if isinstance(thing, BothSides):
+        return draw_both_sides(thing, _beside() if axes is None else axes)
     for kind, size, draw in ALONE:
         if isinstance(thing, kind):
             return draw(thing, _new_axes(size) if axes is None else axes)
@@ -110,6 +115,13 @@ def _two_axes() -> Any:
 
     figure = matplotlib.pyplot.figure(figsize=HIGH, dpi=150, layout="constrained")
     return figure.subplots(2, sharex=True, height_ratios=(3, 2))
+
+
+def _beside() -> Any:
+    """Two axes beside each other that share their vertical one."""
+    import matplotlib.pyplot
+
+    return matplotlib.pyplot.subplots(1, 2, figsize=(11.0, 5.2), dpi=150, layout="constrained", sharey=True)[1]
 
 
 Drawer = Callable[[Any, Any], Any]

@@ -217,7 +217,8 @@ class Scene:
             look = {"ha": "center", "va": "center", "color": "0.35", "wrap": True, "path_effects": halo, "zorder": 8}
             axes.text(0.5, 0.5, told, transform=axes.transAxes, **look)
         if axes.get_legend_handles_labels()[0]:
-            axes.legend(loc="best", fontsize="small", framealpha=0.9)
+            # a small picture keeps its axes: the legend lies inside them, however wide its words are
+            axes.legend(loc="best", fontsize="small", framealpha=0.9).set_in_layout(False)
 
     def _absent(self, missing: list[str]) -> str:
         if not self.layers:

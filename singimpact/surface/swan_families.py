@@ -50,6 +50,11 @@ class Family:
         """The model at a value, taken as its exact binary number."""
         return self.model.replace(**{self.over: value})
 
+    def periods(self, values: Array) -> dict[float, float]:
+        """The periods of the forcing by value; those are left out at which it is constant, as at amplitude = 0."""
+        known = {value: self.at(value).period for value in values.tolist()}
+        return {value: as_float(period) for value, period in known.items() if period is not None}
+
     def acceleration(self) -> Expression:
         """a_c as a tree in t and the free parameter."""
         if self.over != "clearance":
@@ -64,22 +69,19 @@ def swans_met(family: Family, values: Array) -> tuple[list[Transition], tuple[st
         known = swan_points_over_clearance(family.model, between)
         inside = [swan for swan in known if between[0] <= Fraction(swan.clearance) <= between[1]]
         return [Transition(f"swan, {swan.kind}", swan.clearance, swan.tau, 0.0) for swan in inside], ()
-    periods = {_period(family.at(value)) for value in values.tolist()}
+    periods = set(family.periods(values).values())
+    if not periods:
+        raise InputError(f"g = {family.model.g} is not seen to be periodic: give period=")
     longest = Fraction(max(periods))
     window = (-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN), *between)
     made = double_zeros(family.acceleration(), ("t", family.over), window)
-    inside_period = [zero for zero in made.found if _in_period(family, zero)]
+    inside_period = [zero for zero in made.found if _in_period(family, zero, float(longest))]
     return [_as_transition(zero) for zero in inside_period], _doubts(made, family.over, len(periods))
 
 
-def _period(model: Oscillator) -> float:
-    if model.period is None:
-        raise InputError(f"g = {model.g} is not seen to be periodic: give period=")
-    return as_float(model.period)
-
-
-def _in_period(family: Family, zero: DoubleZero) -> bool:
-    period = _period(family.at(float(zero.value)))
+def _in_period(family: Family, zero: DoubleZero, longest: float) -> bool:
+    value = float(zero.value)
+    period = family.periods(np.array([value])).get(value, longest)
     return -SLACK * period <= float(zero.at) < period * (1 - SLACK)
 
 

@@ -18,8 +18,8 @@ import numpy as np
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import tangency_points
-from singimpact.inputs import unknown
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import RESTITUTION, with_number
 from singimpact.surface.curve import window_ends
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.swan_families import STEPS, Family, Transition, swans_met
@@ -64,7 +64,9 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) ->
 
     Parameters
     ----------
-    over : "clearance" or the name of a parameter. between : its two ends. t : window of flight times.
+    over : clearance, a parameter; "amplitude" and "damping" of any model, "stiffness" and "phase" of `si.linear`, need
+        not be parameters of it. No flight depends on the "restitution": P scales with it, and there are no transitions.
+    between : its two ends. t : window of flight times.
 
     Returns
     -------
@@ -72,7 +74,7 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) ->
 
     Raises
     ------
-    InputError : not a parameter; ends that are no numbers in rising order.
+    InputError : no number of the model; ends that are no numbers in rising order.
 
     Examples
     --------
@@ -82,9 +84,10 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) ->
     >>> found.complete
     True
     """
-    if over != "clearance" and over not in model.parameters:
-        raise unknown("parameter", over, ["clearance", *model.parameters])
+    model = with_number(model, over)
     ends, times = window_ends(over, between), window_ends("t", t)
+    if over == RESTITUTION:
+        return Transitions()
     values = np.linspace(*ends, STEPS + 1)
     family = Family(model, over)
     swans, notes = swans_met(family, values)
@@ -149,6 +152,8 @@ def _touches(family: Family, values: Array, times: tuple[float, float]) -> Itera
     """Where an extremum of the flight from rest at a tangency point passes through c."""
     before: list[tuple[float, float, float]] = []
     for value in values.tolist():
+        if family.model.period is not None and family.at(value).period is None:
+            continue  # constant forcing, as at amplitude = 0: a_c has no zeros, or only them
         now = [(tau, t, height) for tau, t, height in _humps(family.at(value), times)]
         for tau, t, height in now:
             near = min(before, key=lambda each: abs(each[0] - tau) + abs(each[1] - t), default=None)

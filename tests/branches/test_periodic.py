@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.branches import solutions
+from singimpact.branches import resting, solutions
 from singimpact.branches.closing import Closing
 from singimpact.branches.periodic import periodic
 from singimpact.branches.starts import conditions
@@ -123,10 +123,18 @@ def test_an_orbit_of_chatter_through_one_or_two_lift_offs(second: str, both: boo
     assert np.abs(phases - orbit.tau[0]).min() < 1e-12
 
 
-def test_lift_offs_that_never_rest_leave_chatter_open() -> None:
-    found = linear("2.8", "0.6", "0.5").periodic(np.inf, 1)
+def test_lift_offs_without_rest_within_the_periods_are_decided() -> None:
+    osc = linear("2.8", "0.6", "0.5")
+    assert (osc.periodic(np.inf, 2), osc.periodic(np.inf, 2).complete) == ([], True)
+
+
+def test_a_lift_off_that_is_not_decided_leaves_chatter_open(monkeypatch) -> None:
+    monkeypatch.setattr(resting, "FLOWN", 3)
+    flown = resting.orbit
+    monkeypatch.setattr(resting, "orbit", lambda osc, tau, v, impacts: flown(osc, tau, v, min(impacts, 3)))
+    found = linear(2, "0.7", "0.5").periodic(np.inf, 1)
     assert (found, found.complete) == ([], False)
-    assert "no rest within 4000 impacts" in found.notes[0]
+    assert "no rest within 3 impacts" in found.notes[0]
 
 
 def test_a_first_hit_that_doubles_leave_open_does_not_hide_an_orbit(monkeypatch) -> None:

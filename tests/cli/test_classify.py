@@ -23,6 +23,15 @@ def test_transitions_over_the_clearance(singimpact):
     assert abs(swan["value"] - 1) < 1e-10
 
 
+def test_orbits_between_transitions(singimpact):
+    model = ["--omega", "2.8", "--clearance", "0.9", "--restitution", "1/2", "--window-t", "-1", "1"]
+    given = [*model, "--over", "clearance", "--between", "0.8", "1.2", "--orbits", "1"]
+    done = singimpact("classify", *given)
+    assert "(inf, 1) chatter\nswan, negative at clearance = 1, tau = 0, t = 0\nfrom 1 to 1.2: none of" in done.output
+    told = json.loads(singimpact("classify", *given, "--json").output)["transitions"]["intervals"]
+    assert [[orbit["kind"] for orbit in each["orbits_in_the_middle"]] for each in told] == [["chatter"], []]
+
+
 def test_a_window_without_a_curve(singimpact):
     done = singimpact(
         "classify", "--omega", "2", "--clearance", "1.5", "--restitution", "1/2", "--window-t", "-0.1", "0.1"
@@ -35,6 +44,7 @@ def test_a_window_without_a_curve(singimpact):
     ("given", "told"),
     [
         (["--over", "clearance"], "--between"),
+        (["--orbits", "1"], "--over NAME --between"),
         (["--over", "mass", "--between", "0", "1"], "mass"),
         (["--over", "clearance", "--between", "1", "0"], "between"),
         (["--window-tau", "1", "0"], "window of tau"),

@@ -51,7 +51,7 @@ def test_both_ways_are_drawn_and_written(tmp_path):
     found = si.bifurcation(si.linear(2, "0.3", "0.5"), "clearance", (0.2, 0.3), 3, impacts=30, kept=2, direction="both")
     axes = si.plot(found)
     assert axes.get_xlim() == (0.2, 0.3)
-    assert "on the way down" in [text.get_text() for text in axes.get_legend().get_texts()]
+    assert "impact, on the way down" in [text.get_text() for text in axes.get_legend().get_texts()]
     found.to_csv(tmp_path / "both.csv")
     assert len((tmp_path / "both.csv").read_text().splitlines()) == 13
 

@@ -79,7 +79,7 @@ def test_threshold_with_digits() -> None:
 
 
 def test_bad_input() -> None:
-    with pytest.raises(InputError, match="presses"):
+    with pytest.raises(InputError, match="at which a mass at rest stays on the wall"):
         threshold(linear("2.8", 0, "0.5"), 0)
     with pytest.raises(InputError, match="restitution"):
         threshold(linear("2.8", 0, 1), "pi/2.8")

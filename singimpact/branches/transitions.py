@@ -1,0 +1,366 @@
+"""Transitions of P as a number of the model moves, the periodic orbits between them, and what happens to these orbits.
+
+At a transition of P no orbit changes, but in codimension two: an orbit grazes at a value of its own, where one of its
+flights is launched at rest.  So orbits are listed between neighbouring transitions, with the values at which they
+graze, fold or double.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float, constant
+from singimpact.branches.branch import Branch, branch
+from singimpact.branches.events import Event
+from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.branches.periodic import periodic
+from singimpact.dynamics.basins import Basins, basins
+from singimpact.inputs import InputError, refuse, whole
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import RESTITUTION, with_number
+from singimpact.surface.classification import default_window
+from singimpact.surface.curve import window_ends
+from singimpact.surface.swan_families import Transition
+from singimpact.surface.transitions import Transitions
+from singimpact.surface.transitions import transitions as transitions_of_outline
+
+Array = np.ndarray[Any, Any]
+WORDS = ("stable", "neutral", "unstable", "virtual")
+
+
+@dataclass(frozen=True)
+class OrbitSettings:
+    """Where orbits are looked for between transitions."""
+
+    # n, k at most
+    most: int = 8
+    # values at which orbits are looked for, at least; the middle between neighbouring transitions is one always
+    samples: int = 5
+    # an orbit is one of a branch when its states differ by less than this, of a period and of the largest velocity,
+    # from those of the next point of the branch
+    near: float = 0.02
+    # |multiplier| - 1 that is rounding
+    neutral: float = 1e-9
+    # the values on both sides of a transition that are drawn: a part of the interval, or of the way to the next one
+    apart: tuple[float, float] = (0.05, 0.4)
+
+
+SETTINGS = OrbitSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class OrbitChange:
+    """What happens to periodic orbits at a value of the number.
+
+    Parameters
+    ----------
+    kind : "graze", "hidden impact", "fold", "period-doubling", "torus". value : of the number.
+    n, k : of the orbits. event : with the orbit there; its `.others()` are those of the branches that meet it.
+    below, above : what the orbits are for smaller and for larger values: "stable", "neutral" (the larger multiplier is
+        1 in size: without impact and damping), "unstable", "virtual" (the solution goes through the wall: no orbit of
+        the mass); at a fold there are two on one side, and none on the other.
+    interval : its place in `intervals`.
+    """
+
+    kind: str
+    value: float
+    n: int
+    k: int
+    event: Event
+    below: tuple[str, ...]
+    above: tuple[str, ...]
+    interval: int = 0
+
+    def __repr__(self) -> str:
+        told = " and ".join(f"{' and '.join(part) or 'none'} {where}"
+                            for part, where in ((self.below, "below"), (self.above, "above")))  # fmt: skip
+        name = f"({self.n}, {self.k}) orbit" if self.n else "orbit without impact"
+        return f"<{self.kind} of the {name} at {self.event.over} = {self.value:.12g}: {told}>"
+
+
+@dataclass(frozen=True)
+class Interval:
+    """What there is between two neighbouring transitions.
+
+    Parameters
+    ----------
+    low, high : values of the number. orbits : the visible ones at the middle, orbits with complete chatter among them.
+    changes : what happens to orbits on the way, in order of the value.
+    """
+
+    low: float
+    high: float
+    orbits: tuple[PeriodicOrbit, ...]
+    changes: tuple[OrbitChange, ...]
+
+
+class OrbitTransitions(Transitions):
+    """Transitions of P with the periodic orbits between them.
+
+    Parameters
+    ----------
+    oscillator, over, ends : the model, the number that moves, and its ends.
+    intervals : one more than there are values of transitions. changes : of all intervals. branches : followed for them.
+    notes : why a swan may be missing. told : how orbits were found, and what may be missing of them.
+    """
+
+    oscillator: Oscillator
+    over: str
+    ends: tuple[float, float]
+    intervals: tuple[Interval, ...] = ()
+    branches: tuple[Branch, ...] = ()
+    told: tuple[str, ...] = ()
+
+    @property
+    def changes(self) -> tuple[OrbitChange, ...]:
+        """What happens to orbits, in order of the value."""
+        return tuple(change for interval in self.intervals for change in interval.changes)
+
+    def __repr__(self) -> str:
+        lines = []
+        for interval in self.intervals:
+            lines += [f"{each.kind} at {self.over} = {each.value:.12g}, tau = {each.tau:.6g}, t = {each.t:.6g}"
+                      for each in self if each.value == interval.low]  # fmt: skip
+            names = [_named(orbit) for orbit in interval.orbits]
+            lines.append(
+                f"from {interval.low:.9g} to {interval.high:.9g}: {', '.join(names) or 'none of these orbits'}"
+            )
+            lines += [f"  {change!r}" for change in interval.changes]
+        return "\n".join([*lines, *self.notes, *self.told])
+
+    def both_sides(self, index: int, *, apart: Any = None, v: Any = None, size: int = 200) -> BothSides:
+        """The plane of states before and after a transition, for `si.plot`.
+
+        Parameters
+        ----------
+        index : the transition. apart : the distance of both values from it; a twentieth of the interval without it, or
+            less, so that no other transition lies between.
+        v : ends of the velocities; from 0 to what the largest a_c gives in a quarter of a period without it.
+        size : states a side of the basins.
+        """
+        if not -len(self) <= index < len(self):
+            raise refuse("index", index, f"one of {len(self)} transitions")
+        chosen = self[index]
+        others = [abs(each.value - chosen.value) for each in self if each.value != chosen.value]
+        most = min([SETTINGS.apart[0] * (self.ends[1] - self.ends[0]), *(SETTINGS.apart[1] * gap for gap in others)])
+        step = most if apart is None else as_float(constant("apart", apart))
+        if not step > 0:
+            raise refuse("apart", apart, "a number > 0")
+        models = [_moved(self.oscillator, self.over, chosen.value + side * step) for side in (-1, 1)]
+        if models[0].period is None:
+            raise InputError("the forcing has no period: basins need one")
+        period = as_float(models[0].period)
+        highest = float(np.abs(acceleration(models[0], np.linspace(0, period, 64))).max()) * period / 4
+        speeds = (0.0, highest) if v is None else window_ends("v", v)
+        tau = (chosen.tau - period / 2, chosen.tau + period / 2)
+        found = [basins(model, tau, speeds, whole("size", size, 2, 10_000)) for model in models]
+        return BothSides(chosen, self.over, (models[0], models[1]), (found[0], found[1]))
+
+
+@dataclass(frozen=True)
+class BothSides:
+    """Basins before and after a transition of P.
+
+    Parameters
+    ----------
+    transition, over : where, and the number that moves. models, basins : for a smaller and for a larger value.
+    """
+
+    transition: Transition
+    over: str
+    models: tuple[Oscillator, Oscillator]
+    basins: tuple[Basins, Basins]
+
+
+def transitions(
+    osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None, *, orbits: Any = None
+) -> Transitions:
+    """Where P changes its kind as a number of the model moves, and what happens to periodic orbits on the way.
+
+    Parameters
+    ----------
+    osc : the model. over : clearance, restitution, a parameter; "amplitude" and "damping" of any model, "stiffness" and
+        "phase" of `si.linear`, need not be parameters of it. between : its ends.
+    t : ends of the flight times; as for `classify` when they are not given.
+    orbits : a whole number m, for the orbits of n impacts in k periods, n, k <= m, the one without impact and those
+        with complete chatter; or pairs (n, k). Without it P alone is looked at.
+
+    Returns
+    -------
+    Transitions : a tuple in order of the number, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` says whether it
+        is proved that no swan is missing, `.notes` why one may be. With `orbits` an `OrbitTransitions`: `.intervals`
+        between transitions, with the orbits in the middle of each and `.changes`: grazes, hidden impacts, folds, period
+        doublings and tori at their own values. Its `.both_sides(index)` is drawn by `si.plot`.
+
+    Raises
+    ------
+    InputError : no number of the model, or ends that are no two numbers in rising order.
+
+    Notes
+    -----
+    An orbit grazes where one of its flights begins at rest, a point of P for its end; that happens at a value of its
+    own, at a transition only by coincidence (codimension two). At the graze its multipliers jump: with the impact one
+    tends to infinity, without it both are finite.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import linear
+    >>> [(each.kind, each.value) for each in transitions(linear(2, 0, "0.5"), between=("0.9", "1.1"), t=(-1, 1))]
+    [('swan, negative', 1.0)]
+    >>> found = transitions(linear(2, 0, "0.5"), between=("0.9", "1.1"), t=(-1, 1), orbits=1)
+    >>> [[orbit.kind for orbit in each.orbits] for each in found.intervals]
+    [['chatter'], []]
+    """
+    if not isinstance(osc, Oscillator):
+        raise refuse("osc", osc, "an ImpactOscillator")
+    pairs = None if orbits is None else _pairs(orbits)
+    if pairs is not None and osc.period is None:
+        raise InputError("the forcing has no period: periodic orbits need one")
+    found = transitions_of_outline(osc, over, between, default_window(osc)[1] if t is None else t)
+    if pairs is None:
+        return found
+    made = OrbitTransitions(found)
+    made.notes, made.oscillator, made.over, made.ends = found.notes, osc, over, window_ends(over, between)
+    _Search(made, pairs).search()
+    return made
+
+
+def _pairs(orbits: Any) -> list[tuple[int, int]]:
+    """(n, k); (0, k) are orbits without impact."""
+    if isinstance(orbits, int | np.integer) and not isinstance(orbits, bool):
+        most = whole("orbits", orbits, 1, SETTINGS.most)
+        return [(0, 1), *((n, k) for n in range(1, most + 1) for k in range(1, most + 1))]
+    try:
+        return [(whole("n", n, 0, SETTINGS.most), whole("k", k, 1, SETTINGS.most)) for n, k in orbits]
+    except (TypeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise refuse("orbits", orbits, f"a whole number from 1 to {SETTINGS.most}, or pairs (n, k)") from None
+
+
+def _moved(osc: Oscillator, over: str, value: float) -> Oscillator:
+    return with_number(osc, over).replace(**{over: value})
+
+
+class _Search:
+    """Orbits between transitions and their branches."""
+
+    def __init__(self, made: OrbitTransitions, pairs: Sequence[tuple[int, int]]) -> None:
+        self.made, self.pairs = made, pairs
+        self.branches: list[Branch] = []
+
+    def search(self) -> None:
+        """Fill in intervals and branches."""
+        made = self.made
+        low, high = made.ends
+        edges = [low, *sorted({each.value for each in made if low < each.value < high}), high]
+        middles = [(one + other) / 2 for one, other in pairwise(edges)]
+        extra = np.linspace(low, high, SETTINGS.samples + 2)[1:-1].tolist()
+        at_middles = {}
+        for value in sorted({*middles, *extra}):
+            orbits = self._orbits(value)
+            if value in middles:
+                at_middles[value] = orbits
+            for orbit in orbits:
+                if orbit.kind != "chatter" and not any(self._passes(each, orbit, value) for each in self.branches):
+                    self.branches.append(branch(orbit, made.over, made.ends))
+        # equal values, of orbits that meet at a graze, may differ by rounding
+        changes = sorted(self._changes(), key=lambda change: (float(f"{change.value:.12g}"), change.n, change.k))
+        made.intervals = tuple(
+            Interval(one, other, tuple(at_middles[(one + other) / 2]), tuple(_placed(changes, one, other, place)))
+            for place, (one, other) in enumerate(pairwise(edges))
+        )
+        made.branches = tuple(self.branches)
+        made.told = (
+            f"orbits are looked for at {len(set(middles) | set(extra))} values: those of branches between two of these "
+            "alone are missing",
+        )
+
+    def _orbits(self, value: float) -> list[PeriodicOrbit]:
+        osc = _moved(self.made.oscillator, self.made.over, value)
+        if self.made.over == RESTITUTION and value >= 1:
+            return []
+        found = [orbit for n, k in self.pairs for orbit in periodic(osc, n, k)]
+        return found + [orbit for k in sorted({k for _, k in self.pairs}) for orbit in periodic(osc, np.inf, k)]
+
+    def _passes(self, followed: Branch, orbit: PeriodicOrbit, value: float) -> bool:
+        """Whether an orbit lies on a branch."""
+        if (followed.n, followed.k) != (int(orbit.n), orbit.k):
+            return False
+        at = np.append(followed.parameter - value, np.nan)
+        period = as_float(orbit.oscillator.period)
+        for i in np.flatnonzero(at[:-1] * at[1:] <= 0).tolist():
+            share = at[i] / (at[i] - at[i + 1]) if at[i] != at[i + 1] else 0.0
+            near = followed.orbit(i if share < 0.5 else i + 1)
+            if _alike(near, orbit, period):
+                return True
+        return False
+
+    def _changes(self) -> Iterable[OrbitChange]:
+        seen: list[OrbitChange] = []
+        for followed in self.branches:
+            for event in followed.events:
+                below, above = _sides(followed, event)
+                if set(below) | set(above) <= {"virtual"}:
+                    continue
+                change = OrbitChange(event.kind, event.parameter, followed.n, followed.k, event, below, above)
+                if not any(_same(change, other) for other in seen):
+                    seen.append(change)
+        return seen
+
+
+def _same(one: OrbitChange, other: OrbitChange) -> bool:
+    """Whether two branches met the same event: a branch that folds may be followed from both of its sheets."""
+    if (one.kind, one.n, one.k) != (other.kind, other.n, other.k):
+        return False
+    near = abs(one.value - other.value) <= 1e-9 * max(abs(one.value), abs(other.value), 1e-3)
+    return near and _alike(one.event.orbit, other.event.orbit, as_float(one.event.orbit.oscillator.period))
+
+
+def _alike(one: PeriodicOrbit, other: PeriodicOrbit, period: float) -> bool:
+    """Whether two orbits have nearly the same states, wherever they begin."""
+    states = [[np.asarray(part, dtype=float) for part in (each.tau, each.v)] for each in (one, other)]
+    if one.kind == "free":
+        sizes = max(abs(float(one.x[0])), abs(float(other.x[0])), 1e-9)
+        return bool(abs(float(one.x[0]) - float(other.x[0])) < SETTINGS.near * sizes)
+    fast = max(float(np.abs(states[0][1]).max()), float(np.abs(states[1][1]).max()), 1e-12)
+    for shift in range(len(states[0][0])):
+        gap = (np.roll(states[0][0], shift) - states[1][0]) / period
+        gap -= np.rint(gap)
+        away = np.abs(np.roll(states[0][1], shift) - states[1][1]) / fast
+        if max(float(np.abs(gap).max()), float(away.max())) < SETTINGS.near:
+            return True
+    return False
+
+
+def _sides(followed: Branch, event: Event) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What the orbits of a branch are next to an event, for smaller and for larger values."""
+    below: list[str] = []
+    above: list[str] = []
+    for i in (event.index, event.index + 1):
+        if 0 <= i < len(followed):
+            word = _word(followed.multipliers[i]) if followed.visible[i] else WORDS[3]
+            (below if followed.parameter[i] < event.parameter else above).append(word)
+    return tuple(below), tuple(above)
+
+
+def _placed(changes: list[OrbitChange], low: float, high: float, place: int) -> Iterable[OrbitChange]:
+    return [replace(change, interval=place) for change in changes if low <= change.value < high]
+
+
+def _word(multipliers: Any) -> str:
+    size = float(np.abs(np.asarray(multipliers, dtype=complex)).max())
+    return WORDS[1] if abs(size - 1) < SETTINGS.neutral else WORDS[0] if size < 1 else WORDS[2]
+
+
+def _named(orbit: PeriodicOrbit) -> str:
+    kind = _word(orbit.multipliers)
+    if orbit.kind == "chatter":
+        return f"(inf, {orbit.k}) chatter"
+    return f"({orbit.n:.0f}, {orbit.k}) {kind}" if orbit.n else f"without impact, {kind}"
