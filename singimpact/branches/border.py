@@ -48,6 +48,8 @@ class SearchSettings:
     width: float = 1e-4
     # roundings of phase and velocity where the orbit comes back
     roundings: float = 8.0
+    # digits at least, where some are asked for
+    digits: int = 16
     # roundings of the number: of 28 that were compared with 22 digits the worst was off by 2.8
     ulps: float = 4.0
 
@@ -138,7 +140,7 @@ def border_orbits(
     ----------
     osc : a model with a period, r < 1. over : the number that moves: "clearance", "restitution", a parameter, or
         another that `with_number` puts in. between : its ends; about the model's value without them.
-    digits : decimal digits of the number, which is certified where the model is linear.
+    digits : decimal digits of the number, 16 or more, which is certified where the model is linear.
     periods : of the forcing, within which the orbit returns.
     points : values at which orbits are flown before the places between them are refined.
 
@@ -167,12 +169,13 @@ def border_orbits(
     if osc.period is None:
         raise refuse("model", osc, "one with a period: its released orbit returns to the same zeros of a_c")
     low, high = _ends(osc, over, between)
+    digits = None if digits is None else max(checked_digits(digits), SETTINGS.digits)
     whole("points", points, 2, 10**6)
     search = _Search(Releases(osc, over, whole("periods", periods, 1, 1000)), np.linspace(low, high, points).tolist())
     search.scan()
     found = search.orbits()
     if digits is not None:
-        found = [_with_digits(each, checked_digits(digits)) for each in found]
+        found = [_with_digits(each, digits) for each in found]
     return BorderOrbits(found, False, search.told(points))
 
 
