@@ -79,7 +79,12 @@ class Crossing:
     @property
     def kind(self) -> str:
         """Homoclinic: to the saddle that it leaves; heteroclinic: to another one."""
-        return "homoclinic" if self.unstable is self.stable else "heteroclinic"
+        one, other = self.unstable, self.stable
+        same = (one.n, one.k) == (other.n, other.k) and all(
+            np.allclose(np.asarray(a, dtype=float), np.asarray(b, dtype=float), rtol=0, atol=1e-9)
+            for a, b in ((one.tau, other.tau), (one.v, other.v))
+        )
+        return "homoclinic" if same else "heteroclinic"
 
     @property
     def weakest(self) -> float:

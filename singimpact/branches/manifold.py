@@ -146,7 +146,7 @@ class Manifold:
             f"<{self.name} of a ({n}, {k}) saddle, multiplier {self.multiplier:.6g}: {len(self.pieces)} pieces, "
             f"{points} points, torn at {grazes} grazes{others}",
             f"  length {self.length:.4g} in sides of {self.window.x[1]:.6g} x {self.window.y[1]:.6g}, chords to "
-            f"{self.spacing:.2g}, {self.flights} flights",
+            f"{self.spacing:.2g}, arc at the saddle to {self.error:.1g}, {self.flights} flights",
         ]
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)]) + ">"
 

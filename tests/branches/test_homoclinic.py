@@ -36,6 +36,8 @@ def test_the_homoclinic_orbit_of_the_excursion_of_three_impacts(found: Crossings
     """Known from a bisection in doubles: (0.134, 0.196), (1.773, 0.428), (0.245, 0.447) and back to the saddle."""
     first = found[0]
     assert first.kind == "homoclinic"
+    (again,) = CHAOTIC.periodic(1, 1)  # another object, the same orbit
+    assert {each.kind for each in si.homoclinic_points(saddle_of(CHAOTIC, 1), again, length=3)} == {"homoclinic"}
     for tau, v in ((0.134, 0.196), (1.773, 0.428), (0.245, 0.447)):
         assert nearest(first, tau, v) < 5e-4
     assert (first.tau, first.v) == (pytest.approx(1.7728, abs=1e-4), pytest.approx(0.4282, abs=1e-4))

@@ -21,6 +21,7 @@ TWO_BASINS = si.linear("2.8", "0.1", "0.8", amplitude=-1)
 CHAOTIC = si.linear("2.8", 0, "0.8")
 DUFFING = si.ImpactOscillator("x + 0.2*x**3", "cos(2.8*t)", "0", "0.8")
 PERIOD = 2 * np.pi / 2.8
+SLOW = pytest.mark.slow
 
 
 NEAR = {DUFFING: [(0.1303, 0.3290), (2.0361, 0.3348)]}  # a search from a grid would take seconds
@@ -74,7 +75,7 @@ def test_directions_at_every_impact_are_carried_to_one_another() -> None:
             assert abs(image[0] * following[1] - image[1] * following[0]) < 1e-10 * np.linalg.norm(image)
 
 
-@pytest.mark.parametrize(("osc", "n"), [(TWO_BASINS, 3), (CHAOTIC, 1), (DUFFING, 2)])
+@pytest.mark.parametrize(("osc", "n"), [(TWO_BASINS, 3), (CHAOTIC, 1), pytest.param(DUFFING, 2, marks=SLOW)])
 def test_the_expansion_at_a_saddle_is_of_third_order(osc: si.ImpactOscillator, n: int) -> None:
     """The miss of G^n(K(s)) against K(mu s) falls eightfold with half of s; without the bend fourfold."""
     saddle = saddle_of(osc, n, n)
@@ -92,7 +93,7 @@ def test_the_expansion_at_a_saddle_is_of_third_order(osc: si.ImpactOscillator, n
         assert np.log2(missed(s, 0.0) / missed(s / 2, 0.0)) == pytest.approx(2, abs=0.3)
 
 
-@pytest.mark.parametrize(("osc", "n"), [(TWO_BASINS, 3), (CHAOTIC, 1), (DUFFING, 2)])
+@pytest.mark.parametrize(("osc", "n"), [(TWO_BASINS, 3), (CHAOTIC, 1), pytest.param(DUFFING, 2, marks=SLOW)])
 @pytest.mark.parametrize("stable", [True, False])
 def test_the_arc_at_a_saddle_is_longer_and_no_worse(osc: si.ImpactOscillator, n: int, stable: bool) -> None:
     """G^n(K(s)) lies on the arc at K(mu s), for |mu s| up to its size: a hundred times beyond the expansion."""
@@ -116,7 +117,9 @@ def test_the_arc_at_a_saddle_is_longer_and_no_worse(osc: si.ImpactOscillator, n:
     assert across(image + np.array([1e-9, 0]) * arc.scales) > 1e-11
 
 
-@pytest.mark.parametrize(("osc", "n", "sides"), [(TWO_BASINS, 3, 6), (CHAOTIC, 1, 2), (DUFFING, 2, 4)])
+@pytest.mark.parametrize(
+    ("osc", "n", "sides"), [(TWO_BASINS, 3, 6), (CHAOTIC, 1, 2), pytest.param(DUFFING, 2, 4, marks=SLOW)]
+)
 @pytest.mark.parametrize("stable", [True, False])
 def test_a_manifold_is_carried_into_itself(osc: si.ImpactOscillator, n: int, sides: int, stable: bool) -> None:
     grown = si.manifold(saddle_of(osc, n, n), stable, v=1, length=3 if osc is DUFFING else 8)
