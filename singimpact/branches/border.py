@@ -72,7 +72,8 @@ class BorderOrbit:
     tau, v : its first state after which a_c presses up to the end. slope : d(v - gamma)/d(parameter) there.
     side : "above" where chatter completes for larger values of the parameter, "below" for smaller ones.
     status : `hit`; `unresolved` where the fate of the orbit changes and v is not seen to be on gamma.
-    notes : sentences on what is not known.
+    notes : sentences on what is not known. digits : that were asked for, or None.
+    returned : the flights that show it, in doubles.
     """
 
     oscillator: Oscillator
