@@ -95,7 +95,6 @@ class Basins:
     ----------
     tau, v : the axes. attractors : the classes that occur. codes : shape (len(v), len(tau)), indices into `attractors`.
     first_chatter_completes : of the same shape, bool: the first chatter of the orbit completes.
-    boundary : points between neighbouring states of different class.
     """
 
     model: Oscillator
