@@ -25,5 +25,6 @@ def run(path: Path) -> None:
     nbformat.write(book, path)
 
 
-for name in sys.argv[1:] or sorted(map(str, Path(__file__).parent.glob("*.ipynb"))):
-    run(Path(name))
+if __name__ == "__main__":  # pytest imports this file when it collects the folder
+    for name in sys.argv[1:] or sorted(map(str, Path(__file__).parent.glob("*.ipynb"))):
+        run(Path(name))

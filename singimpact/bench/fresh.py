@@ -1,4 +1,7 @@
-"""Statements timed in a process of their own: a library's cache and a warm allocator flatter a second run."""
+"""Statements timed in a process of their own: a library's cache and a warm allocator flatter a second run.
+
+Threads of numpy's linear algebra, which nothing here uses, are not started: see `NO_SPINNING`.
+"""
 
 from __future__ import annotations
 
@@ -54,6 +57,11 @@ while hasattr(os, "wait4"):
 """An `after` that waits for children: their CPU seconds, and seconds from the beginning until the last has ended."""
 
 
+NO_SPINNING = {"OPENBLAS_NUM_THREADS": "1"}
+"""numpy starts a thread for each core, and they spin while they wait: 80 ms of CPU on two cores that no script asked for.
+A user may set the same variable."""
+
+
 @lru_cache(maxsize=1)
 def _bytecode() -> str:
     """A folder for bytecode, where it must not be written beside the sources."""
@@ -71,7 +79,7 @@ def cost(timed: str, before: str = "", after: str = "answer = None", around: dic
     4
     """
     paths = [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
-    given = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **(around or {})}
+    given = {**NO_SPINNING, **os.environ, "PYTHONPATH": os.pathsep.join(paths), **(around or {})}
     if given.pop("PYTHONDONTWRITEBYTECODE", None):  # an installed package has its bytecode
         given["PYTHONPYCACHEPREFIX"] = _bytecode()
     text = AROUND.format(before=before, timed=timed, after=after)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
-from singimpact.flights import in_digits, undecided
+from singimpact.flights import undecided
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import EPSILON, Allowance, CompiledModel, allowed, compiled_model
 from singimpact.flights.kernels.hits import CANCELS
@@ -103,6 +103,8 @@ def impact_map(
     states = States.of(osc, tau, v, digits)
     hit = _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps))
     if digits is not None:
+        from singimpact.flights import in_digits  # with `multiprecision`: 8 ms that flights in doubles do not need
+
         return in_digits.step(osc, states, hit, digits)
     return landed(osc, states, hit)
 
@@ -140,6 +142,8 @@ def _quickly(model: CompiledModel, tau: float, v: float) -> dict[str, Any] | Non
 
 def _flights(osc: Oscillator, states: States, digits: int | None, allowance: Allowance | None) -> Flight:
     if digits is not None:
+        from singimpact.flights import in_digits
+
         allowance = allowance or compiled_model(osc).allowance
         return shaped(in_digits.flights(osc, states, checked_digits(digits), allowance), states.shape)
     model = compiled_model(osc) if allowance is None else allowed(osc, allowance)

@@ -11,7 +11,6 @@ from singimpact.flights.causes import decoded, explained
 from singimpact.flights.compiled_model import EPSILON, CompiledModel
 from singimpact.flights.kernels.hits import CANCELS, NOT_REFINED
 from singimpact.flights.limits import LIMITS
-from singimpact.flights.multiprecision import refined_hit, settle
 from singimpact.flights.no_return.averaged import stays_up
 from singimpact.flights.no_return.barrier import kept_up
 from singimpact.flights.no_return.linear import never_returns
@@ -173,8 +172,12 @@ def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array
 
     At near resonances all flights come back together: the state hardly matters, but the sums still cancel.
     """
-    left = LIMITS.settled
-    for index in np.flatnonzero(codes == NOT_REFINED).tolist():
+    wanted, left = np.flatnonzero(codes == NOT_REFINED).tolist(), LIMITS.settled
+    if not wanted:
+        return
+    from singimpact.flights.multiprecision import refined_hit, settle  # 8 ms that few calls need
+
+    for index in wanted:
         fates.status[index] = Status.hit
         found = refined_hit(osc, states, index, float(fates.rows[0, index]))
         if found is None and left:
@@ -202,6 +205,8 @@ def escapes(osc: Oscillator, model: CompiledModel, states: States, fates: Fates)
 def _settled(osc: Oscillator, model: CompiledModel, states: States, fates: Fates) -> Array:
     """Flights that doubles leave open near a graze, flown in many digits: the state is exact, so the answer exists."""
     open_ones = np.flatnonzero(fates.cause == Cause.near_graze)[: LIMITS.settled]
+    if open_ones.size:
+        from singimpact.flights.multiprecision import settle  # 8 ms that few calls need
     for index in open_ones:
         settled = settle(osc, states, int(index), model.allowance.horizon)
         if settled is not None:

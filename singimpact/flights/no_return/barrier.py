@@ -23,7 +23,7 @@ from singimpact.algebra.expressions import Name, add, evaluate, multiply, number
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
-from singimpact.flights.no_return.polynomial import extremes_of_forcing
+from singimpact.flights.no_return.polynomial import extremes_of_forcing, least_on_a_grid
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
@@ -64,10 +64,6 @@ def kept_up(osc: Oscillator, v: Array) -> Array:
 @lru_cache(maxsize=256)
 def fastest_kept(osc: Oscillator) -> float:
     """The largest launch velocity between proved barriers; 0 without any."""
-    extremes = extremes_of_forcing(osc)
-    if extremes is None:
-        return 0.0
-    low, high = (float(part.mid()) for part in extremes)
     clearance = as_float(osc.clearance)
 
     def force(z: Array, speed: Array) -> Array:
@@ -75,7 +71,14 @@ def fastest_kept(osc: Oscillator) -> float:
             return np.asarray(evaluate(osc.force(), {"x": clearance + z, "xdot": speed}, DOUBLES) + 0 * z)
 
     nothing = np.zeros(1)
-    if not low - force(nothing, nothing)[0] > 0:  # the obstacle must push the mass off at all times
+    at_rest = force(nothing, nothing)[0]
+    if not least_on_a_grid(osc) - at_rest > 0:  # the obstacle must push the mass off at all times; no balls are needed
+        return 0.0
+    extremes = extremes_of_forcing(osc)
+    if extremes is None:
+        return 0.0
+    low, high = (float(part.mid()) for part in extremes)
+    if not low - at_rest > 0:
         return 0.0
     part = np.linspace(0, 1, SEARCH.grid) ** 2
     for height in (2.0**k for k in SEARCH.heights):

@@ -16,9 +16,11 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import Expression, Name, Number, Power, Product, Sum, names_in
+from singimpact.algebra.expressions import Expression, Name, Number, Power, Product, Sum, evaluate, names_in
 from singimpact.algebra.jets import JetSpace
+from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at
+from singimpact.algebra.rings import DOUBLES
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
@@ -96,6 +98,22 @@ def _rises(osc: Oscillator, degree: int, least: Any, z: float, u: float) -> bool
         terms = dict(space.evaluate(osc.force(), {"x": x, "xdot": xdot}).terms)
     constant = terms.pop((0, 0), balls.rational(Fraction(0)))
     return bool(constant < least and all(value <= 0 for value in terms.values()))
+
+
+def least_on_a_grid(osc: Oscillator) -> float:
+    """The least value of g at some times of a period, in doubles: a bound from above on its minimum; nan without one.
+
+    Examples
+    --------
+    >>> least_on_a_grid(Oscillator("x", "cos(2*t)", 0, 1))
+    -1.0
+    """
+    forcing = osc.forcing()
+    if "t" in names_in(forcing) and osc.period is None:
+        return float("nan")
+    period = 1.0 if osc.period is None else as_float(osc.period)
+    with np.errstate(all="ignore"):
+        return float(np.min(evaluate(forcing, {"t": period * np.arange(64) / 64}, DOUBLES)))
 
 
 @lru_cache(maxsize=64)
