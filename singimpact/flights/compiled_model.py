@@ -302,7 +302,7 @@ class CompiledModel:
             given = tau, v, np.full(tau.size, np.nan) if pushes is None else pushes
         begin = 0
         while begin < tau.size:
-            entry = self._compiled(self.main, self.price * min(TABLES.interpreted, tau.size - begin))
+            entry = self._compiled(self.main, self.price * (tau.size - begin))
             end = min(begin + (TABLES.block if entry else TABLES.interpreted), tau.size)
             if entry is None:
                 self._interpreted_hits(given, (out, status), slice(begin, end))

@@ -7,6 +7,7 @@ cache; nothing waits for it.
 from __future__ import annotations
 
 import atexit
+import gc
 import hashlib
 import os
 import sys
@@ -174,6 +175,7 @@ def compile_asked(request: Path) -> None:
     """What the other process does: compile both entries of a text and keep them."""
     if hasattr(os, "nice"):
         os.nice(10)
+    gc.disable()  # a tenth of the time: numba makes millions of objects, and the process ends when it is done
     flow, rows, rho = request.read_text(encoding="utf-8").split("\0")
     machine = Machine(Emitted(flow, int(rows), rho))
     from singimpact.codegen import object_code
