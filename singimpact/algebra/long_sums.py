@@ -107,13 +107,16 @@ def order_key(expression: Any) -> Key:
 class _Terms:
     """The keys of the terms of a sum, found when two sums of one length are compared: most are told apart before."""
 
-    __slots__ = ("total",)
+    __slots__ = ("_keys", "total")
 
     def __init__(self, total: Any) -> None:
         self.total = total
+        self._keys: list[Key] | None = None
 
     def keys(self) -> list[Key]:
-        return [order_key(part) for part in self.total.args]
+        if self._keys is None:
+            self._keys = [order_key(part) for part in self.total.args]
+        return self._keys
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Terms) and (self.total is other.total or self.keys() == other.keys())
