@@ -251,7 +251,7 @@ class CompiledModel:
         machine = machine or self.machine
         found = self._entry(name, machine)
         if found is None:
-            machine.interpreted(seconds)
+            machine.interpreted(seconds, name)
             found = self._entry(name, machine)
         return found
 

@@ -12,7 +12,8 @@ import hashlib
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -40,6 +41,7 @@ class CompilingSettings:
 
 SETTINGS = CompilingSettings()
 FOLDER = "kernels"
+FIRST = ".first"  # beside a request: the entry that somebody waits for
 Entry = tuple[Callable[..., int], Callable[..., int]]
 
 
@@ -58,7 +60,7 @@ class Machine:
         self._entries: dict[str, Entry] = {}
         self._lock = Lock()
         self._looked: dict[str, float] = {}
-        self._asked, self._tried = False, -1e9
+        self._asked, self._tried = "", -1e9
 
     def entry(self, name: str) -> Entry | None:
         """An entry, if it is compiled: without the interpreter's lock, and with it."""
@@ -73,26 +75,36 @@ class Machine:
         code = cache.recall(place) if place.is_file() else None
         return None if code is None else self._load(name, code)
 
-    def interpreted(self, seconds: float) -> None:
-        """Count flights that were interpreted; after a while a process compiles the text."""
+    def interpreted(self, seconds: float, name: str) -> None:
+        """Count flights that were interpreted; after a while a process compiles the text, the entry `name` first."""
         self.spent += seconds
-        if self._asked or not compilable() or (self.emitted.flow and self.spent < SETTINGS.wait):
+        if self._asked == name or not compilable() or (self.emitted.flow and self.spent < SETTINGS.wait):
             return
         now = time.monotonic()
         if now - self._tried > SETTINGS.look:
             self._tried = now
-            self._asked = self._compile_elsewhere()
+            self._asked = name if self._compile_elsewhere(name) else ""
 
     def compile_here(self, name: str) -> Entry:
-        """Compile an entry in this process, which waits for it."""
+        """An entry that is waited for: until the process that compiles has it, or else it is compiled in this one."""
         from singimpact.codegen import object_code
 
-        found = self.entry(name)
+        found = self.entry(name) or self._awaited(name)
         if found is None:
             code = object_code.emitted(bind.Compiler(self.emitted).text(name), name)
             cache.keep(self.place(name), code)
             found = self._load(name, code)
         return found
+
+    def _awaited(self, name: str) -> Entry | None:
+        """An entry from a process that this one has started; None when it has ended without it."""
+        request = self._request
+        while request.exists() and any(process.poll() is None for process in _STARTED):
+            time.sleep(SETTINGS.look / 10)
+            if self.place(name).is_file():
+                break
+        self._looked.pop(name, None)
+        return self.entry(name)
 
     def _load(self, name: str, code: bytes) -> Entry:
         from singimpact.codegen import object_code
@@ -114,11 +126,16 @@ class Machine:
             digest.update(hashlib.sha256(text.encode()).digest())
         return digest.hexdigest()[:32]
 
-    def _compile_elsewhere(self) -> bool:
+    @property
+    def _request(self) -> Path:
+        return cache_folder() / FOLDER / f"{self.digest}.asked"
+
+    def _compile_elsewhere(self, name: str) -> bool:
         """Start a process of low priority that compiles, unless one is at work for this cache; whether it was asked."""
-        request = cache_folder() / FOLDER / f"{self.digest}.asked"
+        request = self._request
         try:
             folder(request.parent)
+            write_text(request.with_suffix(FIRST), name)
             if any(time.time() - each.stat().st_mtime < SETTINGS.dead for each in request.parent.glob("*.asked")):
                 return request.exists()
             write_text(request, "\0".join([self.emitted.flow, str(self.emitted.rows), self.emitted.rho]))
@@ -172,7 +189,7 @@ def compilable() -> bool:
 
 
 def compile_asked(request: Path) -> None:
-    """What the other process does: compile both entries of a text and keep them."""
+    """What the other process does: compile the entries of a text and keep them."""
     if hasattr(os, "nice"):
         os.nice(10)
     gc.disable()  # a tenth of the time: numba makes millions of objects, and the process ends when it is done
@@ -182,13 +199,23 @@ def compile_asked(request: Path) -> None:
 
     try:
         compiler = bind.Compiler(machine.emitted)
-        for name in machine.emitted.entries:
+        for name in _first_wanted(request, machine.emitted.entries):
             if cache.recall(machine.place(name)) is None:
                 code = object_code.emitted(compiler.text(name), name)
                 if request.exists():  # else the cache was removed or emptied meanwhile
                     cache.keep(machine.place(name), code)
     finally:
         request.unlink(missing_ok=True)
+        request.with_suffix(FIRST).unlink(missing_ok=True)
+
+
+def _first_wanted(request: Path, names: tuple[str, ...]) -> Iterator[str]:
+    """Entries in their order, but always the one next that somebody waits for now."""
+    left = list(names)
+    while left:
+        with suppress(OSError):
+            left.sort(key=request.with_suffix(FIRST).read_text(encoding="utf-8").__ne__)
+        yield left.pop(0)
 
 
 if __name__ == "__main__":
