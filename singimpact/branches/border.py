@@ -177,7 +177,7 @@ def border_orbits(
     found = search.orbits()
     if digits is not None:
         found = [_with_digits(each, digits) for each in found]
-    return BorderOrbits(found, False, search.told(points))
+    return BorderOrbits(found, False, search.what_may_be_missing(points))
 
 
 def _ends(osc: Oscillator, over: str, between: Any) -> tuple[float, float]:
@@ -271,8 +271,8 @@ class _Search:
         """The border orbits, each once."""
         return [_border(each, self.spacing) for each in sorted(self.found, key=lambda each: each.value)]
 
-    def told(self, points: int) -> tuple[str, ...]:
-        """What may be missing."""
+    def what_may_be_missing(self, points: int) -> tuple[str, ...]:
+        """Notes on the list."""
         over, periods = self.releases.over, self.releases.periods
         many = f"{periods} periods" if periods > 1 else "one period"
         return (

@@ -18,7 +18,7 @@ from singimpact.dynamics.growth import LEFT, LOST, NATURAL, TORN, Carried, Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.counted import counted
 from singimpact.inputs import refuse
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.acceleration import acceleration, largest_push
 from singimpact.store import write_table
 from singimpact.surface.curve import RESOLUTION, STATES, Curve, Mark, Window
 
@@ -221,9 +221,8 @@ def manifold(
 
 
 def _highest(saddle: PeriodicOrbit, fastest: float) -> float:
-    period = orbit_period(saddle)
-    push = float(np.abs(acceleration(saddle.oscillator, np.linspace(0, period, 64))).max())
-    return max(SETTINGS.highest[0] * fastest, SETTINGS.highest[1] * push * period)
+    push = largest_push(saddle.oscillator)
+    return max(SETTINGS.highest[0] * fastest, SETTINGS.highest[1] * push * orbit_period(saddle))
 
 
 class _Grown:

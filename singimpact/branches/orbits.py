@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import as_float
+from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
@@ -58,6 +60,41 @@ class PeriodicOrbit:
         states = ", ".join(f"({float(t):.6g}, {float(v):.6g})" for t, v in zip(self.tau[:4], self.v[:4], strict=True))
         more = ", ..." if len(self.tau) > 4 else ""
         return f"<{words}, {kind}: (tau, v) = {states}{more}>"
+
+
+def chatter_orbit(osc: Oscillator, lift_off: float, k: int, miss: float) -> PeriodicOrbit:
+    """The orbit that chatters, rests and lifts off again k periods later, with that miss."""
+    assert osc.period is not None
+    phase = np.mod(lift_off, as_float(osc.period))
+    return PeriodicOrbit(
+        np.array([phase]), np.zeros(1), np.zeros(2), miss, np.int8(Status.hit), osc, np.inf, k, "chatter"
+    )
+
+
+def same_states(one: PeriodicOrbit, other: PeriodicOrbit, within: float) -> bool:
+    """Whether two orbits of as many impacts have the same states, from whichever they begin.
+
+    Parameters
+    ----------
+    within : how far apart they may be, of the period and of the largest velocity.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import linear
+    >>> first, second = (PeriodicOrbit(np.array(tau), np.array(v), None, 0.0, oscillator=linear(1, 0, 1))
+    ...                  for tau, v in (([0.1, 2.0], [1.0, 0.5]), ([2.0, 0.1], [0.5, 1.0])))
+    >>> same_states(first, second, 1e-9)
+    True
+    """
+    period = as_float(one.oscillator.period)
+    tau, v, times, speeds = (np.asarray(part, dtype=float) for part in (one.tau, one.v, other.tau, other.v))
+    fast = max(float(np.abs(v).max()), float(np.abs(speeds).max()), 1e-12)  # at a graze v is rounding
+    for shift in range(len(tau)):
+        gaps = (np.roll(tau, shift) - times) / period
+        gaps -= np.rint(gaps)
+        if np.abs(gaps).max() < within and np.abs(np.roll(v, shift) - speeds).max() < within * fast:
+            return True
+    return False
 
 
 class PeriodicOrbits(list[PeriodicOrbit]):

@@ -16,7 +16,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.branches.closing import Closing
 from singimpact.branches.digits import in_digits
 from singimpact.branches.one_impact import phases_and_speeds
-from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits
+from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, same_states
 from singimpact.branches.resting import chatter_orbits, free_orbits
 from singimpact.branches.solutions import orbit_at
 from singimpact.branches.starts import closed_from, grid_of_starts
@@ -154,25 +154,9 @@ def _judged(osc: Oscillator, n: int, k: int, points: list[Array]) -> list[Period
         if not point[n : 2 * n].max() > SETTINGS.least or point[n : 2 * n].min() < -SETTINGS.least:
             continue
         orbit = orbit_at(closing, point, osc)
-        if not _sooner(orbit, closing) and not any(_same(orbit, other, closing) for other in kept):
+        if not _sooner(orbit, closing) and not any(same_states(orbit, other, SETTINGS.apart) for other in kept):
             kept.append(orbit)
     return sorted(kept, key=lambda orbit: (float(orbit.tau[0]), float(orbit.v[0])))
-
-
-def _phases(orbit: PeriodicOrbit, period: float) -> Array:
-    return np.asarray(np.mod(orbit.tau, period))
-
-
-def _same(one: PeriodicOrbit, other: PeriodicOrbit, closing: Closing) -> bool:
-    """Whether two orbits have the same states up to a cyclic shift."""
-    period = closing.family.period({}).value
-    fast = max(float(np.max(other.v)), 1e-300)
-    for shift in range(closing.n):
-        gaps = np.abs(np.roll(_phases(one, period), shift) - _phases(other, period))
-        speeds = np.abs(np.roll(one.v, shift) - other.v)
-        if np.minimum(gaps, period - gaps).max() < SETTINGS.apart * period and speeds.max() < SETTINGS.apart * fast:
-            return True
-    return False
 
 
 def _sooner(orbit: PeriodicOrbit, closing: Closing) -> bool:

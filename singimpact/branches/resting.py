@@ -10,9 +10,10 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.branches.closing import lowest
 from singimpact.branches.free import FreeClosing
-from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits
+from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, chatter_orbit
 from singimpact.dynamics.long_run import lift_offs
 from singimpact.dynamics.orbit import orbit
+from singimpact.dynamics.release import turns_between
 from singimpact.flights.family import Family, family
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
@@ -129,8 +130,7 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
     (2.743893, True)
     """
     assert osc.period is not None
-    period, notes = as_float(osc.period), Notes()
-    phases = list(lift_offs(osc))
+    phases, notes = list(lift_offs(osc)), Notes()
     following = [_next_lift_off(osc, phases, place, k, notes) for place in range(len(phases))]
     found = list[PeriodicOrbit]()
     for first, phase in enumerate(phases):
@@ -143,8 +143,7 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
             step = following[step.place]
         # of the phases of one circle the first stands for it; a phase that leads into a circle is not on it
         if step is not None and step.place == first == min(circle) and turns == k:
-            found.append(PeriodicOrbit(np.array([np.mod(phase, period)]), np.zeros(1), np.zeros(2), miss,
-                                       np.int8(Status.hit), osc, np.inf, k, "chatter"))  # fmt: skip
+            found.append(chatter_orbit(osc, phase, k, miss))
     return PeriodicOrbits(found, not notes.sentences, tuple(notes.sentences))
 
 
@@ -171,8 +170,7 @@ def _next_lift_off(osc: Oscillator, phases: list[float], place: int, k: int, not
             break
     for time in lifted:
         for other, zero in enumerate(phases):
-            turns = round((time - zero) / period)
-            miss = abs(time - zero - turns * period)
+            turns, miss = turns_between(zero, time, period)
             if miss < SAME_PHASE * period:
                 return _Lift(other, turns, miss)
     if flown.tau[-1] <= end and ended not in ("sticking", "no_return"):

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.branches.orbits import PeriodicOrbit, chatter_orbit
+from singimpact.branches.resting import SAME_PHASE
 from singimpact.dynamics.orbit import Orbit, orbit
+from singimpact.dynamics.release import turns_between
 from singimpact.flights.derivative import derivative
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
@@ -110,11 +112,9 @@ def _multipliers(osc: Oscillator, tau: Array, v: Array) -> Array:
 
 def _with_rest(osc: Oscillator, lifted: Array, period: float) -> PeriodicOrbit | None:
     """The orbit of a mass that lifts off again and again at the same phases."""
-    phases = np.mod(lifted, period)
-    same = np.abs(phases[-1] - phases[:-1])
-    same = np.flatnonzero(np.minimum(same, period - same) < 1e-9 * period)
-    if not same.size:
-        return None
-    k = int(np.rint((lifted[-1] - lifted[same[-1]]) / period))
-    return PeriodicOrbit(np.array([phases[-1]]), np.zeros(1), np.zeros(2), 0.0, np.int8(Status.hit), osc, np.inf, k,
-                         "chatter")  # fmt: skip
+    last = float(lifted[-1])
+    for earlier in lifted[-2::-1].tolist():
+        k, miss = turns_between(earlier, last, period)
+        if miss < SAME_PHASE * period:
+            return chatter_orbit(osc, last, k, miss)
+    return None

@@ -8,7 +8,7 @@ graze, fold or double.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -17,11 +17,11 @@ import numpy as np
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.branches.branch import Branch, branch
 from singimpact.branches.events import Event
-from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.branches.orbits import PeriodicOrbit, same_states
 from singimpact.branches.periodic import periodic
 from singimpact.dynamics.basins import Basins, basins
 from singimpact.inputs import InputError, refuse, whole
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.acceleration import largest_push
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
 from singimpact.surface.classification import default_window
@@ -105,17 +105,21 @@ class OrbitTransitions(Transitions):
 
     Parameters
     ----------
-    oscillator, over, ends : the model, the number that moves, and its ends.
+    oscillator, over, ends : the model, the name of the number, and its ends.
     intervals : one more than there are values of transitions. changes : of all intervals. branches : followed for them.
-    notes : why a swan may be missing. told : how orbits were found, and what may be missing of them.
+    notes : why a swan may be missing. orbit_notes : how orbits were found, and what may be missing of them.
     """
 
-    oscillator: Oscillator
-    over: str
-    ends: tuple[float, float]
-    intervals: tuple[Interval, ...] = ()
-    branches: tuple[Branch, ...] = ()
-    told: tuple[str, ...] = ()
+    def __new__(cls, found: Transitions, *_: Any) -> OrbitTransitions:
+        """The tuple is that of the transitions."""
+        return super().__new__(cls, found)
+
+    def __init__(
+        self, found: Transitions, moved: tuple[Oscillator, str, tuple[float, float]], intervals: tuple[Interval, ...],
+        branches: tuple[Branch, ...], orbit_notes: tuple[str, ...],
+    ) -> None:  # fmt: skip
+        self.notes, (self.oscillator, self.over, self.ends) = found.notes, moved
+        self.intervals, self.branches, self.orbit_notes = intervals, branches, orbit_notes
 
     @property
     def changes(self) -> tuple[OrbitChange, ...]:
@@ -132,7 +136,7 @@ class OrbitTransitions(Transitions):
                 f"from {interval.low:.9g} to {interval.high:.9g}: {', '.join(names) or 'none of these orbits'}"
             )
             lines += [f"  {change!r}" for change in interval.changes]
-        return "\n".join([*lines, *self.notes, *self.told])
+        return "\n".join([*lines, *self.notes, *self.orbit_notes])
 
     def both_sides(self, index: int, *, apart: Any = None, v: Any = None, size: int = 200) -> BothSides:
         """The plane of states before and after a transition, for `si.plot`.
@@ -156,8 +160,7 @@ class OrbitTransitions(Transitions):
         if models[0].period is None:
             raise InputError("the forcing has no period: basins need one")
         period = as_float(models[0].period)
-        highest = float(np.abs(acceleration(models[0], np.linspace(0, period, 64))).max()) * period / 4
-        speeds = (0.0, highest) if v is None else window_ends("v", v)
+        speeds = (0.0, largest_push(models[0]) * period / 4) if v is None else window_ends("v", v)
         tau = (chosen.tau - period / 2, chosen.tau + period / 2)
         found = [basins(model, tau, speeds, whole("size", size, 2, 10_000)) for model in models]
         return BothSides(chosen, self.over, (models[0], models[1]), (found[0], found[1]))
@@ -225,10 +228,7 @@ def transitions(
     found = transitions_of_outline(osc, over, between, default_window(osc)[1] if t is None else t)
     if pairs is None:
         return found
-    made = OrbitTransitions(found)
-    made.notes, made.oscillator, made.over, made.ends = found.notes, osc, over, window_ends(over, between)
-    _Search(made, pairs).search()
-    return made
+    return _Search(found, osc, over, window_ends(over, between), pairs).found()
 
 
 def _pairs(orbits: Any) -> list[tuple[int, int]]:
@@ -248,18 +248,21 @@ def _moved(osc: Oscillator, over: str, value: float) -> Oscillator:
     return with_number(osc, over).replace(**{over: value})
 
 
+@dataclass
 class _Search:
     """Orbits between transitions and their branches."""
 
-    def __init__(self, made: OrbitTransitions, pairs: Sequence[tuple[int, int]]) -> None:
-        self.made, self.pairs = made, pairs
-        self.branches: list[Branch] = []
+    transitions: Transitions
+    osc: Oscillator
+    over: str
+    ends: tuple[float, float]
+    pairs: Sequence[tuple[int, int]]
+    branches: list[Branch] = field(default_factory=list)
 
-    def search(self) -> None:
-        """Fill in intervals and branches."""
-        made = self.made
-        low, high = made.ends
-        edges = [low, *sorted({each.value for each in made if low < each.value < high}), high]
+    def found(self) -> OrbitTransitions:
+        """The transitions with intervals and branches."""
+        low, high = self.ends
+        edges = [low, *sorted({each.value for each in self.transitions if low < each.value < high}), high]
         middles = [(one + other) / 2 for one, other in pairwise(edges)]
         extra = np.linspace(low, high, SETTINGS.samples + 2)[1:-1].tolist()
         at_middles = {}
@@ -269,22 +272,23 @@ class _Search:
                 at_middles[value] = orbits
             for orbit in orbits:
                 if orbit.kind != "chatter" and not any(self._passes(each, orbit, value) for each in self.branches):
-                    self.branches.append(branch(orbit, made.over, made.ends))
+                    self.branches.append(branch(orbit, self.over, self.ends))
         # equal values, of orbits that meet at a graze, may differ by rounding
         changes = sorted(self._changes(), key=lambda change: (float(f"{change.value:.12g}"), change.n, change.k))
-        made.intervals = tuple(
+        intervals = tuple(
             Interval(one, other, tuple(at_middles[(one + other) / 2]), tuple(_placed(changes, one, other, place)))
             for place, (one, other) in enumerate(pairwise(edges))
         )
-        made.branches = tuple(self.branches)
-        made.told = (
+        note = (
             f"orbits are looked for at {len(set(middles) | set(extra))} values: those of branches between two of these "
-            "alone are missing",
+            "alone are missing"
         )
+        moved = self.osc, self.over, self.ends
+        return OrbitTransitions(self.transitions, moved, intervals, tuple(self.branches), (note,))
 
     def _orbits(self, value: float) -> list[PeriodicOrbit]:
-        osc = _moved(self.made.oscillator, self.made.over, value)
-        if self.made.over == RESTITUTION and value >= 1:
+        osc = _moved(self.osc, self.over, value)
+        if self.over == RESTITUTION and value >= 1:
             return []
         found = [orbit for n, k in self.pairs for orbit in periodic(osc, n, k)]
         return found + [orbit for k in sorted({k for _, k in self.pairs}) for orbit in periodic(osc, np.inf, k)]
@@ -294,11 +298,10 @@ class _Search:
         if (followed.n, followed.k) != (int(orbit.n), orbit.k):
             return False
         at = np.append(followed.parameter - value, np.nan)
-        period = as_float(orbit.oscillator.period)
         for i in np.flatnonzero(at[:-1] * at[1:] <= 0).tolist():
             share = at[i] / (at[i] - at[i + 1]) if at[i] != at[i + 1] else 0.0
             near = followed.orbit(i if share < 0.5 else i + 1)
-            if _alike(near, orbit, period):
+            if _alike(near, orbit):
                 return True
         return False
 
@@ -320,23 +323,15 @@ def _same(one: OrbitChange, other: OrbitChange) -> bool:
     if (one.kind, one.n, one.k) != (other.kind, other.n, other.k):
         return False
     near = abs(one.value - other.value) <= 1e-9 * max(abs(one.value), abs(other.value), 1e-3)
-    return near and _alike(one.event.orbit, other.event.orbit, as_float(one.event.orbit.oscillator.period))
+    return near and _alike(one.event.orbit, other.event.orbit)
 
 
-def _alike(one: PeriodicOrbit, other: PeriodicOrbit, period: float) -> bool:
-    """Whether two orbits have nearly the same states, wherever they begin."""
-    states = [[np.asarray(part, dtype=float) for part in (each.tau, each.v)] for each in (one, other)]
+def _alike(one: PeriodicOrbit, other: PeriodicOrbit) -> bool:
+    """Whether two orbits have nearly the same states."""
     if one.kind == "free":
         sizes = max(abs(float(one.x[0])), abs(float(other.x[0])), 1e-9)
         return bool(abs(float(one.x[0]) - float(other.x[0])) < SETTINGS.near * sizes)
-    fast = max(float(np.abs(states[0][1]).max()), float(np.abs(states[1][1]).max()), 1e-12)
-    for shift in range(len(states[0][0])):
-        gap = (np.roll(states[0][0], shift) - states[1][0]) / period
-        gap -= np.rint(gap)
-        away = np.abs(np.roll(states[0][1], shift) - states[1][1]) / fast
-        if max(float(np.abs(gap).max()), float(away.max())) < SETTINGS.near:
-            return True
-    return False
+    return same_states(one, other, SETTINGS.near)
 
 
 def _sides(followed: Branch, event: Event) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import click
 
@@ -12,7 +12,7 @@ from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.inputs import InputError
 
 if TYPE_CHECKING:
-    from singimpact.branches.transitions import Interval
+    from singimpact.branches.transitions import Interval, OrbitTransitions
     from singimpact.surface.classification import Classification
     from singimpact.surface.transitions import Transitions
 
@@ -50,17 +50,32 @@ def command(
         raise InputError(f"--over {over} needs its ends: --between LOW HIGH")
     if orbits is not None and over is None:
         raise InputError("--orbits needs the number that moves: --over NAME --between LOW HIGH")
-    from singimpact.branches.transitions import transitions
     from singimpact.studies import clearances
     from singimpact.surface.classification import classify
 
     swans_between = clearances(between) if between is not None and over in (None, "clearance") else None
     found = classify(oscillator, window_tau, window_t, swans_between)
-    changes = None if over is None else transitions(oscillator, over, between, found.t, orbits=orbits)
+    changes = None if over is None else _transitions(oscillator, over, between, found.t, orbits)
     if as_json:
         emit(as_json_text({"model": oscillator.to_dict(), **_told(found, over, changes)}), output)
     else:
         emit(_text(found, over, changes), output)
+
+
+def _transitions(oscillator: Any, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
+    """Without orbits nothing of branches is loaded, which takes 0.2 s."""
+    if orbits is None:
+        from singimpact.surface.transitions import transitions
+
+        return transitions(oscillator, over, between, t)
+    from singimpact.branches.transitions import transitions as with_orbits
+
+    return with_orbits(oscillator, over, between, t, orbits=orbits)
+
+
+def _with_orbits(changes: Transitions) -> TypeGuard[OrbitTransitions]:
+    """Whether there are orbits between the transitions; asked so that a plain list loads nothing of branches."""
+    return hasattr(changes, "orbit_notes")
 
 
 def _interval(each: Interval) -> dict[str, Any]:
@@ -73,8 +88,6 @@ def _interval(each: Interval) -> dict[str, Any]:
 
 
 def _told(found: Classification, over: str | None, changes: Transitions | None) -> dict[str, Any]:
-    from singimpact.branches.transitions import OrbitTransitions
-
     told: dict[str, Any] = {
         "window": {"tau": found.tau, "t": found.t},
         "points": [{"name": p.name, "maps": p.maps, "kind": p.kind, "tau": p.tau, "t": p.t, "image": p.image}
@@ -88,14 +101,13 @@ def _told(found: Classification, over: str | None, changes: Transitions | None) 
         listed = [{"kind": c.kind, "value": c.value, "tau": c.tau, "t": c.t} for c in changes]
         told["transitions"] = {"over": over, "found": listed, "swans_complete": changes.complete,
                                "notes": changes.notes}  # fmt: skip
-        if isinstance(changes, OrbitTransitions):
-            told["transitions"] |= {"intervals": [_interval(each) for each in changes.intervals], "told": changes.told}
+        if _with_orbits(changes):
+            told["transitions"] |= {"intervals": [_interval(each) for each in changes.intervals],
+                                    "orbit_notes": changes.orbit_notes}  # fmt: skip
     return told
 
 
 def _text(found: Classification, over: str | None, changes: Transitions | None) -> str:
-    from singimpact.branches.transitions import OrbitTransitions
-
     tables = [
         _table("points of V_c' where p or phi is singular", ["point", "of", "kind", "tau", "t", "image tau", "image v"],
                [[p.name, p.maps, p.kind, *_numbers(p.tau, p.t, *p.image)] for p in found.points]),
@@ -107,7 +119,7 @@ def _text(found: Classification, over: str | None, changes: Transitions | None) 
     if changes is not None:
         rows = [[c.kind, *_numbers(c.value, c.tau, c.t)] for c in changes]
         tables.append(_table(f"where P changes as {over} moves", ["kind", str(over), "tau", "t"], rows, changes.notes))
-        if isinstance(changes, OrbitTransitions):
+        if _with_orbits(changes):
             tables.append(f"periodic orbits:\n{changes!r}")
         if changes.complete:
             tables.append("no swan between these ends is missing (by interval bounds)")

@@ -72,8 +72,20 @@ def periods_between(osc: Oscillator, earlier: float, later: float) -> float | No
     if osc.period is None:
         return None
     period = as_float(osc.period)
-    time = float(np.rint((later - earlier) / period)) * period
-    return time if abs(later - earlier - time) <= SAME * max(abs(later), period) else None
+    turns, miss = turns_between(earlier, later, period)
+    return turns * period if miss <= SAME * max(abs(later), period) else None
+
+
+def turns_between(earlier: float, later: float, period: float) -> tuple[int, float]:
+    """Whole periods between two times, and by how much the time between them misses these.
+
+    Examples
+    --------
+    >>> turns_between(0.5, 7.75, 2.0)
+    (4, 0.75)
+    """
+    turns = int(np.rint((later - earlier) / period))
+    return turns, abs(later - earlier - turns * period)
 
 
 def _lifted(osc: Oscillator, tau: float) -> float:

@@ -57,6 +57,18 @@ def acceleration(osc: Oscillator, tau: np.ndarray[Any, Any], order: int = 0) -> 
     return values
 
 
+def largest_push(osc: Oscillator) -> float:
+    """The largest |a_c| at 64 phases of a period.
+
+    Examples
+    --------
+    >>> largest_push(Oscillator("x", "cos(2*t)", -1, 1))
+    2.0
+    """
+    assert osc.period is not None
+    return float(np.abs(acceleration(osc, np.linspace(0, as_float(osc.period), 64))).max())
+
+
 def _forcing(osc: Oscillator, tau: np.ndarray[Any, Any], order: int) -> np.ndarray[Any, Any]:
     forcing, steady = _forcing_tree(osc)
     if order or steady is not None:

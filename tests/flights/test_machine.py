@@ -50,7 +50,7 @@ class Never(machine.Machine):
     def entry(self, name):  # noqa: ARG002
         return None
 
-    def interpreted(self, seconds):
+    def interpreted(self, seconds, name):
         pass
 
 
@@ -167,6 +167,32 @@ def test_one_state_with_a_law_of_its_own_is_flown_once(compiled):
 
 
 @pytest.mark.usefixtures("compiled")
+def test_the_entry_that_is_waited_for_is_compiled_next(tmp_path):
+    request = tmp_path / "text.asked"
+    order = machine._first_wanted(request, ("one", "two", "three", "four"))
+    assert next(order) == "one"
+    request.with_suffix(machine.FIRST).write_text("four")
+    assert next(order) == "four"
+    assert list(order) == ["two", "three"]
+
+
+def test_an_entry_is_waited_for_while_another_process_compiles_it(tmp_path, monkeypatch, compiled):
+    flown = compiled_model(compiled["linear"])
+    kept = tmp_path / "kept"
+    kept.write_bytes(flown.machine.place("linear_entry").read_bytes())
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path / "cache"))
+    other = machine.Machine(flown.machine.emitted)
+    place = other.place("linear_entry")
+    store.folder(place.parent)
+    other._request.write_text("")
+    keeps = f"import os, time; time.sleep(0.5); os.link({str(kept)!r}, {str(place)!r})"
+    child = subprocess.Popen([sys.executable, "-c", keeps])
+    monkeypatch.setattr(machine, "_STARTED", [child])
+    monkeypatch.setattr(object_code, "emitted", None)  # compiling here would fail
+    assert other.compile_here("linear_entry")
+    child.wait()
+
+
 def test_linear_models_share_their_machine():
     assert compiled_model(si.linear(2, 0, 1)).machine is compiled_model(MODELS["linear"]).machine
     assert compiled_model(si.linear(2, 0, "-0.8*v + v**2/10")).machine is compiled_model(MODELS["linear"]).machine
