@@ -63,7 +63,8 @@ class BorderOrbit:
 
     Parameters
     ----------
-    oscillator : the model there; exactly so only where `parameter` is a double that is exact. over : what moves.
+    oscillator : the model there; exactly so only where `parameter` is a double that is exact.
+    over : the number that is varied.
     parameter : its value; an mpmath number with digits. error : an estimate of its error, or a bound where `certified`.
     certified : a value with a radius in which a border orbit is proved to be; None without digits, and where balls do
         not decide. Linear models only.
@@ -119,7 +120,7 @@ class BorderOrbit:
 
 
 class BorderOrbits(list[BorderOrbit]):
-    """Border orbits in the order of the number that moves.
+    """Border orbits in the order of the number that is varied.
 
     Parameters
     ----------
@@ -139,7 +140,7 @@ def border_orbits(
 
     Parameters
     ----------
-    osc : a model with a period, r < 1. over : the number that moves: "clearance", "restitution", a parameter, or
+    osc : a model with a period, r < 1. over : the number that is varied: "clearance", "restitution", a parameter, or
         another that `with_number` puts in. between : its ends; about the model's value without them.
     digits : decimal digits of the number, 16 or more, which is certified where the model is linear.
     periods : of the forcing, within which the orbit returns.

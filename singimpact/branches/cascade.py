@@ -86,7 +86,8 @@ class Cascade:
 
     Parameters
     ----------
-    over : the number that moves. impacts : of the released orbit before the end of gamma, on the near side of an edge.
+    over : the number that is varied.
+    impacts : of the released orbit before the end of gamma, on the near side of an edge.
     parameter, distance : of each edge, and from the border orbit; doubles, or mpmath numbers with digits.
     ratios : of the distance of each edge to that of the next. errors : of the ratios, from those of the edges.
     mu : the multiplier across gamma at a tangency, to which they tend. notes : where the edges end, and why.

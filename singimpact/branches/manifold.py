@@ -72,7 +72,7 @@ class Cut:
 
     def __repr__(self) -> str:
         ends = " and ".join(f"({tau:.6g}, {v:.6g})" for tau, v in self.sides)
-        return f"<{self.kind} at ({self.tau:.9g}, {self.v:.9g}): torn to {ends}>"
+        return f"<{self.kind} at ({self.tau:.9g}, {self.v:.9g}): its sides go to {ends}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +134,7 @@ class Manifold:
         }  # fmt: skip
 
     def to_csv(self, file: Any) -> None:
-        """Write piece, tau, v and mark, a line a point, to a file that is whole or absent."""
+        """Write piece, tau, v and mark, a line a point; an interrupted write leaves no file."""
         write_table(file, self.csv_columns())
 
     def __repr__(self) -> str:
@@ -144,7 +144,7 @@ class Manifold:
         points = sum(len(piece) for piece in self.pieces)
         lines = [
             f"<{self.name} of a ({n}, {k}) saddle, multiplier {self.multiplier:.6g}: {len(self.pieces)} pieces, "
-            f"{points} points, torn at {grazes} grazes{others}",
+            f"{points} points, cut at {grazes} grazes{others}",
             f"  length {self.length:.4g} in sides of {self.window.x[1]:.6g} x {self.window.y[1]:.6g}, chords to "
             f"{self.spacing:.2g}, arc at the saddle to {self.error:.1g}, {self.flights} flights",
         ]

@@ -81,7 +81,7 @@ class Released:
 
 @dataclass(frozen=True)
 class Releases:
-    """The models of one number that moves, and the orbits released in them.
+    """The models of one number that is varied, and the orbits released in them.
 
     Parameters
     ----------

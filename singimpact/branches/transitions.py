@@ -172,7 +172,7 @@ class BothSides:
 
     Parameters
     ----------
-    transition, over : where, and the number that moves. models, basins : for a smaller and for a larger value.
+    transition, over : where, and the number that is varied. models, basins : for a smaller and for a larger value.
     """
 
     transition: Transition

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from singimpact.cli.followed import take_branches, take_orbits
+from singimpact.cli.followed import over_option, take_branches, take_orbits
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import save, suffix_of
@@ -15,13 +15,7 @@ from singimpact.store import require_writable
 
 @click.command(short_help="settled orbits for many values of a parameter, as a picture")
 @model_options
-@click.option(
-    "--over",
-    metavar="NAME",
-    default="clearance",
-    show_default=True,
-    help="The parameter, or clearance, restitution, ...",
-)
+@over_option
 @click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")
 @click.option("--to", "high", metavar="NUMBER", required=True, help="Its last value.")
 @click.option("--points", type=click.IntRange(2, 100_000), default=300, show_default=True, help="Number of values.")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from singimpact.cli.columns import columns
-from singimpact.cli.followed import take_ends
+from singimpact.cli.followed import over_option, take_ends
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import save, suffix_of
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @click.command(short_help="where a released orbit returns onto gamma, and the cascade beside it")
 @model_options
-@click.option("--over", metavar="NAME", default="clearance", show_default=True, help="What moves: also a parameter.")
+@over_option
 @click.option("--from", "low", metavar="NUMBER", help="Its least value; half of the model's value without it.")
 @click.option("--to", "high", metavar="NUMBER", help="Its largest value; one and a half of the model's without it.")
 @click.option("--periods", type=click.IntRange(1, 1000), default=1, show_default=True, help="Within which it returns.")

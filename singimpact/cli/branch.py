@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from singimpact.cli.columns import columns
-from singimpact.cli.followed import orbit_options, take_branches, take_ends, take_orbits
+from singimpact.cli.followed import orbit_options, over_option, take_branches, take_ends, take_orbits
 from singimpact.cli.model import model_options, take_model
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import blank_axes, save, suffix_of
@@ -21,13 +21,7 @@ if TYPE_CHECKING:
 @click.command(short_help="follow periodic orbits through grazes, folds and doublings")
 @model_options
 @orbit_options
-@click.option(
-    "--over",
-    metavar="NAME",
-    default="clearance",
-    show_default=True,
-    help="The parameter, or clearance, restitution, ...",
-)
+@over_option
 @click.option("--from", "low", metavar="NUMBER", help="Its least value.  [default: half of the model's value]")
 @click.option("--to", "high", metavar="NUMBER", help="Its largest value.  [default: 1.5 times the model's]")
 @click.option(

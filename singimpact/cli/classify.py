@@ -49,7 +49,7 @@ def command(
     if over is not None and between is None:
         raise InputError(f"--over {over} needs its ends: --between LOW HIGH")
     if orbits is not None and over is None:
-        raise InputError("--orbits needs the number that moves: --over NAME --between LOW HIGH")
+        raise InputError("--orbits needs the number that is varied: --over NAME --between LOW HIGH")
     from singimpact.studies import clearances
     from singimpact.surface.classification import classify
 

@@ -30,6 +30,14 @@ def orbit_options(function: Function) -> Function:
     )(function)  # fmt: skip
 
 
+def over_option(function: Function) -> Function:
+    """``--over NAME``."""
+    return click.option(
+        "--over", metavar="NAME", default="clearance", show_default=True,
+        help="The parameter, or clearance, restitution, ...",
+    )(function)  # fmt: skip
+
+
 def take_orbits(model: ImpactOscillator, orbit: tuple[int, int], start: tuple[str, str] | None) -> list[PeriodicOrbit]:
     """The orbits that the options name.
 

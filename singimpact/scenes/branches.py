@@ -38,7 +38,7 @@ SETTINGS = BranchPictureSettings()
 
 
 def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> Any:
-    """Draw branches over the number that moves, with their events.
+    """Draw branches over the number that is varied, with their events.
 
     Parameters
     ----------

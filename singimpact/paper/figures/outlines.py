@@ -83,7 +83,7 @@ def damped() -> ImpactOscillator:
 class Change:
     """A transition of the outline of `damped`, as `surface.transitions` finds it.
 
-    over, value : the number that moves and its value. tau, t : the flight from rest. half : of the window around it.
+    over, value : the name of a number and its value. tau, t : the flight from rest. half : of the window around it.
     step : of the number, before and after. degree : of the polynomial in tau that is taken off v, so that branches
     which nearly coincide are seen apart; it does not change what kind a point of the outline is. shown : half of the
     width of the picture. pixels : of the curves, many where the shear magnifies.
