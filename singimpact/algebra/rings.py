@@ -54,6 +54,44 @@ class Exact:
         raise ArithmeticError(f"{tree} is not written as a rational")
 
 
+@dataclass(frozen=True)
+class Angle:
+    """A rational multiple of pi."""
+
+    turns: Fraction
+
+    def __mul__(self, factor: Fraction) -> Angle:
+        return Angle(self.turns * factor)
+
+    __rmul__ = __mul__
+
+    def __add__(self, other: Angle) -> Angle:
+        return Angle(self.turns + other.turns) if isinstance(other, Angle) else NotImplemented
+
+
+class ExactAtAngles(Exact):
+    """Rationals, and sines and cosines of multiples of pi/6 that are rational; what is none raises.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> evaluate(parse("3*cos(2*pi/3) + sin(5*pi)", []), {}, ExactAtAngles())
+    Fraction(-3, 2)
+    """
+
+    def pi(self) -> Angle:
+        return Angle(Fraction(1))
+
+    def call(self, function: str, argument: Any) -> Any:
+        if not isinstance(argument, Angle):
+            return super().call(function, argument)
+        sixths = 6 * argument.turns - (3 if function == "cos" else 0)  # cos(x) = -sin(x - pi/2)
+        values = {0: 0, 1: 1, 3: 2, 5: 1, 6: 0, 7: -1, 9: -2, 11: -1}
+        if function not in ("sin", "cos") or sixths.denominator > 1 or int(sixths) % 12 not in values:
+            raise ArithmeticError(f"{function} of this angle is not rational")
+        return Fraction(values[int(sixths) % 12], 2 if function == "sin" else -2)
+
+
 class Doubles:
     """Python floats and numpy arrays."""
 
