@@ -3,7 +3,7 @@
 The denominators are known beforehand.  A numerator with small whole coefficients is read from its value at a prime B:
 they are its digits to the base B.  A fraction among them is a large digit, from which Euclid's algorithm finds its
 denominator.  How large the coefficients are is not known, so B grows until every digit is far below it, and each
-coefficient must agree at two nodes more.
+coefficient must agree at another number, which is a root of what is wrong only by chance.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ class ReadingSettings:
     ----------
     bases : primes; coefficients of gamma to sigma^8 have 66 bits. A wrong denominator would go on for ever.
     spare : bits of a base that a digit leaves unused: a chance agreement has the probability 2^-spare.
-    nodes : numbers that are not used for reading, and at which every coefficient must agree.
+    node : a number that is not used for reading, and at which every coefficient must agree.
     """
 
     bases: tuple[int, ...] = (
         2**127 - 1, 2**192 - 237, 2**256 - 189, 2**384 - 317, 2**521 - 1, 2**1279 - 1, 2**2203 - 1,
     )  # fmt: skip
     spare: int = 24
-    nodes: tuple[int, ...] = (97, 1009)
+    node: int = 1_000_003
 
 
 READING = ReadingSettings()
@@ -74,7 +74,7 @@ def interpolated(
     """
     import flint
 
-    checked: list[tuple[int, Sequence[Value]]] = []
+    checked: Sequence[Value] | None = None
     for base in READING.bases:
         rows = [
             {key: value * below(flint.fmpq(base)) for key, value in values.items()}
@@ -82,8 +82,8 @@ def interpolated(
         ]
         found: list[RationalCoefficients] | None = _read(rows, denominators, base)
         if found is not None:
-            checked = checked or [(node, values_at(node)) for node in READING.nodes]
-            if all(_agrees(one, node, values[n]) for node, values in checked for n, one in enumerate(found)):
+            checked = checked or values_at(READING.node)
+            if all(_agrees(one, READING.node, values) for one, values in zip(found, checked, strict=True)):
                 return found
     raise ArithmeticError("the denominators given are not those of the values")
 

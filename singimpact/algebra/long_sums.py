@@ -7,6 +7,7 @@ factors come sorted and the terms are sorted by keys that give sympy's order.  L
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 import sympy
@@ -128,7 +129,8 @@ class _Terms:
 
 
 def polynomial(symbol: Any, coefficients: Sequence[tuple[int, int]]) -> Any:
-    """The polynomial in a symbol whose coefficients, from the constant one, have these numerators and denominators.
+    """The polynomial in a symbol with these coefficients, from the constant one: numerators and denominators without
+    common factor.
 
     Examples
     --------
@@ -136,6 +138,7 @@ def polynomial(symbol: Any, coefficients: Sequence[tuple[int, int]]) -> Any:
     >>> polynomial(x, [(1, 2), (0, 1), (-3, 1)]) == sympy.Rational(1, 2) - 3 * x**2
     True
     """
+    powers = _powers(symbol, len(coefficients))
     made = []
     for n, (p, q) in enumerate(coefficients[1:], 1):
         power = (int(n > 1), n)
@@ -144,10 +147,16 @@ def polynomial(symbol: Any, coefficients: Sequence[tuple[int, int]]) -> Any:
     made.sort()
     parts = [sympy.Rational(*coefficients[0])] if coefficients[0][0] else []
     for _, n, p, q in made:
-        power = symbol if n == 1 else sympy.Pow(symbol, n)
-        value = sympy.Integer(p) if q == 1 else sympy.Rational(p, q)  # Rational takes three times as long
+        power = powers[n]
+        value = sympy.Integer(p) if q == 1 else sympy.Rational.from_coprime_ints(p, q)
         parts.append(power if p == q == 1 else sympy.Mul._from_args([value, power], is_commutative=True))
     return sympy.Add._from_args(parts, is_commutative=True)
+
+
+@lru_cache(maxsize=64)
+def _powers(symbol: Any, count: int) -> list[Any]:
+    """The powers of a symbol, from 1 on."""
+    return [sympy.Pow(symbol, n) for n in range(count)]
 
 
 class Products:
@@ -178,9 +187,12 @@ class Products:
         return (CLASSES["Mul"], len(args), *keys), sympy.Mul._from_args(args, is_commutative=True)
 
     def _power(self, base: Any, exponent: int) -> tuple[Key, Any]:
+        if exponent == 1 and base.is_Add:  # nearly all of these come once, and it takes long to find that out
+            return order_key(base), base
         found = self._powers.get((base, exponent))
         if found is None:
-            power = base**exponent
+            # sympy would ask whether a sum is infinite, and load a room of its own for the answer
+            power = sympy.Pow(base, exponent, evaluate=False) if base.is_Add else base**exponent
             found = self._powers[(base, exponent)] = order_key(power), power
         return found
 

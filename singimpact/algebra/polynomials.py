@@ -41,6 +41,10 @@ class PackedPolynomials:
             return value.project_to_context(self._context)
         return self._context.constant(_fmpq(value))
 
+    def coefficient(self, poly: Any) -> Any:
+        """A polynomial over Q[names] in which no variable occurs, as a coefficient: the other way round."""
+        return poly.project_to_context(self._inner)
+
     def from_terms(self, terms: Mapping[Exponents, Any]) -> Any:
         """Exponents -> coefficient, as a polynomial."""
         if self._inner is None:

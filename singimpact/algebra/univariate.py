@@ -158,7 +158,7 @@ class SymbolUnivariate:
 
         if isinstance(number, flint.fmpq):
             return self._target.rational(Fraction(int(number.p), int(number.q)))
-        return self._packed.terms(number).get((0,), self._target.rational(Fraction(0)))
+        return self._packed.coefficient(number)
 
 
 def univariate(ring: Any) -> Any:

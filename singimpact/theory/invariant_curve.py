@@ -248,13 +248,15 @@ class _Solver:
     def _correct(self, level: int, tau: Any) -> None:
         """Put tau_level into every table that knew it as zero."""
         self.tau[level] = tau
+        self.launch[level] = self.launch[level] + self.launch_tangent * tau
+        if level == self.order - self.j - 1:
+            return  # the last level: nothing reads its tables, which are the longest
         for power in range(1, self.order - level + 1):
             self.tau_powers[power][level] += tau * (self.tau[0] ** (power - 1) * power)
             self.motion_powers[power][level] += tau * (self.lambda_ ** (power - 1) * power)
         self.bracket[level] = self.bracket[level] + self.bracket_tangent * tau
         self.y[level] = self.y[level] + self.y_tangent * tau
         self.slope[level] = self.polys.derivative(self.y[level])
-        self.launch[level] = self.launch[level] + self.launch_tangent * tau
         self.impact[level] = self.impact[level] + self.impact_tangent * tau
 
     def curve(self) -> InvariantCurve:

@@ -18,6 +18,10 @@ from singimpact.algebra.symbols import sympy_rational
 from singimpact.contact.contact import Contact, derivative_name
 from singimpact.theory.invariant_curve import InvariantCurve, invariant_curve
 
+WHOLLY_FACTORED = 12
+"""Degree of a numerator up to which it is written as a product of irreducible factors."""
+ROOTS = (Fraction(0), Fraction(1), Fraction(-1), Fraction(-2), Fraction(-1, 2))
+
 
 class SymbolicCurve:
     """gamma (the fibre for j = 0) for all jets and all r at once, to sigma^order in v.
@@ -77,11 +81,11 @@ def in_length(coefficient: RationalCoefficients, names: tuple[str, ...], j: int,
         content, factors = factored(above)
         text = str(below)  # the same few denominators come again and again
         if text not in known:
-            known[text] = factored(below)
+            known[text] = factored(below, below.degree())
         under, divisors = known[text]
-        power = of_length + sum(w * e for w, e in zip(weights, key, strict=True))
-        jets = [(symbol, int(e)) for symbol, e in zip(symbols, key, strict=True) if e]
-        jets += [(unit, power)] if power else []
+        present = [(place, int(e)) for place, e in enumerate(key) if e]  # most exponents are 0
+        power = of_length + sum(weights[place] * e for place, e in present)
+        jets = [(symbols[place], e) for place, e in present] + ([(unit, power)] if power else [])
         bases = [*factors, *((base, -e) for base, e in divisors), *jets]
         total.append(products.term(content / under / sympy.Integer(factorial(j)) ** power, bases))
     return products.summed(total)
@@ -95,16 +99,37 @@ def length_weight(name: str) -> int:
     return int(digits) - 1 if head == "rho" else int(digits[0]) + int(digits[1]) - 1
 
 
-def factored(poly: Any) -> tuple[Any, list[tuple[Any, int]]]:
-    """An fmpq_poly in lambda as a rational and powers of its factors, in sympy."""
+def factored(poly: Any, wholly: int = WHOLLY_FACTORED) -> tuple[Any, list[tuple[Any, int]]]:
+    """An fmpq_poly in lambda as a rational and powers of its factors, in sympy.
+
+    Above the degree `wholly` only factors of degree 1 that are often met are looked for: to show that the rest has none
+    takes longer than all else, and it hardly ever has one.
+    """
     import sympy
 
-    constant, factors = poly.factor()
+    constant, factors = poly.factor() if poly.degree() <= wholly else _split_by_roots(poly)
     single = len(factors) == 1 and factors[0][1] == 1
     if single and any(factors[0][0].coeffs()[:-1]):  # as in sympy, a rational goes into a sum
         return sympy.S.One, [(_in_lambda(tuple((int(c.p), int(c.q)) for c in poly.coeffs())), 1)]
     shown = [(_in_lambda(tuple((int(c.p), 1) for c in each.coeffs())), int(e)) for each, e in factors]
     return sympy_rational(int(constant.p), int(constant.q)), shown
+
+
+def _split_by_roots(poly: Any) -> tuple[Any, list[tuple[Any, int]]]:
+    """A rational, the powers of factors with the roots `ROOTS`, and the rest, as flint's `factor` gives them."""
+    import flint
+
+    rest, factors = poly.numer(), []
+    for root in ROOTS:
+        factor, times = flint.fmpz_poly([-root.numerator, root.denominator]), 0
+        while rest(flint.fmpq(root.numerator, root.denominator)) == 0:
+            rest, times = rest // factor, times + 1
+        if times:
+            factors.append((flint.fmpq_poly(factor), times))
+    content = rest.content() * (1 if rest.leading_coefficient() > 0 else -1)
+    if rest.degree() > 0:
+        factors.append((flint.fmpq_poly(rest // content), 1))
+    return flint.fmpq(content) / poly.denom(), factors
 
 
 @lru_cache(maxsize=4096)
