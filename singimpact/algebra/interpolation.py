@@ -109,7 +109,7 @@ def _read(
     return found
 
 
-def _fractions(value: int, factor: int, base: int) -> tuple[list[int], int] | None:
+def _fractions(value: int, factor: int, base: int) -> tuple[list[Any], int] | None:
     """The digits of a multiple of a whole number, by a factor that makes all of them small; None without such a one."""
     small = base >> READING.spare
     while factor < small:
@@ -117,14 +117,14 @@ def _fractions(value: int, factor: int, base: int) -> tuple[list[int], int] | No
         large = next((digit for digit in digits if abs(digit) > small), None)
         if large is None:
             return digits, factor
-        more = _denominator(large, base)
+        more = _denominator(int(large), base)
         if more == 1:
             return None
         factor *= more
     return None
 
 
-def _digits(value: int, base: int) -> list[int]:
+def _digits(value: int, base: int) -> list[Any]:
     """The digits of a whole number, from the last one on, each of size at most base/2.
 
     Examples
@@ -132,11 +132,13 @@ def _digits(value: int, base: int) -> list[int]:
     >>> _digits(97, 10), _digits(-97, 10)
     ([-3, 0, 1], [3, 0, -1])
     """
-    digits = []
-    while value:
-        value, digit = divmod(value, base)
-        if 2 * digit > base:
-            value, digit = value + 1, digit - base
+    from flint import fmpz
+
+    digits, left, whole, half = [], fmpz(value), fmpz(base), fmpz(base // 2)
+    while left:
+        left, digit = divmod(left, whole)
+        if digit > half:
+            left, digit = left + 1, digit - whole
         digits.append(digit)
     return digits
 
