@@ -48,7 +48,11 @@ TITLES = {
 
 
 def page(sections: Sequence[tuple[str, str]], pictures: str | None) -> str:
-    """The page from groups and their tables: all pictures first; `pictures` is the path of one, with `{}` for the group.
+    """The page from groups and their tables, all pictures first.
+
+    Parameters
+    ----------
+    sections : group and its tables as Markdown. pictures : path of a picture, with `{}` for the group; None: no pictures.
 
     Examples
     --------
