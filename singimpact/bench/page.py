@@ -52,7 +52,8 @@ def page(sections: Sequence[tuple[str, str]], pictures: str | None) -> str:
 
     Parameters
     ----------
-    sections : group and its tables as Markdown. pictures : path of a picture, with `{}` for the group; None: no pictures.
+    sections : a group and its tables as Markdown.
+    pictures : path of a picture, with `{}` for the group; without pictures None.
 
     Examples
     --------
