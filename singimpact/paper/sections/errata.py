@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.documents import escape
+from singimpact.documents.breaking import wrapping
 
 if TYPE_CHECKING:
     from singimpact.paper.claims.claim import Claim, Verdict
@@ -98,7 +99,7 @@ class Errata(Sequence[Erratum]):
             v = entry.verdict
             parts.append(
                 f"## `{v.id}` (section {v.section})\n\n{escape.markdown(v.title)}.\n\n"
-                f"- printed: ${v.printed}$\n- corrected ({v.effective}): ${v.corrected}$\n"
+                f"- printed: {wrapping(v.printed)}\n- corrected ({v.effective}): {wrapping(v.corrected)}\n"
                 f"- why: {escape.markdown(v.evidence)}\n- witness: {escape.markdown(entry.witness)}\n"
                 + "".join(f"- tried: {escape.markdown(line)}\n" for line in entry.trials)
                 + f"- what rests on it: {escape.markdown(entry.survives)}"
