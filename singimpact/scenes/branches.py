@@ -14,7 +14,7 @@ from singimpact.branches.events import Event
 from singimpact.branches.solutions import closing_of, orbit_period
 from singimpact.inputs import refuse
 from singimpact.scenes.label_places import place_labels
-from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LETTERS, LINES, MARKS, orbit_color
+from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LETTERS, LINES, MARKS, orbit_color, orbit_width
 
 Array = np.ndarray[Any, Any]
 HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}
@@ -131,6 +131,7 @@ class _Drawn:
             if i < len(steps) and steps[i] == steps[first]:
                 continue
             style, width = LINES[steps[first]]
+            width *= orbit_width(self.branch.n, self.branch.k)
             part = slice(first, i + 1)
             for impact in range(self.heights.shape[1]):
                 heights = self.heights[part, impact].copy()
@@ -204,7 +205,7 @@ def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], marks: list[Any]) 
     for each in drawn:
         n, k = each.branch.n, each.branch.k
         name = f"({n}, {k}) orbits" if n else "without impact"
-        entries.setdefault(name, Line2D([], [], color=orbit_color(n, k), linewidth=2.4))
+        entries.setdefault(name, Line2D([], [], color=orbit_color(n, k), linewidth=2.4 * orbit_width(n, k)))
     for kind in kinds:
         style, width = LINES[kind]
         entries.setdefault(WORDS[kind], Line2D([], [], color=BLACK, linestyle=style, linewidth=width))
