@@ -287,6 +287,8 @@ def test_chatter_rests_and_lifts_off_when_it_does_in_python(opened):
     for kind, close in (("complete", 1e-11), ("release", 1e-13)):
         first, second = truth.tau[list(truth.kind).index(kind)], found["tau"][found["kind"].index(kind)]
         assert first == pytest.approx(second, rel=close)
+    browser.execute_script("state.frame = 0; at('impacts').value = 3000; FILM.frames[0].c = 0.7; start_orbit(-0.5, 0.02);")
+    assert "looked for at 400 times a period" in browser.execute_script("return at('notes').textContent")
 
 
 def test_a_ball_rests_for_ever(opened):
