@@ -85,9 +85,9 @@ def set_width(browser, width):
 
 SET = """const done = arguments[0], math = window.MathJax && MathJax.startup && MathJax.startup.promise;
 Promise.resolve(math).then(() => document.fonts.ready).then(() => done());"""
-# furo cuts off what is wider than the box of a page's text, so that box counts too
+# furo cuts off what is wider than the box of a page's text, so that box counts too; widths are rounded to whole pixels
 WIDER = """return [document.documentElement, ...document.querySelectorAll(".main, .content")]
-  .filter((node) => node.scrollWidth > node.clientWidth).map((node) => [node.className, node.scrollWidth]);"""
+  .filter((node) => node.scrollWidth > node.clientWidth + 1).map((node) => [node.className, node.scrollWidth]);"""
 
 
 def wider_than_the_screen(browser, address, width):
