@@ -24,7 +24,7 @@ WORDS = {"stable": "stable", "unstable": "unstable", "virtual": "virtual: goes t
 
 @dataclass(frozen=True)
 class BranchPictureSettings:
-    """What a picture of branches shows."""
+    """Settings of a picture of branches."""
 
     # more events than this are named in the legend, not beside their points
     named: int = 8
@@ -167,7 +167,7 @@ def _torn(numbers: Array, heights: Array) -> tuple[Array, Array]:
 
 
 def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
-    """What the mass does fills the picture; virtual parts are shown next to it."""
+    """The picture is filled by the motions that occur; virtual parts are shown next to them."""
     numbers = np.concatenate([each.number for each in drawn])
     pad = SETTINGS.space / 2 * (np.ptp(numbers) or 1.0)
     if axes.get_autoscalex_on():

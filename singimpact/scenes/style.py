@@ -12,7 +12,7 @@ INK = 0.85  # of a letter's halo, so that a curve behind it does not cut it
 
 
 ON_DARK = {BLACK: "#FFFFFF", GREY: "#A6A6A6", BLUE: "#4DA6DE", SHADE: "#3C3C3C"}
-"""What the darkest and the lightest colours become on a dark ground; the others are bright enough for both."""
+"""Replacements on a dark ground for the darkest and the lightest colours; the others are visible on both grounds."""
 
 
 def on_dark(color: str) -> str:
@@ -76,7 +76,7 @@ ORBIT_COLORS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 ORBIT_WIDTHS = (1.0, 1.7, 0.7, 1.0, 0.7, 1.35)
 """Times the width of a line: two colours of about the same grey have widths that differ."""
 LETTERS = {"clearance": "clearance $c$", "restitution": "restitution $r$"}
-"""What an axis of a number of the model is called."""
+"""The label of an axis, for each number of a model."""
 MARKS = {
     "fold": "o",
     "period-doubling": "s",
