@@ -24,7 +24,7 @@ class Page:
     indent: float = 4.0
     script: float = 0.72
     sign: float = 2.6  # + - = with the space around them
-    phone: float = 30.0  # a line of a list on a screen of 390 pixels
+    phone: float = 30.0  # a line of a list on a phone
 
 
 PAGE = Page()

@@ -99,7 +99,7 @@ class Errata(Sequence[Erratum]):
             v = entry.verdict
             parts.append(
                 f"## `{v.id}` (section {v.section})\n\n{escape.markdown(v.title)}.\n\n"
-                f"- printed: {wrapping(v.printed)}\n- corrected ({v.effective}): {wrapping(v.corrected or "")}\n"
+                f"- printed: {wrapping(v.printed)}\n- corrected ({v.effective}): {wrapping(v.corrected or '')}\n"
                 f"- why: {escape.markdown(v.evidence)}\n- witness: {escape.markdown(entry.witness)}\n"
                 + "".join(f"- tried: {escape.markdown(line)}\n" for line in entry.trials)
                 + f"- what rests on it: {escape.markdown(entry.survives)}"
