@@ -227,7 +227,10 @@ def flown(browser, model, tau, v, impacts):
     return browser.execute_script(ask, float(str(model.clearance)), r, values, tau, v, impacts)
 
 
-@pytest.mark.parametrize("model", [NEGATIVE.replace(clearance="0.15"), DUFFING.replace(clearance="0.15"), BENT])
+@pytest.mark.parametrize(
+    "model",
+    [NEGATIVE.replace(clearance="0.15"), DUFFING.replace(clearance="0.15"), pytest.param(BENT, marks=pytest.mark.slow)],
+)
 def test_orbits_of_the_page_are_those_of_python(opened, model):
     browser = opened(model.replace(clearance="0.15"))
     compared = 0
