@@ -21,6 +21,8 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: takes more than some seconds; runs with --slow, and in .ci/run")
+    plain = "plain_code: reads bytecode or counts calls; .ci/check runs it without the probes that count lines"
+    config.addinivalue_line("markers", plain)
     if not hasattr(config, "workerinput"):  # workers of one run share the cache of the first
         config.singimpact_cache = tempfile.mkdtemp(prefix="singimpact-suite-")
         os.environ["SINGIMPACT_CACHE"] = config.singimpact_cache
@@ -43,11 +45,12 @@ LONGEST = ("test_faults.py", "test_claims.py", "test_steep_layers.py", "test_thr
 
 def pytest_collection_modifyitems(config, items):
     items.sort(key=lambda item: item.path.name not in LONGEST)
-    if config.getoption("--slow"):
-        return
-    slow = [item for item in items if item.get_closest_marker("slow")]
-    config.hook.pytest_deselected(items=slow)
-    items[:] = [item for item in items if not item.get_closest_marker("slow")]
+    left_out = set() if config.getoption("--slow") else {"slow"}
+    if os.environ.get("SLIPCOVER_ENABLED"):
+        left_out.add("plain_code")
+    dropped = [item for item in items if any(item.get_closest_marker(name) for name in left_out)]
+    config.hook.pytest_deselected(items=dropped)
+    items[:] = [item for item in items if not any(item.get_closest_marker(name) for name in left_out)]
 
 
 @pytest.fixture

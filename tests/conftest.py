@@ -1,5 +1,6 @@
 """The command in this process, with what it writes and the code it leaves with; how much work a call is."""
 
+import shutil
 import sys
 from collections.abc import Callable
 from typing import Any
@@ -43,3 +44,26 @@ def work_of() -> Callable[[Callable[[], Any]], int]:
         return count
 
     return counted
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Chromium without a window, as a browser of selenium; 1440 pixels wide."""
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if chromium is None or driver is None:
+        pytest.skip("Debian's chromium and chromium-driver are not here")
+    webdriver = pytest.importorskip("selenium.webdriver")
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    for argument in (
+        "--headless=new",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--disable-dev-shm-usage",
+        "--window-size=1440,1000",
+    ):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    opened = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
+    yield opened
+    opened.quit()

@@ -197,6 +197,7 @@ def test_results_of_another_function_or_of_other_cases_are_not_taken_up(name, tm
             sweep(second, others, pool, output)
 
 
+@pytest.mark.plain_code
 def test_equal_functions_made_anew_take_up_the_file(tmp_path):
     output = tmp_path / "kept.npz"
     with ThreadPoolExecutor(1) as pool:
@@ -330,6 +331,7 @@ def test_a_store_that_is_continued_and_interrupted_again_loses_nothing(tmp_path)
     assert min(CALLS[30:]) > 5
 
 
+@pytest.mark.plain_code
 @pytest.mark.parametrize("name", ["kept.npz", "kept.zarr"])
 def test_what_was_done_is_not_computed_again(name, tmp_path):
     require(name)

@@ -1,8 +1,14 @@
-"""The documentation builds without a warning, offline, and says of each command and figure what there is now."""
+"""The documentation builds without a warning, offline, and says of each command and figure what there is now.
 
+In a browser no page scrolls sideways, and the search finds what is looked for.
+"""
+
+import functools
+import http.server
 import re
 import subprocess
 import sys
+import threading
 
 import pytest
 
@@ -21,12 +27,13 @@ def site(request, tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_pages_are_there(site):
+def test_pages_are_there(site, clone):
     pages = ["index", "tutorial", "gallery", "how_to", "reference", "conventions", "trust", "stress", "benchmarks"]
     ideas = ["index", "impact_surface", "regular", "tangency", "swan", "unfolding", "one_structure"]
     ideas += ["branches", "manifolds"]
     computed = ["errata", "claims", "commands", "figures"]
     pages += ["changelog", "citation", "bibliography"]
+    pages += [f"reference/{path.stem}" for path in (clone / "docs" / "reference").glob("*.md")]
     pages += [f"explanation/{name}" for name in ideas] + [f"computed/{name}" for name in computed]
     assert [page for page in pages if (site / f"{page}.html").stat().st_size < 3000] == []
 
@@ -50,9 +57,77 @@ def test_every_task_of_the_list_is_a_section(site):
 def test_public_names_are_in_the_reference(site):
     import singimpact as si
 
-    told = (site / "reference.html").read_text()
+    told = "".join(page.read_text() for page in (site / "reference").glob("*.html"))
     missing = [name for name in si._HOMES if not re.search(rf'id="[\w.]*\b{name}"', told)]
     assert missing == []
+
+
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    """A server that writes no line for each request."""
+
+    def log_message(self, *_):
+        pass
+
+
+@pytest.fixture(scope="module")
+def address(site):
+    """Of the site on this machine: over file:// a browser refuses the texts that the search reads."""
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=str(site))) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+
+
+def set_width(browser, width):
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+
+
+SET = """const done = arguments[0], math = window.MathJax && MathJax.startup && MathJax.startup.promise;
+Promise.resolve(math).then(() => document.fonts.ready).then(() => done());"""
+# furo cuts off what is wider than the box of a page's text, so that box counts too; widths are rounded to whole pixels
+WIDER = """return [document.documentElement, ...document.querySelectorAll(".main, .content")]
+  .filter((node) => node.scrollWidth > node.clientWidth + 1).map((node) => [node.className, node.scrollWidth]);"""
+
+
+def wider_than_the_screen(browser, address, width):
+    set_width(browser, width)
+    browser.get(address)
+    browser.execute_async_script(SET)
+    return browser.execute_script(WIDER)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [1440, 390])
+def test_no_page_scrolls_sideways(width, site, address, browser):
+    pages = sorted(path.relative_to(site).as_posix() for path in site.rglob("*.html") if "_static" not in path.parts)
+    assert len(pages) > 35
+    found = {page: wider_than_the_screen(browser, f"{address}/{page}", width) for page in pages}
+    assert {page: boxes for page, boxes in found.items() if boxes} == {}
+
+
+@pytest.mark.slow
+def test_a_page_that_scrolls_sideways_is_seen(address, browser):
+    wider_than_the_screen(browser, f"{address}/trust.html", 390)
+    wide = "document.querySelector('article p').style.width = '600px';"
+    browser.execute_script(wide)
+    assert browser.execute_script(WIDER)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("words", "pages"),
+    [("lyapunov", {"how_to.html", "reference/dynamics.html"}), ("basin", {"how_to.html"}),
+     ("grazing_map", {"reference/theory.html"}), ("cluster", {"how_to.html"})],
+)  # fmt: skip
+def test_search_finds_the_page(words, pages, address, browser):
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    browser.get(f"{address}/search.html?q={words}")
+    ended = "return document.querySelector('#search-results .search-summary')?.textContent || ''"
+    WebDriverWait(browser, 30).until(lambda each: re.search(r"\d+ pages?|did not match", each.execute_script(ended)))
+    links = browser.execute_script("return [...document.querySelectorAll('#search-results li a')].map((a) => a.href)")
+    assert pages <= {link.partition("#")[0].partition("?")[0].removeprefix(f"{address}/") for link in links}
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tomllib
 
 import pytest
 
@@ -34,6 +35,13 @@ def test_two_commands(readme):
         "python -m pip install . && singimpact verify",
         "python -m pip install '.[test]' && python -m pytest",
     ]
+
+
+def test_optional_parts_are_named_where_a_user_looks(readme, clone):
+    extras = tomllib.loads((clone / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    table = (clone / "docs" / "how_to.md").read_text().partition("## Install optional parts")[2]
+    assert [name for name in extras if f"pip install '.[{name}]'" not in table] == []
+    assert [name for name in extras if f"`{name}`" not in readme and f"[{name}]" not in readme] == []
 
 
 def lines_of(readme):

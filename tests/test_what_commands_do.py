@@ -63,6 +63,7 @@ def test_a_bifurcation_diagram_is_written_and_drawn(diagram, tmp_path):
     assert repr(diagram) == "Bifurcation(over clearance: 3 values from 0.2 to 1.5, 4 events of each)"
 
 
+@pytest.mark.plain_code
 def test_results_are_kept_in_a_store(tmp_path):
     pytest.importorskip("zarr", reason="needs zarr, of the extra `cluster`")
     found = [si.basins(OSC, ((0, 3), (0, 1)), 4, output=tmp_path / "basins.zarr") for _ in range(2)]

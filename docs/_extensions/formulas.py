@@ -5,8 +5,9 @@ from typing import Any
 
 # a star, a bar, or the underscore at the end of a word begins markup in reStructuredText
 MARKUP = re.compile(r"[*|]|(?<=\w)_(?=\W|$)")
-FIELD = re.compile(r"^(\w[\w, ]*) : (.*)$")
-NAMED = ("Parameters", "Attributes")
+FIELD = re.compile(r"^(\w+(?:, \w+)*) : (.*)$")
+NEXT = re.compile(r"(?<=[.;]) (?=\w+(?:, \w+)* : )")  # several fields may share a line
+NAMED = ("Parameters", "Attributes", "Returns")
 
 
 def readable(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
@@ -18,8 +19,9 @@ def readable(app: Any, what: str, name: str, thing: Any, options: Any, lines: li
             section = line.strip()
         example = line.lstrip().startswith((">>>", "...")) or (example and bool(line.strip()))
         plain = line if example else MARKUP.sub(lambda hit: "\\" + hit.group(), line)
-        field = FIELD.match(plain) if section in NAMED else None
-        found += [field[1], f"    {field[2]}"] if field else [plain]
+        for part in NEXT.split(plain) if section in NAMED else [plain]:
+            field = FIELD.match(part) if section in NAMED else None
+            found += [field[1], f"    {field[2]}"] if field else [part]
     lines[:] = found
 
 

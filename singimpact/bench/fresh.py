@@ -58,7 +58,7 @@ while hasattr(os, "wait4"):
 
 
 NO_SPINNING = {"OPENBLAS_NUM_THREADS": "1"}
-"""numpy starts a thread for each core; they spin while they wait: 80 ms of CPU on two cores that no script asked for.
+"""numpy starts a thread for each core. They spin while they wait: 80 ms of CPU on two cores that no script asked for.
 A user may set the same variable."""
 
 

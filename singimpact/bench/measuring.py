@@ -25,7 +25,7 @@ EPSILON = 2.0**-52
 
 
 class NotInstalled(InputError):
-    """A peer that is not there: the case goes on without it, and the table names it."""
+    """A peer that is not installed. The case is measured without it, and the table names it."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Timed:
 
 @dataclass(frozen=True)
 class Counted:
-    """Answers of a run that knows only afterwards how many problems it solved, as impacts of an orbit."""
+    """Answers of a run whose number of problems is known only afterwards, such as the impacts of an orbit."""
 
     problems: int
     answers: Sequence[Any]
@@ -91,7 +91,7 @@ class Counted:
 
 @dataclass(frozen=True)
 class Aim:
-    """What a method is to reach.
+    """The figure that a method should reach.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Row:
-    """What a method at a setting costs and gives.
+    """Cost and error of a method at a setting.
 
     Parameters
     ----------

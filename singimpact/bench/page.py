@@ -8,6 +8,10 @@ COMMAND = "singimpact bench --format page --plots docs/benchmarks -o docs/benchm
 ABOUT = f"""<!-- written by `{COMMAND}`; do not edit -->
 # Run time against error
 
+CPU time of singimpact, and of the tools that a user would choose instead, against the error of the result. Lower and
+further left is better."""
+READING = f"""## How to read the tables
+
 What a job costs here, and what it costs with what a user would pick instead, in one run on one machine: CPU time, and
 the ratio to the first row of each case with its quartiles over interleaved rounds. *Wrong* counts answers that are off
 by more than ten times condition times $\\varepsilon$, or missing; *missed* those that are off by more than a hundredth:
@@ -44,23 +48,38 @@ TITLES = {
 
 
 def page(sections: Sequence[tuple[str, str]], pictures: str | None) -> str:
-    """The page from groups and their tables; `pictures` is the path of one, with `{}` for the group.
+    """The page from groups and their tables, all pictures first.
+
+    Parameters
+    ----------
+    sections : a group and its tables as Markdown.
+    pictures : path of a picture, with `{}` for the group; without pictures None.
 
     Examples
     --------
-    >>> print(page([("map", "| a |")], "p/{}.png").partition("## ")[2])
-    The impact map
+    >>> written = page([("map", "| a |")], "p/{}.png")
+    >>> print(written[written.index("## Plots") : written.index("## How")])
+    ## Plots
     <BLANKLINE>
-    `singimpact bench map`
+    **The impact map** ([table](#the-impact-map))
     <BLANKLINE>
     ![The impact map: time against error](p/map.png)
     <BLANKLINE>
+    <BLANKLINE>
+    >>> print(written.partition("## Tables")[2])
+    <BLANKLINE>
+    <BLANKLINE>
+    ### The impact map
+    <BLANKLINE>
+    `singimpact bench map`
+    <BLANKLINE>
     | a |
     """
-    parts = [ABOUT]
+    plots, tables = [], []
     for group, text in sections:
-        parts += [f"## {TITLES[group]}", f"`singimpact bench {group}`"]
+        title = TITLES[group]
         if pictures is not None:
-            parts.append(f"![{TITLES[group]}: time against error]({pictures.format(group)})")
-        parts.append(text)
-    return "\n\n".join(parts)
+            plots.append(f"**{title}** ([table](#{title.lower().replace(' ', '-')}))")
+            plots.append(f"![{title}: time against error]({pictures.format(group)})")
+        tables += [f"### {title}", f"`singimpact bench {group}`", text]
+    return "\n\n".join([ABOUT, *(["## Plots", *plots] if plots else []), READING, "## Tables", *tables])

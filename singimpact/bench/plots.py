@@ -64,7 +64,7 @@ def plotted(found: Measured) -> Any:
 
 
 def _axis(rows: Sequence[Row]) -> str:
-    """What the horizontal axis of a case shows."""
+    """The quantity on the horizontal axis of a case."""
     if any(row.error is not None for row in rows):
         return "error"
     return "size" if len({row.size for row in rows} - {None}) > 1 else "none"
@@ -99,7 +99,7 @@ def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> N
 
 
 def _widened(axes: Any) -> None:
-    """Three decades at least: nobody reads a third of one, and labels between powers of ten would overlap."""
+    """Show three decades at least: fewer are hard to read, and labels between powers of ten would overlap."""
     from matplotlib.ticker import NullFormatter
 
     low, high = axes.get_xlim()

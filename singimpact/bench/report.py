@@ -1,4 +1,4 @@
-"""What was measured, as tables of text cells and as plain data."""
+"""Measurements as tables of text cells and as plain data."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _cells(row: Row) -> list[str]:
 
 
 def _aim(row: Row) -> str:
-    """What is to be reached, and whether it is."""
+    """The figure to reach, and whether it is reached."""
     if row.reached is None:
         return ""
     figure = f"{row.aim.times:g} times" if row.aim.times is not None else in_words(row.aim.microseconds or 0)

@@ -91,7 +91,7 @@ def enclosed(seed: int, state: Flown) -> Array:
 
 
 def _with_digits(osc: ImpactOscillator, at: tuple[float, float], time: Any) -> dict[str, float]:
-    """What `digits=20` gives for a state whose flight time is known."""
+    """The result of `digits=20` for a state whose flight time is known."""
     import mpmath
 
     begin = process_time()

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 _TOKEN = re.compile(r"\\left\s*\\?.|\\right\s*\\?.|\\[a-zA-Z]+\*?|\\.|\s+|.", re.DOTALL)
 _OPEN, _CLOSE = ("{", r"\left"), ("}", r"\right")
 _PARENTHESES = ("(", "["), (")", "]")
+_PAIRS = (*_OPEN, *_PARENTHESES[0], r"\{"), (*_CLOSE, *_PARENTHESES[1], r"\}")
 _STACKED = re.compile(r"\\[dt]?frac\s*")
 
 
@@ -23,6 +24,7 @@ class Page:
     indent: float = 4.0
     script: float = 0.72
     sign: float = 2.6  # + - = with the space around them
+    phone: float = 30.0  # a line of a list on a phone
 
 
 PAGE = Page()
@@ -45,6 +47,30 @@ def lines_of(formula: str, limit: float = PAGE.line) -> list[str]:
             current = ""
         current += piece
     return [*lines, current.strip()]
+
+
+def wrapping(formula: str) -> str:
+    """The formula for a sentence in Markdown: as several formulas, between which a browser may end a line.
+
+    Examples
+    --------
+    >>> wrapping(r"v = a + b,\\ t\\ne0"), wrapping("v = 123456789 + 123456789 - 123456789")
+    ('$v = a + b,$ $t\\\\ne0$', '$v = 123456789 + 123456789$ ${}- 123456789$')
+    """
+    lines = [lines_of(clause, PAGE.phone) for clause in _clauses(formula)]
+    return " ".join(f"${'{}' if at else ''}{line}$" for clause in lines for at, line in enumerate(clause))
+
+
+def _clauses(formula: str) -> list[str]:
+    """The formula cut at each written space that no pair encloses."""
+    clauses, depth = [""], 0
+    for token in _TOKEN.findall(formula):
+        if depth == 0 and token in (r"\ ", r"\;", r"\quad", r"\qquad"):
+            clauses.append("")
+            continue
+        depth += token.startswith(_PAIRS[0]) - token.startswith(_PAIRS[1])
+        clauses[-1] += token
+    return [clause.strip() for clause in clauses if clause.strip()]
 
 
 def _fitting(formula: str, room: float) -> list[str]:

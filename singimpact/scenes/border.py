@@ -15,7 +15,7 @@ from singimpact.scenes.style import BLACK, BLUE, GREY, LETTERS, ORANGE, VERMILLI
 
 @dataclass(frozen=True)
 class BorderPictureSettings:
-    """What a picture of a cascade shows.
+    """Settings of a picture of a cascade.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from singimpact.branches.events import Event
 from singimpact.branches.solutions import closing_of, orbit_period
 from singimpact.inputs import refuse
 from singimpact.scenes.label_places import place_labels
-from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LETTERS, LINES, MARKS, orbit_color
+from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LETTERS, LINES, MARKS, orbit_color, orbit_width
 
 Array = np.ndarray[Any, Any]
 HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}
@@ -24,7 +24,7 @@ WORDS = {"stable": "stable", "unstable": "unstable", "virtual": "virtual: goes t
 
 @dataclass(frozen=True)
 class BranchPictureSettings:
-    """What a picture of branches shows."""
+    """Settings of a picture of branches."""
 
     # more events than this are named in the legend, not beside their points
     named: int = 8
@@ -131,6 +131,7 @@ class _Drawn:
             if i < len(steps) and steps[i] == steps[first]:
                 continue
             style, width = LINES[steps[first]]
+            width *= orbit_width(self.branch.n, self.branch.k)
             part = slice(first, i + 1)
             for impact in range(self.heights.shape[1]):
                 heights = self.heights[part, impact].copy()
@@ -166,7 +167,7 @@ def _torn(numbers: Array, heights: Array) -> tuple[Array, Array]:
 
 
 def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
-    """What the mass does fills the picture; virtual parts are shown next to it."""
+    """The picture is filled by the motions that occur; virtual parts are shown next to them."""
     numbers = np.concatenate([each.number for each in drawn])
     pad = SETTINGS.space / 2 * (np.ptp(numbers) or 1.0)
     if axes.get_autoscalex_on():
@@ -204,7 +205,7 @@ def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], marks: list[Any]) 
     for each in drawn:
         n, k = each.branch.n, each.branch.k
         name = f"({n}, {k}) orbits" if n else "without impact"
-        entries.setdefault(name, Line2D([], [], color=orbit_color(n, k), linewidth=2.4))
+        entries.setdefault(name, Line2D([], [], color=orbit_color(n, k), linewidth=2.4 * orbit_width(n, k)))
     for kind in kinds:
         style, width = LINES[kind]
         entries.setdefault(WORDS[kind], Line2D([], [], color=BLACK, linestyle=style, linewidth=width))

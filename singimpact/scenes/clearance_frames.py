@@ -30,7 +30,7 @@ Span = tuple[float, float]
 
 @dataclass(frozen=True)
 class FilmSettings:
-    """What is shown of a swan that opens.
+    """The curves and points that are shown of a swan that opens.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ class ClearanceFilm:
 
     @property
     def sentence(self) -> str:
-        """What the slider moves through."""
+        """A sentence on the clearances of the slider."""
         if self.swan is not None:
             return (
                 f"At c_0 = {self.swan.clearance:.9g} the acceleration at the wall has a double zero at "

@@ -131,10 +131,10 @@ ALONE: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
     (Section, HIGH, draw_section),
     (Basins, HIGH, draw_basins),
 )
-"""What is drawn by itself: its type, the size of its picture, and who draws it."""
+"""Types that are drawn alone: the size of the picture, and the function that draws it."""
 TOGETHER: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
     (Curve, WIDE, _curves),
     (EventCurve, BRANCHES, draw_event_curves),
     (Manifold, HIGH, draw_manifolds),
 )
-"""What is drawn by itself or several in one picture."""
+"""Types that are drawn alone, or several in one picture."""

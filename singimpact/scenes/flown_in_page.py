@@ -26,7 +26,7 @@ BOUND = {"step_size": "step_size_of_discs", "singular_part": "singular_part_of_d
 """What `flights.bind` puts in the places of functions of linear models."""
 GIVEN = "given"
 USED = ("coefficients", "taylor_flight", "follow", "rebound", "constants_of", "law_of")
-"""What the page calls."""
+"""The entry points that the page calls."""
 
 
 def model_in_javascript(osc: Oscillator) -> str:

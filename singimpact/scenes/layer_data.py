@@ -1,6 +1,6 @@
-"""What layers ask for: each need is computed when a layer first asks, once, or taken from the cache.
+"""The data of layers: each list of curves (a need) is computed once, at its first use, or read from the cache.
 
-A need is a list of curves.  What it is computed from are needs too, so that a further layer costs only what is new.
+The inputs of a need are needs too, so a further layer costs only what is new.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Shown(Protocol):
     @property
     def impacts(self) -> int: ...
     def depends(self, need: str) -> tuple[Any, ...]:
-        """What the curves of a need depend on."""
+        """The values that the curves of a need depend on; a cached result is used where all are equal."""
 
 
 class Results:

@@ -15,12 +15,12 @@ from singimpact.flights.path import path
 
 @dataclass(frozen=True)
 class OrbitStyle:
-    """How an orbit looks; told apart by shape, width and lightness, so that it survives grey-scale.
+    """The look of an orbit. Its parts differ in shape, width and lightness, so that they differ in grey too.
 
     Parameters
     ----------
     points : points of a whole picture, shared out by length; a flight gets at least `fewest`.
-    tail : how far a last flight without return, or a rest for ever, is drawn, as a part of what came before.
+    tail : how far a last flight without return, or a rest without end, is drawn, as a part of the time before it.
     many : above this number of impacts, or of states of a section, their marks get small.
     """
 
@@ -65,7 +65,7 @@ def draw_section(section: Section, axes: Any, style: OrbitStyle = STYLE) -> Any:
 
 
 def shown_end(orbit: Orbit, style: OrbitStyle) -> float:
-    """The right edge: the last event, and a tail when something goes on after it."""
+    """The right edge: the last event, and a tail if a flight or a rest follows it."""
     first, last = float(orbit.tau[0]), float(orbit.tau[-1])
     open_ended = bool(orbit.phases) and not orbit.phases[-1][2] <= last
     period = orbit.oscillator.period

@@ -152,7 +152,7 @@ class Scene:
         return found
 
     def depends(self, need: str) -> tuple[Any, ...]:
-        """What the curves of a need depend on."""
+        """The values that the curves of a need depend on; a cached result is used where all are equal."""
         ground = (self.model.to_dict(), self.tau, self.pixels)
         more = {
             "gamma": (self.speeds,),
@@ -164,7 +164,7 @@ class Scene:
 
     @cached_property
     def results(self) -> Results:
-        """What the layers need, computed as they ask for it."""
+        """The curves of the layers, each computed when a layer first uses it."""
         return Results(self)
 
     @cached_property

@@ -7,12 +7,12 @@ from typing import Any
 
 BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00"
 BLACK, GREY, SHADE = "#000000", "#6E6E6E", "#E3E3E3"
-DASHES, DOTS, DASH_DOT = (0, (5, 2)), (0, (1, 1.4)), (0, (6, 2, 1, 2))
+DASHES, DOTS, DASH_DOT, SHORT_DASHES = (0, (5, 2)), (0, (1, 1.4)), (0, (6, 2, 1, 2)), (0, (2.6, 1.2))
 INK = 0.85  # of a letter's halo, so that a curve behind it does not cut it
 
 
 ON_DARK = {BLACK: "#FFFFFF", GREY: "#A6A6A6", BLUE: "#4DA6DE", SHADE: "#3C3C3C"}
-"""What the darkest and the lightest colours become on a dark ground; the others are bright enough for both."""
+"""Replacements on a dark ground for the darkest and the lightest colours; the others are visible on both grounds."""
 
 
 def on_dark(color: str) -> str:
@@ -50,19 +50,19 @@ PENS = {
     "Z": Pen(VERMILLION, DASHES, 1.8, "zero set $Z$"),
     "P": Pen(BLACK, width=1.2, words="apparent outline $P$"),
     "jump": Pen(BLACK, width=2.8, words="discontinuities of $G$: visible part of $P$"),
-    "rest": Pen(GREY, width=3.2, words=r"$\Pi_0$: velocity $v = 0$"),
-    "shadow": Pen(GREEN, DOTS, 2.4, "shadow of $H$"),
+    "rest": Pen(GREY, width=3.6, words=r"$\Pi_0$: velocity $v = 0$"),
+    "shadow": Pen(GREEN, DOTS, 3.4, "shadow of $H$"),
     "gamma": Pen(PURPLE, width=2.8, words=r"$\gamma$: threshold of complete chatter"),
     "manifold": Pen(SKY, width=1.0, words=r"stable manifolds $W^s_\tau$"),
     "loop": Pen(BLUE, DASH_DOT, 1.6, "one stable manifold"),
-    "preimage": Pen(GREEN, width=1.2, words=r"preimages of the discontinuity"),
+    "preimage": Pen(GREEN, SHORT_DASHES, 1.6, r"preimages of the discontinuity"),
     "epsilon": Pen(VERMILLION, width=2.2, words=r"$\varepsilon$: image of an interval of $\Pi_0$"),
     "orbit": Pen(ORANGE, width=1.0, words="impacts of an orbit, joined in their order"),
     "axis": Pen(GREY, width=0.8),
     "hidden": Pen(GREY, DASHES, 0.9, "edge of the part that is shown"),
-    "graph": Pen(BLUE, width=1.8, words="graph"),
+    "graph": Pen(BLUE, width=2.6, words="graph"),
     "W^s": Pen(BLUE, width=1.0, words="stable manifold"),
-    "W^u": Pen(VERMILLION, width=1.0, words="unstable manifold"),
+    "W^u": Pen(VERMILLION, DASHES, 1.0, "unstable manifold"),
     "crossing": Pen(BLACK, words="crossing"),
     "before": Pen(GREY, DASHES, 1.4, "before"),
     "at": Pen(BLACK, DASH_DOT, 1.4, "at the transition"),
@@ -73,8 +73,10 @@ PENS = {
 LINES: dict[str, tuple[Any, float]] = {"stable": ("solid", 1.8), "unstable": (DASHES, 1.5), "virtual": (DOTS, 1.3)}
 """Line style and width of a branch of periodic orbits; its colour says how many impacts in how many periods."""
 ORBIT_COLORS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+ORBIT_WIDTHS = (1.0, 1.7, 0.7, 1.0, 0.7, 1.35)
+"""Times the width of a line: two colours of about the same grey have widths that differ."""
 LETTERS = {"clearance": "clearance $c$", "restitution": "restitution $r$"}
-"""What an axis of a number of the model is called."""
+"""The label of an axis, for each number of a model."""
 MARKS = {
     "fold": "o",
     "period-doubling": "s",
@@ -84,7 +86,7 @@ MARKS = {
 }
 """Markers of the events of a branch."""
 EVENT_PENS = {
-    "fold": Pen(BLUE, width=1.8),
+    "fold": Pen(BLUE, width=2.8),
     "period-doubling": Pen(VERMILLION, DASHES, 1.8),
     "graze": Pen(BLACK, width=1.4),
     "hidden impact": Pen(GREEN, DASH_DOT, 1.6),
@@ -100,4 +102,19 @@ def orbit_color(n: int, k: int) -> str:
     >>> orbit_color(1, 1) == BLUE, orbit_color(0, 1) == GREY
     (True, True)
     """
-    return ORBIT_COLORS[(4 * (n - 1) + k - 1) % len(ORBIT_COLORS)] if n else GREY
+    return ORBIT_COLORS[_looks(n, k)] if n else GREY
+
+
+def orbit_width(n: int, k: int) -> float:
+    """Times the width of the line of a branch of such orbits.
+
+    Examples
+    --------
+    >>> orbit_width(1, 1), orbit_width(1, 2)
+    (1.0, 1.7)
+    """
+    return ORBIT_WIDTHS[_looks(n, k)] if n else 1.0
+
+
+def _looks(n: int, k: int) -> int:
+    return (4 * (n - 1) + k - 1) % len(ORBIT_COLORS)

@@ -22,7 +22,7 @@ from singimpact.oscillator.model import Oscillator
 
 NEAR = 1e-7  # a tau given as a double names the tangency point this close to it, in units of 1 + |tau|
 LEAST = Fraction(1, 2**4096)  # halving for a multiplier ends here
-ZERO_BITS = 512  # a value whose ball of so many bits holds 0 is taken as the zero that the contact order asks for
+ZERO_BITS = 512  # a value whose ball of so many bits holds 0 is taken as the zero that the contact order requires
 KINDS = {1: ("gamma", "a' > 0"), 2: ("degenerate", "a'' < 0")}
 
 

@@ -32,7 +32,7 @@ def with_digits(
     show: Callable[[Any, int], Any],
     balls_in: Callable[[Any], Iterable[Any]] = lambda found: found.values(),
 ) -> Any:
-    """What `compute(ring)` gives in balls, at growing precision until each number has its digits.
+    """The numbers of `compute(ring)` in balls, at growing precision until each number has its digits.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What `si.theory` answers: series for generic symbols, or for a model in the best numbers that it allows.
+"""The series of `si.theory`: for generic symbols, or for a model in the best numbers that it allows.
 
 For a model they are exact when tau_* and lambda are, else mpmath numbers whose digits balls have certified.
 """

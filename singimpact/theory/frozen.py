@@ -1,4 +1,4 @@
-"""Source of formulas in the jets of a contact, free of any model: what `generated/` holds, and what users ask for."""
+"""Source of formulas in the jets of a contact, free of any model: for `generated/`, and for users."""
 
 from __future__ import annotations
 

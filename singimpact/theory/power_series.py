@@ -14,9 +14,9 @@ from singimpact.inputs import InputError, refuse
 
 @dataclass(frozen=True)
 class TrustSettings:
-    """How `valid_within` judges a tail that it does not know.
+    """How `valid_within` estimates the terms beyond those that are computed.
 
-    root : part of the radius seen in the last terms that is believed; 0.7 holds on the reference models with margin.
+    root : part of the radius estimated from the last terms that is used; 0.7 holds on the reference models with margin.
     further : terms beyond the last one that are computed for the judgement; enough to see past zeros by parity.
     tail : the share of the tolerance that the known terms of the tail may use.
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 
 import numpy as np
@@ -173,9 +174,20 @@ def test_page_of_the_documentation(singimpact, tmp_path):
     assert told.exit_code == 0, told.output
     text = (tmp_path / "docs" / "page.md").read_text()
     assert text.startswith(f"<!-- written by `{page.COMMAND}`")
-    assert "![Fixed points: time against error](p/bench-fixed-points.png)" in text
+    assert 0 < text.index("![Fixed points: time against error](p/bench-fixed-points.png)") < text.index("\n| case |")
     assert (tmp_path / "docs" / "p" / "bench-fixed-points.png").is_file()
     assert set(page.TITLES) == set(GROUPS)
+
+
+def test_stored_page_opens_with_its_plots(clone):
+    """As the generator orders them: every picture, then how to read the tables, then every table with its heading."""
+    text = (clone / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    plots, reading, tables = (text.index(f"\n## {part}") for part in ("Plots", "How to read", "Tables"))
+    assert text[: plots - 1] == page.ABOUT
+    assert text[reading + 1 :].startswith(page.READING)
+    assert len(re.findall(r"!\[.*: time against error\]", text[plots:reading])) == text.count("![") > 5
+    assert text.index("\n| case |") > tables
+    assert set(re.findall(r"^### (.*)$", text[tables:], re.MULTILINE)) <= set(page.TITLES.values())
 
 
 def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):

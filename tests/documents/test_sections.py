@@ -96,6 +96,7 @@ def test_escaped_text_has_no_sign_with_a_meaning(text):
     assert not set(bare) & set("\\{}$&#%_^~<>")
 
 
+@pytest.mark.slow  # test_derivations compares a whole section in three formats
 def test_same_bytes_under_two_hash_seeds(clone):
     program = "from test_sections import *; import sys; sys.stdout.write(as_latex([DEMO], MARKS))"
     texts = [

@@ -3,7 +3,6 @@
 import inspect
 import json
 import re
-import shutil
 
 import numpy as np
 import pytest
@@ -15,7 +14,6 @@ from singimpact.scenes.clearance_frames import clearance_film
 from singimpact.scenes.explore import CURVES, explore_page
 from singimpact.scenes.style import PENS
 
-CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 NEGATIVE = si.linear(2, "0.9", "0.5")
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", "0.7", "0.6", {"omega": "1.7"})
 BENT = si.ImpactOscillator(
@@ -115,27 +113,6 @@ def test_page_holds_everything(film):
 def test_a_text_of_the_model_ends_no_script():
     page = explore_page(clearance_film(si.ImpactOscillator("x", "cos(a*t)", "0.3", 1, {"a": 2}), steps=2))  # no gamma
     assert page.count("</script>") == 1
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if CHROMIUM is None or DRIVER is None:
-        pytest.skip("Debian's chromium and chromium-driver are not here")
-    webdriver = pytest.importorskip("selenium.webdriver")
-    options = webdriver.ChromeOptions()
-    options.binary_location = CHROMIUM
-    for argument in (
-        "--headless=new",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--disable-dev-shm-usage",
-        "--window-size=1440,1000",
-    ):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    opened = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
-    yield opened
-    opened.quit()
 
 
 @pytest.fixture
@@ -250,7 +227,10 @@ def flown(browser, model, tau, v, impacts):
     return browser.execute_script(ask, float(str(model.clearance)), r, values, tau, v, impacts)
 
 
-@pytest.mark.parametrize("model", [NEGATIVE.replace(clearance="0.15"), DUFFING.replace(clearance="0.15"), BENT])
+@pytest.mark.parametrize(
+    "model",
+    [NEGATIVE.replace(clearance="0.15"), DUFFING.replace(clearance="0.15"), pytest.param(BENT, marks=pytest.mark.slow)],
+)
 def test_orbits_of_the_page_are_those_of_python(opened, model):
     browser = opened(model.replace(clearance="0.15"))
     compared = 0
@@ -287,6 +267,9 @@ def test_chatter_rests_and_lifts_off_when_it_does_in_python(opened):
     for kind, close in (("complete", 1e-11), ("release", 1e-13)):
         first, second = truth.tau[list(truth.kind).index(kind)], found["tau"][found["kind"].index(kind)]
         assert first == pytest.approx(second, rel=close)
+    start = "state.frame = 0; at('impacts').value = 3000; FILM.frames[0].c = 0.7; start_orbit(-0.5, 0.02);"
+    browser.execute_script(start)
+    assert "looked for at 400 times a period" in browser.execute_script("return at('notes').textContent")
 
 
 def test_a_ball_rests_for_ever(opened):

@@ -6,7 +6,18 @@ import re
 import pytest
 
 from singimpact.scenes.layers import LAYERS
-from singimpact.scenes.style import ON_DARK, PENS, on_dark
+from singimpact.scenes.style import (
+    BLUE,
+    EVENT_PENS,
+    LINES,
+    ON_DARK,
+    PENS,
+    VERMILLION,
+    Pen,
+    on_dark,
+    orbit_color,
+    orbit_width,
+)
 
 LITERAL = re.compile(r"#[0-9A-Fa-f]{6}\b")
 
@@ -31,14 +42,27 @@ def test_layers_of_scenes_are_called_as_in_figures():
     assert {name: LAYERS[name].label for name in pens} == {name: PENS[pen].words for name, pen in pens.items()}
 
 
-@pytest.mark.parametrize("plane", [("H", "Z", "shadow"), ("P", "jump", "gamma", "manifold", "loop", "rest")])
-def test_curves_of_one_plane_differ_in_grey(plane):
-    """In style, in width, or in luminance by a tenth."""
-    for n, first in enumerate(plane):
-        for second in plane[:n]:
-            one, other = PENS[first], PENS[second]
-            apart = abs(luminance(one.color) - luminance(other.color)) > 0.1
-            assert one.style != other.style or abs(one.width - other.width) > 0.3 or apart, (first, second)
+def same_in_grey(one, other):
+    """Same style, less than half a point of width apart, and less than a fifth of the way from black to white."""
+    shades = abs(luminance(one.color) - luminance(other.color))
+    return one.style == other.style and abs(one.width - other.width) < 0.5 and shades < 0.2
+
+
+@pytest.mark.parametrize(
+    "together",
+    [("H", "Z", "shadow", "jump"), ("P", "jump", "gamma", "manifold", "loop", "rest"), ("W^s", "W^u"),
+     ("manifold", "loop", "preimage", "jump", "gamma", "epsilon"), ("P", "graph", "axis"), ("before", "at", "graph")],
+)  # fmt: skip
+def test_curves_of_one_picture_differ_in_grey(together):
+    pairs = [(first, second) for n, first in enumerate(together) for second in together[:n]]
+    assert [pair for pair in pairs if same_in_grey(*(PENS[name] for name in pair))] == []
+
+
+def test_branches_and_events_differ_in_grey():
+    orbits = [Pen(orbit_color(1, k), width=LINES["stable"][1] * orbit_width(1, k)) for k in range(1, 7)]
+    for pens in (orbits, list(EVENT_PENS.values())):
+        assert [(n, m) for n, one in enumerate(pens) for m in range(n) if same_in_grey(one, pens[m])] == []
+    assert same_in_grey(Pen(BLUE), Pen(VERMILLION))
 
 
 @pytest.mark.parametrize("pen", PENS)

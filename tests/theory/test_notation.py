@@ -2,7 +2,7 @@
 
 import pytest
 import sympy
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from singimpact.documents.arranging import by_degree, factored, in_powers
@@ -58,6 +58,7 @@ def _read(text):
 coefficients = st.fractions(min_value=-9, max_value=9, max_denominator=9).map(lambda x: sympy.Rational(str(x)))
 
 
+@settings(deadline=None)  # a first call loads sympy's printer, on a busy machine for seconds
 @given(st.lists(st.tuples(coefficients, st.integers(0, 3), st.integers(0, 3), st.integers(0, 3)), max_size=6))
 def test_a_polynomial_read_back_is_the_same(terms):
     expression = sympy.Add(*(c * m**i * r**j * t**n for c, i, j, n in terms))

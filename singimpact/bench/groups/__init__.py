@@ -56,7 +56,7 @@ def usual(effort: Effort) -> list[str]:
 
 
 def measured(name: str, effort: Effort, told: Callable[[str], None] = lambda _: None) -> Measured:
-    """All rows of a group; `told` hears the name of each case before it is measured."""
+    """All rows of a group; `told` is called with the name of each case before it is measured."""
     found = Measured(name)
     for case in GROUPS[name](effort):
         told(f"{name}: {case.name}")

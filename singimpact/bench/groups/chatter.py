@@ -101,7 +101,7 @@ def _drawn(family: str, restitution: float, count: int, effort: Effort) -> Case:
 
 
 def affordable(run: Callable[[Any], Any], draw: Callable[[int], Draws], count: int) -> int:
-    """The count, divided by ten until a call of so many states takes `LONGEST` seconds at most, as 100 of them tell."""
+    """The count, divided by ten until a call takes `LONGEST` seconds at most, estimated from 100 states."""
     few = draw(min(100, count))
     run(few())
     states, start = few(), time.process_time()

@@ -50,7 +50,7 @@ SERIES = (
 
 @dataclass(frozen=True)
 class Command:
-    """A command line; seconds to reach with object code alone there, and again; None: there is no such figure."""
+    """A command line, and the seconds to reach: with object code as the only cached result, and again. None: no aim."""
 
     line: str
     new: float | None = None

@@ -38,7 +38,7 @@ def _own(r: str, digits: int) -> list[Any]:
 
 
 def _conditions(r: str) -> list[float]:
-    """1 + |r dF/dr|/|F|, by differences far below what doubles tell."""
+    """1 + |r dF/dr|/|F|, by differences in 60 digits."""
     rate, step = Fraction(r), Fraction(1, 10**14)
     ends = [_own(str(rate * (1 + sign * step)), 60) for sign in (-1, 1)]
     return [1 + abs(float((b - a) / a)) * float(1 / (2 * step)) for a, b in zip(*ends, strict=True)]

@@ -117,7 +117,7 @@ def _model(order: int, limit: float | None = None, long: bool = False) -> Task:
 
 
 def _public(case: str, order: int, long: bool = False) -> Task:
-    """What a user calls, with the sympy object that it returns."""
+    """The function that a user calls, with the sympy object that it returns."""
     made, judged = {
         SYMBOLS: (f"theory.v_c({order}, at='tangency')", JETS),
         MODEL: (f"theory.v_c({order}, 'tangency', CUBIC, 0)", OF_SUM),

@@ -1,9 +1,9 @@
 """`bench start`: what a new process costs, with object code in the cache folder, and in a new cache folder.
 
-Each row is a process of its own, in a cache folder made for it; the states are others in every process.  CPU seconds of
-a process do not hold those of the child that compiles, which goes on when the process has ended: it is waited for after
-the clock has stopped, and has rows of its own.  Nor do they hold what threads of numpy's linear algebra spend while
-they wait for work (`fresh.NO_SPINNING`).
+Each row is a process of its own, in a cache folder made for it; the states are others in every process.  CPU seconds
+of a process do not hold those of the child that compiles, which goes on when the process has ended: it is waited for
+after the clock has stopped, and has rows of its own.  Nor do they hold the time that threads of numpy's linear algebra
+spend while they wait for work (`fresh.NO_SPINNING`).
 """
 
 from __future__ import annotations

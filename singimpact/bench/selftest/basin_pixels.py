@@ -83,7 +83,7 @@ def row(flown: Flown) -> Row:
 
 
 def _seen_first(found: basins.Basins) -> Array:
-    """What an orbit is seen to do first, of every pixel: its first chatter completes, or it settles on an orbit."""
+    """For every pixel, what the orbit does first: its first chatter completes, or it settles on an orbit."""
     orbits = [each.n * PLACES + each.k if each.kind == "orbit" else OTHER for each in found.attractors]
     return np.where(found.first_chatter_completes, CHATTER, np.array(orbits, dtype=int)[found.codes])
 
@@ -107,7 +107,7 @@ def _moves(osc: ImpactOscillator, state: tuple[float, float], fast: float, code:
 
 
 def followed(osc: ImpactOscillator, tau: Array, v: Array, fast: float, tally: Tally) -> Array:
-    """What orbits are seen to do first: 1 for a chatter that completes, 1000 n + k for an orbit, 0 for neither."""
+    """The first behaviour of orbits: 1 for a chatter that completes, 1000 n + k for an orbit, 0 for neither."""
     r = as_float(osc.slope_at_rest())
     impacts = min(PIXELS.transient + (ceil(log(PIXELS.rest) / log(r)) if r < 1 else 0), PIXELS.most)
     codes, open_ = np.full(tau.size, OTHER), np.arange(tau.size)

@@ -68,7 +68,7 @@ def _satisfied(flown: Flown, at: int, events: tuple[Array, Array], ends: Array, 
             abs(tau[index]) + step.flight_time[place]
         )
         fast = (2 * step.velocity_error[place] + least) * v[index]
-        # the orbit goes on from a time that it knows better than the double of an event does
+        # the orbit continues from a time in two doubles; the event stores one double of it
         rounded = EPSILON * abs(tau[index - 1]) * np.nan_to_num(step.condition[place], posinf=0.0)
         late += rounded
         turn = np.nan_to_num(step.velocity_condition[place], posinf=0.0) / max(step.flight_time[place], 1e-300)

@@ -19,7 +19,7 @@ NOTE = (
 
 @dataclass(frozen=True)
 class RowSettings:
-    """What a row keeps and how long it takes.
+    """Settings of a row: what it stores, and its time.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class Tally:
 
 @dataclass(frozen=True)
 class SelfTest:
-    """What a self-test found.
+    """The result of a self-test.
 
     Parameters
     ----------

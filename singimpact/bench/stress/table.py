@@ -46,7 +46,7 @@ def chosen(names: Sequence[str], place: str | None) -> list[tuple[Function, str]
 def stressed(
     pairs: Sequence[tuple[Function, str]], points: int = POINTS, told: Callable[[int, str], None] = lambda *_: None
 ) -> list[Cell]:
-    """A cell for each sweep; `told` is called with its number and name before it runs."""
+    """A cell for each sweep; `told` is called with the number and the name of a sweep before it runs."""
     cells = []
     for number, (function, place) in enumerate(pairs):
         told(number, f"{function.name}, {place}")

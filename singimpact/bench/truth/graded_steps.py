@@ -195,7 +195,7 @@ def side(layer: Array, t: float, x: float, u: float) -> float:
 def increments(
     acceleration: Any, parameters: Array, clearance: float, t: float, z: float, u: float, h: float
 ) -> tuple[float, float]:
-    """What x - c and x' gain in one step of length h."""
+    """The changes of x - c and x' in one step of length h."""
     slopes = np.empty((len(B), 2))
     for stage in range(len(B)):
         dz, du = 0.0, 0.0

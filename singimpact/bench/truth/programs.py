@@ -86,7 +86,7 @@ def power(base: Any, exponent: Fraction) -> Any:
 
 
 def _off_the_cut(z: Any) -> Any:
-    """The box itself, or nan where it is not shown to lie in Re > 0: flint's log is finite across its cut."""
+    """The box itself, or nan unless it is proved to have Re > 0, because flint's log is finite across its cut."""
     import flint
 
     return flint.acb(flint.arb.nan()) if isinstance(z, flint.acb) and not z.real > 0 else z

@@ -23,7 +23,7 @@ class Statement:
 
 @dataclass(frozen=True)
 class Check:
-    """What a verifier says of one statement.
+    """The verdict of a verifier on one statement.
 
     Attributes
     ----------

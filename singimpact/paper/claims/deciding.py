@@ -15,7 +15,7 @@ from singimpact.paper.routes.unfolding import acceleration as model_acceleration
 
 @dataclass(frozen=True)
 class _Found:
-    """What came of one claim by itself."""
+    """The outcome of one claim by itself."""
 
     kind: str
     evidence: str
@@ -72,7 +72,7 @@ def _found(claim: Claim) -> _Found:
 
 
 def _verified(claim: Claim, value: Any) -> tuple[Check, tuple[Certificate, ...], bool]:
-    """What the verifier says of a statement, the certificates on which that rests, and whether it used the model."""
+    """The verdict on a statement, the certificates on which it rests, and whether it used the model."""
     with collected() as gathered:
         check, labels = watched(lambda: claim.verify(value))
     return check, tuple(gathered), _reaches(labels, model_acceleration.label)  # type: ignore[attr-defined]
@@ -88,7 +88,7 @@ def _reaches(labels: Iterable[str], goal: str) -> bool:
 
 
 def _corrected(claim: Claim, failed: Check) -> _Found:
-    """What holds instead of a printed statement that failed."""
+    """The statement that holds instead of a printed one that failed."""
     if claim.corrected is None:
         raise ArithmeticError(f"the printed statement fails and nothing is known to hold instead: {failed.evidence}")
     statement = claim.corrected()
@@ -103,7 +103,7 @@ def _corrected(claim: Claim, failed: Check) -> _Found:
 
 
 def _tried(claim: Claim, corrected: Any) -> tuple[Trial, ...]:
-    """The trials of a correction: two models must tell it from the printed statement, and none may speak against it."""
+    """The trials of a correction: two models must contradict the printed statement, and none the corrected one."""
     trials = tuple(claim.trials(claim.printed.value, corrected)) if claim.trials else ()
     against = [trial.line() for trial in trials if not trial.corrected_holds]
     if against:

@@ -85,7 +85,7 @@ class VerdictTable(Sequence["Verdict"]):
         return int(any(verdict.kind == ERROR for verdict in self.verdicts))
 
     def as_dict(self) -> dict[str, Any]:
-        """What ``singimpact verify --json`` prints."""
+        """The verdicts as plain data; ``singimpact verify --json`` prints it."""
         return {"claims": [verdict.as_dict() for verdict in self.verdicts]}
 
     def text(self, width: int | None = None, paint: Painter = unpainted) -> str:

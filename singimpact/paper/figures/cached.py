@@ -1,4 +1,4 @@
-"""Figures kept in the user's cache folder as numbers, so that a run that was cut off goes on where it was."""
+"""Figures kept in the user's cache folder as numbers, so that an interrupted run continues where it stopped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a figure is before it is drawn: panels of lines, regions and letters, in numbers."""
+"""The data of a figure before it is drawn: panels of lines, regions and letters."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ def drawn(picture: Picture, look: Look | None = None) -> Any:
 
 
 def legend_words(picture: Picture) -> list[str]:
-    """What the legend of a picture names, in the order of its lines."""
+    """The entries of the legend of a picture, in the order of its lines."""
     return [words for _, words in _entries(picture, Look())]
 
 

@@ -237,7 +237,7 @@ def figure_15() -> Picture:
         r"The plane of states is cut along $\delta$, the image of the grazing arc $AD$ under $p$. Landing after "
         r"the graze, $\phi$ takes one edge of the cut to the interval $A''D''$ and the other, which passes the "
         "graze and hits on the shadow, to the arc $D''C''$. The arc $CB$ of the zero set lands on the same arc, "
-        "which is drawn green and orange in turn. The two branches of $P$ are closer than a line's width near the "
+        "which is drawn dotted and dashed. The two branches of $P$ are closer than a line's width near the "
         f"cusps; below, the velocities are magnified {ZOOM:g} times."
     )
     return Picture(15, "Images of the negative swan under p and phi", ("s6n-maps", "s6n-cusp", "s6n-AB"),

@@ -77,7 +77,7 @@ def delta() -> Array:
 
 
 def figure_16() -> Picture:
-    """What phi o F does to the edges of the cut delta, to AB and to what lies left of A."""
+    """The images under phi o F of the edges of the cut delta, of AB and of the axis left of A."""
     swan, size = negative(), half(negative())
     model, v = swan.model, 1.15 * swan.projected["D"][1]
     jump, landed = delta(), reset(model, shadow())

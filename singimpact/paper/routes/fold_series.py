@@ -17,7 +17,7 @@ from singimpact.contact.contact import Contact
 
 
 class TangencySheet(Protocol):
-    """The sheet that is given, whoever solved for it: jets of v and x-dot in (sigma, t), and where they hold."""
+    """A sheet, independent of the route that solved for it: jets of v and x-dot in (sigma, t), and where they hold."""
 
     @property
     def contact(self) -> Contact: ...

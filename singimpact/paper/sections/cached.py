@@ -13,7 +13,7 @@ ABOVE = ("cli/", "bench/", "scenes/", "paper/figures/")  # rooms that no derivat
 
 
 def kept_sections(names: Sequence[str] = ()) -> list[Section]:
-    """What `derivations.sections` gives, from the cache when it was made before: without sympy then.
+    """The result of `derivations.sections`. It comes from the cache, without sympy, if it was computed before.
 
     Raises
     ------

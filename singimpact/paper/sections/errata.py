@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.documents import escape
+from singimpact.documents.breaking import wrapping
 
 if TYPE_CHECKING:
     from singimpact.paper.claims.claim import Claim, Verdict
@@ -38,7 +39,7 @@ class Erratum:
 
     @property
     def survives(self) -> str:
-        """What rests on it, and how that stands with the corrected statement."""
+        """The claims that rest on it, with their verdicts for the corrected statement."""
         return ", ".join(f"{name} ({kind})" for name, kind in self.dependants.items()) or "nothing rests on it"
 
     def as_dict(self) -> dict[str, Any]:
@@ -98,7 +99,7 @@ class Errata(Sequence[Erratum]):
             v = entry.verdict
             parts.append(
                 f"## `{v.id}` (section {v.section})\n\n{escape.markdown(v.title)}.\n\n"
-                f"- printed: ${v.printed}$\n- corrected ({v.effective}): ${v.corrected}$\n"
+                f"- printed: {wrapping(v.printed)}\n- corrected ({v.effective}): {wrapping(v.corrected or '')}\n"
                 f"- why: {escape.markdown(v.evidence)}\n- witness: {escape.markdown(entry.witness)}\n"
                 + "".join(f"- tried: {escape.markdown(line)}\n" for line in entry.trials)
                 + f"- what rests on it: {escape.markdown(entry.survives)}"
@@ -111,7 +112,7 @@ class Errata(Sequence[Erratum]):
         return _DOCUMENT.replace("COUNT", str(len(self))).replace("ITEMS", items)
 
     def as_dict(self) -> dict[str, Any]:
-        """What ``singimpact errata --json`` prints."""
+        """The errata as plain data; ``singimpact errata --json`` prints it."""
         return {"errata": [entry.as_dict() for entry in self]}
 
 

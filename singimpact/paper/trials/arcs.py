@@ -1,4 +1,4 @@
-"""What the impact map of the package says near a tangency with a' > 0: jumps, sides of gamma, eigenvalues, lift-off."""
+"""The impact map of the package near a tangency with a' > 0: jumps, sides of gamma, eigenvalues, lift-off."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _bisected(place: Place, tau: float, low: float, high: float, size: float) ->
 
 @dataclass(frozen=True)
 class SideCase:
-    """What happens below and above gamma: "chatter", "lost" or "undecided", after how many impacts at the most."""
+    """The behaviour below and above gamma: "chatter", "lost" or "undecided", after how many impacts at the most."""
 
     name: str
     below: str

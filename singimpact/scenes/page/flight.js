@@ -7,11 +7,14 @@ const EPSILON = Math.pow(2, -52);
 const SHORT = 1e-7;
 // x' at a hit below this part of the launch velocity is reported: the next states have lost so many digits.
 const NEAR_GRAZE = 1e-4;
+// The sign of a_c is taken at so many times a period, or a unit of time where g has no period, to find a lift-off.
+const LIFT_PLACES = 400;
+const REST = 50;  // the ending of an orbit that stays at rest
 const WORDS = {
   0: "all impacts asked for were flown", 3: "no impact follows before the horizon",
   5: "the next flight touches x = c so nearly that doubles do not decide whether it is an impact",
   21: "the next flight takes too many steps", 22: "the next flight ends at a singularity of f or g",
-  23: "the motion leaves the range of numbers", 50: "the mass rests on the obstacle and does not lift off",
+  23: "the motion leaves the range of numbers", [REST]: "the mass rests on the obstacle and does not lift off",
 };
 
 function flyer(clearance, restitution, given, period) {
@@ -38,9 +41,9 @@ function launched(fly, tau, v, lifts) {
   return [found[0], found[1], found[2]];
 }
 
-// The first time after tau at which a_c becomes positive, by its sign at 400 places a period and bisection.
+// The first time after tau at which a_c becomes positive, by its sign at LIFT_PLACES times a period and bisection.
 function lift_off(fly, tau) {
-  const step = (fly.period || 1) / 400, most = fly.period ? 401 : 40000;
+  const step = (fly.period || 1) / LIFT_PLACES, most = fly.period ? LIFT_PLACES + 1 : 100 * LIFT_PLACES;
   for (let n = 1; n <= most; n += 1) {
     let low = tau + (n - 1) * step, high = tau + n * step;
     if (wall_acceleration(fly, high) > 0) {
@@ -73,7 +76,7 @@ function flown(fly, tau, v, most) {
       }
       const leaves = lift_off(fly, now);
       if (leaves === Infinity) {
-        orbit.ending = 50;
+        orbit.ending = REST;
         return orbit;
       }
       add(leaves, 0, "release", NaN);

@@ -190,6 +190,7 @@ function show_orbit(states, view) {
   const count = (kind) => orbit.kind.filter((each) => each === kind).length;
   if (count("complete")) told.push(`${several(count("complete"), "chatter", "chatters")} came to rest.`);
   if (count("release")) told.push(`${several(count("release"), "lift-off", "lift-offs")} from rest.`);
+  if (count("release") || orbit.ending === REST) told.push(`A lift-off is looked for at ${LIFT_PLACES} times ${turn ? "a period" : "a unit of time"}: a shorter interval of a_c > 0 is missed.`);
   const grazing = orbit.before.map((hit, n) => Math.abs(hit) < NEAR_GRAZE * orbit.v[n - 1] ? n : 0).filter((n) => n > 0);
   if (grazing.length) told.push(`Impact ${grazing[0]} is nearly a graze, with x' = ${short(orbit.before[grazing[0]], 3)} before it: the later states are known to about ${Math.max(1, Math.round(15 + Math.log10(Math.abs(orbit.before[grazing[0]]) / orbit.v[grazing[0] - 1])))} digits or fewer.`);
   if (until < ends) told.push(`Shown: the first ${turn ? "8 periods" : "50 time units"}.`);

@@ -154,7 +154,7 @@ def _repelling(stated: int) -> Check:
 
 
 def _at_rest(stated: str) -> Check:
-    """What happens from (tau_*, 0): x_c - c = t y_c with y_c ~ a' t^2/6 > 0, so the mass lifts off."""
+    """The motion from (tau_*, 0): x_c - c = t y_c with y_c ~ a' t^2/6 > 0, so the mass lifts off."""
     leading = route.at_contact(route.y_c(2), 1).subs({route.sigma: 0, route.v: 0})
     positive = is_zero(leading - a_symbol(1) * t**2 / 6)
     flights = arcs.lift_off()

@@ -73,7 +73,7 @@ def _lips(cusps: int) -> Check:
 
 
 def _second_derivative(order: int) -> Check:
-    """The number that tells a positive from a negative swan: a derivative of a_c0 of this order at tau_*."""
+    """The number whose sign distinguishes a positive from a negative swan: a derivative of a_c0 of this order at tau_*."""
     values = [sympy.diff(model.acceleration_at_swan(), sigma, n).subs(sigma, 0) for n in range(3)]
     return every(
         [(f"at a swan a = {values[0]}, a' = {values[1]}, a'' = {values[2]}: only a'' has a sign", values[order] != 0)],

@@ -94,7 +94,7 @@ def _shadow_velocity(sign: int) -> Check:
 
 
 def _cusp(stated: tuple[Any, Any]) -> Check:
-    """C'' = phi(C), and the cusp of P that it is: p at the mirror image of D."""
+    """C'' = phi(C). It is a cusp of P: p of the mirror image of D."""
     mirror = (-model.D[0], -model.D[1])
     conditions = model.cusp_conditions(mirror)
     return every(
