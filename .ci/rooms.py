@@ -1,15 +1,27 @@
 """Coverage by room: lines that ran in the suite, from JSON of slipcover; fails where a room below `cli` has too few.
 
-`python -m slipcover --json --out FILE -m pytest --slow` writes the file; settings stand in pyproject.toml.
+`python -m slipcover --json --out FILE -m pytest` writes such a file; lines of several runs count together. Settings
+stand in pyproject.toml.
 """
 
 import json
 import sys
 from collections import Counter
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 LEAST = 90.0  # per cent of the lines of a room
 ABOVE = {"cli"}  # rooms without a least figure: a command is tested by what it writes, often in a process of its own
+
+
+def together(runs):
+    """File -> lines that ran in one of the runs, and those that ran in none."""
+    found = {}
+    for files in runs:
+        for name, lines in files.items():
+            ran, missing = found.setdefault(name, (set(), set()))
+            ran |= set(lines["executed_lines"])
+            missing |= set(lines["missing_lines"])
+    return {name: {"executed_lines": ran, "missing_lines": missing - ran} for name, (ran, missing) in found.items()}
 
 
 def rooms(files):
@@ -28,9 +40,8 @@ def too_few(found):
     return [room for room, (ran, lines) in found.items() if room not in ABOVE and 100 * ran < LEAST * lines]
 
 
-def main(path):
-    with open(path, encoding="utf-8") as file:
-        found = rooms(json.load(file)["files"])
+def main(*paths):
+    found = rooms(together(json.loads(Path(path).read_text(encoding="utf-8"))["files"] for path in paths))
     print("Lines that ran, by room:")
     for room, (ran, lines) in found.items():
         print(f"{room:12} {ran:6} of {lines:6}  {100 * ran / lines:5.1f} %")
@@ -41,4 +52,4 @@ def main(path):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    sys.exit(main(*sys.argv[1:]))

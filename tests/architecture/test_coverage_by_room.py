@@ -12,13 +12,19 @@ def rooms(clone):
 
 
 def told(executed, missing):
-    return {"executed_lines": list(range(executed)), "missing_lines": list(range(missing))}
+    return {"executed_lines": list(range(executed)), "missing_lines": list(range(executed, executed + missing))}
 
 
 def test_lines_are_counted_by_room(rooms):
     files = {"singimpact/theory/a.py": told(9, 1), "/x/singimpact/theory/deep/b.py": told(10, 0),
              "singimpact/status.py": told(3, 0), "singimpact/cli/c.py": told(0, 5)}  # fmt: skip
     assert rooms["rooms"](files) == {"cli": (0, 5), "the ground": (3, 3), "theory": (19, 20)}
+
+
+def test_lines_of_two_runs_count_together(rooms):
+    runs = [{"a.py": {"executed_lines": [1, 2], "missing_lines": [3, 4]}},
+            {"a.py": {"executed_lines": [3], "missing_lines": [1, 2, 4]}}]  # fmt: skip
+    assert rooms["together"](runs) == {"a.py": {"executed_lines": {1, 2, 3}, "missing_lines": {4}}}
 
 
 @pytest.mark.parametrize(("missing", "code"), [(10, 0), (11, 1)])
