@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Protocol
 
-from singimpact.flights.enclosures.equation import NoHit, Refused
+from singimpact.flights.enclosures.equation import NoHit, Refused, TooLong
 from singimpact.flights.enclosures.first_root import RootAtEnd, first_root
 from singimpact.flights.enclosures.tube import Tube, centre, divided
 
@@ -17,6 +17,7 @@ class Motion(Protocol):
     time: Any
     bits: int
     removed: int
+    flown: int
 
     @property
     def launched(self) -> bool: ...
@@ -42,6 +43,7 @@ def first_hit(motion: Motion, horizon: Any, steps: int) -> BallHit:
     NoHit : proved that none comes before the horizon. Refused : these bits, or so many steps, do not decide it.
     """
     for count in range(1, steps + 1):
+        motion.flown = count
         value, slope, length = motion.tubes()
         first = motion.launched
         if first:
@@ -68,4 +70,4 @@ def first_hit(motion: Motion, horizon: Any, steps: int) -> BallHit:
         if motion.time + length > horizon:
             raise NoHit(f"no hit comes before {float(horizon.mid()):.6g}")
         motion.advance(length)
-    raise Refused(f"no hit comes before {float(motion.time.mid()):.6g}, and {steps} steps in balls do not go further")
+    raise TooLong(f"no hit comes before {float(motion.time.mid()):.6g}, and {steps} steps in balls do not go further")

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import ceil
+from math import ceil, log2
 from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
 from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.ball_flight import BallHit, first_hit
-from singimpact.flights.enclosures.equation import Equation, NoHit, NotAnalytic, Refused, programs_of
+from singimpact.flights.enclosures.equation import Equation, NoHit, NotAnalytic, Refused, TooLong, programs_of
 from singimpact.flights.enclosures.framed_motion import FramedMotion
 from singimpact.flights.enclosures.plain_motion import PlainMotion
 from singimpact.oscillator.model import Oscillator
@@ -29,7 +29,9 @@ class EnclosureSettings:
     more, most : where a flight is refused, so many times the bits are tried next; and at most, with `room` beside.
     coarse : bits of the steps of a set, the derivative over which needs no more; they grow with a refusal.
     long : steps from which a point is carried in a frame, where its ball has grown.
-    steps, idle_steps : of a flight at most; and of one that doubles do not bring back, of which `no hit` is proved.
+    lost, wrapped : bits that the ball of a point loses in a unit of time; flights longer than `wrapped` are carried in
+        a frame from the start, whose steps take twice the time.
+    steps, idle_steps : of a flight at most; and of one that doubles do not bring back.
     """
 
     spare: int = 8
@@ -39,8 +41,10 @@ class EnclosureSettings:
     room: int = 64
     coarse: int = 64
     long: int = 16
+    lost: float = 1.2
+    wrapped: float = 20.0
     steps: int = 6000
-    idle_steps: int = 800
+    idle_steps: int = 500
 
 
 ENCLOSURE = EnclosureSettings()
@@ -81,13 +85,14 @@ class ProvedImpact(NamedTuple):
 
 def certified_hit(
     osc: Oscillator, launch: Launch, digits: int, horizon: Fraction, *, derivative: bool = False,
-    steps: int = ENCLOSURE.steps,
+    steps: int = ENCLOSURE.steps, expected: tuple[float, float] = (0.0, 1.0),
 ) -> ProvedImpact:  # fmt: skip
     """The first impact of a flight in balls, with so many digits where the launch is a point.
 
     Parameters
     ----------
     derivative : whether D G is enclosed too. steps : of a flight at most.
+    expected : flight time and condition number that doubles know: they choose the first precision, and prove nothing.
 
     Raises
     ------
@@ -105,30 +110,39 @@ def certified_hit(
     wanted = ceil(digits * BITS_A_DIGIT)
     bits, coarse = wanted + ENCLOSURE.spare, ENCLOSURE.coarse
     most = ENCLOSURE.most * bits + ENCLOSURE.room
-    box, framed = any(launch.radii.values()), any(launch.radii.values())
+    bits = min(bits + _spare(*expected), most)
+    if expected[0] > ENCLOSURE.wrapped:
+        framed, coarse = True, bits if derivative else coarse
+    box = framed = any(launch.radii.values())
     while True:
         begun = None
         try:
             with _working(bits + ENCLOSURE.guard):
-                begun = _motion(osc, launch, bits, coarse, derivative, framed)
+                begun = _motion(osc, launch, bits, coarse, derivative, framed, expected[0])
                 hit = first_hit(begun, Balls(bits).rational(horizon), steps)
                 found = _impact(osc, launch, hit, begun.tau, bits)
                 lack = 0 if box else _lack(found, wanted + 1)
                 if lack <= 0:
                     return found
                 why, more, flown = f"{lack} bits of the result are lacking", lack + 6, hit.steps
-        except (NoHit, NotAnalytic):
+        except (NoHit, NotAnalytic, TooLong):
             raise
         except Refused as reason:
             if box and coarse >= bits:
                 raise
             why, more = str(reason), int(bits * (ENCLOSURE.more - 1))
-            flown = 0 if begun is None else getattr(begun, "flown", 0)
+            flown = 0 if begun is None else begun.flown
         if bits >= most:
             raise Refused(f"{why} (at {bits} bits)")
-        framed = framed or (flown > ENCLOSURE.long and not derivative)
-        coarse = min(bits, 2 * coarse) if framed else coarse
         bits = min(bits + more, most)
+        framed = framed or flown > ENCLOSURE.long
+        coarse = bits if derivative else min(bits, 2 * coarse) if framed else coarse
+
+
+def _spare(time: float, condition: float) -> int:
+    """Bits that a flight is expected to lose: to its condition, and to the balls that wrap it at every step."""
+    lost = ENCLOSURE.lost * time if time < ENCLOSURE.wrapped else 0.0
+    return int(lost + log2(min(max(condition, 1.0), 2.0**200)))
 
 
 @contextmanager
@@ -138,7 +152,7 @@ def _working(bits: int) -> Iterator[None]:
         yield
 
 
-def _motion(osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool) -> Any:
+def _motion(osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool, time: float) -> Any:
     """The flight from a launch at the working precision."""
     import flint
 
@@ -146,7 +160,7 @@ def _motion(osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative:
     programs = programs_of(osc, names)
     tau, v = _phase(osc, launch.tau, bits), _ball(launch.v, bits)
     if not framed:
-        return PlainMotion(Equation(programs, {}), tau, v, bits, launch.removed, derivative)
+        return PlainMotion(Equation(programs, {}), tau, v, bits, launch.removed, derivative, time)
     numbers = {name: _ball(_number(osc, name), bits) for name in names}
     deviations = {name: _radius(launch.radii[name]) for name in names}
     own = Equation(programs, numbers)

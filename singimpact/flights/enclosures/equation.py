@@ -32,6 +32,10 @@ class NotAnalytic(Refused):
     """f or g is not analytic where the flight goes; more digits change nothing."""
 
 
+class TooLong(Refused):
+    """The steps allowed do not reach a hit; more digits change nothing."""
+
+
 @dataclass(frozen=True)
 class Programs:
     """Programs of a model, with the names that are balls.

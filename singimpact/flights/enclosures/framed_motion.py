@@ -39,7 +39,7 @@ class FramedMotion:
         from flint import arb
 
         self.of_centre, self.equation, self.bits, self.coarse = centre_equation, equation, bits, coarse
-        self.removed, self.time = removed, arb(0)
+        self.removed, self.time, self.flown = removed, arb(0), 0
         # from rest the launch is at a zero of a_c, and at no other time in the ball of it
         self.tau, self.middle_tau = tau, tau if removed > 1 else centre(tau)
         self.middle: Pair = arb(0), centre(v)

@@ -15,19 +15,22 @@ class PlainMotion:
     Parameters
     ----------
     equation : the model. tau, v : the launch. bits : of a step. removed : 1, or the power of t in z from rest.
+    expected : the flight time in doubles, or 0.
     with_columns : whether the derivatives are carried; the one by tau is at equal time since the launch.
     """
 
     def __init__(
-        self, equation: Equation, tau: Any, v: Any, bits: int, removed: int = 1, with_columns: bool = False
+        self, equation: Equation, tau: Any, v: Any, bits: int, removed: int = 1, with_columns: bool = False,
+        expected: float = 0.0,
     ) -> None:  # fmt: skip
         from flint import arb
 
-        self.equation, self.tau, self.bits, self.removed = equation, tau, bits, removed
+        self.equation, self.tau, self.bits, self.removed, self.expected = equation, tau, bits, removed, expected
         self.time, self.z, self.v = arb(0), arb(0), v
         self.drives = [0, -1, *range(1, len(equation.names) + 1)] if with_columns else []
         self.starts = [(arb(0), arb(int(drive == -1))) for drive in self.drives]
         self.step: Step | None = None
+        self.flown = 0
 
     @property
     def launched(self) -> bool:
@@ -38,7 +41,8 @@ class PlainMotion:
         """z and z' on the next step, and its length."""
         columns = [Column(start, drive) for start, drive in zip(self.starts, self.drives, strict=True)]
         removed = self.removed if self.launched else 1
-        self.step = step(self.equation, (self.tau + self.time, self.z, self.v), columns, self.bits, most, removed)
+        self.step = step(self.equation, (self.tau + self.time, self.z, self.v), columns, self.bits, most, removed,
+                         self.expected - float(self.time))
         return height(self.step.coefficients, self.step.bound), speed(self.step.coefficients, self.step.bound), (
             self.step.length)  # fmt: skip
 

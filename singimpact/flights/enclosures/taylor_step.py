@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil, log2
 from typing import Any, NamedTuple
 
 from singimpact.algebra.precision import balls_at
@@ -29,7 +30,8 @@ class StepSettings:
     Parameters
     ----------
     degree : of the polynomial, a bit; 0.42 takes 1.2 times the time and 0.7 1.4 times.
-    least_degree : whatever the bits.
+    least_degree : whatever the bits. short_degree : of a step much shorter than `usual`, the part of a disc that is
+        reached where f and g vary over lengths of 1; where they vary faster, such a step comes out too short.
     disc_bits : of the bounds; they are rounded outwards, and their digits do not matter.
     widest : radius of a disc at most, and at first where the last coefficients vanish.
     first : radius of the first disc, over the radius of convergence that the last coefficients suggest.
@@ -39,6 +41,8 @@ class StepSettings:
 
     degree: float = 0.55
     least_degree: int = 12
+    short_degree: int = 5
+    usual: float = 0.4
     disc_bits: int = 64
     widest: float = 8.0
     first: float = 1.3
@@ -69,14 +73,17 @@ class Step:
     length: Any
 
 
-def degree_at(bits: int) -> int:
-    """The degree of a step at a precision."""
-    return max(STEP.least_degree, int(STEP.degree * bits))
+def degree_at(bits: int, expected: float = 0.0) -> int:
+    """The degree of a step at a precision, lower where the step need not be longer than expected."""
+    degree = max(STEP.least_degree, int(STEP.degree * bits))
+    if not 0 < expected < STEP.usual / 4:
+        return degree
+    return min(degree, max(STEP.short_degree, ceil(bits / log2(STEP.usual / expected)) + 2))
 
 
 def step(
     equation: Equation, state: tuple[Any, Any, Any], columns: Sequence[Column], bits: int, most: Any = None,
-    removed: int = 1,
+    removed: int = 1, expected: float = 0.0,
 ) -> Step:  # fmt: skip
     """A step from (t, z, z'), each a ball.
 
@@ -84,12 +91,13 @@ def step(
     ----------
     columns : derivatives that are carried along. bits : the error is about 2^-bits of the step. most : its longest
         length. removed : how many of the first coefficients are 0 exactly; 1 unless the mass starts from rest.
+    expected : the length that is needed, 0 where it is not known: a short one takes a lower degree.
 
     Raises
     ------
     Refused, NotAnalytic
     """
-    degree = degree_at(bits)
+    degree = degree_at(bits, expected)
     X = coefficients(equation, state, degree, removed)
     if not X[-1].is_finite():
         raise NotAnalytic("f or g has no power series where the flight goes")
