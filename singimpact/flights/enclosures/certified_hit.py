@@ -120,7 +120,7 @@ def certified_hit(
             with _working(bits + ENCLOSURE.guard):
                 begun = _motion(osc, launch, bits, coarse, derivative, framed, expected[0])
                 hit = first_hit(begun, Balls(bits).rational(horizon), steps)
-                found = _impact(osc, launch, hit, begun.tau, bits)
+                found = _impact(osc, launch, hit, bits)
                 lack = 0 if box else _lack(found, wanted + 1)
                 if lack <= 0:
                     return found
@@ -152,7 +152,9 @@ def _working(bits: int) -> Iterator[None]:
         yield
 
 
-def _motion(osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool, time: float) -> Any:
+def _motion(
+    osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool, time: float
+) -> Any:
     """The flight from a launch at the working precision."""
     import flint
 
@@ -192,7 +194,7 @@ def _phase(osc: Oscillator, tau: Expression, bits: int) -> Any:
 
     plain = _ball(tau, bits)
     size = abs(float(plain.mid()))
-    if osc.period is None or not 64 < size:
+    if osc.period is None or not size > 64:
         return plain
     more = bits + ENCLOSURE.guard + (int(abs(plain).upper().man_exp()[1]) + 64 if size > 1e15 else 64)
     with balls_at(more + max(int(plain.mid().man_exp()[0]).bit_length(), 0)):
@@ -201,7 +203,7 @@ def _phase(osc: Oscillator, tau: Expression, bits: int) -> Any:
         return exact - period * turns
 
 
-def _impact(osc: Oscillator, launch: Launch, hit: BallHit, phase: Any, bits: int) -> ProvedImpact:
+def _impact(osc: Oscillator, launch: Launch, hit: BallHit, bits: int) -> ProvedImpact:
     """The state after a hit, and D G."""
     names = launch.names
     law = programs_of(osc, names).rho.prepared({name: _ball(_number(osc, name), bits) + _radius(launch.radii[name])

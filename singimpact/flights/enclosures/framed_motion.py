@@ -44,7 +44,11 @@ class FramedMotion:
         self.tau, self.middle_tau = tau, tau if removed > 1 else centre(tau)
         self.middle: Pair = arb(0), centre(v)
         self.drives = [0, -1, *range(1, len(equation.names) + 1)]
-        self.D = [arb(0) if removed > 1 else tau - self.middle_tau, v - self.middle[1], *(deviations[name] for name in equation.names)]
+        self.D = [
+            arb(0) if removed > 1 else tau - self.middle_tau,
+            v - self.middle[1],
+            *(deviations[name] for name in equation.names),
+        ]
         self.full: list[Pair] = [(arb(0), arb(int(drive == -1))) for drive in self.drives]
         self.C: list[Pair] = list(self.full)
         self.turn: Pair = arb(1), arb(0)  # Q = ((a, -b), (b, a))
@@ -131,11 +135,11 @@ class FramedMotion:
         self.turn, self.box = (p, q), (parts[0], parts[1])
 
     def at_hit(self, root: Any, velocity: Any, rate: Any) -> tuple[Any, Any, list[Pair]]:
-        """Time since the launch, velocity, and the derivatives of both in the order tau, v, names: over the whole set."""
+        """Time since the launch, velocity, and the derivatives of both in the order tau, v, names, over the set."""
         total = self.time + root
         f, g = self.equation.run("force", x=velocity * 0, xdot=velocity)[0], self.equation.run(
             "forcing", t=self.tau + total)[0]  # fmt: skip
-        pairs = []
+        pairs: list[Pair] = []
         for value, slope in (*self.by_state, *self.by_drive):
             if not self.launched:
                 delay = -value(root) / rate
@@ -167,7 +171,7 @@ class FramedMotion:
             own_velocity = slope(own)
         (a, b), (p, q) = self.turn, self.box
         off = [self._hit_by(by_state, (a * p - b * q, b * p + a * q), None)]
-        off += [tuple(part * size for part in self._hit_by(by_state, each, by_drive.get(d)))  # type: ignore[misc]
+        off += [tuple(part * size for part in self._hit_by(by_state, each, by_drive.get(d)))
                 for each, d, size in zip(self.C, self.drives, self.D, strict=True)]  # fmt: skip
         later, faster = sum(each[0] for each in off), sum(each[1] for each in off)
         return self.time + root.intersection(own + later), velocity.intersection(own_velocity + faster)

@@ -41,8 +41,15 @@ class PlainMotion:
         """z and z' on the next step, and its length."""
         columns = [Column(start, drive) for start, drive in zip(self.starts, self.drives, strict=True)]
         removed = self.removed if self.launched else 1
-        self.step = step(self.equation, (self.tau + self.time, self.z, self.v), columns, self.bits, most, removed,
-                         self.expected - float(self.time))
+        self.step = step(
+            self.equation,
+            (self.tau + self.time, self.z, self.v),
+            columns,
+            self.bits,
+            most,
+            removed,
+            self.expected - float(self.time),
+        )
         return height(self.step.coefficients, self.step.bound), speed(self.step.coefficients, self.step.bound), (
             self.step.length)  # fmt: skip
 

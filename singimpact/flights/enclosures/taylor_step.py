@@ -193,7 +193,7 @@ def _widest_disc(
 
     n = len(X) - 1
     size = upper(X[1]) + upper(X[2]) / 8 + upper(X[3]) / 64
-    rates = [float((upper(X[k]) / size)) ** (1 / k) for k in (n - 2, n - 1, n) if size > 0]
+    rates = [float(upper(X[k]) / size) ** (1 / k) for k in (n - 2, n - 1, n) if size > 0]
     R = min(STEP.first / max(rates), STEP.widest) if max(rates, default=0) > 0 else STEP.widest
     best: tuple[float, float, list[Any]] | None = None
     for _ in range(STEP.discs):

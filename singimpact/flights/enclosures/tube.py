@@ -60,7 +60,7 @@ def ball(bound: Any) -> Any:
     """The ball round 0 of a radius."""
     import flint
 
-    return flint.arb(0, upper(bound)) if not bound == 0 else flint.arb(0)
+    return flint.arb(0, upper(bound))
 
 
 def centre(value: Any) -> Any:
