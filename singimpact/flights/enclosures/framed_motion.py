@@ -39,6 +39,8 @@ class FramedMotion:
         from flint import arb
 
         self.of_centre, self.equation, self.bits, self.coarse = centre_equation, equation, bits, coarse
+        self.step: Step | None = None
+        self.wide: Step | None = None
         self.removed, self.time, self.flown = removed, arb(0), 0
         # from rest the launch is at a zero of a_c, and at no other time in the ball of it
         self.tau, self.middle_tau = tau, tau if removed > 1 else centre(tau)
@@ -73,15 +75,15 @@ class FramedMotion:
 
         removed = self.removed if self.launched else 1
         z, v = self.middle
-        own = step(self.of_centre, (self.middle_tau + self.time, z, v), (), self.bits, most, removed)
+        own = step(self.of_centre, (self.middle_tau + self.time, z, v), (), self.bits, most, removed, last=self.step)
         self.delta = self._deviation()
         one, zero = arb(1), arb(0)
         launches = [Column((one, zero), -1), Column((zero, one), -1)]
         launches += [Column((zero, zero), drive) for drive in self.drives if drive >= 0]
         with balls_at(self.coarse + 24):
             hull = self.tau + self.time, z + self.delta[0], v + self.delta[1]
-            wide = step(self.equation, hull, launches, self.coarse, own.length, removed)
-        self.step: Step = own
+            wide = step(self.equation, hull, launches, self.coarse, own.length, removed, last=self.wide)
+        self.step, self.wide = own, wide
         columns = [(height(P, K), speed(P, K)) for P, K in zip(wide.columns, wide.column_bounds, strict=True)]
         self.by_state, self.by_drive = columns[:2], columns[2:]
         sizes = [*self.delta, *(size for size, drive in zip(self.D, self.drives, strict=True) if drive >= 0)]

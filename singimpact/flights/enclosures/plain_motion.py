@@ -49,6 +49,7 @@ class PlainMotion:
             most,
             removed,
             self.expected - float(self.time),
+            self.step,
         )
         return height(self.step.coefficients, self.step.bound), speed(self.step.coefficients, self.step.bound), (
             self.step.length)  # fmt: skip

@@ -35,7 +35,7 @@ class StepSettings:
     disc_bits : of the bounds; they are rounded outwards, and their digits do not matter.
     widest : radius of a disc at most, and at first where the last coefficients vanish.
     first : radius of the first disc, over the radius of convergence that the last coefficients suggest.
-    shrink : factor of the next disc. discs, boxes : tried at most.
+    shrink, grow : factor of the next disc, and of the first one over that of the last step. discs, boxes : tried at most.
     part : of the disc's radius that a step takes at most.
     """
 
@@ -47,6 +47,7 @@ class StepSettings:
     widest: float = 8.0
     first: float = 1.3
     shrink: float = 0.85
+    grow: float = 1.4
     discs: int = 80
     boxes: int = 40
     part: float = 0.9
@@ -71,6 +72,7 @@ class Step:
     columns: list[list[Any]]
     column_bounds: list[Any]
     length: Any
+    radius: Any
 
 
 def degree_at(bits: int, expected: float = 0.0) -> int:
@@ -83,7 +85,7 @@ def degree_at(bits: int, expected: float = 0.0) -> int:
 
 def step(
     equation: Equation, state: tuple[Any, Any, Any], columns: Sequence[Column], bits: int, most: Any = None,
-    removed: int = 1, expected: float = 0.0,
+    removed: int = 1, expected: float = 0.0, last: Step | None = None,
 ) -> Step:  # fmt: skip
     """A step from (t, z, z'), each a ball.
 
@@ -91,6 +93,7 @@ def step(
     ----------
     columns : derivatives that are carried along. bits : the error is about 2^-bits of the step. most : its longest
         length. removed : how many of the first coefficients are 0 exactly; 1 unless the mass starts from rest.
+    last : the step before, whose disc is near the right one.
     expected : the length that is needed, 0 where it is not known: a short one takes a lower degree.
 
     Raises
@@ -104,7 +107,7 @@ def step(
     psi = [column(equation, state[0], X, each, degree) for each in columns]
     with balls_at(STEP.disc_bits):
         sums = [_sums(part) for part in (X, *psi)]
-        length, R, bounds = _widest_disc(equation, state[0], X, psi, [each.drive for each in columns], sums, bits)
+        length, R, bounds = _widest_disc(equation, state[0], X, psi, [each.drive for each in columns], sums, bits, last)
         if most is not None and length > most:
             length = most
         return _bounded(equation, (X, psi), [each.drive for each in columns], sums, (length, R, bounds), bits)
@@ -186,8 +189,9 @@ def _sums(X: list[Any]) -> tuple[Any, Any, Any]:
 
 
 def _widest_disc(
-    equation: Equation, t: Any, X: list[Any], psi: list[list[Any]], drives: list[int], sums: list[Any], bits: int
-) -> tuple[Any, Any, list[Any]]:
+    equation: Equation, t: Any, X: list[Any], psi: list[list[Any]], drives: list[int], sums: list[Any], bits: int,
+    last: Step | None,
+) -> tuple[Any, Any, list[Any]]:  # fmt: skip
     """Length, R and the defects on that disc, where the step allowed is the longest."""
     from flint import arb
 
@@ -195,6 +199,8 @@ def _widest_disc(
     size = upper(X[1]) + upper(X[2]) / 8 + upper(X[3]) / 64
     rates = [float(upper(X[k]) / size) ** (1 / k) for k in (n - 2, n - 1, n) if size > 0]
     R = min(STEP.first / max(rates), STEP.widest) if max(rates, default=0) > 0 else STEP.widest
+    if last is not None:
+        R = min(R, STEP.grow * float(last.radius))
     best: tuple[float, float, list[Any]] | None = None
     for _ in range(STEP.discs):
         bounds = _defects(equation, t, X, psi, drives, sums, arb(R))
@@ -260,7 +266,7 @@ def _bounded(
                          for P, part, drive in zip(psi, sums[1:], drives, strict=True)]  # fmt: skip
                 if all(bend.is_finite() for bend in bends):
                     bounds = [upper((M * power + bend) * grown) for M, bend in zip(defects[1:], bends, strict=True)]
-                    return Step(X, bound, psi, bounds, length)
+                    return Step(X, bound, psi, bounds, length, R)
         length = arb(float(length) / 2)
     raise Refused("no step on which the bounds hold")
 
