@@ -10,7 +10,7 @@ tree), `derivatives` (of a tree by a name), `taylor` (elementary functions at a 
 Jets: `jets`, `polynomials` (what they are made of), `jet_maps` (inverses,
 implicit functions, blow-ups), `univariate` (one variable, level by level), `interpolation`, `horner` (on arrays).
 Zeros: `solving` (halving, secants, Newton in balls), `roots` (of polynomials), `zeros` (of functions, by balls),
-`double_zeros` (of functions with a parameter).
+`isolated_zeros` (of systems, all in a box), `double_zeros` (of functions with a parameter).
 Proofs: `certificates` (made), `checking` (believed only once checked), `plain` (polynomials of the checker),
 `sentences` (what a certificate says).
 """
