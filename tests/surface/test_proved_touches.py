@@ -42,7 +42,7 @@ def test_all_three_kinds_of_figure_2():
     assert {each.kind for each in over_rate} == {"lips", "beaks"}
     assert over_rate.doubts == over_rate.notes  # of the period, which moves with w
     over_clearance = transitions(damped(), "clearance", (0.9, 1.1), (-8, 8))
-    tail = next(each for each in over_clearance if abs(each.t - 5.1927096149235386) < 1e-7)
+    tail = next(each for each in over_clearance if abs(each.t - 5.1927096149235386) < 1e-12)
     assert tail.kind == "swallowtail"
     assert over_clearance.complete
     (doubt,) = doubts_left(
