@@ -49,7 +49,7 @@ def proof(
     --------
     >>> osc = Oscillator("x + x**3", "cos(1.7*t)", "0.3", "1/2")
     >>> print(proof(osc, States.of(osc, "1.4", "0.6"), 0, 20, 60.0, None).impact.tau)
-    2.2266246352706009486
+    2.2817511466168335788
     """
     rest = states.rest.get(index)
     standing = rest is not None and sign_of(states.exact_v(index)) == 0
