@@ -112,7 +112,7 @@ class ImpactOscillator(Oscillator):
         --------
         >>> duffing = ImpactOscillator("x + x**3", "cos(1.7*t)", "0.3", "0.6")
         >>> duffing.enclosed_impact("1.4", "0.6", radii={"tau": "1e-9", "v": "1e-9"}, digits=15).v
-        Certified(0.349434480823545 +- 5.5e-10)
+        Certified(0.361541072319587 +- 6.7e-10)
         """
         from singimpact.flights.enclosed_impact import enclosed_impact
 

@@ -66,7 +66,7 @@ def enclosed_impact(
     >>> osc = Oscillator("x + 0.1*xdot + 0.3*x**3", "cos(w*t)", "0.3", "0.6", {"w": "1.7"})
     >>> found = enclosed_impact(osc, "1.4", "0.6", radii={"v": "1e-6", "w": "1e-6"}, digits=12)
     >>> found.v
-    Certified(0.348656552746 +- 6.9e-7)
+    Certified(0.348656552746 +- 6.4e-7)
     >>> [[round(float(part.value), 4) for part in row] for row in found.derivative]
     [[0.7674, 1.2585, 0.1136], [-0.1905, 0.4257, -0.6239]]
     """

@@ -135,12 +135,14 @@ def certified_hit(
             if (box and coarse >= bits) or singular > ENCLOSURE.singular:
                 raise
             why, more = str(reason), int(bits * (ENCLOSURE.more - 1))
+            coarse = min(2 * coarse, bits)
             flown = 0 if begun is None else begun.flown
         if bits >= most:
             raise Refused(f"{why} (at {bits} bits)")
         bits = min(bits + more, most)
         framed = framed or flown > ENCLOSURE.long
-        coarse = bits if derivative else min(bits, 2 * coarse) if framed else coarse
+        if derivative and not box:
+            coarse = bits
 
 
 def _spare(time: float, condition: float) -> int:
@@ -175,7 +177,16 @@ def _motion(
     if not v > 0 and launch.removed == 1:
         raise Refused("the launch velocity is not shown positive")
     assert isinstance(v, flint.arb)
-    return FramedMotion(own, wide, tau, v, bits, min(coarse, bits), deviations, launch.removed)
+    return FramedMotion(
+        own,
+        wide,
+        tau,
+        v,
+        bits,
+        min(coarse, bits),
+        deviations if derivative or any(launch.radii.values()) else None,
+        launch.removed,
+    )
 
 
 def _number(osc: Oscillator, name: str) -> Expression:
