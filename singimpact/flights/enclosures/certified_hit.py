@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import ceil, log2
+from math import ceil, floor, log2
 from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
@@ -113,9 +113,11 @@ def certified_hit(
     bits, coarse = wanted + ENCLOSURE.spare, ENCLOSURE.coarse
     most = ENCLOSURE.most * bits + ENCLOSURE.room
     bits = min(bits + _spare(*expected), most)
-    if expected[0] > ENCLOSURE.wrapped:
-        framed, coarse = True, bits if derivative else coarse
     box = framed = any(launch.radii.values())
+    if box:
+        coarse = max(coarse, min(bits, ENCLOSURE.guard - floor(log2(max(launch.radii.values())))))
+    elif expected[0] > ENCLOSURE.wrapped:
+        framed, coarse = True, bits if derivative else coarse
     singular = 0
     while True:
         begun = None
