@@ -76,9 +76,9 @@ def enclosed_orbit(osc: Oscillator, times: Any, speeds: Any, k: int, digits: int
 
     Examples
     --------
-    >>> found = enclosed_orbit(Oscillator("x + x**3/10", "cos(4*t)", 0, "1/2"), [0.0926], [0.5261], 2, 25)
+    >>> found = enclosed_orbit(Oscillator("x + x**3/10", "cos(4*t)", 0, "1/2"), [1.087], [0.497], 2, 25)
     >>> print(found.v[0], found.stable)
-    0.5
+    0.4968833769630701986638762 True
     """
     states = [Fraction(float(part)) for pair in zip(times, speeds, strict=True) for part in pair]
     bits = ceil(digits * BITS_A_DIGIT) + 64
@@ -99,9 +99,9 @@ class _Closing:
         self.span = evaluate(osc.period, {}, self.balls) * k
         self.horizon = Fraction(horizon_of(osc, None))
 
-    def _flown(self, tau: Fraction, v: Fraction, radius: Fraction) -> Any:
+    def _flown(self, state: list[Fraction], radius: Fraction) -> Any:
         radii = {"tau": radius, "v": radius} if radius else {}
-        launch = Launch(number(tau), number(v), 1, radii)
+        launch = Launch(number(state[0]), number(state[1]), 1, radii)
         return certified_hit(self.osc, launch, self.digits + 6, self.horizon, derivative=bool(radius))
 
     def miss(self, states: list[Fraction]) -> Any:
@@ -110,7 +110,7 @@ class _Closing:
 
         rows, n = [], len(states) // 2
         for i in range(n):
-            hit = self._flown(*states[2 * i : 2 * i + 2], Fraction(0))
+            hit = self._flown(states[2 * i : 2 * i + 2], Fraction(0))
             last = i == n - 1
             after = [self.balls.rational(part) for part in states[2 * ((i + 1) % n) : 2 * ((i + 1) % n) + 2]]
             rows += [[hit.tau - after[0] - (self.span if last else 0)], [hit.v - after[1]]]
@@ -118,7 +118,7 @@ class _Closing:
 
     def slopes(self, states: list[Fraction], radius: Fraction) -> list[list[list[Any]]]:
         """D G over the box round each state."""
-        return [self._flown(*states[2 * i : 2 * i + 2], radius).derivative for i in range(len(states) // 2)]
+        return [self._flown(states[2 * i : 2 * i + 2], radius).derivative for i in range(len(states) // 2)]
 
 
 def _matrix(slopes: list[list[list[Any]]]) -> Any:

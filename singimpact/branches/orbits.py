@@ -67,7 +67,7 @@ class PeriodicOrbit:
         >>> from singimpact.oscillator.model import Oscillator
         >>> (orbit,) = periodic(Oscillator("x + x**3/10", "cos(4*t)", 0, "0.5"), 1, 2)
         >>> print(orbit.certified(20).v[0], orbit.certified(20).stable)
-        0
+        0.49688337696307019866 True
         """
         from singimpact.branches.enclosed_orbit import enclosed_orbit
 

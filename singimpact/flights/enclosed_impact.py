@@ -68,7 +68,7 @@ def enclosed_impact(
     >>> found.v
     Certified(0.348656552746 +- 6.4e-7)
     >>> [[round(float(part.value), 4) for part in row] for row in found.derivative]
-    [[0.7674, 1.2585, 0.1136], [-0.1905, 0.4257, -0.6239]]
+    [[0.7674, 1.2585, -0.1885], [-0.1905, 0.4257, -0.2155]]
     """
     given = {name: _radius(name, value) for name, value in (radii or {}).items()}
     _check(osc, given)
