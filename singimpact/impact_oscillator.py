@@ -216,7 +216,8 @@ class ImpactOscillator(Oscillator):
 
         Parameters
         ----------
-        tau, v : states, v >= 0; they broadcast. digits : decimal digits of the time, certified for linear models.
+        tau, v : states, v >= 0; they broadcast. digits : decimal digits of the time, certified where
+            the restitution is a number.
         impacts : at most; the status is then `unresolved`.
 
         Returns
