@@ -43,13 +43,14 @@ def proof(
 
     Parameters
     ----------
-    horizon : no hit is looked for beyond. rough : flight time and x' at the hit in doubles, None where they find none.
+    horizon : no hit is looked for beyond. rough : flight time and condition number of the velocity in doubles, None
+        where they find no hit; they choose the first precision.
 
     Examples
     --------
     >>> osc = Oscillator("x + x**3", "cos(1.7*t)", "0.3", "1/2")
     >>> print(proof(osc, States.of(osc, "1.4", "0.6"), 0, 20, 60.0, None).impact.tau)
-    2.2266246352706009486
+    2.2817511466168335788
     """
     rest = states.rest.get(index)
     standing = rest is not None and sign_of(states.exact_v(index)) == 0
@@ -71,13 +72,11 @@ def proof(
 
 
 def _expected(rough: tuple[float, float] | None) -> tuple[float, float]:
-    """Flight time and about the condition of a hit."""
+    """Flight time and condition of a hit, where doubles know them."""
     if rough is None:
         return inf, 1.0
-    if not (rough[0] > 0 and rough[1] < 0):
-        return 0.0, 1.0
-    time, velocity = rough
-    return time, 1 + (min(time, 1.0) / velocity) ** 2
+    time, condition = rough
+    return (time, condition if condition > 1 else 1.0) if time > 0 else (0.0, 1.0)
 
 
 def _with_numbers(balls: tuple[Any, Any, Any, Any], digits: int) -> Proof:

@@ -35,8 +35,10 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     codes, rows = np.zeros(size, dtype=np.int8), np.full((10, size), np.nan)
     fields = [np.empty(size, dtype=object) for _ in range(4)]
     certified, reasons = np.full(size, None, dtype=object), {}
+    in_doubles = np.array([index not in known for index in range(size)], dtype=bool) & (roughs[0] > 0) & (roughs[1] < 0)
+    kappas = undecided.conditions(osc, states, in_doubles, roughs[0], roughs[1])
     for index in range(size):
-        proved = _proof(osc, states, index, digits, allowance.horizon, known, roughs)
+        proved = _proof(osc, states, index, digits, allowance.horizon, known, (*roughs[:2], kappas[1]))
         certified[index] = proved.impact
         if proved.reason:
             reasons[index] = proved.reason
@@ -64,7 +66,10 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     notes = dict(undecided.notes_of(osc, states, fates))
     for index, reason in reasons.items():
         notes[index] = f"{notes[index]}; not certified: {reason}" if index in notes else f"not certified: {reason}"
-    kappas = undecided.conditions(osc, states, fates.status == Status.hit, rows[0], rows[1])
+    new = (fates.status == Status.hit) & ~in_doubles
+    if new.any():
+        kappas = np.where(new, undecided.conditions(osc, states, new, rows[0], rows[1]), kappas)
+    kappas = np.where(fates.status == Status.hit, kappas, np.nan)
     error = np.where(fates.status == Status.hit, 10.0 ** -min(digits, 300), np.nan)
     time, velocity, depth, bound = fields
     return Flight.made(flight_time=time, velocity=velocity, status=fates.status, depth=depth, bound=bound,
@@ -74,12 +79,12 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
 
 def _proof(
     osc: Oscillator, states: States, index: int, digits: int, horizon: float,
-    known: dict[int, tuple[int, Array, int]], roughs: Array,
+    known: dict[int, tuple[int, Array, int]], roughs: tuple[Array, Array, Array],
 ) -> Proof:  # fmt: skip
     """What balls prove of a flight; of one that is proved in doubles never to return, nothing is left to prove."""
     if index in known and known[index][0] == Status.escaped:
         return Proof(None, None, None, "there is no hit: the flight is proved never to return")
-    rough = None if index in known else (float(roughs[0, index]), float(roughs[1, index]))
+    rough = None if index in known else (float(roughs[0][index]), float(roughs[2][index]))
     return proof(osc, states, index, digits, horizon, rough)
 
 

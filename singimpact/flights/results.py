@@ -32,7 +32,7 @@ class CertifiedImpact:
     >>> from singimpact.oscillator.model import Oscillator
     >>> step = impact_map(Oscillator("sin(x)", "-2 + cos(t)", 0, "1/2"), 1, 3, digits=20)
     >>> print(step.certified.v)
-    1.5058411474462108556
+    1.7977594605181043134
     """
 
     flight_time: Certified

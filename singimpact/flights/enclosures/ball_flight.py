@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple, Protocol
 
 from singimpact.flights.enclosures.equation import NoHit, Refused, TooLong
-from singimpact.flights.enclosures.first_root import RootAtEnd, first_root
+from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
 from singimpact.flights.enclosures.tube import Tube, centre, divided
 
 SHORTER = 0.93  # of a step at whose end the root may lie
@@ -58,6 +58,9 @@ def first_hit(motion: Motion, horizon: Any, steps: int) -> BallHit:
                 break
             except RootAtEnd:
                 length = centre(length * SHORTER)
+            except NearGraze as graze:
+                after = float((motion.time + graze.at).mid())
+                raise Refused(f"x - c and x' both vanish {after:.6g} after the launch, as far as balls tell") from None
         if root is not None:
             rate = inner[1](root)
             velocity = slope(root)

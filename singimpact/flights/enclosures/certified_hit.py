@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import ceil, log2
+from math import ceil, floor, log2
 from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
@@ -29,6 +29,7 @@ class EnclosureSettings:
     more, most : where a flight is refused, so many times the bits are tried next; and at most, with `room` beside.
     coarse : bits of the steps of a set, the derivative over which needs no more; they grow with a refusal.
     long : steps from which a point is carried in a frame, where its ball has grown.
+    singular : how often more bits are tried next to a singularity, which a flight may pass or meet.
     lost, wrapped : bits that the ball of a point loses in a unit of time; flights longer than `wrapped` are carried in
         a frame from the start, whose steps take twice the time.
     steps, idle_steps : of a flight at most; and of one that doubles do not bring back.
@@ -43,6 +44,7 @@ class EnclosureSettings:
     long: int = 16
     lost: float = 1.2
     wrapped: float = 20.0
+    singular: int = 1
     steps: int = 6000
     idle_steps: int = 500
 
@@ -105,15 +107,18 @@ def certified_hit(
     >>> osc = Oscillator("x + sin(x)/2", "cos(1.7*t)", "0.3", "0.6")
     >>> hit = certified_hit(osc, Launch(constant("tau", "1.4"), constant("v", "0.6")), 30, Fraction(60))
     >>> print(hit.flight_time.str(30, radius=False))
-    0.894826349366120120127938826990
+    0.812373962444622784781243163410
     """
     wanted = ceil(digits * BITS_A_DIGIT)
     bits, coarse = wanted + ENCLOSURE.spare, ENCLOSURE.coarse
     most = ENCLOSURE.most * bits + ENCLOSURE.room
     bits = min(bits + _spare(*expected), most)
-    if expected[0] > ENCLOSURE.wrapped:
-        framed, coarse = True, bits if derivative else coarse
     box = framed = any(launch.radii.values())
+    if box:
+        coarse = max(coarse, min(bits, ENCLOSURE.guard - floor(log2(max(launch.radii.values())))))
+    elif expected[0] > ENCLOSURE.wrapped:
+        framed, coarse = True, bits if derivative else coarse
+    singular = 0
     while True:
         begun = None
         try:
@@ -125,18 +130,21 @@ def certified_hit(
                 if lack <= 0:
                     return found
                 why, more, flown = f"{lack} bits of the result are lacking", lack + 6, hit.steps
-        except (NoHit, NotAnalytic, TooLong):
+        except (NoHit, TooLong):
             raise
         except Refused as reason:
-            if box and coarse >= bits:
+            singular += isinstance(reason, NotAnalytic)
+            if (box and coarse >= bits) or singular > ENCLOSURE.singular:
                 raise
             why, more = str(reason), int(bits * (ENCLOSURE.more - 1))
+            coarse = min(2 * coarse, bits)
             flown = 0 if begun is None else begun.flown
         if bits >= most:
             raise Refused(f"{why} (at {bits} bits)")
         bits = min(bits + more, most)
         framed = framed or flown > ENCLOSURE.long
-        coarse = bits if derivative else min(bits, 2 * coarse) if framed else coarse
+        if derivative and not box:
+            coarse = bits
 
 
 def _spare(time: float, condition: float) -> int:
@@ -171,7 +179,16 @@ def _motion(
     if not v > 0 and launch.removed == 1:
         raise Refused("the launch velocity is not shown positive")
     assert isinstance(v, flint.arb)
-    return FramedMotion(own, wide, tau, v, bits, min(coarse, bits), deviations, launch.removed)
+    return FramedMotion(
+        own,
+        wide,
+        tau,
+        v,
+        bits,
+        min(coarse, bits),
+        deviations if derivative or any(launch.radii.values()) else None,
+        launch.removed,
+    )
 
 
 def _number(osc: Oscillator, name: str) -> Expression:

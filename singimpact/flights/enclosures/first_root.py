@@ -29,6 +29,14 @@ class RootSettings:
 ROOT = RootSettings()
 
 
+class NearGraze(Refused):
+    """Value and slope both meet 0 at a time."""
+
+    def __init__(self, at: Any) -> None:
+        super().__init__("value and slope both meet 0")
+        self.at = at
+
+
 class RootAtEnd(Exception):
     """The sign at the end of the step is open: the root may lie there."""
 
@@ -38,7 +46,7 @@ def first_root(value: Tube, slope: Tube, length: Any, bits: int) -> Any | None:
 
     Raises
     ------
-    Refused : a piece of length 2^(-2 bits/3) is not decided. RootAtEnd : take a shorter step.
+    NearGraze : a piece of length 2^(-2 bits/3) is not decided. RootAtEnd : take a shorter step.
 
     Notes
     -----
@@ -64,15 +72,15 @@ def first_root(value: Tube, slope: Tube, length: Any, bits: int) -> Any | None:
             if not stack:
                 raise RootAtEnd
             if b - a < least:
-                raise _graze(a)
+                raise NearGraze(a)
             _, after = stack.pop()
             b = centre(b + (after - b) * ROOT.apart)
             stack += [(b, after), (a, b)]
             continue
         if b - a < least:
-            raise _graze(a)
+            raise NearGraze(a)
         stack += [(middle, b), (a, middle)]
-    raise Refused(f"the first root is not isolated in {ROOT.pieces} pieces")
+    raise NearGraze(a)
 
 
 def narrowed(piece: Any, value: Tube, slope: Tube) -> Any:
@@ -87,7 +95,3 @@ def narrowed(piece: Any, value: Tube, slope: Tube) -> Any:
             return smaller
         piece = smaller
     return piece
-
-
-def _graze(at: Any) -> Refused:
-    return Refused(f"x - c and x' both vanish at {float(at.mid()):.6g} of a step, as far as these bits tell")

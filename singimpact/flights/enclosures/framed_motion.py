@@ -29,12 +29,13 @@ class FramedMotion:
     ----------
     centre_equation, equation : the model with the centres of its numbers, and with the balls.
     tau, v : the launch, balls. bits : of the centre's steps. coarse : of the steps of the set.
-    deviations : name -> ball round 0, of the names of the equation.
+    deviations : name -> ball round 0, of the names of the equation; None for a point without derivatives. removed : 1,
+        or the power of t in z from rest, of a point alone: next to a zero of a_c are launches of another kind.
     """
 
     def __init__(
         self, centre_equation: Equation, equation: Equation, tau: Any, v: Any, bits: int, coarse: int,
-        deviations: Mapping[str, Any], removed: int = 1,
+        deviations: Mapping[str, Any] | None, removed: int = 1,
     ) -> None:  # fmt: skip
         from flint import arb
 
@@ -42,19 +43,18 @@ class FramedMotion:
         self.step: Step | None = None
         self.wide: Step | None = None
         self.removed, self.time, self.flown = removed, arb(0), 0
-        # from rest the launch is at a zero of a_c, and at no other time in the ball of it
-        self.tau, self.middle_tau = tau, tau if removed > 1 else centre(tau)
+        self.tau, self.middle_tau = tau, tau
         self.middle: Pair = arb(0), centre(v)
-        self.drives = [0, -1, *range(1, len(equation.names) + 1)]
-        self.D = [
-            arb(0) if removed > 1 else tau - self.middle_tau,
-            v - self.middle[1],
-            *(deviations[name] for name in equation.names),
-        ]
+        self.drives: list[int] = []
+        self.D: list[Any] = []
+        self.turn: Pair = arb(1), arb(0)  # Q = ((a, -b), (b, a))
+        self.box: Pair = arb(0), v - self.middle[1]
+        if deviations is not None:
+            self.middle_tau, self.box = centre(tau), (arb(0), arb(0))
+            self.drives = [0, -1, *range(1, len(equation.names) + 1)]
+            self.D = [tau - self.middle_tau, v - self.middle[1], *(deviations[name] for name in equation.names)]
         self.full: list[Pair] = [(arb(0), arb(int(drive == -1))) for drive in self.drives]
         self.C: list[Pair] = list(self.full)
-        self.turn: Pair = arb(1), arb(0)  # Q = ((a, -b), (b, a))
-        self.box: Pair = arb(0), arb(0)
 
     @property
     def launched(self) -> bool:
@@ -175,7 +175,7 @@ class FramedMotion:
         off = [self._hit_by(by_state, (a * p - b * q, b * p + a * q), None)]
         off += [tuple(part * size for part in self._hit_by(by_state, each, by_drive.get(d)))
                 for each, d, size in zip(self.C, self.drives, self.D, strict=True)]  # fmt: skip
-        later, faster = sum(each[0] for each in off), sum(each[1] for each in off)
+        later, faster = sum((each[0] for each in off), root * 0), sum((each[1] for each in off), root * 0)
         return self.time + root.intersection(own + later), velocity.intersection(own_velocity + faster)
 
 

@@ -35,7 +35,8 @@ class StepSettings:
     disc_bits : of the bounds; they are rounded outwards, and their digits do not matter.
     widest : radius of a disc at most, and at first where the last coefficients vanish.
     first : radius of the first disc, over the radius of convergence that the last coefficients suggest.
-    shrink, grow : factor of the next disc, and of the first one over that of the last step. discs, boxes : tried at most.
+    shrink, grow : factor of the next disc, and of the first one over that of the last step.
+    discs, boxes : tried at most.
     part : of the disc's radius that a step takes at most.
     """
 
@@ -197,7 +198,7 @@ def _widest_disc(
 
     n = len(X) - 1
     size = upper(X[1]) + upper(X[2]) / 8 + upper(X[3]) / 64
-    rates = [float(upper(X[k]) / size) ** (1 / k) for k in (n - 2, n - 1, n) if size > 0]
+    rates = [_root(upper(X[k]) / size, k) for k in (n - 2, n - 1, n)] if size > 0 else []
     R = min(STEP.first / max(rates), STEP.widest) if max(rates, default=0) > 0 else STEP.widest
     if last is not None:
         R = min(R, STEP.grow * float(last.radius))
@@ -206,7 +207,7 @@ def _widest_disc(
         bounds = _defects(equation, t, X, psi, drives, sums, arb(R))
         if bounds is not None:
             ratio = size * n / (bounds[0] * R + size * arb(2) ** -900)
-            length = R * min(2.0 ** (-bits / n) * float(ratio) ** (1 / n), STEP.part)
+            length = R * min(2.0 ** (-bits / n) * _root(ratio, n), STEP.part)
             if best is not None and length < best[0] * 1.01:
                 break
             best = length, R, bounds
@@ -214,6 +215,11 @@ def _widest_disc(
     if best is None or not best[0] > 0:
         raise NotAnalytic("f or g is analytic on no disc round the flight that was tried")
     return arb(best[0]), arb(best[1]), best[2]
+
+
+def _root(value: Any, order: int) -> float:
+    """About the k-th root of a ball, which itself may be out of the range of doubles."""
+    return float((value.log() / order).exp()) if value > 0 else 0.0
 
 
 def _defects(
