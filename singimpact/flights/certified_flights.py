@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from math import ceil, inf
 from typing import Any, NamedTuple
@@ -58,7 +59,7 @@ def proof(
         return Proof(None, None, None, "the mass is at rest and does not leave the wall")
     removed = rest.order + 2 if standing and rest is not None else 1
     if linear_form(osc) is not None and (found := _closed_form(osc, states, index, digits, horizon)) is not None:
-        return found
+        return _named(found, osc, states, index)
     try:
         hit = certified_hit(
             osc, Launch(states.exact_tau(index), states.exact_v(index), removed), digits, Fraction(horizon),
@@ -68,7 +69,15 @@ def proof(
         return Proof(None, None, None, f"proved: {none}", missed=True)
     except (Refused, ArithmeticError, ValueError, TypeError) as reason:  # a ball that left the domain of a function
         return Proof(None, None, None, str(reason) or type(reason).__name__)
-    return _with_numbers((hit.flight_time, hit.velocity, hit.tau, hit.v), digits)
+    return _named(_with_numbers((hit.flight_time, hit.velocity, hit.tau, hit.v), digits), osc, states, index)
+
+
+def _named(found: Proof, osc: Oscillator, states: States, index: int) -> Proof:
+    """With the model and the launch, which a certificate names."""
+    if found.impact is None:
+        return found
+    launch = (states.exact_tau(index), states.exact_v(index))
+    return found._replace(impact=replace(found.impact, oscillator=osc, launch=launch))
 
 
 def _expected(rough: tuple[float, float] | None) -> tuple[float, float]:
@@ -83,7 +92,8 @@ def _with_numbers(balls: tuple[Any, Any, Any, Any], digits: int) -> Proof:
     time, velocity, _, v = balls
     if not v > 0:
         return Proof(time, velocity, None, "the velocity after the impact is not shown positive")
-    return Proof(time, velocity, CertifiedImpact(*(from_ball(each, digits) for each in balls)))
+    flight_time, speed, tau, after = (from_ball(each, digits) for each in balls)
+    return Proof(time, velocity, CertifiedImpact(flight_time, speed, tau, after))
 
 
 def _closed_form(osc: Oscillator, states: States, index: int, digits: int, horizon: float) -> Proof | None:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from singimpact.algebra.certified import Certified
+from singimpact.algebra.expressions import Expression
 from singimpact.notebook import table
+from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words, value_in_words
 
@@ -25,6 +27,7 @@ class CertifiedImpact:
     Attributes
     ----------
     flight_time, velocity, tau, v : `Certified`, each with `.value` and `.radius`.
+    oscillator, launch : the model, and the exact launch time and velocity.
 
     Examples
     --------
@@ -35,20 +38,23 @@ class CertifiedImpact:
     1.7977594605181043134
     """
 
+    NUMBERS: ClassVar[tuple[str, ...]] = ("flight_time", "velocity", "tau", "v")
     flight_time: Certified
     velocity: Certified
     tau: Certified
     v: Certified
+    oscillator: Oscillator | None = field(default=None, repr=False)
+    launch: tuple[Expression, ...] = field(default=(), repr=False)
 
     @property
     def value(self) -> dict[str, Any]:
         """The four values by name."""
-        return {each.name: getattr(self, each.name).value for each in fields(self)}
+        return {name: getattr(self, name).value for name in self.NUMBERS}
 
     @property
     def radius(self) -> dict[str, Any]:
         """The four radii by name."""
-        return {each.name: getattr(self, each.name).radius for each in fields(self)}
+        return {name: getattr(self, name).radius for name in self.NUMBERS}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
