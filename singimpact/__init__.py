@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from singimpact.branches.manifold import manifold as manifold
     from singimpact.branches.transitions import transitions as transitions
     from singimpact.cases import sweep as sweep
+    from singimpact.certificates.certificate import certify as certify
+    from singimpact.certificates.certificate import read_certificate as read_certificate
     from singimpact.contact.points import tangency_points as tangency_points
     from singimpact.dynamics.lyapunov import lyapunov as lyapunov
     from singimpact.dynamics.threshold import threshold as threshold
@@ -66,6 +68,8 @@ _HOMES = {
     "shaken_wall": "singimpact.impact_oscillator",
     "swan_points": "singimpact.studies",
     "sweep": "singimpact.cases",
+    "certify": "singimpact.certificates.certificate",
+    "read_certificate": "singimpact.certificates.certificate",
     "basins": "singimpact.studies",
     "bifurcation": "singimpact.studies",
     "classify": "singimpact.studies",

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbits
     from singimpact.dynamics.chatter import ChatterLimit
     from singimpact.dynamics.orbit import Orbit
+    from singimpact.flights.enclosed_impact import EnclosedImpact
     from singimpact.flights.off_wall import Launched
     from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.path import Path
@@ -91,6 +92,31 @@ class ImpactOscillator(Oscillator):
         from singimpact.flights.impact_map import impact_map
 
         return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+
+    def enclosed_impact(
+        self, tau: Any, v: Any, *, radii: Mapping[str, Any] | None = None, digits: int = 30, horizon: Any = None
+    ) -> EnclosedImpact:
+        """The next impact of all states, and of all numbers of the model, within `radii` of given ones: proved.
+
+        Parameters
+        ----------
+        tau, v : the centre of the box, v > 0. radii : name -> radius of "tau", "v", "clearance", "restitution" or a
+            parameter. digits : of a point, or of the centre. horizon : as for `first_hit`.
+
+        Returns
+        -------
+        EnclosedImpact : `.flight_time`, `.velocity`, `.tau`, `.v` and `.derivative` (D G, then columns by the numbers
+            of the model), each with `.value` and `.radius`; `.status` and `.note`.
+
+        Examples
+        --------
+        >>> duffing = ImpactOscillator("x + x**3", "cos(1.7*t)", "0.3", "0.6")
+        >>> duffing.enclosed_impact("1.4", "0.6", radii={"tau": "1e-9", "v": "1e-9"}, digits=15).v
+        Certified(0.361541072319587 +- 6.7e-10)
+        """
+        from singimpact.flights.enclosed_impact import enclosed_impact
+
+        return enclosed_impact(self, tau, v, radii=radii, digits=digits, horizon=horizon)
 
     def flight(self, tau: Any, v: Any, t: Any) -> Path:
         """x and x' along one flight, continued behind the wall.
@@ -190,7 +216,8 @@ class ImpactOscillator(Oscillator):
 
         Parameters
         ----------
-        tau, v : states, v >= 0; they broadcast. digits : decimal digits of the time, certified for linear models.
+        tau, v : states, v >= 0; they broadcast. digits : decimal digits of the time, certified where
+            the restitution is a number.
         impacts : at most; the status is then `unresolved`.
 
         Returns

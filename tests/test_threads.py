@@ -275,12 +275,12 @@ def test_numbers_belong_to_the_context_of_the_user():
 
 
 def test_precisions_are_put_back_when_a_call_raises(monkeypatch):
-    from singimpact.flights import multiprecision
+    from singimpact.flights.enclosures import taylor_step
 
     def raises(*_):
         raise RuntimeError("in the middle")
 
-    monkeypatch.setattr(multiprecision, "_march", raises)
+    monkeypatch.setattr(taylor_step, "_widest_disc", raises)
     before = mpmath.mp.prec, flint.ctx.prec, precision._own_context().prec
     with pytest.raises(RuntimeError):
         CUBIC.impact_map("1.2", "0.1", digits=33)

@@ -6,11 +6,12 @@ sympy), `balls` (enclosures), `precision` (the
 one place that sets one), `certified` (a number with its radius), `symbols` (polynomials in symbols as numbers),
 `long_sums` (these as sympy objects).
 Trees: `expressions` (evaluated over a ring, so one tree serves all kinds of number), `parsing` (a user's text into a
-tree), `derivatives` (of a tree by a name), `taylor` (elementary functions at a point).
+tree), `derivatives` (of a tree by a name), `analytic` (trees with their derivatives as programs over balls, nan beside
+a branch cut), `taylor` (elementary functions at a point).
 Jets: `jets`, `polynomials` (what they are made of), `jet_maps` (inverses,
 implicit functions, blow-ups), `univariate` (one variable, level by level), `interpolation`, `horner` (on arrays).
 Zeros: `solving` (halving, secants, Newton in balls), `roots` (of polynomials), `zeros` (of functions, by balls),
-`double_zeros` (of functions with a parameter).
+`isolated_zeros` (of systems, all in a box), `double_zeros` (of functions with a parameter).
 Proofs: `certificates` (made), `checking` (believed only once checked), `plain` (polynomials of the checker),
 `sentences` (what a certificate says).
 """

@@ -70,11 +70,25 @@ def as_certified(ball: Any, digits: int) -> Certified | None:
     """
     if not ball.is_finite():
         return None
+    found = from_ball(ball, digits)
     with bits_at(64) as mp:
-        value, radius = _exact(ball.mid(), mp), _exact(ball.rad(), mp)
+        value, radius = mp.convert(found.value), mp.convert(found.radius)
         small = mp.mpf(10) ** -digits
         narrow = 2 * radius <= small * abs(value) or abs(value) + radius <= small**2
-    return Certified(for_user(value), for_user(radius), digits) if narrow else None
+    return found if narrow else None
+
+
+def from_ball(ball: Any, digits: int) -> Certified:
+    """A finite ball as a certified number, however wide; `digits` are those that it prints.
+
+    Examples
+    --------
+    >>> import flint
+    >>> from_ball(flint.arb("1.5", "0.25"), 3)
+    Certified(1.50 +- 0.25)
+    """
+    with bits_at(64) as mp:
+        return Certified(for_user(_exact(ball.mid(), mp)), for_user(_exact(ball.rad(), mp)), digits)
 
 
 def from_ends(low: Fraction, high: Fraction, digits: int) -> Certified:

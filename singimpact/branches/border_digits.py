@@ -26,6 +26,7 @@ from singimpact.contact.next_zero import ContactZero, next_zero
 from singimpact.dynamics.enclosed import enclosable, end_of_gamma, searched, side
 from singimpact.flights.balls import LinearFlow
 from singimpact.flights.impact_map import impact_map
+from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
@@ -92,7 +93,7 @@ class DigitOrbits:
         model = self.found.releases.model(value)
         with balls_at(self.bits):
             start, end = self._zeros(model)
-            fly = self._in_balls if enclosable(model) else self._in_digits
+            fly = self._in_balls if _closed(model) else self._in_digits
             return fly(model, start, end.moved(self.bits), count)
 
     def missed(self, impacts: int, value: Fraction) -> Any | None:
@@ -185,7 +186,7 @@ def in_digits(found: Return, scale: float, digits: int) -> InDigits | None:
 def _proved(found: Return, near: Fraction, digits: int) -> tuple[Certified | None, str]:
     """A ball about a value in which a border orbit is proved to be, or why there is none."""
     model = found.releases.model(near)
-    if not enclosable(model):
+    if not _closed(model):
         return None, "not certified: balls fly linear models with a number for restitution"
     margin = abs(near) / (4 * 10**digits)
     low, high = near - margin, near + margin
@@ -206,6 +207,11 @@ def _proved(found: Return, near: Fraction, digits: int) -> tuple[Certified | Non
     if (sides[low], sides[high]) != (found.side, -found.side):
         return None, "not certified: the orbits on both sides of it have one fate"
     return from_ends(low, high, digits), ""
+
+
+def _closed(model: Oscillator) -> bool:
+    """Whether a model flies in balls over a number of its own: in closed form."""
+    return linear_form(model) is not None and enclosable(model)
 
 
 def _flow(found: Return, ends: tuple[Fraction, Fraction], bits: int) -> LinearFlow:

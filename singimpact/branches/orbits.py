@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
+from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
+
+if TYPE_CHECKING:
+    from singimpact.branches.enclosed_orbit import EnclosedOrbit
 
 Array = np.ndarray[Any, Any]
 
@@ -51,6 +55,30 @@ class PeriodicOrbit:
     def stable(self) -> bool:
         """Whether both multipliers are below 1 in size."""
         return bool(np.all([abs(complex(each)) < 1 for each in self.multipliers]))
+
+    def certified(self, digits: int = 30) -> EnclosedOrbit:
+        """The orbit, proved to exist and to be the only one in a box, with its multipliers.
+
+        Raises
+        ------
+        InputError : an orbit of chatter or without impact, or one that is not proved, with the reason.
+
+        Examples
+        --------
+        >>> from singimpact.branches.periodic import periodic
+        >>> from singimpact.oscillator.model import Oscillator
+        >>> (orbit,) = periodic(Oscillator("x + x**3/10", "cos(4*t)", 0, "0.5"), 1, 2)
+        >>> print(orbit.certified(20).v[0], orbit.certified(20).stable)
+        0.49688337696307019866 True
+        """
+        from singimpact.branches.enclosed_orbit import enclosed_orbit
+
+        if self.kind != "impacts":
+            raise InputError(f"{self!r} is not accepted: an orbit with impacts, none of which rests, can be certified")
+        found = enclosed_orbit(self.oscillator, self.tau, self.v, self.k, digits)
+        if isinstance(found, str):
+            raise InputError(f"{self!r} is not certified: {found}")
+        return found
 
     def __repr__(self) -> str:
         words = {"chatter": f"(inf, {self.k}) orbit: chatter and rest", "free": "orbit without impact"}.get(

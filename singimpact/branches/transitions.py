@@ -118,6 +118,7 @@ class OrbitTransitions(Transitions):
         self, found: Transitions, moved: tuple[Oscillator, str, tuple[float, float]], intervals: tuple[Interval, ...],
         branches: tuple[Branch, ...], orbit_notes: tuple[str, ...],
     ) -> None:  # fmt: skip
+        self._proof = found._proof
         self.notes, (self.oscillator, self.over, self.ends) = found.notes, moved
         self.intervals, self.branches, self.orbit_notes = intervals, branches, orbit_notes
 
@@ -197,7 +198,7 @@ def transitions(
     Returns
     -------
     Transitions : a tuple in order of the number, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` says whether it
-        is proved that no swan is missing, `.notes` why one may be. With `orbits` an `OrbitTransitions`: `.intervals`
+        is proved that none is missing, `.doubts` why one may be. With `orbits` an `OrbitTransitions`: `.intervals`
         between transitions, with the orbits in the middle of each and `.changes`: grazes, hidden impacts, folds, period
         doublings and tori at their own values. Its `.both_sides(index)` is drawn by `si.plot`.
 

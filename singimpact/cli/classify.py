@@ -99,7 +99,7 @@ def _told(found: Classification, over: str | None, changes: Transitions | None) 
     }  # fmt: skip
     if changes is not None:
         listed = [{"kind": c.kind, "value": c.value, "tau": c.tau, "t": c.t} for c in changes]
-        told["transitions"] = {"over": over, "found": listed, "swans_complete": changes.complete,
+        told["transitions"] = {"over": over, "found": listed, "swans_complete": changes.swans_complete,
                                "notes": changes.notes}  # fmt: skip
         if _with_orbits(changes):
             told["transitions"] |= {"intervals": [_interval(each) for each in changes.intervals],
@@ -121,7 +121,7 @@ def _text(found: Classification, over: str | None, changes: Transitions | None) 
         tables.append(_table(f"where P changes as {over} moves", ["kind", str(over), "tau", "t"], rows, changes.notes))
         if _with_orbits(changes):
             tables.append(f"periodic orbits:\n{changes!r}")
-        if changes.complete:
+        if changes.swans_complete:
             tables.append("no swan between these ends is missing (by interval bounds)")
     low, high = _numbers(*found.tau), _numbers(*found.t)
     return "\n\n".join([f"window: tau from {' to '.join(low)}, t from {' to '.join(high)}", *tables])

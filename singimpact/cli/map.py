@@ -38,7 +38,11 @@ def command(
     )
     rows = [_row(step, at, digits) for at in range(len(states))]
     if as_json:
-        emit(as_json_text({"model": oscillator.to_dict(), "steps": _told(states, rows)}), output)
+        told = _told(states, rows)
+        if digits is not None:
+            for at, each in enumerate(told):
+                each |= _certified(step, at)
+        emit(as_json_text({"model": oscillator.to_dict(), "steps": told}), output)
     else:
         emit(_table(states, rows), output)
 
@@ -61,6 +65,15 @@ def _row(step: Any, at: int, digits: int | None) -> list[Any]:
     else:
         numbers = [float(number) for number in numbers]
     return [*numbers, Status(int(step.status[at]))]
+
+
+def _certified(step: Any, at: int) -> dict[str, Any]:
+    """Values and radii of what is proved, or null and why not."""
+    found = step.certified[at]
+    if found is None:
+        return {"certified": None, "note": step.notes.get(at, "")}
+    names = ("flight_time", "velocity", "tau", "v")
+    return {"certified": {name: getattr(found, name).as_dict() for name in names}}
 
 
 def _told(states: list[tuple[str, str]], rows: list[list[Any]]) -> list[dict[str, Any]]:

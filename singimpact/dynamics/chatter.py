@@ -67,7 +67,8 @@ class ChatterLimit:
     impacts : flown before the series gave the rest.
     error : estimate of the error of tau, rounding of the given state included.
     status : `complete`, `lifts_off`, or the status of a flight that ended the sequence.
-    certified : tau with a proved radius, when digits were asked for and the model is linear; else None.
+    certified : tau with a proved radius, when digits were asked for and the restitution is a number; else
+        None.
     cause : int8, see `singimpact.status.Cause`: why the status is `unresolved`.
     """
 
@@ -110,7 +111,7 @@ def chatter_limit(
 
     Notes
     -----
-    With digits, tau of a linear model with a number for restitution is enclosed (`dynamics.enclosed`): `certified` has
+    With digits, tau of a model with a number for restitution is enclosed (`dynamics.enclosed`): `certified` has
     value and radius, and `error` covers them.  For other models `error` is an estimate from the last terms.
 
     Examples

@@ -1,4 +1,4 @@
-"""Chatter limits and thresholds of linear models, enclosed: flights in balls, and the rest of a chatter between bounds.
+"""Chatter limits and thresholds, enclosed: flights in balls, and the rest of a chatter between bounds.
 
 While a_c stays between -A and -a on what is left of a chatter and q = A/a (both enlarged for damping and height), each
 flight takes between 2v/A and 2v/a and returns between v/q and q v.  So the rest lies between 2v/(A (1 - r/q)) and
@@ -22,6 +22,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.contact.next_zero import ContactZero
 from singimpact.dynamics.guide import guided, newton, spread
 from singimpact.flights.balls import LinearFlow
+from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.flights.states import States
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
@@ -30,6 +31,7 @@ from singimpact.theory.formulas import curve_at
 from singimpact.theory.invariant_curve import multiplier_across
 
 Found = TypeVar("Found")
+Flow = LinearFlow | AnalyticFlow
 
 
 @dataclass(frozen=True)
@@ -56,18 +58,23 @@ ORBITS = BallOrbits()
 
 
 def enclosable(osc: Oscillator) -> bool:
-    """Whether orbits of a model can be flown in balls: it is linear, and its restitution is a number below 1."""
-    return linear_form(osc) is not None and not names_in(osc.restitution) and as_float(osc.restitution) < 1
+    """Whether orbits of a model can be flown in balls: its restitution is a number below 1."""
+    return not names_in(osc.restitution) and as_float(osc.restitution) < 1
+
+
+def flow_of(osc: Oscillator, bits: int) -> Flow:
+    """The flights of a model in balls at the precision that is set: a closed form, or enclosures."""
+    return AnalyticFlow(osc, bits) if linear_form(osc) is None else LinearFlow(osc, bits)
 
 
 def with_more_bits(
-    attempt: Callable[[LinearFlow], Found | None], osc: Oscillator, digits: int, expected: int = 0
+    attempt: Callable[[Flow], Found | None], osc: Oscillator, digits: int, expected: int = 0
 ) -> Found | None:
     """attempt(flow) at growing precision, from that which is expected to be enough, until it decides."""
     bits = max(ceil(digits * 3.33), expected) + ORBITS.spare
     while bits <= ORBITS.bits * (digits + 32):
         with balls_at(bits):
-            found = attempt(LinearFlow(osc, bits))
+            found = attempt(flow_of(osc, bits))
         if found is not None:
             return found
         bits *= 2
@@ -104,7 +111,7 @@ def chatter_limit(osc: Oscillator, states: States, digits: int) -> EnclosedLimit
     return with_more_bits(lambda flow: _chatter(flow, tau, v, removed, digits), osc, digits)
 
 
-def _chatter(flow: LinearFlow, tau: Expression, v: Expression, removed: int, digits: int) -> EnclosedLimit | None:
+def _chatter(flow: Flow, tau: Expression, v: Expression, removed: int, digits: int) -> EnclosedLimit | None:
     time, speed = (evaluate(tree, {}, flow.balls) for tree in (tau, v))
     for count in range(ORBITS.impacts):
         a = flow.acceleration(time)
@@ -126,17 +133,15 @@ def _chatter(flow: LinearFlow, tau: Expression, v: Expression, removed: int, dig
     return None
 
 
-def remaining(flow: LinearFlow, tau: Any, v: Any) -> Any | None:
+def remaining(flow: Flow, tau: Any, v: Any) -> Any | None:
     """A ball that contains what is left of a chatter from (tau, v); None when the bounds do not close.
 
     The bounds hold on a window; they close when what is left, by these bounds, fits into the window.
     """
     lost = 1 - flow.r
     window = (ORBITS.wide * 2 * v / (abs(flow.acceleration(tau)) * lost)).upper()
-    pressing = -flow.acceleration(tau.union(tau + window))
     # |x-dot| <= 2v and 0 <= x - c <= v window on the way, which q < 2 below confirms
-    off = (abs(flow.d) * 2 * v + abs(flow.k) * v * window).upper()
-    low, high = pressing.lower() - off, pressing.upper() + off
+    low, high = flow.pressing(tau, window, v)
     if not low > 0:
         return None
     q = high / low
@@ -159,7 +164,7 @@ def threshold(osc: Oscillator, tau: Expression, rough: Any, end: ContactZero, di
     if guide is not None:
         bits = ceil(digits * 3.33) + ORBITS.spare
         with balls_at(bits):
-            flow = LinearFlow(osc, bits)
+            flow = flow_of(osc, bits)
             near = newton(flow, tau, float(rough), guide, digits)
             lost = 0 if near is None else spread(flow, tau, near, guide, digits)
     if near is None:
@@ -169,7 +174,7 @@ def threshold(osc: Oscillator, tau: Expression, rough: Any, end: ContactZero, di
     margin = abs(near) / (4 * 10**digits)
 
     def side_of(v: Fraction) -> int | None:
-        def attempt(flow: LinearFlow) -> int | None:
+        def attempt(flow: Flow) -> int | None:
             return side(flow, end.moved(flow.balls.bits), evaluate(tau, {}, flow.balls), flow.number(v))
 
         return with_more_bits(attempt, osc, digits, lost)
@@ -197,7 +202,7 @@ def end_of_gamma(osc: Oscillator, end: ContactZero, bits: int) -> tuple[Any, Any
 class _Gamma:
     """gamma near its end, v = sigma^(j+1) (first + second sigma) + ..., and the flights that follow it, in balls."""
 
-    def __init__(self, osc: Oscillator, flow: LinearFlow, end: ContactZero) -> None:
+    def __init__(self, osc: Oscillator, flow: Flow, end: ContactZero) -> None:
         self.flow, self.order, self.end = flow, end.order, end.moved(flow.balls.bits)
         self.first, self.second, self.rate = end_of_gamma(osc, end, flow.balls.bits)
 
@@ -263,7 +268,7 @@ def _secant(
     return other
 
 
-def side(flow: LinearFlow, end: Any, time: Any, speed: Any) -> int | None:
+def side(flow: Flow, end: Any, time: Any, speed: Any) -> int | None:
     """-1 when chatter from a state completes before the end of gamma, 1 when a flight passes it, None undecided.
 
     Parameters
@@ -285,7 +290,7 @@ def side(flow: LinearFlow, end: Any, time: Any, speed: Any) -> int | None:
     return None
 
 
-def _left_before(flow: LinearFlow, time: Any, speed: Any, end: Any) -> Any | None:
+def _left_before(flow: Flow, time: Any, speed: Any, end: Any) -> Any | None:
     """`remaining`, where its window lies before a zero of a_c: next to gamma it does not, and no bounds close."""
     a = flow.acceleration(time)
     if not (a < 0 and ORBITS.wide * 2 * speed < -a * (1 - flow.r) * (end - time)):

@@ -1,4 +1,4 @@
-"""A velocity near gamma of a linear model in many digits: its orbit is flown to where the series of gamma is as good.
+"""A velocity near gamma in many digits: its orbit is flown to where the series of gamma is as good.
 
 Each impact multiplies the relative distance from gamma, and takes the orbit nearer to the end of gamma: some thirty
 flights give thirty digits.  Doubles say beforehand how many, and with which slope the miss answers to the velocity.
@@ -18,6 +18,7 @@ from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.next_zero import ContactZero
 from singimpact.flights.balls import LinearFlow
+from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.flights.orbits import orbit_segment
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory.contact_points import Place
@@ -109,7 +110,7 @@ def guided(osc: Oscillator, tau: Expression, v: float, end: ContactZero, digits:
     return Guide(series, j, end.moved(bits), *chosen, growth)
 
 
-def spread(flow: LinearFlow, tau: Expression, v: Fraction, guide: Guide, digits: int) -> int:
+def spread(flow: LinearFlow | AnalyticFlow, tau: Expression, v: Fraction, guide: Guide, digits: int) -> int:
     """Bits that balls lose on the way of an orbit which leaves gamma, a velocity apart from it by the last digit."""
     time, speed, widths = evaluate(tau, {}, flow.balls), flow.number(v), []
     for _ in range(guide.impacts):
@@ -125,7 +126,9 @@ def spread(flow: LinearFlow, tau: Expression, v: Fraction, guide: Guide, digits:
     return ceil((digits + 1) * log2(10) / guide.growth * by_impact)
 
 
-def newton(flow: LinearFlow, tau: Expression, rough: float, guide: Guide, digits: int) -> Fraction | None:
+def newton(
+    flow: LinearFlow | AnalyticFlow, tau: Expression, rough: float, guide: Guide, digits: int
+) -> Fraction | None:
     """The velocity on gamma to so many digits, by Newton's method on the miss after the flights of a guide."""
     start, v = evaluate(tau, {}, flow.balls).mid(), flow.number(Fraction(rough))
     small, last = Fraction(1, 10 ** (digits + SETTINGS.spare - 1)), None
@@ -143,7 +146,7 @@ def newton(flow: LinearFlow, tau: Expression, rough: float, guide: Guide, digits
     return None
 
 
-def _miss(flow: LinearFlow, time: Any, speed: Any, guide: Guide) -> Any | None:
+def _miss(flow: LinearFlow | AnalyticFlow, time: Any, speed: Any, guide: Guide) -> Any | None:
     """v - gamma after the flights; None where one is not decided or passes the end."""
     for _ in range(guide.impacts):
         hit = flow.first_hit(time, speed, guide.end - time)

@@ -64,8 +64,8 @@ class Threshold:
     """The velocity `v`, an estimate of its `error`, and a status: `complete`; `none` where no gamma lies ahead;
     `unresolved` where the next zero of a_c, its contact order or the two sides of gamma are not decided.
 
-    `certified` is v with a proved radius, for a linear model with digits=: the interval contains a velocity from which
-    chatter completes and one from which the mass lifts off before.
+    `certified` is v with a proved radius, with digits= where the restitution is a number: the interval contains a
+    velocity from which chatter completes and one from which the mass lifts off before.
     """
 
     v: Any

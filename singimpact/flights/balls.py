@@ -107,6 +107,12 @@ class LinearFlow:
             total += rate**order * _turned(rate * tau + phase, cosine, sine, order)
         return total
 
+    def pressing(self, tau: Any, window: Any, v: Any) -> tuple[Any, Any]:
+        """Bounds of -x'' while t is in the window after tau, |x'| <= 2 v and 0 <= x - c <= v window."""
+        pull = -self.acceleration(tau.union(tau + window))
+        off = (abs(self.d) * 2 * v + abs(self.k) * v * window).upper()
+        return pull.lower() - off, pull.upper() + off
+
     def first_hit(self, tau: Any, v: Any, limit: Any = None, removed: int = 1) -> BallHit | None:
         """The first t > 0 with x = c.
 

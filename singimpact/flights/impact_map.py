@@ -43,7 +43,7 @@ def first_hit(
     ----------
     osc : the model.
     tau : launch times, any finite numbers. v : launch velocities >= 0; they broadcast.
-    digits : decimal digits; the result then holds mpmath numbers.
+    digits : decimal digits; the result then holds mpmath numbers, and `certified` the same with proved radii.
     tolerance : relative error allowed in a step of a Taylor flow, and, times ten, of a hit before it is refined.
     horizon : time after which a flight is given up; 1000 periods of g if not given, or 2e5 radians of the fastest
         motion where those come first. At most 1e7 radians.

@@ -1,4 +1,4 @@
-"""The impact map in many digits, from nothing but the exact state."""
+"""The impact map in many digits, from nothing but the exact state: proved where balls can, else two runs that agree."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.certified import from_ball
 from singimpact.algebra.numbers import as_mpf, sign_of
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights import undecided
 from singimpact.flights.causes import decoded
+from singimpact.flights.certified_flights import Proof, proof
 from singimpact.flights.compiled_model import Allowance, allowed
 from singimpact.flights.multiprecision import found
 from singimpact.flights.rebound_law import rebound_in_digits
@@ -29,37 +31,67 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     steps is known.
     """
     size = states.v.size
-    known, budgets = _known_in_doubles(osc, states, allowance)
+    known, budgets, roughs = _known_in_doubles(osc, states, allowance)
     codes, rows = np.zeros(size, dtype=np.int8), np.full((10, size), np.nan)
     fields = [np.empty(size, dtype=object) for _ in range(4)]
+    certified, reasons = np.full(size, None, dtype=object), {}
+    in_doubles = np.array([index not in known for index in range(size)], dtype=bool) & (roughs[0] > 0) & (roughs[1] < 0)
+    kappas = undecided.conditions(osc, states, in_doubles, roughs[0], roughs[1])
     for index in range(size):
-        if index in known:
+        proved = _proof(osc, states, index, digits, allowance.horizon, known, (*roughs[:2], kappas[1]))
+        certified[index] = proved.impact
+        if proved.reason:
+            reasons[index] = proved.reason
+        if proved.flight_time is not None:
+            codes[index] = Status.hit
+            numbers: Any = *(from_ball(part, digits).value for part in proved[:2]), nan, nan
+            known.pop(index, None)
+        elif index in known:
             codes[index], numbers = known[index][0], (nan,) * 4
             rows[:4, index] = known[index][1]
+        elif proved.missed:
+            codes[index], numbers = Status.no_return, (inf, nan, nan, nan)
         else:
             codes[index], numbers = found(osc, states, index, digits, allowance.horizon, int(budgets[index]))
+        if index not in known:
             rows[:4, index] = [float(part) for part in numbers]
         status = int(codes[index]) if codes[index] < 20 else int(Status.unresolved)
         numbers = numbers if codes[index] < 20 else (nan,) * 4
         with digits_at(digits) as mp:
             for field, value in zip(fields, _shown(status, numbers), strict=True):
-                field[index] = for_user(+mp.mpf(value))
+                field[index] = for_user(+mp.convert(value))
     fates = undecided.Fates(*decoded(codes), rows)
     for index, (_, _, cause) in known.items():
         fates.cause[index] = cause
-    notes = undecided.notes_of(osc, states, fates)
-    kappas = undecided.conditions(osc, states, fates.status == Status.hit, rows[0], rows[1])
+    notes = dict(undecided.notes_of(osc, states, fates))
+    for index, reason in reasons.items():
+        notes[index] = f"{notes[index]}; not certified: {reason}" if index in notes else f"not certified: {reason}"
+    new = (fates.status == Status.hit) & ~in_doubles
+    if new.any():
+        kappas = np.where(new, undecided.conditions(osc, states, new, rows[0], rows[1]), kappas)
+    kappas = np.where(fates.status == Status.hit, kappas, np.nan)
     error = np.where(fates.status == Status.hit, 10.0 ** -min(digits, 300), np.nan)
     time, velocity, depth, bound = fields
     return Flight.made(flight_time=time, velocity=velocity, status=fates.status, depth=depth, bound=bound,
                        condition=kappas[0], velocity_condition=kappas[1], time_error=error, velocity_error=error.copy(),
-                       cause=fates.cause, notes=notes)  # fmt: skip
+                       cause=fates.cause, notes=notes, certified=certified)  # fmt: skip
+
+
+def _proof(
+    osc: Oscillator, states: States, index: int, digits: int, horizon: float,
+    known: dict[int, tuple[int, Array, int]], roughs: tuple[Array, Array, Array],
+) -> Proof:  # fmt: skip
+    """What balls prove of a flight; of one that is proved in doubles never to return, nothing is left to prove."""
+    if index in known and known[index][0] == Status.escaped:
+        return Proof(None, None, None, "there is no hit: the flight is proved never to return")
+    rough = None if index in known else (float(roughs[0][index]), float(roughs[2][index]))
+    return proof(osc, states, index, digits, horizon, rough)
 
 
 def _known_in_doubles(
     osc: Oscillator, states: States, allowance: Allowance
-) -> tuple[dict[int, tuple[int, Array, int]], Array]:
-    """Code, numbers and cause of flights that do not come back; the Taylor steps allowed to the others."""
+) -> tuple[dict[int, tuple[int, Array, int]], Array, Array]:
+    """Code, numbers and cause of flights that do not come back; the Taylor steps allowed to the others; all numbers."""
     budgets = np.full(states.v.size, allowance.steps)
     model = allowed(osc, allowance)
     if model.linear:
@@ -67,7 +99,7 @@ def _known_in_doubles(
         fates = undecided.Fates(*decoded(codes), rows)
         undecided.escapes(osc, model, states, fates)
         gone = (states.v > 0) & ((fates.status == Status.no_return) | (fates.status == Status.escaped))
-        return {int(i): (int(fates.status[i]), rows[:4, i], 0) for i in np.flatnonzero(gone)}, budgets
+        return {int(i): (int(fates.status[i]), rows[:4, i], 0) for i in np.flatnonzero(gone)}, budgets, rows
     tiny = [i for i in np.flatnonzero(states.v == 0).tolist() if sign_of(states.exact_v(i)) > 0]
     fates, judge = undecided.flown(osc, model, states)
     undecided.escapes(osc, model, states, fates)
@@ -76,7 +108,7 @@ def _known_in_doubles(
     known = {int(i): (int(fates.status[i]), fates.rows[:4, i], int(fates.cause[i])) for i in np.flatnonzero(over)}
     judge.hits[tiny] = False
     steps = judge.steps()
-    return known, np.where(np.isnan(steps), allowance.steps, 2 * np.nan_to_num(steps) + 100).astype(int)
+    return known, np.where(np.isnan(steps), allowance.steps, 2 * np.nan_to_num(steps) + 100).astype(int), fates.rows
 
 
 def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, Any, Any]:

@@ -1,4 +1,4 @@
-"""One flight in many digits: linear models in balls, which prove the hit; else the kernel on numbers of mpmath.
+"""One flight in many digits by the kernel on numbers of mpmath, where balls do not prove the hit (`certified_flights`).
 
 Two runs at different precision must agree to the digits asked for, else the precision grows: half of the digits go in a
 square root at a graze, and no formula is trusted to know how near it is.
@@ -7,14 +7,13 @@ square root at a graze, and no formula is trusted to know how near it is.
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 from functools import lru_cache
-from math import ceil, nan
+from math import nan
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.balls import BITS_A_DIGIT, Balls
+from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_mpf
 from singimpact.algebra.precision import balls_at, bits_at, digits_at
@@ -31,20 +30,15 @@ from singimpact.flights.no_return.polynomial import never_turns
 from singimpact.flights.states import States
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.nearest_zero import Zero
 from singimpact.status import Status
-
-SPARE_BITS = (64, 320)  # beside the digits asked for: at first, and for a phase or a graze that costs more
 
 Outcome = tuple[int, tuple[Any, Any, Any, Any]]
 
 
 def found(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
-    """One flight to `digits` digits: in balls where they prove the hit, else by two precisions that agree."""
-    proved = _proved(osc, states, index, digits, limit)
-    if proved is None and (touch := _closing(osc, states, index, digits, limit)) is not None:
-        return touch
-    return proved or agreed(osc, states, index, digits, limit, budget)
+    """One flight to `digits` digits where balls prove no hit: by two precisions that agree."""
+    touch = _closing(osc, states, index, digits, limit)
+    return touch or agreed(osc, states, index, digits, limit, budget)
 
 
 def _closing(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome | None:
@@ -63,30 +57,6 @@ def _touching(osc: Oscillator, states: States, index: int, numbers: Any, digits:
         return None
     with digits_at(digits + LIMITS.guard) as mp:
         return int(Status.graze), (as_mpf(period, mp), mp.mpf(0), mp.mpf(0), numbers[3])
-
-
-def _proved(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome | None:
-    """The first hit of a linear model in balls that are narrow enough; None where they decide nothing.
-
-    They take a twentieth of the time of mpmath.
-    """
-    tau, v = states.exact_tau(index), states.exact_v(index)
-    rest = states.rest.get(index, Zero(tau, -1, 1))
-    for bits in (ceil(digits * BITS_A_DIGIT) + spare for spare in SPARE_BITS):
-        flow = linear_flow(osc, bits)
-        if flow is None or rest.sign <= 0:
-            return None
-        with balls_at(bits):
-            at, speed = (evaluate(tree, {}, flow.balls) for tree in (tau, v))
-            hit = flow.first_hit(at, speed, flow.number(Fraction(limit)), rest.order + 2)
-            if hit is None or hit.time is None:
-                return None
-        numbers = hit.time, hit.velocity
-        if all(part.rel_accuracy_bits() > digits * BITS_A_DIGIT + 4 for part in numbers):
-            with bits_at(bits) as mp:
-                time, velocity = (_centre(part, mp) for part in numbers)
-            return int(Status.hit), (time, velocity, nan, nan)
-    return None
 
 
 def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
@@ -225,14 +195,14 @@ def _in_balls(osc: Oscillator, bits: int, mp: Any) -> Callable[..., None]:
             exact = [flint.arb(value) for value in (start[0], time, *state)]
             inner = workspace(flint.arb(0), n, flow.rows)
             call([exact[0]], *exact[1:], n, p, inner)
-        work.X[: n + 1] = [_centre(value, mp) for value in inner.X[: n + 1]]
+        work.X[: n + 1] = [centre_of(value, mp) for value in inner.X[: n + 1]]
         for row, filled in zip(work.W, inner.W, strict=True):
-            row[0] = _centre(filled[0], mp)
+            row[0] = centre_of(filled[0], mp)
 
     return coefficients
 
 
-def _centre(ball: Any, mp: Any) -> Any:
+def centre_of(ball: Any, mp: Any) -> Any:
     """The centre of a ball as a number of an mpmath context, exactly."""
     from mpmath.libmp import from_man_exp
 

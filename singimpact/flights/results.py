@@ -4,17 +4,57 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from singimpact.algebra.certified import Certified
+from singimpact.algebra.expressions import Expression
 from singimpact.notebook import table
+from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words, value_in_words
 
 JUDGED = ("condition", "velocity_condition", "time_error", "velocity_error")
 """Fields that may be computed when they are first read: of a Taylor flow they take longer than the flight."""
 SCALAR_STATUS = tuple(np.int8(code) for code in range(len(Status)))
+
+
+@dataclass(frozen=True)
+class CertifiedImpact:
+    """A first impact with proved radii: flight time, x' < 0 there, and the state just after it.
+
+    Attributes
+    ----------
+    flight_time, velocity, tau, v : `Certified`, each with `.value` and `.radius`.
+    oscillator, launch : the model, and the exact launch time and velocity.
+
+    Examples
+    --------
+    >>> from singimpact.flights.impact_map import impact_map
+    >>> from singimpact.oscillator.model import Oscillator
+    >>> step = impact_map(Oscillator("sin(x)", "-2 + cos(t)", 0, "1/2"), 1, 3, digits=20)
+    >>> print(step.certified.v)
+    1.7977594605181043134
+    """
+
+    NUMBERS: ClassVar[tuple[str, ...]] = ("flight_time", "velocity", "tau", "v")
+    flight_time: Certified
+    velocity: Certified
+    tau: Certified
+    v: Certified
+    oscillator: Oscillator | None = field(default=None, repr=False)
+    launch: tuple[Expression, ...] = field(default=(), repr=False)
+
+    @property
+    def value(self) -> dict[str, Any]:
+        """The four values by name."""
+        return {name: getattr(self, name).value for name in self.NUMBERS}
+
+    @property
+    def radius(self) -> dict[str, Any]:
+        """The four radii by name."""
+        return {name: getattr(self, name).radius for name in self.NUMBERS}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -33,7 +73,9 @@ class Flight:
     time_error, velocity_error : estimates of the relative errors of the flight time and of the velocity; nan when there
         is no hit.
     cause : int8, see `singimpact.status.Cause`: why a flight is `unresolved`.
-    notes : for unresolved flights, by their index in the flat arrays: where the flight came to.
+    notes : by index in the flat arrays, for unresolved flights: where the flight came to. With `digits`, for every
+        flight that is not certified: why.
+    certified : with `digits`, `CertifiedImpact` of each hit that is proved, None for each that is not; else None.
 
     Notes
     -----
@@ -53,6 +95,7 @@ class Flight:
     velocity_error: Any
     cause: Any = field(default=0, kw_only=True)
     notes: Mapping[int, str] = field(default_factory=dict, kw_only=True)
+    certified: Any = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "status", status_array(self.status))

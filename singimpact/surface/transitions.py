@@ -11,16 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import tangency_points
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
 from singimpact.surface.curve import window_ends
+from singimpact.surface.proved_touches import doubts_left
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.swan_families import STEPS, Family, Transition, swans_met
 
@@ -46,17 +49,33 @@ SETTINGS = TransitionSettings()
 class Transitions(tuple[Transition, ...]):
     """Transitions in order, with notes on their completeness.
 
-    Swans are isolated by balls, so that `complete` is a proof; the other kinds are met on a grid of the parameter.
+    Swans are isolated by balls.  The other kinds are met on a grid of the number; for a linear model balls then show
+    that there are no more, when `complete` or `doubts` is first asked for.
     Flights from rest to rest with dx/dv = 0, over which V_c' itself is singular, are no transitions of this list:
     `classify` marks them.
+
+    Attributes
+    ----------
+    notes : why a swan may be missing.
     """
 
     notes: tuple[str, ...] = ()
+    _proof: Callable[[Transitions], tuple[str, ...]] | None = None
+
+    @property
+    def swans_complete(self) -> bool:
+        """Whether it is proved that no swan between the ends is missing."""
+        return not self.notes
+
+    @kept_property
+    def doubts(self) -> tuple[str, ...]:
+        """Why a transition of any kind may be missing in the window; nothing where it is proved that none is."""
+        return self.notes + (() if self._proof is None else self._proof(self))
 
     @property
     def complete(self) -> bool:
-        """Whether it is proved that no swan between the ends is missing."""
-        return not self.notes
+        """Whether it is proved that no transition in the window is missing; it takes a second, or ten."""
+        return not self.doubts
 
 
 def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) -> Transitions:
@@ -70,7 +89,8 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) ->
 
     Returns
     -------
-    Transitions : a tuple; `.complete` says whether no swan between the ends can be missing, `.notes` why one may.
+    Transitions : a tuple; `.complete` says whether it is proved that none is missing in the window, `.doubts` why one
+        may be; `.swans_complete` and `.notes` say so of swans alone.
 
     Raises
     ------
@@ -94,6 +114,7 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) ->
     found = [*swans, *_swallowtails(family, swans, times), *_each_once(_touches(family, values, times), ends)]
     made = Transitions(sorted(found, key=lambda each: (each.value, each.tau, each.t)))
     made.notes = notes
+    made._proof = partial(doubts_left, family, ends, times)
     return made
 
 

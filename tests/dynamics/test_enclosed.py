@@ -6,7 +6,9 @@ import mpmath
 import numpy as np
 import pytest
 
+from singimpact.algebra import balls, precision
 from singimpact.algebra.certified import Certified
+from singimpact.algebra.numbers import exact
 from singimpact.bench.problems import values
 from singimpact.dynamics import chatter, enclosed
 from singimpact.dynamics.threshold import threshold
@@ -79,9 +81,7 @@ def test_contact_that_is_lost_is_enclosed_too():
     assert abs(float(found.certified.value) - float(osc.chatter_limit(1.2, 0.3).tau)) < 1e-12
 
 
-def test_models_that_are_not_linear_have_none():
-    duffing = ImpactOscillator("x + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
-    assert not enclosed.enclosable(duffing)
+def test_models_whose_restitution_is_no_number_below_one_have_none():
     bent = ImpactOscillator("x", "cos(2*t)", "0.3", "-0.6*v + v**2/9")
     assert not enclosed.enclosable(bent)
     assert not enclosed.enclosable(linear(2, "0.3", 1))
@@ -168,3 +168,50 @@ def test_digits_are_checked():
     with pytest.raises(InputError, match="digits"):
         linear(2, "0.3", "0.5").chatter_limit("1.2", "0.01", digits=0)
     assert np.isfinite(float(linear(2, "0.3", "0.5").chatter_limit("1.2", "0.01", digits=1).tau))
+
+
+ANALYTIC = {
+    "cubic, damped": (ImpactOscillator("x + x**3/10 + xdot/20", "cos(2.8*t)", 0, "0.8"), "0.9", "0.005"),
+    "pendulum": (ImpactOscillator("sin(x)", "cos(2.8*t)", "0.1", "0.5"), "1.0", "0.02"),
+    "van der Pol": (ImpactOscillator("x - (1 - x**2)*xdot/2", "cos(2*t)", "0.2", "0.6"), "0.9", "0.01"),
+}
+
+
+@pytest.mark.parametrize("name", ANALYTIC)
+def test_chatter_limit_of_an_analytic_model_contains_more_digits_and_the_completion_map(name):
+    osc, tau, v = ANALYTIC[name]
+    found = osc.chatter_limit(tau, v, digits=20).certified
+    assert found.radius <= abs(found.value) * mpmath.mpf(10) ** -20
+    more = osc.chatter_limit(tau, v, digits=30).certified
+    assert found.contains(more.value)
+    assert not found.contains(more.value + 3 * found.radius)
+    # the series of the completion map shares nothing with the bounds of what is left
+    states = States.of(osc, tau, v)
+    other = chatter._precise(osc, states, chatter.chatter_limit(osc, tau, v), 15).tau
+    assert abs(other - found.value) < mpmath.mpf(10) ** -14
+
+
+def test_what_is_left_of_a_chatter_lies_between_its_bounds():
+    """The lemma of the tail: the sum of later flights of a model whose force varies on the way."""
+    osc = ANALYTIC["cubic, damped"][0]
+    end = osc.chatter_limit("0.9", "0.0005", digits=25).certified
+    with precision.balls_at(200):
+        flow = enclosed.flow_of(osc, 200)
+        left = enclosed.remaining(flow, flow.number(Fraction(9, 10)), flow.number(Fraction(1, 2000)))
+        assert left is not None
+        low, high = (balls.as_rational(part) for part in (left.lower(), left.upper()))
+    true = exact("end", end.value) - Fraction(9, 10)
+    assert low < true < high
+    assert high - low < true / 2
+
+
+@pytest.mark.parametrize("name", ["cubic, damped", "pendulum"])
+def test_threshold_of_an_analytic_model_is_certified(name):
+    osc = ANALYTIC[name][0]
+    found, plain = threshold(osc, 1.0, digits=15), threshold(osc, 1.0)
+    assert found.certified.radius < abs(found.v) * mpmath.mpf(10) ** -15
+    assert abs(float(found.v) - plain.v) < max(10 * plain.error, 1e-11 * plain.v)
+    # chatter completes below it and not above, in doubles
+    ends = [osc.chatter_limit(1.0, float(found.v) * factor) for factor in (1 - 1e-6, 1 + 1e-6)]
+    assert ends[0].status == Status.complete
+    assert not (ends[1].status == Status.complete and abs(ends[1].tau - ends[0].tau) < 1e-2)

@@ -40,7 +40,7 @@ def test_the_same_numbers_as_in_one_piece(osc: ImpactOscillator, monkeypatch: py
     for before, call in zip(whole, calls, strict=True):
         after = call().values()
         for name, values in before.items():
-            if name != "notes":
+            if name not in ("notes", "certified"):
                 same(after[name], values)
         assert after["notes"] == before["notes"]
     for before, after in zip(records, (osc.derivative(tau, v), osc.iterate(tau, v, 3)), strict=True):

@@ -17,6 +17,8 @@ def cases(effort: Effort) -> Iterator[Case]:
         for regime in REGIMES:
             yield of_states(family, regime, effort)
     yield _many_digits(effort)
+    if not effort.quick:
+        yield _certified()
 
 
 def of_regime(family: str, regime: str, count: int) -> list[Problem]:
@@ -66,6 +68,18 @@ def _many_digits(effort: Effort) -> Case:
          for d in asked[:1 if effort.quick else 2]]  # fmt: skip
     truth = [problem.flight_time for problem in problems]
     return Case("linear generic, many digits", own + peers, truth, _conditions(problems))
+
+
+def _certified() -> Case:
+    """Doubles beside enclosures of the same flights; the table holds 17 digits."""
+    problems = of_regime("duffing", "generic", 4)
+    models = [problem.model() for problem in problems]
+    own = [Method("singimpact, a call a state", "doubles", partial(_flown, models, problems))] + [
+        Method("singimpact, certified", f"digits {d}", partial(_digits, problems, d), epsilon=10.0 ** -min(d, 16))
+        for d in (15, 30, 60)
+    ]
+    return Case("duffing generic, certified", own, [problem.flight_time for problem in problems],
+                _conditions(problems))  # fmt: skip
 
 
 def _digits(problems: list[Problem], digits: int) -> list[Any]:

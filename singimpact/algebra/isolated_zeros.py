@@ -1,0 +1,199 @@
+"""All zeros in a box of as many equations as there are unknowns: isolated by balls.
+
+A box is dropped when the ball of an equation over it, or its centred form, leaves out 0, or when Krawczyk's operator
+moves all of it out.  A zero exists and is alone where that operator takes a box into its interior.  Boxes that are
+neither, down to the least size, are handed on as undecided.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.analytic import Recorder
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import Expression
+from singimpact.algebra.precision import balls_at
+
+Box = tuple[tuple[Fraction, Fraction], ...]
+Place = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class BoxSettings:
+    """How boxes are cut.
+
+    Parameters
+    ----------
+    bits : of the balls. least : size of a box, in parts of the window, below which it is undecided.
+    most : boxes looked at before the rest is undecided.
+    cut : where a box is cut: off the middle, for there are zeros at places of symmetry.
+    wider : each box is looked at with this part of it more on every side, so that no zero is on an edge.
+    rounds : of Krawczyk's operator on the box of a zero.
+    """
+
+    bits: int = 128
+    least: Fraction = Fraction(1, 2**20)
+    most: int = 20_000
+    cut: Fraction = Fraction(127, 256)
+    wider: Fraction = Fraction(1, 16)
+    rounds: int = 60
+
+
+SETTINGS = BoxSettings()
+
+
+@dataclass(frozen=True)
+class IsolatedZeros:
+    """Zeros of a system.
+
+    Parameters
+    ----------
+    found : balls of the unknowns, each with exactly one zero. A zero may lie outside the window by a little.
+    undecided : boxes in which there may be more. looked_at : boxes in all.
+    """
+
+    found: tuple[Place, ...]
+    undecided: tuple[Box, ...]
+    looked_at: int
+
+    @property
+    def complete(self) -> bool:
+        """Whether the window has no other zero."""
+        return not self.undecided
+
+
+def isolated_zeros(
+    trees: Sequence[Expression], names: Sequence[str], window: Box, *, fixed: Mapping[str, Any] | None = None,
+    excluded: Callable[[Place], bool] | None = None, settings: BoxSettings = SETTINGS,
+) -> IsolatedZeros:  # fmt: skip
+    """The zeros of trees in a window.
+
+    Parameters
+    ----------
+    trees, names : equations and unknowns, as many. window : the ends of each unknown.
+    fixed : balls of other names. excluded : another proof that a box has no zero.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> x, y = (parse(text, ["x", "y"]) for text in ("x**2 + y**2 - 1", "x - y"))
+    >>> made = isolated_zeros((x, y), ("x", "y"), ((Fraction(-2), Fraction(2)), (Fraction(0), Fraction(2))))
+    >>> [[round(float(part.mid()), 12) for part in zero] for zero in made.found], made.complete
+    ([[0.707106781187, 0.707106781187]], True)
+    """
+    with balls_at(settings.bits):
+        return _Search(trees, names, window, dict(fixed or {}), settings).run(excluded)
+
+
+class _Search:
+    """Boxes on a stack."""
+
+    def __init__(
+        self, trees: Sequence[Expression], names: Sequence[str], window: Box, fixed: dict[str, Any],
+        settings: BoxSettings,
+    ) -> None:  # fmt: skip
+        recorder = Recorder()
+        values = [recorder.record(tree) for tree in trees]
+        slopes = [recorder.derivative(value, name) for value in values for name in names]
+        self.values = recorder.program(values).prepared(fixed)
+        self.slopes = recorder.program(slopes).prepared(fixed)
+        self.names, self.window, self.settings = tuple(names), window, settings
+        self.balls, self.size = Balls(settings.bits), len(names)
+
+    def run(self, excluded: Callable[[Place], bool] | None) -> IsolatedZeros:
+        """Cut boxes until each is decided or too small."""
+        stack, found, undecided, count = [self.window], list[Place](), list[Box](), 0
+        while stack and count < self.settings.most:
+            count += 1
+            box = stack.pop()
+            decided = self._looked_at(box, excluded)
+            if decided is None:
+                smaller = self._cut(box)
+                stack += smaller
+                undecided += [] if smaller else [box]
+            elif decided and not any(self._overlap(decided, other) for other in found):
+                found.append(decided)
+        return IsolatedZeros(tuple(found), tuple(undecided + stack), count)
+
+    def _looked_at(self, box: Box, excluded: Callable[[Place], bool] | None) -> Place | None:
+        """() when a box has no zero, the enclosure of one when it has, None when it is too large to tell."""
+        place = tuple(self.balls.interval(*ends) for ends in box)
+        if not all(value.contains(0) for value in self._at(place)) or (excluded is not None and excluded(place)):
+            return ()
+        spare = [(high - low) * self.settings.wider for low, high in box]
+        wider = tuple(self.balls.interval(low - w, high + w) for (low, high), w in zip(box, spare, strict=True))
+        moved = self._krawczyk(wider)
+        if moved is None:
+            return None
+        if moved == () or not self._overlap(moved, place):
+            return ()
+        return self._polished(moved) if self._inside(moved, wider) else None
+
+    def _polished(self, place: Place) -> Place:
+        """The enclosure of a zero that is known to be there, until it shrinks no more."""
+        for _ in range(self.settings.rounds):
+            moved = self._krawczyk(place)
+            if not moved:
+                return place
+            smaller = tuple(new.intersection(old) for new, old in zip(moved, place, strict=True))
+            stuck = all(new.rad() > 0.7 * old.rad() for new, old in zip(smaller, place, strict=True))
+            place = smaller
+            if stuck:
+                break
+        return place
+
+    def _krawczyk(self, place: Place) -> Place | None:
+        """m - Y f(m) + (1 - Y J)(place - m); () where the centred form leaves out 0, None where no Y is found."""
+        middle = tuple(part.mid() for part in place)
+        away = [part - m for part, m in zip(place, middle, strict=True)]
+        at_middle, flat = self._at(middle), self.slopes(self._named(place))
+        J = [flat[self.size * i : self.size * (i + 1)] for i in range(self.size)]
+        for value, row in zip(at_middle, J, strict=True):
+            if not (value + _dot(row, away)).contains(0):
+                return ()
+        matrix = np.array([[float(slope.mid()) for slope in row] for row in J])
+        try:
+            Y = [[self.balls.rational(Fraction(float(part))) for part in row] for row in np.linalg.inv(matrix)]
+        except (np.linalg.LinAlgError, ValueError, OverflowError):
+            return None
+        moved = []
+        for i, row in enumerate(Y):
+            rest = [int(i == k) - _dot(row, [J[n][k] for n in range(self.size)]) for k in range(self.size)]
+            moved.append(middle[i] - _dot(row, at_middle) + _dot(rest, away))
+        return tuple(moved) if all(part.is_finite() for part in moved) else None
+
+    def _cut(self, box: Box) -> list[Box]:
+        """Two boxes, cut across the side that is the largest part of the window."""
+        shares = [(high - low) / (end - start) for (low, high), (start, end) in zip(box, self.window, strict=True)]
+        k = shares.index(max(shares))
+        if shares[k] < self.settings.least:
+            return []
+        low, high = box[k]
+        at = low + (high - low) * self.settings.cut
+        return [(*box[:k], ends, *box[k + 1 :]) for ends in ((low, at), (at, high))]
+
+    def _at(self, place: Place) -> list[Any]:
+        return self.values(self._named(place))
+
+    def _named(self, place: Place) -> dict[str, Any]:
+        return dict(zip(self.names, place, strict=True))
+
+    @staticmethod
+    def _overlap(one: Place, other: Place) -> bool:
+        return all(a.overlaps(b) for a, b in zip(one, other, strict=True))
+
+    @staticmethod
+    def _inside(one: Place, other: Place) -> bool:
+        return all(b.contains_interior(a) for a, b in zip(one, other, strict=True))
+
+
+def _dot(row: Sequence[Any], column: Sequence[Any]) -> Any:
+    total = row[0] * column[0]
+    for a, b in zip(row[1:], column[1:], strict=True):
+        total = total + a * b
+    return total

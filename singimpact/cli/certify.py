@@ -1,0 +1,42 @@
+"""`singimpact certify`: an impact with its certificate, and certificates checked by the second program."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.model import model_options, take_model
+from singimpact.cli.output import emit
+from singimpact.inputs import InputError
+from singimpact.store import require_writable
+
+
+@click.command(short_help="an impact with a certificate that a second program checks")
+@click.argument("files", metavar="[FILE.json]...", nargs=-1)
+@model_options
+@click.option("--tau", metavar="NUMBER", help="Launch time.")
+@click.option("--v", metavar="NUMBER", help="Launch velocity, > 0.")
+@click.option("--digits", type=click.IntRange(1, 1000), default=30, show_default=True, help="Significant digits.")
+@click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
+def command(
+    files: tuple[str, ...], tau: str | None, v: str | None, digits: int, output: str | None, **options: Any
+) -> None:
+    """Enclose the impact from (tau, v) and write its certificate; or check certificates, FILE.json ...
+
+    A certificate is accepted by a second program, which imports python-flint alone, reads the model as text and
+    encloses the motion again with its own code.
+    """
+    from singimpact.certificates.certificate import certify, read_certificate
+
+    if files:
+        for path in files:
+            emit(f"{path}: {read_certificate(path)!r} holds", None)
+        return
+    if tau is None or v is None:
+        raise InputError("give --tau and --v for a new certificate, or the files to check")
+    if output is not None:
+        require_writable(output)
+    found = certify(take_model(options).impact_map(tau, v, digits=digits))
+    found.check()
+    emit(found.text.rstrip("\n"), output)

@@ -1,0 +1,72 @@
+"""Flights of an analytic model in balls, impact after impact: what orbits ask of a flow, at one precision."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.precision import series_of_any_length
+from singimpact.flights.balls import BallHit
+from singimpact.flights.enclosures.ball_flight import first_hit
+from singimpact.flights.enclosures.certified_hit import ENCLOSURE
+from singimpact.flights.enclosures.equation import Equation, NoHit, Refused, programs_of
+from singimpact.flights.enclosures.plain_motion import PlainMotion
+from singimpact.oscillator.model import Oscillator
+
+
+class AnalyticFlow:
+    """The numbers of a model as balls, with the methods of `LinearFlow` that orbits use; launches may be balls.
+
+    Parameters
+    ----------
+    osc : the model, its restitution a number. bits : of the balls, at which the flow is made and used.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.precision import balls_at
+    >>> with balls_at(200):
+    ...     flow = AnalyticFlow(Oscillator("x + x**3", "cos(2*t)", "0.3", "0.5"), 200)
+    ...     hit = flow.first_hit(flow.number(Fraction(0)), flow.number(Fraction(1)))
+    ...     print(hit.time.str(25, radius=False))
+    1.769788982840214783740587
+    """
+
+    def __init__(self, osc: Oscillator, bits: int) -> None:
+        self.balls, self.equation = Balls(bits), Equation(programs_of(osc, ()), {})
+        self.r = evaluate(osc.restitution, {}, self.balls)
+        self.longest = Fraction(10_000)
+
+    def number(self, value: Fraction) -> Any:
+        """A rational as a ball."""
+        return self.balls.rational(value)
+
+    def acceleration(self, tau: Any) -> Any:
+        """a_c at tau."""
+        zero = self.number(Fraction(0))
+        return self.equation.run("forcing", t=tau)[0] - self.equation.run("force", x=zero, xdot=zero)[0]
+
+    def pressing(self, tau: Any, window: Any, v: Any) -> tuple[Any, Any]:
+        """Bounds of -x'' while t is in the window after tau, |x'| <= 2 v and 0 <= x - c <= 2 v window."""
+        fast = (2 * v).upper()
+        high = (2 * v * window).upper()
+        zero = self.number(Fraction(0))
+        f = self.equation.run("force", x=zero.union(high), xdot=(-fast).union(fast))[0]
+        pull = f - self.equation.run("forcing", t=tau.union(tau + window))[0]
+        return pull.lower(), pull.upper()
+
+    def first_hit(self, tau: Any, v: Any, limit: Any = None, removed: int = 1) -> BallHit | None:
+        """The first hit, as `LinearFlow.first_hit` has it: None where these balls do not decide it."""
+        a = self.acceleration(tau)
+        expected = float((2 * v / -a).mid()) if removed == 1 and a < 0 else 0.0
+        horizon = self.number(self.longest) if limit is None else limit
+        with series_of_any_length():
+            motion = PlainMotion(self.equation, tau, v, self.balls.bits - ENCLOSURE.guard, removed, expected=expected)
+            try:
+                hit = first_hit(motion, horizon, ENCLOSURE.idle_steps)
+            except NoHit:
+                return BallHit(None, None)
+            except Refused:
+                return None
+        return BallHit(hit.flight_time, hit.velocity)

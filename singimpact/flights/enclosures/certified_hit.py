@@ -1,0 +1,245 @@
+"""First hits with the digits asked for, proved: balls of growing precision, until they are narrow enough."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import ceil, floor, log2
+from typing import Any, NamedTuple
+
+from singimpact.algebra.balls import BITS_A_DIGIT, Balls
+from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.precision import balls_at, series_of_any_length
+from singimpact.flights.enclosures.ball_flight import BallHit, first_hit
+from singimpact.flights.enclosures.equation import Equation, NoHit, NotAnalytic, Refused, TooLong, programs_of
+from singimpact.flights.enclosures.framed_motion import FramedMotion
+from singimpact.flights.enclosures.plain_motion import PlainMotion
+from singimpact.oscillator.model import Oscillator
+
+
+@dataclass(frozen=True)
+class EnclosureSettings:
+    """How the precision grows.
+
+    Parameters
+    ----------
+    spare : bits of a step beside the digits, at first. guard : bits of the working precision beside those of a step.
+    more, most : where a flight is refused, so many times the bits are tried next; and at most, with `room` beside.
+    coarse : bits of the steps of a set, the derivative over which needs no more; they grow with a refusal.
+    long : steps from which a point is carried in a frame, where its ball has grown.
+    singular : how often more bits are tried next to a singularity, which a flight may pass or meet.
+    lost, wrapped : bits that the ball of a point loses in a unit of time; flights longer than `wrapped` are carried in
+        a frame from the start, whose steps take twice the time.
+    steps, idle_steps : of a flight at most; and of one that doubles do not bring back.
+    """
+
+    spare: int = 8
+    guard: int = 24
+    more: float = 1.5
+    most: int = 4
+    room: int = 64
+    coarse: int = 64
+    long: int = 16
+    lost: float = 1.2
+    wrapped: float = 20.0
+    singular: int = 1
+    steps: int = 6000
+    idle_steps: int = 500
+
+
+ENCLOSURE = EnclosureSettings()
+
+
+@dataclass(frozen=True)
+class Launch:
+    """A state, or a box of states and of numbers of the model.
+
+    Parameters
+    ----------
+    tau, v : exact centres. removed : 1; from rest, the power of t in x - c.
+    radii : of "tau", "v", parameters, "clearance", "restitution"; what is not named is a point.
+    """
+
+    tau: Expression
+    v: Expression
+    removed: int = 1
+    radii: Mapping[str, Fraction] = field(default_factory=dict)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The numbers of the model that have a radius."""
+        return tuple(name for name in self.radii if name not in ("tau", "v"))
+
+
+class ProvedImpact(NamedTuple):
+    """Balls of the flight time, of x' at the hit, of the next state, and D G with a column for each name after v."""
+
+    flight_time: Any
+    velocity: Any
+    tau: Any
+    v: Any
+    derivative: list[list[Any]]
+    steps: int
+    bits: int
+
+
+def certified_hit(
+    osc: Oscillator, launch: Launch, digits: int, horizon: Fraction, *, derivative: bool = False,
+    steps: int = ENCLOSURE.steps, expected: tuple[float, float] = (0.0, 1.0),
+) -> ProvedImpact:  # fmt: skip
+    """The first impact of a flight in balls, with so many digits where the launch is a point.
+
+    Parameters
+    ----------
+    derivative : whether D G is enclosed too. steps : of a flight at most.
+    expected : flight time and condition number that doubles know: they choose the first precision, and prove nothing.
+
+    Raises
+    ------
+    NoHit : proved that none comes before the horizon. NotAnalytic : f or g is singular where the flight goes.
+    Refused : the exact graze, or too many steps; each with its reason.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.numbers import constant
+    >>> osc = Oscillator("x + sin(x)/2", "cos(1.7*t)", "0.3", "0.6")
+    >>> hit = certified_hit(osc, Launch(constant("tau", "1.4"), constant("v", "0.6")), 30, Fraction(60))
+    >>> print(hit.flight_time.str(30, radius=False))
+    0.812373962444622784781243163410
+    """
+    wanted = ceil(digits * BITS_A_DIGIT)
+    bits, coarse = wanted + ENCLOSURE.spare, ENCLOSURE.coarse
+    most = ENCLOSURE.most * bits + ENCLOSURE.room
+    bits = min(bits + _spare(*expected), most)
+    box = framed = any(launch.radii.values())
+    if box:
+        coarse = max(coarse, min(bits, ENCLOSURE.guard - floor(log2(max(launch.radii.values())))))
+    elif expected[0] > ENCLOSURE.wrapped:
+        framed, coarse = True, bits if derivative else coarse
+    singular = 0
+    while True:
+        begun = None
+        try:
+            with _working(bits + ENCLOSURE.guard):
+                begun = _motion(osc, launch, bits, coarse, derivative, framed, expected[0])
+                hit = first_hit(begun, Balls(bits).rational(horizon), steps)
+                found = _impact(osc, launch, hit, bits)
+                lack = 0 if box else _lack(found, wanted + 1)
+                if lack <= 0:
+                    return found
+                why, more, flown = f"{lack} bits of the result are lacking", lack + 6, hit.steps
+        except (NoHit, TooLong):
+            raise
+        except Refused as reason:
+            singular += isinstance(reason, NotAnalytic)
+            if (box and coarse >= bits) or singular > ENCLOSURE.singular:
+                raise
+            why, more = str(reason), int(bits * (ENCLOSURE.more - 1))
+            coarse = min(2 * coarse, bits)
+            flown = 0 if begun is None else begun.flown
+        if bits >= most:
+            raise Refused(f"{why} (at {bits} bits)")
+        bits = min(bits + more, most)
+        framed = framed or flown > ENCLOSURE.long
+        if derivative and not box:
+            coarse = bits
+
+
+def _spare(time: float, condition: float) -> int:
+    """Bits that a flight is expected to lose: to its condition, and to the balls that wrap it at every step."""
+    lost = ENCLOSURE.lost * time if time < ENCLOSURE.wrapped else 0.0
+    return int(lost + log2(min(max(condition, 1.0), 2.0**200)))
+
+
+@contextmanager
+def _working(bits: int) -> Iterator[None]:
+    """Balls of so many bits, and series that flint does not cut."""
+    with series_of_any_length(), balls_at(bits):
+        yield
+
+
+def _motion(
+    osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool, time: float
+) -> Any:
+    """The flight from a launch at the working precision."""
+    import flint
+
+    names = launch.names
+    programs = programs_of(osc, names)
+    tau, v = _phase(osc, launch.tau, bits), _ball(launch.v, bits)
+    if not framed:
+        return PlainMotion(Equation(programs, {}), tau, v, bits, launch.removed, derivative, time)
+    numbers = {name: _ball(_number(osc, name), bits) for name in names}
+    deviations = {name: _radius(launch.radii[name]) for name in names}
+    own = Equation(programs, numbers)
+    wide = Equation(programs, {name: value + deviations[name] for name, value in numbers.items()}) if names else own
+    tau, v = (value + _radius(launch.radii.get(name, Fraction(0))) for name, value in (("tau", tau), ("v", v)))
+    if not v > 0 and launch.removed == 1:
+        raise Refused("the launch velocity is not shown positive")
+    assert isinstance(v, flint.arb)
+    return FramedMotion(
+        own,
+        wide,
+        tau,
+        v,
+        bits,
+        min(coarse, bits),
+        deviations if derivative or any(launch.radii.values()) else None,
+        launch.removed,
+    )
+
+
+def _number(osc: Oscillator, name: str) -> Expression:
+    return osc.parameters[name] if name in osc.parameters else getattr(osc, name)
+
+
+def _ball(tree: Expression, bits: int) -> Any:
+    return evaluate(tree, {}, Balls(bits + ENCLOSURE.guard))
+
+
+def _radius(size: Fraction) -> Any:
+    import flint
+
+    return flint.arb(0, flint.arb(flint.fmpq(size.numerator, size.denominator)).upper()) if size else flint.arb(0)
+
+
+def _phase(osc: Oscillator, tau: Expression, bits: int) -> Any:
+    """A launch time less whole periods of g: what is far from 0 loses no digits."""
+    import flint
+
+    plain = _ball(tau, bits)
+    size = abs(float(plain.mid()))
+    if osc.period is None or not size > 64:
+        return plain
+    more = bits + ENCLOSURE.guard + (int(abs(plain).upper().man_exp()[1]) + 64 if size > 1e15 else 64)
+    with balls_at(more + max(int(plain.mid().man_exp()[0]).bit_length(), 0)):
+        exact, period = _ball(tau, more), _ball(osc.period, more)
+        turns = flint.arb((exact / period).mid()).floor().unique_fmpz()
+        return exact - period * turns
+
+
+def _impact(osc: Oscillator, launch: Launch, hit: BallHit, bits: int) -> ProvedImpact:
+    """The state after a hit, and D G."""
+    names = launch.names
+    law = programs_of(osc, names).rho.prepared({name: _ball(_number(osc, name), bits) + _radius(launch.radii[name])
+                                               for name in names})  # fmt: skip
+    v, slope, *by_law = law({"v": hit.velocity})
+    tau = _ball(launch.tau, bits) + _radius(launch.radii.get("tau", Fraction(0))) + hit.flight_time
+    rows: list[list[Any]] = []
+    if hit.derivatives:
+        first = [delay + (1 if k == 0 else 0) for k, (delay, _) in enumerate(hit.derivatives)]
+        second = [slope * change for _, change in hit.derivatives]
+        for k, part in enumerate(by_law):
+            second[2 + k] += part
+        rows = [first, second]
+    return ProvedImpact(hit.flight_time, hit.velocity, tau, v, rows, hit.steps, bits)
+
+
+def _lack(found: ProvedImpact, wanted: int) -> int:
+    """Bits that the worst of the numbers lacks; times next to 0 need as many as they can have."""
+    parts = [found.flight_time, found.velocity, *([] if found.v.contains(0) else [found.v])]
+    if found.tau != 0:
+        parts.append(found.tau)
+    return int(max(wanted - part.rel_accuracy_bits() for part in parts))

@@ -1,0 +1,94 @@
+"""A model as programs over balls: f, g and their derivatives, with numbers of the model that may be balls.
+
+    z'' + f(c + z, z') = g(t),   z = x - c.
+
+The clearance is inside f, so that z starts from 0 exactly and no digits cancel next to the wall.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from singimpact.algebra.analytic import Program, Recorder
+from singimpact.algebra.expressions import Name, add, names_in, substitute
+from singimpact.algebra.precision import bits_of_balls
+from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
+from singimpact.oscillator.rebound import rho_of
+
+
+class Refused(ArithmeticError):
+    """A flight that balls of the precision at hand do not decide, with the reason."""
+
+
+class NoHit(Refused):
+    """Proved: no hit comes before a time."""
+
+
+class NotAnalytic(Refused):
+    """f or g is not analytic where the flight goes; more digits change nothing."""
+
+
+class TooLong(Refused):
+    """The steps allowed do not reach a hit; more digits change nothing."""
+
+
+@dataclass(frozen=True)
+class Programs:
+    """Programs of a model, with the names that are balls.
+
+    Parameters
+    ----------
+    force : f, f_x, f_v. slopes : f_x, f_v, then f by each name. disc : f, f_x, f_v, then f by each name.
+    box : f_x, f_v, f_xx, f_xv, f_vv, then the mixed derivatives f_px, f_pv of each name.
+    forcing : g, g', then g by each name. rho : the rebound, its slope, then its derivative by each name.
+    """
+
+    names: tuple[str, ...]
+    force: Program
+    disc: Program
+    box: Program
+    forcing: Program
+    rho: Program
+
+
+@lru_cache(maxsize=128)
+def programs_of(osc: Oscillator, names: tuple[str, ...]) -> Programs:
+    """The programs of a model; `names` of its numbers stay letters (parameters, "clearance", "restitution")."""
+    clearance = Name(CLEARANCE) if CLEARANCE in names else osc.clearance
+    force, forcing = Recorder(), Recorder()
+    f = force.record(substitute(osc.force(names), {"x": add(Name("x"), clearance)}))
+    by_x, by_v = force.derivative(f, "x"), force.derivative(f, "xdot")
+    by_names = [force.derivative(f, name) for name in names]
+    second = [force.derivative(by_x, "x"), force.derivative(by_x, "xdot"), force.derivative(by_v, "xdot")]
+    mixed = [force.derivative(part, name) for part in by_names for name in ("x", "xdot")]
+    g = forcing.record(osc.forcing(names))
+    law = Recorder()
+    fixed_number = RESTITUTION in names and not names_in(osc.restitution)
+    rho = law.record(rho_of(Name(RESTITUTION)) if fixed_number else osc.rho(names))
+    return Programs(
+        names,
+        force.program([f, by_x, by_v]),
+        force.program([f, by_x, by_v, *by_names]),
+        force.program([by_x, by_v, *second, *mixed]),
+        forcing.program([g, forcing.derivative(g, "t"), *(forcing.derivative(g, name) for name in names)]),
+        law.program([rho, law.derivative(rho, "v"), *(law.derivative(rho, name) for name in names)]),
+    )
+
+
+class Equation:
+    """The programs with the numbers of the model put in, prepared once for each precision."""
+
+    def __init__(self, programs: Programs, numbers: Mapping[str, Any]) -> None:
+        self.names, self.programs, self.numbers = programs.names, programs, dict(numbers)
+        self._ready: dict[tuple[str, int], Any] = {}
+
+    def run(self, kind: str, **values: Any) -> list[Any]:
+        """The results of a program; constants are made at the working precision, anew for each."""
+        key = kind, bits_of_balls()
+        if key not in self._ready:
+            self._ready[key] = getattr(self.programs, kind).prepared(self.numbers)
+        return self._ready[key](values)  # type: ignore[no-any-return]

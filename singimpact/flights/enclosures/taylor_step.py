@@ -1,0 +1,295 @@
+"""One step of a flight in balls: Taylor coefficients by Newton's method, and a bound of what they cut off.
+
+P is the Taylor polynomial of z, of degree n, and F(s) = P'' + f(P, P') - g(t + s) its defect. F has a zero of order
+n - 1 at 0. If f and g are analytic on the image of the disc |s| <= R and |F| <= M there, Schwarz's lemma gives
+|F(s)| <= M (|s|/R)^(n-1). With |f_x| <= A and |f_v| <= B next to the step, Gronwall's lemma gives
+
+    |z' - P'| <= K s^n,   |z - P| <= K s^(n+1)/(n+1),   K = M R^(1-n) e^(B h + A h^2/2)/n,   0 <= s <= h,
+
+as soon as K h^n (1 + h) stays below the slack by which the box of A and B exceeds P. A column, the derivative psi of z
+by a number it starts from, obeys the same bound with K_psi = (M_psi R^(1-n) + S) e^(B h + A h^2/2)/n. Its term S,
+K (1 + h) h times second derivatives of f, is there since f_x and f_v are taken along P and not along z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, log2
+from typing import Any, NamedTuple
+
+from singimpact.algebra.precision import balls_at
+from singimpact.flights.enclosures.equation import Equation, NotAnalytic, Refused
+from singimpact.flights.enclosures.tube import ball, upper
+
+
+@dataclass(frozen=True)
+class StepSettings:
+    """How a step is chosen.
+
+    Parameters
+    ----------
+    degree : of the polynomial, a bit; 0.42 takes 1.2 times the time and 0.7 1.4 times.
+    least_degree : whatever the bits. short_degree : of a step much shorter than `usual`, the part of a disc that is
+        reached where f and g vary over lengths of 1; where they vary faster, such a step comes out too short.
+    disc_bits : of the bounds; they are rounded outwards, and their digits do not matter.
+    widest : radius of a disc at most, and at first where the last coefficients vanish.
+    first : radius of the first disc, over the radius of convergence that the last coefficients suggest.
+    shrink, grow : factor of the next disc, and of the first one over that of the last step.
+    discs, boxes : tried at most.
+    part : of the disc's radius that a step takes at most.
+    """
+
+    degree: float = 0.55
+    least_degree: int = 12
+    short_degree: int = 5
+    usual: float = 0.4
+    disc_bits: int = 64
+    widest: float = 8.0
+    first: float = 1.3
+    shrink: float = 0.85
+    grow: float = 1.4
+    discs: int = 80
+    boxes: int = 40
+    part: float = 0.9
+
+
+STEP = StepSettings()
+
+
+class Column(NamedTuple):
+    """A derivative of z: its start (psi, psi') and what drives it: -1 nothing, 0 the time, k the k-th name."""
+
+    start: tuple[Any, Any]
+    drive: int
+
+
+@dataclass(frozen=True)
+class Step:
+    """Coefficients and bound of z and of its columns, valid up to a length."""
+
+    coefficients: list[Any]
+    bound: Any
+    columns: list[list[Any]]
+    column_bounds: list[Any]
+    length: Any
+    radius: Any
+
+
+def degree_at(bits: int, expected: float = 0.0) -> int:
+    """The degree of a step at a precision, lower where the step need not be longer than expected."""
+    degree = max(STEP.least_degree, int(STEP.degree * bits))
+    if not 0 < expected < STEP.usual / 4:
+        return degree
+    return min(degree, max(STEP.short_degree, ceil(bits / log2(STEP.usual / expected)) + 2))
+
+
+def step(
+    equation: Equation, state: tuple[Any, Any, Any], columns: Sequence[Column], bits: int, most: Any = None,
+    removed: int = 1, expected: float = 0.0, last: Step | None = None,
+) -> Step:  # fmt: skip
+    """A step from (t, z, z'), each a ball.
+
+    Parameters
+    ----------
+    columns : derivatives that are carried along. bits : the error is about 2^-bits of the step. most : its longest
+        length. removed : how many of the first coefficients are 0 exactly; 1 unless the mass starts from rest.
+    last : the step before, whose disc is near the right one.
+    expected : the length that is needed, 0 where it is not known: a short one takes a lower degree.
+
+    Raises
+    ------
+    Refused, NotAnalytic
+    """
+    degree = degree_at(bits, expected)
+    X = coefficients(equation, state, degree, removed)
+    if not X[-1].is_finite():
+        raise NotAnalytic("f or g has no power series where the flight goes")
+    psi = [column(equation, state[0], X, each, degree) for each in columns]
+    with balls_at(STEP.disc_bits):
+        sums = [_sums(part) for part in (X, *psi)]
+        length, R, bounds = _widest_disc(equation, state[0], X, psi, [each.drive for each in columns], sums, bits, last)
+        if most is not None and length > most:
+            length = most
+        return _bounded(equation, (X, psi), [each.drive for each in columns], sums, (length, R, bounds), bits)
+
+
+def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, removed: int = 1) -> list[Any]:
+    """Taylor coefficients 0 to `degree` of z, by Newton's method: m of them give 2 m + 1.
+
+    The residual of a polynomial comes from one evaluation over series; the linear equation of the correction is solved
+    for the new coefficients one by one.
+    """
+    from flint import arb, arb_series
+
+    t, z, v = state
+    g = _listed(equation.run("forcing", t=arb_series([t, 1], prec=degree))[0], degree)
+    X, V = [z, v], [v]
+    while len(X) <= degree:
+        m = len(X) - 1
+        count = min(2 * m, degree - 1)
+        f, by_x, by_v = (
+            _listed(part, count)
+            for part in equation.run("force", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
+        )
+        constant = all(part.is_zero() for part in by_v[1:])
+        for k in range(m - 1, count):
+            rest = g[k] - f[k] - sum(map(arb.__mul__, by_x, X[k:m:-1]), arb(0))
+            if not constant:
+                rest -= sum(map(arb.__mul__, by_v, V[k : m - 1 : -1] if m else V[k::-1]), arb(0))
+            elif k >= m:
+                rest -= by_v[0] * V[k]
+            # the first ones of a mass at rest vanish exactly, where balls only contain 0
+            X.append(arb(0) if k + 2 < removed else rest / ((k + 1) * (k + 2)))
+            V.append((k + 2) * X[-1])
+    return X
+
+
+def column(equation: Equation, t: Any, X: list[Any], launch: Column, degree: int) -> list[Any]:
+    """Taylor coefficients of a column along the polynomial with coefficients X."""
+    from flint import arb, arb_series
+
+    V = [(k + 1) * part for k, part in enumerate(X[1:])]
+    count = degree - 1
+    _, by_x, by_v, *by_names = (
+        _listed(part, count)
+        for part in equation.run("disc", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
+    )
+    driven = [arb(0)] * count
+    if launch.drive >= 0:
+        driven = _listed(equation.run("forcing", t=arb_series([t, 1], prec=count))[1 + launch.drive], count)
+        if launch.drive:
+            driven = [a - b for a, b in zip(driven, by_names[launch.drive - 1], strict=True)]
+    constant = all(part.is_zero() for part in by_v[1:])
+    P, Q = [arb(launch.start[0]), arb(launch.start[1])], [arb(launch.start[1])]
+    for k in range(count):
+        rest = driven[k] - sum(map(arb.__mul__, by_x, P[k::-1]), arb(0))
+        rest -= by_v[0] * Q[k] if constant else sum(map(arb.__mul__, by_v, Q[::-1]), arb(0))
+        P.append(rest / ((k + 1) * (k + 2)))
+        Q.append(rest / (k + 1))
+    return P
+
+
+def _listed(series: Any, count: int) -> list[Any]:
+    """The first coefficients of a series, or of a constant."""
+    from flint import arb, arb_series
+
+    if not isinstance(series, arb_series):
+        return [arb(series)] + [arb(0)] * (count - 1)
+    found = series.coeffs()[:count]
+    return [*found, *[arb(0)] * (count - len(found))]
+
+
+def _sums(X: list[Any]) -> tuple[Any, Any, Any]:
+    """Polynomials in R that bound |P - P(0)|, |P' - P'(0)| and |P''| on the disc |s| <= R."""
+    from flint import arb_poly
+
+    first = arb_poly([0, *(upper(part) for part in X[1:])])
+    second = first.derivative()
+    return first, second - arb_poly([second[0]]), second.derivative()
+
+
+def _widest_disc(
+    equation: Equation, t: Any, X: list[Any], psi: list[list[Any]], drives: list[int], sums: list[Any], bits: int,
+    last: Step | None,
+) -> tuple[Any, Any, list[Any]]:  # fmt: skip
+    """Length, R and the defects on that disc, where the step allowed is the longest."""
+    from flint import arb
+
+    n = len(X) - 1
+    size = upper(X[1]) + upper(X[2]) / 8 + upper(X[3]) / 64
+    rates = [_root(upper(X[k]) / size, k) for k in (n - 2, n - 1, n)] if size > 0 else []
+    R = min(STEP.first / max(rates), STEP.widest) if max(rates, default=0) > 0 else STEP.widest
+    if last is not None:
+        R = min(R, STEP.grow * float(last.radius))
+    best: tuple[float, float, list[Any]] | None = None
+    for _ in range(STEP.discs):
+        bounds = _defects(equation, t, X, psi, drives, sums, arb(R))
+        if bounds is not None:
+            ratio = size * n / (bounds[0] * R + size * arb(2) ** -900)
+            length = R * min(2.0 ** (-bits / n) * _root(ratio, n), STEP.part)
+            if best is not None and length < best[0] * 1.01:
+                break
+            best = length, R, bounds
+        R *= STEP.shrink
+    if best is None or not best[0] > 0:
+        raise NotAnalytic("f or g is analytic on no disc round the flight that was tried")
+    return arb(best[0]), arb(best[1]), best[2]
+
+
+def _root(value: Any, order: int) -> float:
+    """About the k-th root of a ball, which itself may be out of the range of doubles."""
+    return float((value.log() / order).exp()) if value > 0 else 0.0
+
+
+def _defects(
+    equation: Equation, t: Any, X: list[Any], psi: list[list[Any]], drives: list[int], sums: list[Any], R: Any
+) -> list[Any] | None:
+    """Bounds of the defects of z and of the columns on a disc; None where f or g is not shown analytic on its image."""
+    from flint import acb
+
+    def around(value: Any, width: Any) -> Any:
+        return acb(value + ball(width), ball(width))
+
+    def at(P: list[Any], part: tuple[Any, Any, Any], order: int) -> Any:
+        return around(P[order], part[order](R))
+
+    f, by_x, by_v, *by_names = equation.run("disc", x=at(X, sums[0], 0), xdot=at(X, sums[0], 1))
+    g, *forced = equation.run("forcing", t=around(t, R))
+    inside = [f - g]
+    for P, part, drive in zip(psi, sums[1:], drives, strict=True):
+        value = by_x * at(P, part, 0) + by_v * at(P, part, 1)
+        if drive >= 0:
+            value -= forced[drive]
+        if drive > 0:
+            value += by_names[drive - 1]
+        inside.append(value)
+    if not all(acb(value).is_finite() for value in inside):
+        return None
+    return [upper(part[2](R)) + upper(value) for part, value in zip(sums, inside, strict=True)]
+
+
+def _bounded(
+    equation: Equation, series: tuple[list[Any], list[list[Any]]], drives: list[int], sums: list[Any],
+    disc: tuple[Any, Any, list[Any]], bits: int,
+) -> Step:  # fmt: skip
+    """The step on which the bounds are shown to hold, shortened until they do."""
+    from flint import arb
+
+    (X, psi), (length, R, defects), n = series, disc, len(series[0]) - 1
+    slack = arb(2) ** (-bits // 2)
+    power = R ** (1 - n)
+    for _ in range(STEP.boxes):
+        place = {name: X[order] + ball(sums[0][order](length) + slack) for order, name in enumerate(("x", "xdot"))}
+        by_x, by_v, *others = equation.run("box", **place)
+        A, B = upper(arb(by_x)), upper(arb(by_v))
+        if A.is_finite() and B.is_finite():
+            grown = (B * length + A * length**2 / 2).exp() / n
+            bound = upper(defects[0] * power * grown)
+            if bound * length**n * (1 + length) < slack:
+                second, mixed = _second_derivatives(others)
+                bends = [_bend(P, part, second, mixed, drive, bound, length)
+                         for P, part, drive in zip(psi, sums[1:], drives, strict=True)]  # fmt: skip
+                if all(bend.is_finite() for bend in bends):
+                    bounds = [upper((M * power + bend) * grown) for M, bend in zip(defects[1:], bends, strict=True)]
+                    return Step(X, bound, psi, bounds, length, R)
+        length = arb(float(length) / 2)
+    raise Refused("no step on which the bounds hold")
+
+
+def _second_derivatives(parts: list[Any]) -> tuple[Any, list[Any]]:
+    """|f_xx| + 2 |f_xv| + |f_vv|, and |f_px| + |f_pv| of each name."""
+    from flint import arb
+
+    sizes = [upper(arb(part)) for part in parts]
+    mixed = [sizes[k] + sizes[k + 1] for k in range(3, len(sizes), 2)]
+    return sizes[0] + 2 * sizes[1] + sizes[2], mixed
+
+
+def _bend(
+    P: list[Any], sums: tuple[Any, Any, Any], second: Any, mixed: list[Any], drive: int, bound: Any, length: Any
+) -> Any:
+    """What f_x, f_v and f_p along P leave out in the equation of a column, over s^(n-1)."""
+    along = upper(P[0]) + sums[0](length) + upper(P[1]) + sums[1](length)
+    total = second * along + (mixed[drive - 1] if drive > 0 else 0)
+    return upper(total * bound * (1 + length) * length)
