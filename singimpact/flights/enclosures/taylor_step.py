@@ -101,7 +101,19 @@ def step(
     ------
     Refused, NotAnalytic
     """
-    degree = degree_at(bits, expected)
+    try:
+        return _made(equation, state, columns, bits, most, removed, degree_at(bits, expected), last)
+    except (NotAnalytic, ValueError, ZeroDivisionError) as reason:  # flint raises where a series has no inverse
+        if any(part.rad() > 2.0 ** (-bits / 4) for part in state):
+            raise Refused("the ball of a state grew too wide on the way") from None
+        raise NotAnalytic(str(reason)) from None
+
+
+def _made(
+    equation: Equation, state: tuple[Any, Any, Any], columns: Sequence[Column], bits: int, most: Any, removed: int,
+    degree: int, last: Step | None,
+) -> Step:  # fmt: skip
+    """The step of a degree."""
     X = coefficients(equation, state, degree, removed)
     if not X[-1].is_finite():
         raise NotAnalytic("f or g has no power series where the flight goes")
