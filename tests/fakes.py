@@ -101,7 +101,9 @@ def oscillator_room():
 
                 with mpmath.workdps(digits + 5):
                     time = np.array([mpmath.mpf(1) / 3 for _ in tau])
-            return SimpleNamespace(tau=tau + 0.25, v=v, flight_time=time, status=np.where(gone, 3, 0).astype(np.int8))
+            status = np.where(gone, 3, 0).astype(np.int8)
+            proofs = {"certified": np.full(tau.shape, None), "notes": {0: "not certified: a fake"}}
+            return SimpleNamespace(tau=tau + 0.25, v=v, flight_time=time, status=status, **proofs)
 
         def orbit(self, tau, v, impacts=200, horizon=None):  # noqa: ARG002
             tau, v = float_array("tau", tau), float_array("v", v)

@@ -67,6 +67,10 @@ CALLS = {
     ),
     "ImpactOscillator.first_hit": ([lambda d: WAVES.first_hit(["0.1", "pi/3"], [0, "1e-30"], digits=d)], (15, 40, 70)),
     "ImpactOscillator.inverse_map": ([lambda d: BENT.inverse_map("1.2", "0.01", digits=d)], (20, 50)),
+    "ImpactOscillator.enclosed_impact": (
+        [lambda d: CUBIC.enclosed_impact("1.2", "0.1", radii={"v": "1e-6"}, digits=d)], (12, 30),
+    ),
+    "PeriodicOrbit.certified": ([lambda d: CLOSED.periodic(1, 2)[0].certified(d)], (20,)),
     "ImpactOscillator.chatter_limit": (
         [lambda d: WAVES.chatter_limit("1.2", "0.01", digits=d), lambda d: BENT.chatter_limit("1.2", "0.01", digits=d)],
         (12, 30),

@@ -35,7 +35,9 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     codes, rows = np.zeros(size, dtype=np.int8), np.full((10, size), np.nan)
     fields = [np.empty(size, dtype=object) for _ in range(4)]
     certified, reasons = np.full(size, None, dtype=object), {}
-    in_doubles = np.array([index not in known for index in range(size)], dtype=bool) & (roughs[0] > 0) & (roughs[1] < 0)
+    at_hand = np.array([index not in known for index in range(size)], dtype=bool)
+    in_doubles = at_hand & (states.v > 0) & (roughs[0] > 0) & (roughs[1] < 0)  # from rest the rows are not filled
+    roughs = np.where(in_doubles, roughs[:2], np.nan)
     kappas = undecided.conditions(osc, states, in_doubles, roughs[0], roughs[1])
     for index in range(size):
         proved = _proof(osc, states, index, digits, allowance.horizon, known, (*roughs[:2], kappas[1]))

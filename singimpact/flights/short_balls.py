@@ -9,7 +9,7 @@ A hit is the first one where y > 0 at the launch, y' < 0 on a window, and y < 0 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import frexp, log2
+from math import frexp, ldexp, log2
 from operator import mul
 from typing import Any
 
@@ -169,9 +169,11 @@ class ShortFlights:
         known = self.degrees.get(size)
         if known is not None:
             return self._cut(known)[0]
+        # the longest reach and the least v of that size: the degree does not depend on which flight came first
+        reach, v = ldexp(1.0, size[0]), ldexp(1.0, size[1] - 1)
         for degree in SETTINGS.degrees:
             cut, (by_v, alone, forced) = self._cut(degree)
-            left = GROWTH * (v * by_v + alone + reach * forced)
+            left = GROWTH * (2 * v * by_v + alone + reach * forced)
             if left == 0 or log2(left) + (degree - 1) * log2(reach) < log2(v) - self.bits:
                 self.degrees[size] = degree
                 return cut

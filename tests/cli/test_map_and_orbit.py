@@ -45,8 +45,9 @@ def test_a_status_that_is_not_hit_is_explained(singimpact):
 
 def test_digits(singimpact):
     result = singimpact("map", *LINEAR, "--tau", "1", "--v", "0.5", "--digits", "40", "--json")
-    time = json.loads(result.stdout)["steps"][0]["flight_time"]
-    assert time == "0." + "3" * 40
+    step = json.loads(result.stdout)["steps"][0]
+    assert step["flight_time"] == "0." + "3" * 40
+    assert (step["certified"], step["note"]) == (None, "not certified: a fake")
 
 
 def test_model_file(singimpact, tmp_path):
