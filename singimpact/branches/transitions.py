@@ -110,6 +110,13 @@ class OrbitTransitions(Transitions):
     notes : why a swan may be missing. orbit_notes : how orbits were found, and what may be missing of them.
     """
 
+    oscillator: Oscillator
+    over: str
+    ends: tuple[float, float]
+    intervals: tuple[Interval, ...]
+    branches: tuple[Branch, ...]
+    orbit_notes: tuple[str, ...]
+
     def __new__(cls, found: Transitions, *_: Any) -> OrbitTransitions:
         """The tuple is that of the transitions."""
         return super().__new__(cls, found)

@@ -1,5 +1,6 @@
-"""A result with its certificate as a file, and the second program that checks it.
+"""Certified results as files, and the second program that checks them.
 
-`certificate` writes and reads them; `checker` stands alone, imports nothing of the package, and encloses the motion
-again with its own code.  Certificates of polynomial identities are `algebra.certificates`.
+Not here: how a result is certified (`flights`), certificates of polynomial identities (`algebra`).
+Files: `certificate` (writes and reads), `checker` (stands alone: it imports nothing of the package, and encloses the
+motion again with its own code).
 """

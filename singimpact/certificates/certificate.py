@@ -104,6 +104,14 @@ def read_certificate(path: Any) -> Certificate:
     Raises
     ------
     InputError : no such file, no certificate; or one that is refused, with the reason.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import linear
+    >>> with TemporaryDirectory() as folder:
+    ...     certify(linear("2.8", 0, "0.8").impact_map("0.9", "0.3", digits=20)).save(f"{folder}/impact.json")
+    ...     print(read_certificate(f"{folder}/impact.json").content["v"]["radius"])
+    2.05e-22
     """
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))

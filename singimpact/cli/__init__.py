@@ -5,8 +5,8 @@ Files: `group` (the list of commands, refusals), `model` (the options that name 
 `columns` (rows of text), `pictures` (picture files), `followed` (orbits and their branches), `steep` (tables of
 `bench states --family steep`).
 Commands on a model: `map`, `orbit`, `section`, `lyapunov`, `chatter`, `threshold`, `sweep`, `basins`, `bifurcation`,
-`branch`, `border`, `events`, `classify`, `explore`, `scene`, `selftest`, `fixed_points`; on the paper: `verify`,
-`claims`, `errata`, `derive`, `figure`; on the package: `bench`, `stress`, `cite`.
+`branch`, `border`, `events`, `classify`, `explore`, `scene`, `selftest`, `certify`, `fixed_points`; on the paper:
+`verify`, `claims`, `errata`, `derive`, `figure`; on the package: `bench`, `stress`, `cite`.
 """
 
 from singimpact.cli.group import main as main
