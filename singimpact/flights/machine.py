@@ -97,12 +97,15 @@ class Machine:
         return found
 
     def _awaited(self, name: str) -> Entry | None:
-        """An entry from a process that this one has started; None when it has ended without it."""
-        request = self._request
+        """An entry from a process that this one has started; None when there is none, or it has ended without it."""
+        request, waited = self._request, False
         while request.exists() and any(process.poll() is None for process in _STARTED):
+            waited = True
             time.sleep(SETTINGS.look / 10)
             if self.place(name).is_file():
                 break
+        if not waited:  # a damaged file was seen, and named, a moment before
+            return None
         self._looked.pop(name, None)
         return self.entry(name)
 

@@ -37,6 +37,7 @@ def test_threshold(singimpact):
 
 
 @pytest.mark.slow
+@pytest.mark.plain_code  # kept results have the bytecode in their key
 def test_sweep(singimpact, tmp_path):
     given = [*LINEAR, "--over", "clearance", "--from", "-0.1", "--to", "0.1", "--points", "3"]
     given += ["--tau", "0.3", "--v", "0.4"]
