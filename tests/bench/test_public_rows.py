@@ -16,6 +16,7 @@ from singimpact.bench.groups import GROUPS, commands, series, start
 from singimpact.bench.measuring import Case, Effort, Method, cpu_seconds
 from singimpact.cli.group import COMMANDS
 
+pytestmark = pytest.mark.plain_code  # compares code objects, which probes exchange
 PACKAGE = str(Path(si.__file__).parent)
 BENCH = str(Path(PACKAGE) / "bench")
 SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)

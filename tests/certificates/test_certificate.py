@@ -199,6 +199,29 @@ def test_what_is_no_certificate_is_refused(content, why):
         checker.check(content)
 
 
+def test_files_are_answered_one_by_one(certificates, tmp_path, capsys):
+    good, bad, none = (tmp_path / name for name in ("good.json", "bad.json", "none.json"))
+    certificates["linear"].save(good)
+    bad.write_text("{")
+    assert checker.main([str(good)]) == 0
+    assert checker.main([str(good), str(bad), str(none)]) == 1
+    answers = [line.partition(": ")[2] for line in capsys.readouterr().out.splitlines()]
+    assert answers[:2] == ["holds", "holds"]
+    assert answers[2].startswith("refused: Expecting")
+    assert "No such file" in answers[3]
+    flint.ctx.prec, flint.ctx.cap = 53, 10
+
+
+@pytest.mark.parametrize("text", ["not JSON", "[1, 2]"])
+def test_a_file_that_is_no_certificate(text, tmp_path):
+    path = tmp_path / "certificate.json"
+    with pytest.raises(InputError, match="cannot be read"):
+        si.read_certificate(path)
+    path.write_text(text)
+    with pytest.raises(InputError, match=r"not JSON|only certificates"):
+        si.read_certificate(path)
+
+
 def test_text_of_a_model_is_data(certificates):
     content = json.loads(json.dumps(certificates["pendulum"].content))
     content["model"]["f"] = "__import__('os').getcwd()"

@@ -1,0 +1,38 @@
+"""`singimpact certify`: a certificate written, checked and refused."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+MODEL = ["--omega", "2.8", "--clearance", "0.1", "--restitution", "0.8"]
+
+
+def test_a_certificate_is_written_and_checked(singimpact, tmp_path):
+    path = tmp_path / "impact.json"
+    made = singimpact("certify", *MODEL, "--tau", "0.9", "--v", "0.3", "--digits", "20", "-o", path)
+    assert (made.exit_code, made.output) == (0, "")
+    content = json.loads(path.read_text())
+    assert content["launch"] == {"tau": "0.9", "v": "0.3"}
+    checked = singimpact("certify", path)
+    assert checked.exit_code == 0
+    assert checked.output.strip().endswith("holds")
+    path.write_text(path.read_text().replace('"2.8"', '"2.9"'))
+    refused = singimpact("certify", path)
+    assert refused.exit_code == 2
+    assert "the certificate is refused: the digest is not that of the content" in refused.output
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ([*MODEL, "--tau", "0.9"], "give --tau and --v"),
+        ([*MODEL, "--tau", "0.9", "--v", "0"], "is not certified"),
+        (["absent.json"], "absent.json cannot be read"),
+    ],
+)
+def test_refusals(given, why, singimpact):
+    refused = singimpact("certify", *given)
+    assert refused.exit_code == 2
+    assert why in refused.output
