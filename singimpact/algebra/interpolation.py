@@ -33,7 +33,7 @@ class ReadingSettings:
         2**127 - 1, 2**192 - 237, 2**256 - 189, 2**384 - 317, 2**521 - 1, 2**1279 - 1, 2**2203 - 1,
     )  # fmt: skip
     spare: int = 24
-    node: int = 1_000_003
+    node: int = 1009
 
 
 READING = ReadingSettings()

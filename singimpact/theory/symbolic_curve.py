@@ -76,13 +76,13 @@ def in_length(coefficient: RationalCoefficients, names: tuple[str, ...], j: int,
 
     products, unit = Products(), sympy.Symbol(derivative_name(j))
     symbols, weights = [sympy.Symbol(name) for name in names], [length_weight(name) for name in names]
-    total, known = [], {}
+    total, known = [], dict[tuple[int, int], tuple[Any, Any]]()
     for key, (above, below) in coefficient.terms.items():
         content, factors = factored(above)
-        text = str(below)  # the same few denominators come again and again
-        if text not in known:
-            known[text] = factored(below, below.degree())
-        under, divisors = known[text]
+        mark = below.degree(), int(below(2))  # the same few denominators come again and again; they are whole
+        if mark not in known or known[mark][0] != below:
+            known[mark] = below, factored(below, below.degree())
+        under, divisors = known[mark][1]
         present = [(place, int(e)) for place, e in enumerate(key) if e]  # most exponents are 0
         power = of_length + sum(weights[place] * e for place, e in present)
         jets = [(symbols[place], e) for place, e in present] + ([(unit, power)] if power else [])
