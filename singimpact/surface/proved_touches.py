@@ -86,11 +86,11 @@ def doubts_left(
 ) -> tuple[str, ...]:
     """Why lips, beaks or swallowtails may be missing in a list; nothing where balls show that none is."""
     flight, periods = rest_flight(family), family.periods(np.linspace(*ends, STEPS + 1))
-    if not periods:
-        return ()
-    if flight is None:
+    if "t" not in names_in(family.model.forcing(() if family.over == CLEARANCE else (family.over,))):
+        return ()  # a_c is constant
+    if flight is None or not periods:
         return ("lips, beaks and swallowtails are met on a grid: balls show that there are no others of linear models "
-                "alone, at numbers that leave damping and stiffness as they are",)  # fmt: skip
+                "with a period alone, at numbers that leave damping and stiffness as they are",)  # fmt: skip
     found, length = list(listed), max(periods.values())
     made = flight.touches(length, ends, times)
     doubts = _undecided(made, 2, f"lips and beaks for {family.over}")
@@ -128,8 +128,8 @@ def _near(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
 
 
 def _rounded(value: float) -> Any:
-    """All numbers of which a double is a rounding."""
-    exact, spare = Fraction(value), Fraction(abs(value) + 1e-300) / 2**51
+    """All numbers of which a double is a rounding; a swan at 0 is known to 2^-80 of the window."""
+    exact, spare = Fraction(value), Fraction(abs(value)) / 2**51 + Fraction(1, 2**70)
     return Balls(SEARCH.bits).interval(exact - spare, exact + spare)
 
 

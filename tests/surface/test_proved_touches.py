@@ -85,6 +85,11 @@ def test_what_is_not_proved_is_said():
     assert found.swans_complete
     assert not found.complete
     assert "met on a grid" in found.doubts[0]
+    # a forcing without a period has transitions too, and nothing is proved of them
+    polynomial = transitions(si.ImpactOscillator("x", "t**2 - t**3/3", 0, "0.5"), "clearance", (-0.2, 0.2), (-1, 1))
+    assert polynomial.swans_complete
+    assert not polynomial.complete
+    assert transitions(si.ImpactOscillator("x", 1, 0, "0.5"), "clearance", (-0.2, 0.2), (-1, 1)).complete
     # both ends of this flight are tangency points at one value: the equations are not independent there
     undamped = transitions(si.linear("2.8", 0, "0.8"), "clearance", (-0.14, 0.14), (-6, 6))
     assert "lips and beaks for clearance from -0.0461688" in undamped.doubts[0]

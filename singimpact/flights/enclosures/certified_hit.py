@@ -179,16 +179,8 @@ def _motion(
     if not v > 0 and launch.removed == 1:
         raise Refused("the launch velocity is not shown positive")
     assert isinstance(v, flint.arb)
-    return FramedMotion(
-        own,
-        wide,
-        tau,
-        v,
-        bits,
-        min(coarse, bits),
-        deviations if derivative or any(launch.radii.values()) else None,
-        launch.removed,
-    )
+    carried = deviations if derivative or any(launch.radii.values()) else None
+    return FramedMotion((own, wide), tau, v, bits, min(coarse, bits), carried, launch.removed)
 
 
 def _number(osc: Oscillator, name: str) -> Expression:

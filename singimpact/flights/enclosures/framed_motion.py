@@ -17,7 +17,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.flights.enclosures.equation import Equation, Refused
 from singimpact.flights.enclosures.first_root import narrowed
 from singimpact.flights.enclosures.taylor_step import Column, Step, step
-from singimpact.flights.enclosures.tube import Tube, centre, divided, height, speed
+from singimpact.flights.enclosures.tube import Tube, centre, divided, height, speed, upper
 
 Pair = tuple[Any, Any]
 
@@ -27,19 +27,19 @@ class FramedMotion:
 
     Parameters
     ----------
-    centre_equation, equation : the model with the centres of its numbers, and with the balls.
+    equations : the model with the centres of its numbers, and with the balls.
     tau, v : the launch, balls. bits : of the centre's steps. coarse : of the steps of the set.
     deviations : name -> ball round 0, of the names of the equation; None for a point without derivatives. removed : 1,
         or the power of t in z from rest, of a point alone: next to a zero of a_c are launches of another kind.
     """
 
     def __init__(
-        self, centre_equation: Equation, equation: Equation, tau: Any, v: Any, bits: int, coarse: int,
+        self, equations: tuple[Equation, Equation], tau: Any, v: Any, bits: int, coarse: int,
         deviations: Mapping[str, Any] | None, removed: int = 1,
     ) -> None:  # fmt: skip
         from flint import arb
 
-        self.of_centre, self.equation, self.bits, self.coarse = centre_equation, equation, bits, coarse
+        (self.of_centre, self.equation), self.bits, self.coarse = equations, bits, coarse
         self.step: Step | None = None
         self.wide: Step | None = None
         self.removed, self.time, self.flown = removed, arb(0), 0
@@ -51,8 +51,9 @@ class FramedMotion:
         self.box: Pair = arb(0), v - self.middle[1]
         if deviations is not None:
             self.middle_tau, self.box = centre(tau), (arb(0), arb(0))
-            self.drives = [0, -1, *range(1, len(equation.names) + 1)]
-            self.D = [tau - self.middle_tau, v - self.middle[1], *(deviations[name] for name in equation.names)]
+            names = self.equation.names
+            self.drives = [0, -1, *range(1, len(names) + 1)]
+            self.D = [tau - self.middle_tau, v - self.middle[1], *(deviations[name] for name in names)]
         self.full: list[Pair] = [(arb(0), arb(int(drive == -1))) for drive in self.drives]
         self.C: list[Pair] = list(self.full)
 
@@ -181,8 +182,6 @@ class FramedMotion:
 
 def _added(tube: Tube, column: Tube, size: Any) -> Tube:
     """A tube with a column times a deviation."""
-    from singimpact.flights.enclosures.tube import upper
-
     if size == 0:
         return tube
     largest = upper(size)
