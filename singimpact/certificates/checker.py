@@ -340,10 +340,13 @@ def check(told: dict[str, Any]) -> None:
         raise Refused(f"only certificates {SCHEMA!r} of a 'first impact' are checked here")
     if told.get("digest") != digest_of(told):
         raise Refused("the digest is not that of the content: the file was changed")
+    before = ctx.prec, ctx.cap
     try:
         _check_first_impact(told)
     except (KeyError, TypeError, ValueError, SyntaxError, ZeroDivisionError, AttributeError) as error:
         raise Refused(f"not a certificate: {error!r}") from error
+    finally:
+        ctx.prec, ctx.cap = before
 
 
 def _check_first_impact(told: dict[str, Any]) -> None:

@@ -209,7 +209,7 @@ def test_files_are_answered_one_by_one(certificates, tmp_path, capsys):
     assert answers[:2] == ["holds", "holds"]
     assert answers[2].startswith("refused: Expecting")
     assert "No such file" in answers[3]
-    flint.ctx.prec, flint.ctx.cap = 53, 10
+    assert (flint.ctx.prec, flint.ctx.cap) == (53, 10)
 
 
 @pytest.mark.parametrize("text", ["not JSON", "[1, 2]"])
