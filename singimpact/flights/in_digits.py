@@ -19,7 +19,7 @@ from singimpact.flights.rebound_law import rebound_in_digits
 from singimpact.flights.results import Flight, Step
 from singimpact.flights.states import States
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Status
+from singimpact.status import Cause, Status
 
 Array = np.ndarray[Any, Any]
 
@@ -83,9 +83,14 @@ def _proof(
     osc: Oscillator, states: States, index: int, digits: int, horizon: float,
     known: dict[int, tuple[int, Array, int]], roughs: tuple[Array, Array, Array],
 ) -> Proof:  # fmt: skip
-    """What balls prove of a flight; of one that is proved in doubles never to return, nothing is left to prove."""
+    """What balls prove of a flight; of one that is proved in doubles never to return, nothing is left to prove.
+
+    Towards a point where f or g is not analytic the steps in balls shorten without end: such a flight is not tried.
+    """
     if index in known and known[index][0] == Status.escaped:
         return Proof(None, None, None, "there is no hit: the flight is proved never to return")
+    if index in known and known[index][2] in (Cause.kink, Cause.domain_left):
+        return Proof(None, None, None, "f or g is not analytic where the flight goes")
     rough = None if index in known else (float(roughs[0][index]), float(roughs[2][index]))
     return proof(osc, states, index, digits, horizon, rough)
 
