@@ -115,6 +115,7 @@ def certified_hit(
     bits = min(bits + _spare(*expected), most)
     box = framed = any(launch.radii.values())
     if box:
+        # digits beyond the width of a box are lost in it: derivatives over the box carry no more
         coarse = max(coarse, min(bits, ENCLOSURE.guard - floor(log2(max(launch.radii.values())))))
     elif expected[0] > ENCLOSURE.wrapped:
         framed, coarse = True, bits if derivative else coarse
@@ -133,6 +134,7 @@ def certified_hit(
         except (NoHit, TooLong):
             raise
         except Refused as reason:
+            # more bits may pass a singularity that is near; one that is met they never do
             singular += isinstance(reason, NotAnalytic)
             if (box and coarse >= bits) or singular > ENCLOSURE.singular:
                 raise
@@ -142,6 +144,7 @@ def certified_hit(
         if bits >= most:
             raise Refused(f"{why} (at {bits} bits)")
         bits = min(bits + more, most)
+        # a ball carried for so many steps has grown by the wrapping effect (Moore 1966), which a frame avoids
         framed = framed or flown > ENCLOSURE.long
         if derivative and not box:
             coarse = bits
@@ -205,6 +208,7 @@ def _phase(osc: Oscillator, tau: Expression, bits: int) -> Any:
     size = abs(float(plain.mid()))
     if osc.period is None or not size > 64:
         return plain
+    # the fraction of tau/period has the digits asked for only if the product with all whole periods has them
     more = bits + ENCLOSURE.guard + (int(abs(plain).upper().man_exp()[1]) + 64 if size > 1e15 else 64)
     with balls_at(more + max(int(plain.mid().man_exp()[0]).bit_length(), 0)):
         exact, period = _ball(tau, more), _ball(osc.period, more)

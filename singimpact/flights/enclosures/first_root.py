@@ -61,6 +61,8 @@ def first_root(value: Tube, slope: Tube, length: Any, bits: int) -> Any | None:
         a, b = stack.pop()
         piece, middle = a.union(b), centre(a + (b - a) * ROOT.split)
         rate = slope(piece)
+        # no root on this piece: the value is positive throughout, by itself, by the mean value form, or since it rises
+        # from there
         if value(piece) > 0 or value(middle) + rate * (piece - middle) > 0 or (rate > 0 and value(a) > 0):
             continue
         if rate < 0:
@@ -73,6 +75,7 @@ def first_root(value: Tube, slope: Tube, length: Any, bits: int) -> Any | None:
                 raise RootAtEnd
             if b - a < least:
                 raise NearGraze(a)
+            # the sign at b is open, as the root may be b itself: this piece and the next are cut at another place
             _, after = stack.pop()
             b = centre(b + (after - b) * ROOT.apart)
             stack += [(b, after), (a, b)]
@@ -87,6 +90,7 @@ def narrowed(piece: Any, value: Tube, slope: Tube) -> Any:
     """A smaller ball with the one root of a piece."""
     for _ in range(ROOT.narrowings):
         middle = centre(piece)
+        # interval Newton: the root lies in both balls
         newton = middle - value(middle) / slope(piece)
         if not newton.is_finite():
             return piece

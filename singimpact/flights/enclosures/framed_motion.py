@@ -101,6 +101,8 @@ class FramedMotion:
             [drive for drive in self.drives if drive >= 0], self.by_drive, strict=True)}  # fmt: skip
         self.full = [self._mapped(flow, each, driven.get(drive)) for each, drive in zip(
             self.full, self.drives, strict=True)]  # fmt: skip
+        # the part of each column that rounding moves goes into the box of errors, the rest stays a point: Lohner's set,
+        # x + C D + Q box
         images = [self._mapped(flow, each, driven.get(drive)) for each, drive in zip(self.C, self.drives, strict=True)]
         self.C = [(centre(a), centre(b)) for a, b in images]
         z, v = (part(length) for part in self.own)
@@ -121,6 +123,7 @@ class FramedMotion:
     def _turned(self, flow: list[list[Any]], error: list[Any]) -> None:
         """The box in a new frame, whose first axis is the image of the longer side."""
         (a, b), box = self.turn, self.box
+        # Lohner (1987): the image of a box is a thin parallelogram; a frame along its longer side wraps it closely
         sides = self._mapped(flow, (a, b), None), self._mapped(flow, (-b, a), None)
         lengths = [float(abs(side[0]).mid() + abs(side[1]).mid()) * float(part.rad())
                    for side, part in zip(sides, box, strict=True)]  # fmt: skip

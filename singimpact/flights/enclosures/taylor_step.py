@@ -139,6 +139,7 @@ def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, r
     X, V = [z, v], [v]
     while len(X) <= degree:
         m = len(X) - 1
+        # Newton's method on series doubles the number of right coefficients (Brent and Kung 1978)
         count = min(2 * m, degree - 1)
         f, by_x, by_v = (
             _listed(part, count)
@@ -211,6 +212,7 @@ def _widest_disc(
     n = len(X) - 1
     size = upper(X[1]) + upper(X[2]) / 8 + upper(X[3]) / 64
     rates = [_root(upper(X[k]) / size, k) for k in (n - 2, n - 1, n)] if size > 0 else []
+    # the coefficients decay like R^-k: the largest of the last three roots gives a first guess of the radius
     R = min(STEP.first / max(rates), STEP.widest) if max(rates, default=0) > 0 else STEP.widest
     if last is not None:
         R = min(R, STEP.grow * float(last.radius))
@@ -218,6 +220,7 @@ def _widest_disc(
     for _ in range(STEP.discs):
         bounds = _defects(equation, t, X, psi, drives, sums, arb(R))
         if bounds is not None:
+            # Cauchy's bound of the cut-off at length h is about D R (h/R)^n/n: h where it is 2^-bits of the size
             ratio = size * n / (bounds[0] * R + size * arb(2) ** -900)
             length = R * min(2.0 ** (-bits / n) * _root(ratio, n), STEP.part)
             if best is not None and length < best[0] * 1.01:

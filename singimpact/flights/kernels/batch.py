@@ -76,6 +76,7 @@ def fly_batches(tau: Any, v: Any, count: int, w: Any, model: Any, batch: Any, st
 def advance_times(b: int, v: Any, lane: Any, turn: Any) -> None:
     """Times since the start move on, compensated; whole periods are taken off, so that phases keep their digits."""
     for k in range(LANES):
+        # Kahan's sum, as in `orbits.later`
         part = (lane[TIME + k] if lane[MODE + k] != 3.0 else 0.0) - lane[LOST + k]
         total = lane[SINCE + k] + part
         lost = (total - lane[SINCE + k]) - part

@@ -105,6 +105,7 @@ def judged(lane: Any, step: float, first: bool) -> None:
     at most one d is neither clearly > 0 before nor clearly < 0 after, x rises, stays within 3 room, and falls: what
     begins above 4 room meets no root if it ends above and one if it ends below.
     """
+    # the control points: b0 = x, b1 = x + h x'/5, b2 = x + 2 h x'/5 + h^2 x''/20, and the same from the other end
     fifth, twentieth, launched = step * 0.2, step * step / 20.0, 1.0 if first else 0.0
     for k in range(LANES):
         z0, z1, room = lane[Z0 + k], lane[Z1 + k], lane[BOUND + k]

@@ -58,6 +58,7 @@ def quintic_guess(lane: Any, step: float) -> None:
             value = z0 + y * (d0 + y * (c0 + y * (a3 + y * (a4 + y * a5))))
             slope = d0 + y * (2 * c0 + y * (3 * a3 + y * (4 * a4 + y * 5 * a5)))
             bend = 2 * c0 + y * (6 * a3 + y * (12 * a4 + y * 20 * a5))
+            # Halley's method: twice triples the digits of the secant, to six
             y -= 2 * value * slope / (2 * slope * slope - value * bend)
             y = y if y > 0 else 0.0
             y = y if y < 1 else 1.0
@@ -80,6 +81,7 @@ def refine_roots(lane: Any, X: Any, step: float, horizon: float) -> None:
         )  # fmt: skip
         scale = x if first else step
         change = -value / slope
+        # Halley's step; bend is half the second derivative
         change = change / (1 + change * bend / slope)
         good = (slope < 0) & (abs(change * bend) < -1e-3 * slope) & (abs(change) < 1e-3 * scale)
         x += change

@@ -62,6 +62,7 @@ def chatter_end(tau: float, v: float, search: Any, model: Any, work: Any, rows: 
     while True:
         t, t_low = launched(tau, since, lost, model)
         code, a = linear_hit(t, t_low, v, near if look < 0 else (inf if n == look else 0.0), model, work)
+        # the wall no longer presses: the mass has left it, or leaves it now
         if n > 0 and a >= 0:
             end = tau + (since - lost)
             error = carried_rounding(tau, since - lost, n, 0.0, r, rows, 0.0) + UNIT * abs(end)
@@ -77,6 +78,8 @@ def chatter_end(tau: float, v: float, search: Any, model: Any, work: Any, rows: 
                 return COMPLETED, end, trust * error, n
             if not error < inf:
                 return TOO_WIDE, tau, 0.0, n
+            # each impact multiplies v by about r, and the last term of the series by r^4: so many impacts bring it
+            # below rounding
             count = min(log(error / (UNIT * size / 8 + 1e-300)) / (-4 * log(r)), BLOCK, most - n)
             look = n + (int(count) + 1 if count > int(count) else max(int(count), 1))
         if n >= most:
@@ -120,6 +123,7 @@ def carried_rounding(tau: float, since: float, n: int, by_v: float, r: float, ro
     since, v : of the last state, after n impacts; v = 0 where the end does not depend on it. by_v : the derivative of
         the end by it.
     """
+    # backwards: (by_tau, by_v) is the gradient of the end by the state before impact i, one vector times D G an impact
     by_tau, total = 1.0, abs(tau + since) + since + 4 * abs(by_v) * v
     for i in range(n - 1, -1, -1):
         a, b, c, d = rows[i, 2], rows[i, 3], -r * rows[i, 4], -r * rows[i, 5]

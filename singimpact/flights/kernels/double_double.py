@@ -18,6 +18,7 @@ def sum_twice(a: float, a_low: float, b: float, b_low: float) -> Any:
     True
     """
     total = a + b
+    # Knuth's exact sum: total + rest = a + b whichever is larger
     part = total - a
     rest = ((a - (total - part)) + (b - part)) + (a_low + b_low)
     high = total + rest
@@ -33,6 +34,7 @@ def product_twice(a: float, a_low: float, b: float, b_low: float) -> Any:
     True
     """
     total = a * b
+    # 2^27 + 1 splits a double into two halves of 26 bits (Veltkamp); their four products are exact
     big = 134217729.0 * a
     a_high = big - (big - a)
     big = 134217729.0 * b
@@ -46,6 +48,7 @@ def product_twice(a: float, a_low: float, b: float, b_low: float) -> Any:
 
 def divided(a: float, a_low: float, k: int) -> Any:
     """(a + a_low)/k as two doubles."""
+    # one step of long division: the remainder of the double quotient gives the low part
     high = a / k
     back, back_low = product_twice(high, 0.0, 1.0 * k, 0.0)
     rest = (((a - back) - back_low) + a_low) / k

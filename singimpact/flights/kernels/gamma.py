@@ -166,6 +166,7 @@ def missed(tau: float, v: float, end: float, search: Any, model: Any, work: Any)
         short = 2 * v < -a * model.rules.lost * search.settings[WITHIN] * -sigma
         if (code != 0) or a >= 0 or short:
             return nan, nan
+        # the chain rule through the impact: the pair (by_tau, by_v) is D G^n applied to (0, 1)
         late = hit[TIME_BY_TAU] * by_tau + hit[TIME_BY_V] * by_v
         by_v = -search.rho[0] * (hit[VELOCITY_BY_TAU] * by_tau + hit[VELOCITY_BY_V] * by_v)
         by_tau += late
@@ -176,6 +177,7 @@ def missed(tau: float, v: float, end: float, search: Any, model: Any, work: Any)
     sigma = (since - lost) - end
     if not (sigma < 0 and -sigma <= search.settings[REACH]):
         return nan, nan
+    # Horner's scheme for gamma = sigma^(j + 1) P(sigma), and for P'
     total, along = 0.0, 0.0
     for i in range(TERMS_OF_GAMMA - 1, -1, -1):
         along = along * sigma + total

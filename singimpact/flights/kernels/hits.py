@@ -124,9 +124,11 @@ def conditioned(t: float, v: float, e: float, variation: Any, hit: Any) -> None:
     """
     by_v, by_v_dot, by_tau, by_tau_dot = variation
     time, u = hit[FLIGHT_TIME], hit[VELOCITY]
+    # x(T; tau, v) = c: by the implicit function theorem d T = -d x/x'; x' at the hit moves by d x' + x'' d T
     hit[TIME_BY_TAU], hit[TIME_BY_V] = -by_tau / u, -by_v / u
     hit[VELOCITY_BY_TAU] = by_tau_dot + e * hit[TIME_BY_TAU]
     hit[VELOCITY_BY_V] = by_v_dot + e * hit[TIME_BY_V]
+    # an error of tau is relative to tau, or to the flight time where tau is small: it is rounded with both
     reach = max(abs(t), time)
     hit[CONDITION] = 1 + (abs(hit[TIME_BY_TAU]) * reach + abs(hit[TIME_BY_V]) * v) / time
     hit[VELOCITY_CONDITION] = 1 + (abs(hit[VELOCITY_BY_TAU]) * reach + abs(hit[VELOCITY_BY_V]) * v) / abs(u)
@@ -182,6 +184,8 @@ def carried_errors(t: float, v: float, time: float, u: float, judged: Any, row: 
     zz, zu, uu, e, steps = judged[4], judged[5], judged[6], judged[7], judged[8]
     row[FLIGHT_TIME], row[VELOCITY] = time, u
     conditioned(t, v, e, (judged[0], judged[1], judged[2], judged[3]), row)
+    # the error (z, u) at the time of the hit moves the hit by -z/u and its velocity by u - z e/u; zz, zu, uu are second
+    # moments
     turn = e / u
     late = (zz / (u * u) + steps * (time * UNIT / 2) * (time * UNIT / 2)) ** 0.5
     off = max(uu - 2 * turn * zu + turn * turn * zz, 0.0) ** 0.5

@@ -59,6 +59,8 @@ def pair(a: complex, b: complex, t: float) -> complex:
     """D[a, b](t) = (e^{a t} - e^{b t})/(a - b)."""
     # numpy's complex scalars divide in another way than Python's and the compiler's
     a, b, t = complex(a), complex(b), float(t)
+    # D[a, b](t) = t e^{(a + b) t/2} sinh(y)/y, y = (a - b) t/2: next to a = b the series of sinh(y)/y replaces a
+    # difference of nearly equal numbers (McCurdy, Ng and Parlett 1984)
     y = (a - b) * t / 2
     if abs(y) < 0.1:
         y2 = y * y
@@ -79,6 +81,8 @@ def triple(a: complex, b: complex, c: complex, t: float) -> complex:
         return (pair(a, b, t) - pair(b, c, t)) / (a - c)
     mean = (a + b + c) / 3
     a, b, c = (a - mean) * t, (b - mean) * t, (c - mean) * t
+    # all three close: D[a, b, c](t) = t^2 sum_m h_m(a t, b t, c t)/(m + 2)!, h_m the complete homogeneous symmetric
+    # polynomials, about the mean of the three
     h1, h2, h3, total, factorial = 1.0 + 0j, 1.0 + 0j, 1.0 + 0j, 0.5 + 0j, 2.0
     for m in range(1, 14):
         h1 = h1 * a

@@ -26,6 +26,7 @@ def fill_fine(p: Any, rest: Any, step: float, fine: Any, space: Any) -> None:
     p, rest : numbers of the model and what their doubles leave out. space : scratch of shape (4, n, 2).
     """
     n = fine.shape[1]
+    # exp(h A) column by column: each is the series applied to a unit vector
     for i in range(n):
         for j in range(n):
             space[0, j, 0], space[0, j, 1] = 1.0 * (i == j), 0.0
@@ -68,6 +69,7 @@ def move_twice(space: Any, h: float, h_low: float, p: Any, rest: Any) -> None:
     y, term, slope = space[0], space[1], space[2]
     n = len(y)
     for i in range(n):
+        # term = (h A)^k y/k!, summed in double-doubles (Dekker 1971) until it is below 1e-33 of y
         term[i, 0], term[i, 1] = y[i, 0], y[i, 1]
     slope[2, 0] = slope[2, 1] = 0.0
     for k in range(1, 40):
@@ -104,6 +106,7 @@ def state_after(t: float, t_low: float, v: float, time: float, model: Any, space
         y[3 + 2 * j, 0], y[3 + 2 * j, 1], y[4 + 2 * j, 0], y[4 + 2 * j, 1] = wave_twice(angle, left)
     left, left_low = time, 0.0
     while left >= step:
+        # m = LEVEL a + b: two matrices, exp(LEVEL a step A) and exp(b step A), move y by m steps
         m = min(int(left / step), LEVEL * LEVEL - 1)
         if m >= LEVEL:
             multiply_twice(fine[LEVEL + m // LEVEL], space)
@@ -129,6 +132,7 @@ def refine_hit(t: float, t_low: float, v: float, time: float, model: Any, space:
         change = -y[0, 0] / u
         # next to a graze a step is not short beside u/e, and Halley's step leaves an error of its third order
         settled = abs(change * e) < 1e-6 * abs(u) and abs(change) < 1e-6 * time
+        # Halley's method: Newton's step with the curvature x'' = e, which here costs nothing
         change *= 1 - change * e / (2 * u)
         if settled:
             return time + change, u + (y[1, 1] + change * (e + change * jerk / 2)), True

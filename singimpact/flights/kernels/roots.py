@@ -34,6 +34,8 @@ def first_root(q: Any, n: int, h: Any, base: Any, ulp: Any) -> Any:
     >>> code, round(place, 15)
     (1, 1.0)
     """
+    # one pass: a lower bound of q on (0, h], in which positive terms are left out, and a bound of |q'''|. 1.0 + 0 h has
+    # the type of h, a double or an mpf
     power = 1.0 + 0 * h
     least = q[0] - base
     third = 0 * h
@@ -53,11 +55,14 @@ def first_root(q: Any, n: int, h: Any, base: Any, ulp: Any) -> Any:
         noise = base + ulp * size
         reach = h
         if a1 < 0:
+            # Kantorovich: if |q| |q''| < q'^2/2 over twice the Newton step, the iteration converges to a root there,
+            # the only one; 8 in place of 2 leaves room for rounding
             reach = 2 * (abs(a0) + noise) / (-a1)
             bend = abs(a2) + third * reach
             if s + reach <= h and 8 * (abs(a0) + noise) * bend < a1 * a1:
                 return newton_in_kernel(q, n, s, reach, a0, a1)
         if s > 0 and a0 <= 2 * noise:
+            # the least value of the parabola through the point: how deep the graze would be
             depth = a0 - a1 * a1 / (2 * a2) if a2 > 0 else a0
             return 2, s, a1, depth, noise
         # the lower end of what q may be: near a touch the rounding of q decides the sign of the discriminant
@@ -76,6 +81,7 @@ def sums(q: Any, n: int, s: Any) -> Any:
     >>> sums([1.0, -2.0, 3.0, 1.0], 3, 2.0)
     (17.0, 22.0, 18.0, 25.0)
     """
+    # a Horner scheme in s^2 for each half: two independent chains of multiplications, which a processor overlaps
     x = s * s
     top = n - n % 2
     e0, e1, e2, es = q[top], 0 * s, 0 * s, abs(q[top])
@@ -99,6 +105,7 @@ def safe_step(a0: Any, a1: Any, a2: Any, third: Any, room: Any) -> Any:
     """A step that cannot pass a root: q >= a0 + a1 e + (a2 - third w) e^2/2 for 0 <= e <= w."""
     width = room
     while True:
+        # the third derivative lowers the second by this much at most, so the parabola stays below q
         low = a2 - third * width
         inside = a1 * a1 - 2 * low * a0
         step = width

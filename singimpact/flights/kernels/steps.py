@@ -31,6 +31,8 @@ def wished_step(X: Any, z: Any, n: int, longest: Any, ulp: Any) -> Any:
         size = ulp * (abs(z) + step_terms(X, n, h)) / 8
         if not size > 0 or not size < 1e300:
             break
+        # Jorba and Zou (2005): the last two coefficients estimate the radius of convergence; both, since one may vanish
+        # by symmetry
         least = log(size)
         for k in range(n - 1, n + 1):
             if X[k] != 0:
@@ -108,6 +110,8 @@ def allowed_step(bound: Any, R: Any, X: Any, n: int, wish: Any, ulp: Any) -> Any
     if not bound < 1e280:
         return 0 * wish
     h = min(wish, 0.7 * R)
+    # Cauchy: coefficients of a function bounded by `bound` on |s| <= R are at most bound/R^k; those from n - 1 on sum
+    # to bound q^(n-1)/(1 - q)
     q = h * (65 / 64) / R
     # 1.04: the reach of the root finder, squared, and that the bound is summed without outward rounding
     error = 1.04 * h * h * bound * q ** (n - 1)

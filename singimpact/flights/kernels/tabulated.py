@@ -133,6 +133,8 @@ def resolve_step(v: float, acceleration: float, between: Any, model: Any, work: 
 def root_after_launch(v: float, acceleration: float, h: float, model: Any, work: Any) -> Any:
     """`first_root` of v + X_2 t + X_3 t^2 + ... on (0, h]."""
     p, reciprocal, X, q = model.numbers, model.table.taylor, work.X, work.q
+    # the k-th coefficient of v + X_2 t + ... is at most strength (fastest)^(k - 2)/k!: terms are summed until this is
+    # below 1e-18 v
     strength = abs(p.steady) + (p.fastest + p.fastest * p.fastest * h) * v
     for j in range(len(p.waves)):
         strength += abs(p.waves[j, COSINE]) + abs(p.waves[j, SINE])
@@ -219,6 +221,7 @@ def monotone_step(between: Any, bend: float, model: Any, work: Any) -> Any:
             return 0, step, 0.0
         if not depth < -2 * noise:
             return 2, 0.0, 0.0
+        # the first of the two roots of the parabola at the lowest point
         s -= (-2 * depth / curve) ** 0.5
     return newton(X, order, s, step)
 
@@ -231,6 +234,7 @@ def quintic_root(between: Any, step: float) -> float:
     a3, a4 = 10 * rise - 6 * d0 - 4 * d1 - 3 * c0 + c1, -15 * rise + 8 * d0 + 7 * d1 + 3 * c0 - 2 * c1
     a5 = 6 * rise - 3 * d0 - 3 * d1 - c0 + c1
     x = z / (z - between.z1)
+    # three steps of Newton's method from the secant: about five digits, from which `newton` needs two more
     for _ in range(3):
         value = z + x * (d0 + x * (c0 + x * (a3 + x * (a4 + x * a5))))
         slope = d0 + x * (2 * c0 + x * (3 * a3 + x * (4 * a4 + x * 5 * a5)))
@@ -294,6 +298,7 @@ def series(z: float, u: float, n: int, p: Any, reciprocal: Any, X: Any, W: Any, 
 
     reciprocal : 1/k!.
     """
+    # X[k] takes k! times the coefficients first: x^(k) = force^(k-2) - d x^(k-1) - k x^(k-2)
     X[2] = p.steady
     for k in range(3, n + 1):
         X[k] = 0.0

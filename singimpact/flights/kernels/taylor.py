@@ -38,6 +38,8 @@ def taylor_flight(
     if removed == 0:
         z = q[0]
     if acceleration == acceleration:
+        # the difference of the two values of a_c shifts X[2] on the first step: near a zero of a_c the recurrence has
+        # few digits of it
         coefficients(launch, time, z, zero, zero, order - order + 2, p, work)  # a literal 2 is compiled for itself
         shift = acceleration / 2 - X[2]
     longest, pace, bend = p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0), zero
@@ -50,6 +52,7 @@ def taylor_flight(
         # a step that time cannot tell from none
         if not h > ulp * time:
             return 22, time, u, z, zero + singular_part(X, W, order, max(h, ulp * (time + ulp)), p)
+        # a step beyond the horizon decides nothing more; twice, so that the last one is not cut to rounding
         if h > 2 * (horizon - time):
             h = 2 * (horizon - time)
         q[0] = z
@@ -58,6 +61,7 @@ def taylor_flight(
         # a little past the step, so that a root on its end is not lost between two steps
         code, s, slope, depth, bound = first_root(q, order - removed, h * overlap, noise, ulp)
         if code > 0:
+            # q was (x - c)/t^removed: at its root x' = t^removed q'
             raised = 1 + zero
             for _k in range(removed):
                 raised *= s
@@ -104,6 +108,7 @@ def moved(X: Any, z: Any, z_lost: Any, u: Any, u_lost: Any, n: int, h: Any) -> A
         size = size * h + abs(X[k])
         if k > 1:
             turn = turn * h + k * X[k]
+    # Kahan's sum: what the addition to z rounds away is subtracted from the next increment
     part = rise * h - z_lost
     total = z + part
     z_lost = (total - z) - part
@@ -133,6 +138,7 @@ def follow(launch: Any, v: Any, times: Any, p: Any, rules: Any, work: Any, out: 
         h, _overlap, pace = step_size(X, W, z, order, longest, ulp, p, pace)
         if not h > 0 or not abs(u) < 1e150 or not abs(z) < 1e150:
             break
+        # backwards in time a step has the same length and the other sign: the discs are symmetric
         forward = times[len(times) - 1] >= 0
         while i < len(times) and abs(times[i] - time) <= h:
             out[i, 0], out[i, 1], _size = advanced(X, z, order, times[i] - time)

@@ -134,6 +134,7 @@ def column_step(work: Any, columns: Any, n: int, h: Any, R: Any, ulp: Any, p: An
     for _ in range(100):
         if not h > 0:
             break
+        # as in `steps.allowed_step`: Cauchy's bound of the cut-off, integrated twice
         q = h / R
         part = 1.001 * h * h * q ** (n - 1) / (n * (1 - q)) if q < 0.9 else 1e300 + 0 * h
         a, b, d = disc_of_columns(work, columns, n, R, p)

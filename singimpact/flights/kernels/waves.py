@@ -25,6 +25,7 @@ def reduced_twice(tau: float, turn: Any) -> Any:
     """
     if not abs(tau) > turn[0] or turn[0] == 0:
         return tau, 0.0
+    # Cody and Waite: the period in parts whose products with n are exact; the differences are summed as high + low
     n, high, low = (tau / turn[0] + NEAREST) - NEAREST, tau, 0.0
     for i in range(1, 5):
         part, before = n * turn[i], high
@@ -83,6 +84,7 @@ def wave(angle: float, rest: float) -> Any:
     n = (angle * 0.6366197723675814 + NEAREST) - NEAREST
     quarter = n - 4 * ((n * 0.25 + NEAREST) - NEAREST)
     c, s = in_quarter(angle, rest, n)
+    # n mod 4 quarter turns: odd ones exchange cosine and sine, and two of the four change each sign
     if abs(quarter) == 1:
         c, s = s, c
     return (-c if quarter == 1 or abs(quarter) == 2 else c), (-s if quarter == -1 or abs(quarter) == 2 else s)
@@ -98,6 +100,8 @@ def in_quarter(angle: float, rest: float, n: float) -> Any:
     x = y + tail
     tail += y - x
     x2 = x * x
+    # minimax polynomials of sin and cos on [-pi/4, pi/4], as in fdlibm (Sun Microsystems 1993), with the tail of the
+    # reduction
     s = x2 * (2.75573137070700676789e-6 + x2 * (-2.50507602534068634195e-8 + x2 * 1.58969099521155010221e-10))
     s = -1.66666666666666324348e-1 + x2 * (8.33333333332248946124e-3 + x2 * (-1.98412698298579493134e-4 + s))
     s = x + (x * x2 * s + tail * (1 - 0.5 * x2))
@@ -126,6 +130,7 @@ def wave_twice(angle: float, rest: float) -> Any:
         s, s_low = divided(one, one_low, k)
         c, c_low = divided(c, c_low, k)
     for _ in range(6):
+        # cos 2x - 1 = -2 sin^2 x and sin 2x = 2 sin x (1 + (cos x - 1)): no difference cancels
         square, square_low = product_twice(s, s_low, s, s_low)
         one, one_low = sum_twice(c, c_low, 1.0, 0.0)
         s, s_low = product_twice(2 * s, 2 * s_low, one, one_low)
