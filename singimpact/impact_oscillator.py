@@ -243,7 +243,7 @@ class ImpactOscillator(Oscillator):
 
         Returns
         -------
-        list of PeriodicOrbit : with `.complete`, True if it is shown that there are no others, and `.notes`.
+        list of PeriodicOrbit : with `.complete`, True if it is shown that there are no others, and `.notes`, why not.
 
         Examples
         --------

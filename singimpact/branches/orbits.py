@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from singimpact.branches.enclosed_orbit import EnclosedOrbit
 
 Array = np.ndarray[Any, Any]
+Sentences = tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,14 +131,32 @@ class PeriodicOrbits(list[PeriodicOrbit]):
 
     Parameters
     ----------
-    complete : whether it is shown that there are no others. notes : how they were found, and what may be missing.
+    doubts : why there may be others, or a computation that finds out when it is asked. notes : what else to know.
     """
 
     def __init__(
-        self, orbits: Iterable[PeriodicOrbit] = (), complete: bool = False, notes: tuple[str, ...] = ()
-    ) -> None:
+        self, orbits: Iterable[PeriodicOrbit] = (), doubts: Sentences | Callable[[], Sentences] = (),
+        notes: Sentences = (),
+    ) -> None:  # fmt: skip
         super().__init__(orbits)
-        self.complete, self.notes = complete, notes
+        self._doubts, self._notes = doubts, notes
+
+    @property
+    def doubts(self) -> Sentences:
+        """Why there may be others; empty where it is shown that there are none. The proof runs when this is read."""
+        if callable(self._doubts):
+            self._doubts = self._doubts()
+        return self._doubts
+
+    @property
+    def complete(self) -> bool:
+        """Whether it is shown that there are no others."""
+        return not self.doubts
+
+    @property
+    def notes(self) -> Sentences:
+        """How the orbits were found, and why there may be others."""
+        return (*self._notes, *self.doubts)
 
 
 @dataclass

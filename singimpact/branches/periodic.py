@@ -1,12 +1,14 @@
 """Periodic orbits of a model: n impacts in k periods of the forcing.
 
-One impact in k periods of a linear model is found in closed form.  All else by Newton's method on the closing
-conditions, from many starts, grazes among them.
+Orbits of one impact of a linear model are found in closed form. All else by Newton's method on the closing conditions,
+from many starts, grazes among them; for two impacts of a linear model balls show, when they are asked, that none is
+missed.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,10 +18,11 @@ from singimpact.algebra.numbers import as_float
 from singimpact.branches.closing import Closing
 from singimpact.branches.digits import in_digits
 from singimpact.branches.one_impact import phases_and_speeds
-from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, same_states
+from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits, same_states
 from singimpact.branches.resting import chatter_orbits, free_orbits
 from singimpact.branches.solutions import orbit_at
 from singimpact.branches.starts import closed_from, grid_of_starts
+from singimpact.branches.two_impacts import two_impacts
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse
@@ -42,6 +45,7 @@ class PeriodicSettings:
 
 
 SETTINGS = PeriodicSettings()
+SEARCHED = "found from a grid of starts and from grazes: it is not shown that there are no others"
 
 
 def periodic(osc: Oscillator, n: Any, k: int, start: Any = None, *, digits: int | None = None) -> PeriodicOrbits:
@@ -57,8 +61,9 @@ def periodic(osc: Oscillator, n: Any, k: int, start: Any = None, *, digits: int 
 
     Returns
     -------
-    list of `PeriodicOrbit` in the order of the first phase, with `.complete` (whether there are shown to be no others)
-        and `.notes`. Orbits that close sooner, and grazes, are not among them.
+    list of `PeriodicOrbit` in the order of the first phase, with `.complete` (whether there are shown to be no others;
+        of two impacts of a linear model a proof runs when it is read) and `.notes`. Orbits that close sooner, and
+        grazes, are not among them.
 
     Raises
     ------
@@ -78,20 +83,21 @@ def periodic(osc: Oscillator, n: Any, k: int, start: Any = None, *, digits: int 
     n = _count("n", n, 0)
     if n == 0:
         return free_orbits(osc, k)
-    notes = Notes()
+    doubts: Any = ("found from the start given",)
     if start is not None:
-        found, complete = _from_start(osc, n, k, start), False
-        notes.add("found from the start given")
+        found = _from_start(osc, n, k, start)
     else:
-        found, complete = _all(osc, n, k, notes)
+        found, doubts = _all(osc, n, k)
     orbits = _judged(osc, n, k, found)
     if start is None:
         orbits = [orbit for orbit in orbits if orbit.visible]
     elif not orbits:
         raise refuse("start", start, f"a state near an orbit of {n} impacts in {k} periods; Newton's method finds none")
+    if doubts is None:
+        doubts = partial(_doubts_of_two, osc, k, list(orbits))
     if digits is not None:
         orbits = [in_digits(osc, orbit, checked_digits(digits)) for orbit in orbits]
-    return PeriodicOrbits(orbits, complete, tuple(notes.sentences))
+    return PeriodicOrbits(orbits, doubts)
 
 
 def _count(name: str, value: Any, least: int) -> int:
@@ -101,21 +107,35 @@ def _count(name: str, value: Any, least: int) -> int:
     return int(value)
 
 
-def _all(osc: Oscillator, n: int, k: int, notes: Notes) -> tuple[list[Array], bool]:
-    """Points of all solutions found, and whether there are no others."""
-    constant = not names_in(osc.restitution)
-    if n == 1 and constant and linear_form(osc) is not None:
+def _all(osc: Oscillator, n: int, k: int) -> tuple[list[Array], tuple[str, ...] | None]:
+    """Points of all solutions found, and why there may be others; None where `_doubts_of_two` tells."""
+    linear = not names_in(osc.restitution) and linear_form(osc) is not None
+    if n == 1 and linear:
         solutions = phases_and_speeds(osc, k)
         if solutions is not None:
-            return [np.array(pair) for pair in zip(*solutions, strict=True)], True
-        notes.add(
-            f"every phase closes after one impact in {k} periods with its own velocity: a continuum of orbits, none is "
-            "listed"
-        )
-        return [], False
+            return [np.array(pair) for pair in zip(*solutions, strict=True)], ()
+        return [], (f"every phase closes after one impact in {k} periods with its own velocity: a continuum of orbits, "
+                    "none is listed",)  # fmt: skip
     closing = Closing(family(osc), n, k)
-    notes.add("found from a grid of starts and from grazes: it is not shown that there are no others")
-    return closed_from(closing, grid_of_starts(closing)), False
+    found = closed_from(closing, grid_of_starts(closing))
+    return found, None if n == 2 and linear else (SEARCHED,)
+
+
+def _doubts_of_two(osc: Oscillator, k: int, listed: list[PeriodicOrbit]) -> tuple[str, ...]:
+    """Why there may be more orbits of two impacts of a linear model than those listed."""
+    proved = two_impacts(osc, k)
+    if proved is None:
+        return (SEARCHED, "the free motion is in resonance with the forcing: no formulas for a proof")
+    points, boxes = proved
+    doubts = [] if boxes.complete else [
+        f"{len(boxes.undecided)} boxes of phases and flight times, of {boxes.looked_at}, are not decided"]  # fmt: skip
+    closing = Closing(family(osc), 2, k)
+    refined = [closing.newton(point) for point in points]
+    if any(each is None for each in refined):
+        doubts.append("Newton's method does not arrive at an orbit that exists")
+    shown = [orbit for orbit in _judged(osc, 2, k, [each[0] for each in refined if each is not None]) if orbit.visible]
+    lacking = [orbit for orbit in shown if not any(same_states(orbit, other, SETTINGS.apart) for other in listed)]
+    return (*doubts, *(f"the list lacks {orbit!r}" for orbit in lacking))
 
 
 def _from_start(osc: Oscillator, n: int, k: int, start: Any) -> list[Array]:

@@ -60,10 +60,10 @@ def free_orbits(osc: Oscillator, k: int, lowest_only: bool = False) -> PeriodicO
             if one is not None and not any(abs(one.x[0] - other.x[0]) < 1e-9 * size for other in found):
                 found.append(one)
     kept = found if lowest_only else [one for one in found if one.visible]
-    notes = () if linear else ("found from a grid of starts: it is not shown that there are no others",)
+    doubts = () if linear else ("found from a grid of starts: it is not shown that there are no others",)
     if linear and not found:
-        notes = ("the free motion is in resonance: there is no periodic motion, or a continuum of them",)
-    return PeriodicOrbits(kept, linear and bool(found), notes)
+        doubts = ("the free motion is in resonance: there is no periodic motion, or a continuum of them",)
+    return PeriodicOrbits(kept, doubts)
 
 
 def _closed(moving: Family, start: tuple[float, float], span: float, far: float) -> tuple[float, float] | None:
@@ -144,7 +144,7 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
         # of the phases of one circle the first stands for it; a phase that leads into a circle is not on it
         if step is not None and step.place == first == min(circle) and turns == k:
             found.append(chatter_orbit(osc, phase, k, miss))
-    return PeriodicOrbits(found, not notes.sentences, tuple(notes.sentences))
+    return PeriodicOrbits(found, tuple(notes.sentences))
 
 
 @dataclass(frozen=True)

@@ -166,11 +166,14 @@ def closed_from(closing: Closing, points: Array) -> list[Array]:
 
 def _solved(slope: Array, miss: Array) -> tuple[Array, Array]:
     """Newton's steps, and which of them there are."""
-    scale = np.abs(slope).max(axis=(1, 2))
-    regular = (scale > 0) & (np.abs(np.linalg.det(slope / np.where(scale > 0, scale, 1.0)[:, None, None])) > 1e-25)
+    size = np.abs(slope).max(axis=(1, 2))
+    # powers of two round nothing, so that det and solve see the same pivots: solve raises where one is 0
+    scale = np.exp2(np.floor(np.log2(np.where(size > 0, size, 1.0))))[:, None, None]
+    regular = (size > 0) & (np.abs(np.linalg.det(slope / scale)) > 1e-25)
     steps = np.full(miss.shape, np.nan)
     if regular.any():
-        steps[regular] = np.linalg.solve(slope[regular], miss[regular][:, :, None])[:, :, 0]
+        scaled = miss[:, :, None] / scale
+        steps[regular] = np.linalg.solve((slope / scale)[regular], scaled[regular])[:, :, 0]
     return steps, regular & np.isfinite(steps).all(axis=1)
 
 

@@ -11,7 +11,7 @@ hull with t = 0 has u_ttt or u_tttt free of zeros holds no solution but t = 0.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -21,29 +21,15 @@ import numpy as np
 from singimpact.algebra.analytic import Recorder
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import (
-    Call,
-    Expression,
-    Name,
-    Power,
-    add,
-    multiply,
-    names_in,
-    negate,
-    number,
-    subtract,
-)
+from singimpact.algebra.expressions import Expression, Name, names_in
 from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
 from singimpact.algebra.isolated_zeros import IsolatedZeros, isolated_zeros
-from singimpact.algebra.numbers import sign_of
 from singimpact.algebra.precision import balls_at
-from singimpact.inputs import InputError
-from singimpact.oscillator.linear import Harmonic, LinearForm, form_of
+from singimpact.oscillator.linear import form_of
+from singimpact.oscillator.linear_flight import linear_flight
 from singimpact.oscillator.moving_number import CLEARANCE
 from singimpact.surface.swan_families import MARGIN, STEPS, Family, Transition
 
-Pair = tuple[Expression, Expression]
-TAU, T = Name("tau"), Name("t")
 NEAR = 1e-8
 """Relative distance below which an isolated zero is the transition of the list."""
 SEARCH = replace(BOXES, bits=96, most=60_000, least=Fraction(1, 2**18))
@@ -148,76 +134,13 @@ def rest_flight(family: Family) -> RestFlight | None:
     clearance = Name(CLEARANCE) if family.over == CLEARANCE else family.model.clearance
     if form is None or names_in(form.damping) or names_in(form.stiffness):
         return None
-    try:
-        height = _height(form, clearance)
-    except InputError:  # a sign that is not decided
+    flight = linear_flight(form, clearance)
+    if flight is None:
         return None
-    if height is None:
-        return None
-    heights = [height]
+    heights = [flight.from_rest]
     for _ in range(4):
         heights.append(derivative(heights[-1], "t"))
-    push = _waves(form, TAU, [(wave.cosine, wave.sine) for wave in form.harmonics])
-    return RestFlight(
-        family.over, add(push, form.constant, negate(multiply(form.stiffness, clearance))), tuple(heights)
-    )
-
-
-def _height(form: LinearForm, clearance: Expression) -> Expression | None:
-    """u: the steady motion at tau + t, and the free one that takes it to rest at c at t = 0."""
-    k, d = form.stiffness, form.damping
-    responses = [_response(form, wave) for wave in form.harmonics]
-    sizes = [part for part in responses if part is not None]
-    if sign_of(k) == 0 or len(sizes) < len(responses):
-        return None
-    steady = multiply(form.constant, Power(k, number(-1)))
-
-    def waves(at: Expression) -> Expression:
-        return add(steady, _waves(form, at, sizes))
-
-    below = subtract(clearance, waves(TAU))
-    speed = negate(derivative(waves(TAU), "tau"))
-    beta = multiply(number(Fraction(1, 2)), d)
-    square = subtract(k, multiply(beta, beta))
-    even, odd = _free(square)
-    decay = Call("exp", negate(multiply(beta, T))) if sign_of(d) else number(1)
-    free = multiply(decay, add(multiply(below, even), multiply(add(speed, multiply(beta, below)), odd)))
-    return add(waves(add(TAU, T)), free, negate(clearance))
-
-
-def _free(square: Expression) -> tuple[Expression, Expression]:
-    """The solutions of y'' + square y = 0 with (y, y') = (1, 0) and (0, 1) at t = 0."""
-    sign = sign_of(square)
-    if sign == 0:
-        return number(1), T
-    rate = Power(square if sign > 0 else negate(square), number(Fraction(1, 2)))
-    inverse = Power(rate, number(-1))
-    if sign > 0:
-        return Call("cos", multiply(rate, T)), multiply(inverse, Call("sin", multiply(rate, T)))
-    half, up, down = number(Fraction(1, 2)), Call("exp", multiply(rate, T)), Call("exp", negate(multiply(rate, T)))
-    return multiply(half, add(up, down)), multiply(half, inverse, subtract(up, down))
-
-
-def _response(form: LinearForm, wave: Harmonic) -> Pair | None:
-    """Cosine and sine of the steady motion under a wave; None at resonance."""
-    p, q = subtract(form.stiffness, multiply(wave.rate, wave.rate)), multiply(form.damping, wave.rate)
-    size = add(multiply(p, p), multiply(q, q))
-    if not names_in(size) and sign_of(size) == 0:
-        return None
-    inverse, a, b = Power(size, number(-1)), wave.cosine, wave.sine
-    return (
-        multiply(inverse, subtract(multiply(p, a), multiply(q, b))),
-        multiply(inverse, add(multiply(q, a), multiply(p, b))),
-    )
-
-
-def _waves(form: LinearForm, at: Expression, parts: Sequence[Pair]) -> Expression:
-    """Waves of the forcing's rates and phases at a time, with these cosines and sines."""
-    terms = []
-    for wave, (cosine, sine) in zip(form.harmonics, parts, strict=True):
-        angle = add(multiply(wave.rate, at), wave.phase)
-        terms += [multiply(cosine, Call("cos", angle)), multiply(sine, Call("sin", angle))]
-    return add(*terms) if terms else number(0)
+    return RestFlight(family.over, flight.push, tuple(heights))
 
 
 def _no_other_than_at_zero(

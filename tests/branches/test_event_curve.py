@@ -45,6 +45,7 @@ def test_doublings_of_the_bouncing_ball() -> None:
                 assert pytest.approx(np.pi * (1 - r) / (1 + r), rel=1e-11) == G
 
 
+@pytest.mark.slow
 def test_two_folds_of_a_forcing_with_two_harmonics_meet_in_a_cusp() -> None:
     w, r = 2.8, 0.8
     osc = si.ImpactOscillator("x", "cos(2.8*t) + b*cos(5.6*t + 1)", "-0.1", "0.8", {"b": 3})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 
 import mpmath
@@ -11,7 +12,7 @@ import pytest
 import singimpact as si
 from singimpact.branches import resting, solutions
 from singimpact.branches.closing import Closing
-from singimpact.branches.periodic import periodic
+from singimpact.branches.periodic import _doubts_of_two, periodic
 from singimpact.branches.starts import conditions
 from singimpact.flights.family import family
 from singimpact.impact_oscillator import ImpactOscillator, linear
@@ -179,3 +180,36 @@ def test_orbits_that_close_sooner_are_left_out() -> None:
     osc = linear(omega="2.8", clearance="0.1", restitution="0.8", amplitude=-1)
     assert len(osc.periodic(1, 1)) == 1
     assert osc.periodic(2, 2) == []
+
+
+@pytest.mark.parametrize(("damping", "k", "orbits"), [("0", 2, 0), ("0.1", 2, 1)])
+def test_two_impacts_of_a_linear_model_are_complete(damping: str, k: int, orbits: int) -> None:
+    osc = linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45") if damping != "0" else linear("2.8", "0.1", "0.8")
+    found = osc.periodic(2, k)
+    assert len(found) == orbits
+    assert found.complete
+    assert found.notes == ()
+    assert pickle.loads(pickle.dumps(osc.periodic(2, k))).complete
+
+
+def test_a_list_that_lacks_an_orbit_is_not_complete() -> None:
+    osc = linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45")
+    assert "the list lacks <(2, 2) orbit, stable" in _doubts_of_two(osc, 2, [])[0]
+
+
+def test_what_is_not_decided_of_two_impacts_is_said() -> None:
+    # r = 1, omega = 2: every phase closes after two impacts
+    found = linear(2, 0, 1).periodic(2, 2)
+    assert not found.complete
+    assert "not decided" in found.notes[0]
+    assert "resonance" in linear(1, "0.1", "0.8").periodic(2, 2).notes[-1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(8))
+def test_two_impact_orbits_are_all_found(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    numbers = [repr(float(x)) for x in (rng.uniform(1.2, 6), rng.uniform(-0.3, 0.3), rng.uniform(0.3, 0.95))]
+    for k in (1, 2, 3):
+        found = linear(*numbers, damping=rng.choice(["0", "0.05", "0.3"])).periodic(2, k)
+        assert found.complete, (numbers, k, found.notes)

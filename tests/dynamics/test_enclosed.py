@@ -205,7 +205,7 @@ def test_what_is_left_of_a_chatter_lies_between_its_bounds():
     assert high - low < true / 2
 
 
-@pytest.mark.parametrize("name", ["cubic, damped", "pendulum"])
+@pytest.mark.parametrize("name", [pytest.param("cubic, damped", marks=pytest.mark.slow), "pendulum"])
 def test_threshold_of_an_analytic_model_is_certified(name):
     osc = ANALYTIC[name][0]
     found, plain = threshold(osc, 1.0, digits=15), threshold(osc, 1.0)

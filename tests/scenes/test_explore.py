@@ -40,6 +40,7 @@ def test_gamma_ends_at_its_tangency_point(film):
     assert np.abs(np.array(foot) - (frame.tangencies[0], 0)).max() < 1e-12
 
 
+@pytest.mark.slow
 def test_the_outline_opens_like_that_of_the_universal_model():
     """Its cusps stand at +-3 half distances, in a window of +-4."""
     small = clearance_film(NEGATIVE, between=("0.999", "1.001"), steps=3)

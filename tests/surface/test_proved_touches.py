@@ -70,6 +70,7 @@ def test_the_closed_form_is_the_motion(f, g):
         assert np.abs(np.array(found) - wanted).max() < 1e-11 * (1 + np.abs(wanted).max())
 
 
+@pytest.mark.slow
 def test_next_to_the_launch_boxes_are_decided_by_the_third_and_fourth_derivative_alone():
     """At t = 0 every tangency point solves the equations: without Rolle's theorem the boxes there stay open."""
     flight = rest_flight(Family(DAMPED, "clearance"))

@@ -25,6 +25,7 @@ def two_waves(clearance):
     return transitions(model, "h", ("0", "1"))
 
 
+@pytest.mark.slow
 def test_swans_over_a_parameter_lie_between_the_ends_each_once():
     """With u = cos 2t: u = -1, -1 + h = c; or u = -1/(4h), -1/(8h) - h = c.  For c = 0.3 both lie outside (0, 1)."""
     found = two_waves("0.3")

@@ -1,0 +1,114 @@
+"""The motion of a linear model as formulas in the launch time, the time since, and the launch velocity.
+
+x - c = u(tau, t) + v B(t),     u = steady(tau + t) - c + the free motion that starts (x, x') at (c, 0)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.expressions import (
+    Call,
+    Expression,
+    Name,
+    Power,
+    add,
+    multiply,
+    names_in,
+    negate,
+    number,
+    subtract,
+)
+from singimpact.algebra.numbers import sign_of
+from singimpact.inputs import InputError
+from singimpact.oscillator.linear import Harmonic, LinearForm
+
+Pair = tuple[Expression, Expression]
+TAU, T = Name("tau"), Name("t")
+
+
+class LinearFlight(NamedTuple):
+    """u(tau, t) from rest, B(t), and a_c(tau)."""
+
+    from_rest: Expression
+    by_speed: Expression
+    push: Expression
+
+
+def linear_flight(form: LinearForm, clearance: Expression) -> LinearFlight | None:
+    """The formulas of a model; None at resonance, at stiffness 0, or where a sign is not decided.
+
+    Examples
+    --------
+    >>> from singimpact.oscillator.linear import linear_form
+    >>> from singimpact.oscillator.model import Oscillator
+    >>> flight = linear_flight(linear_form(Oscillator("x", "cos(2*t)", 0, "1/2")), number(0))
+    >>> print(flight.push)
+    cos(2*tau)
+    """
+    try:
+        formulas = _formulas(form, clearance)
+    except InputError:
+        return None
+    if formulas is None:
+        return None
+    push = waves(form, TAU, [(wave.cosine, wave.sine) for wave in form.harmonics])
+    return LinearFlight(*formulas, add(push, form.constant, negate(multiply(form.stiffness, clearance))))
+
+
+def _formulas(form: LinearForm, clearance: Expression) -> Pair | None:
+    k, d = form.stiffness, form.damping
+    responses = [_response(form, wave) for wave in form.harmonics]
+    sizes = [part for part in responses if part is not None]
+    if sign_of(k) == 0 or len(sizes) < len(responses):
+        return None
+    mean = multiply(form.constant, Power(k, number(-1)))
+
+    def steady(at: Expression) -> Expression:
+        return add(mean, waves(form, at, sizes))
+
+    below = subtract(clearance, steady(TAU))
+    speed = negate(derivative(steady(TAU), "tau"))
+    beta = multiply(number(Fraction(1, 2)), d)
+    even, odd = _free(subtract(k, multiply(beta, beta)))
+    decay = Call("exp", negate(multiply(beta, T))) if sign_of(d) else number(1)
+    free = multiply(decay, add(multiply(below, even), multiply(add(speed, multiply(beta, below)), odd)))
+    return add(steady(add(TAU, T)), free, negate(clearance)), multiply(decay, odd)
+
+
+def _free(square: Expression) -> Pair:
+    """The solutions of y'' + square y = 0 with (y, y') = (1, 0) and (0, 1) at t = 0."""
+    sign = sign_of(square)
+    if sign == 0:
+        return number(1), T
+    rate = Power(square if sign > 0 else negate(square), number(Fraction(1, 2)))
+    inverse = Power(rate, number(-1))
+    if sign > 0:
+        return Call("cos", multiply(rate, T)), multiply(inverse, Call("sin", multiply(rate, T)))
+    half, up, down = number(Fraction(1, 2)), Call("exp", multiply(rate, T)), Call("exp", negate(multiply(rate, T)))
+    return multiply(half, add(up, down)), multiply(half, inverse, subtract(up, down))
+
+
+def _response(form: LinearForm, wave: Harmonic) -> Pair | None:
+    """Cosine and sine of the steady motion under a wave; None at resonance."""
+    p, q = subtract(form.stiffness, multiply(wave.rate, wave.rate)), multiply(form.damping, wave.rate)
+    size = add(multiply(p, p), multiply(q, q))
+    if not names_in(size) and sign_of(size) == 0:
+        return None
+    inverse, a, b = Power(size, number(-1)), wave.cosine, wave.sine
+    return (
+        multiply(inverse, subtract(multiply(p, a), multiply(q, b))),
+        multiply(inverse, add(multiply(q, a), multiply(p, b))),
+    )
+
+
+def waves(form: LinearForm, at: Expression, parts: Sequence[Pair]) -> Expression:
+    """Waves of the forcing's rates and phases at a time, with these cosines and sines."""
+    terms = []
+    for wave, (cosine, sine) in zip(form.harmonics, parts, strict=True):
+        angle = add(multiply(wave.rate, at), wave.phase)
+        terms += [multiply(cosine, Call("cos", angle)), multiply(sine, Call("sin", angle))]
+    return add(*terms) if terms else number(0)
