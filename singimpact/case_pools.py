@@ -46,6 +46,8 @@ class ClusterSettings:
 
 
 CLUSTER = ClusterSettings()
+PATIENCE = 5.0
+"""Seconds that the end of a pool waits for its terminated workers."""
 _OURS: list[bool] = []  # holds an entry in a worker of `WorkerPool`
 
 
@@ -328,10 +330,13 @@ class WorkerPool(ProcessPoolExecutor):
         if kind is None:
             return super().__exit__(kind, *rest)
         workers = list((getattr(self, "_processes", None) or {}).values())
+        manager = getattr(self, "_executor_manager_thread", None)
         # the thread that cancels is then the one that finds a worker dead
         self.shutdown(wait=False, cancel_futures=True)
         for worker in workers:
             worker.terminate()
+        if manager is not None:
+            manager.join(PATIENCE)  # it closes a pipe that the end of the interpreter writes to
         return None
 
 

@@ -233,13 +233,16 @@ class ImpactOscillator(Oscillator):
 
         return chatter_limit(self, tau, v, digits=digits, impacts=impacts)
 
-    def periodic(self, n: Any, k: int, start: Any = None, *, digits: int | None = None) -> PeriodicOrbits:
+    def periodic(
+        self, n: Any, k: int, start: Any = None, *, v: Any = None, digits: int | None = None
+    ) -> PeriodicOrbits:
         """The periodic orbits of n impacts in k periods of the forcing.
 
         Parameters
         ----------
         n : impacts; `math.inf` for orbits that chatter to rest, 0 for orbits without impact. k : periods.
         start : states to start from, (tau, v) or n of them, or an orbit. digits : decimal digits of the orbits.
+        v : (low, high), the velocities for which `.complete` is to be proved; of linear models none are needed.
 
         Returns
         -------
@@ -253,7 +256,7 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.branches.periodic import periodic
 
-        return periodic(self, n, k, start, digits=digits)
+        return periodic(self, n, k, start, v=v, digits=digits)
 
     def orbit(
         self, tau: Any = None, v: Any = None, impacts: int = 200, *, horizon: Any = None, x: Any = None,

@@ -1,5 +1,7 @@
 """All zeros in a box of as many equations as there are unknowns: isolated by balls.
 
+The equations are formulas (`isolated_zeros`), or whatever encloses its values and derivatives (`zeros_of`).
+
 A box is dropped when the ball of an equation over it, or its centred form, leaves out 0, or when Krawczyk's operator
 moves all of it out.  A zero exists and is alone where that operator takes a box into its interior.  Boxes that are
 neither, down to the least size, are handed on as undecided.
@@ -10,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from singimpact.algebra.analytic import Recorder
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression
 from singimpact.algebra.precision import balls_at
+from singimpact.progress import ProgressLine
 
 Box = tuple[tuple[Fraction, Fraction], ...]
 Place = tuple[Any, ...]
@@ -87,31 +90,70 @@ def isolated_zeros(
     ([[0.707106781187, 0.707106781187]], True)
     """
     with balls_at(settings.bits):
-        return _Search(trees, names, window, dict(fixed or {}), settings).run(excluded)
+        return zeros_of(_Formulas(trees, names, dict(fixed or {}), excluded), window, settings)
+
+
+class System(Protocol):
+    """Equations over boxes; a box over which they are not enclosed is cut."""
+
+    def without_zeros(self, place: Place) -> bool:
+        """Whether a box is shown to have no zero."""
+        ...
+
+    def linearised(self, place: Place, middle: Place) -> tuple[Sequence[Any], Sequence[Sequence[Any]]] | None:
+        """Values at the middle of a box, and derivatives over it, a row for each equation."""
+        ...
+
+
+class _Formulas:
+    """Expression trees as a system."""
+
+    def __init__(
+        self, trees: Sequence[Expression], names: Sequence[str], fixed: dict[str, Any],
+        excluded: Callable[[Place], bool] | None,
+    ) -> None:  # fmt: skip
+        recorder = Recorder()
+        values = [recorder.record(tree) for tree in trees]
+        slopes = [recorder.derivative(value, name) for value in values for name in names]
+        self.names, self.excluded = tuple(names), excluded
+        self.values = recorder.program(values).prepared(fixed)
+        self.slopes = recorder.program(slopes).prepared(fixed)
+
+    def without_zeros(self, place: Place) -> bool:
+        if not all(value.contains(0) for value in self.values(self._named(place))):
+            return True
+        return self.excluded is not None and self.excluded(place)
+
+    def linearised(self, place: Place, middle: Place) -> tuple[Sequence[Any], Sequence[Sequence[Any]]]:
+        flat, size = self.slopes(self._named(place)), len(self.names)
+        return self.values(self._named(middle)), [flat[size * i : size * (i + 1)] for i in range(size)]
+
+    def _named(self, place: Place) -> dict[str, Any]:
+        return dict(zip(self.names, place, strict=True))
+
+
+def zeros_of(system: System, window: Box, settings: BoxSettings = SETTINGS) -> IsolatedZeros:
+    """The zeros of a system in a window, with balls of the precision at hand."""
+    search = _Search(system, window, settings)
+    with ProgressLine() as line:
+        return search.run(lambda count: line.show(count, None, "boxes"))
 
 
 class _Search:
     """Boxes on a stack."""
 
-    def __init__(
-        self, trees: Sequence[Expression], names: Sequence[str], window: Box, fixed: dict[str, Any],
-        settings: BoxSettings,
-    ) -> None:  # fmt: skip
-        recorder = Recorder()
-        values = [recorder.record(tree) for tree in trees]
-        slopes = [recorder.derivative(value, name) for value in values for name in names]
-        self.values = recorder.program(values).prepared(fixed)
-        self.slopes = recorder.program(slopes).prepared(fixed)
-        self.names, self.window, self.settings = tuple(names), window, settings
-        self.balls, self.size = Balls(settings.bits), len(names)
+    def __init__(self, system: System, window: Box, settings: BoxSettings) -> None:
+        self.system, self.window, self.settings = system, window, settings
+        self.balls, self.size = Balls(settings.bits), len(window)
 
-    def run(self, excluded: Callable[[Place], bool] | None) -> IsolatedZeros:
+    def run(self, shown: Callable[[int], None]) -> IsolatedZeros:
         """Cut boxes until each is decided or too small."""
         stack, found, undecided, count = [self.window], list[Place](), list[Box](), 0
         while stack and count < self.settings.most:
+            shown(count)
             count += 1
             box = stack.pop()
-            decided = self._looked_at(box, excluded)
+            decided = self._looked_at(box)
             if decided is None:
                 smaller = self._cut(box)
                 stack += smaller
@@ -120,10 +162,10 @@ class _Search:
                 found.append(decided)
         return IsolatedZeros(tuple(found), tuple(undecided + stack), count)
 
-    def _looked_at(self, box: Box, excluded: Callable[[Place], bool] | None) -> Place | None:
+    def _looked_at(self, box: Box) -> Place | None:
         """() when a box has no zero, the enclosure of one when it has, None when it is too large to tell."""
         place = tuple(self.balls.interval(*ends) for ends in box)
-        if not all(value.contains(0) for value in self._at(place)) or (excluded is not None and excluded(place)):
+        if self.system.without_zeros(place):
             return ()
         spare = [(high - low) * self.settings.wider for low, high in box]
         wider = tuple(self.balls.interval(low - w, high + w) for (low, high), w in zip(box, spare, strict=True))
@@ -151,8 +193,10 @@ class _Search:
         """m - Y f(m) + (1 - Y J)(place - m); () where the centred form leaves out 0, None where no Y is found."""
         middle = tuple(part.mid() for part in place)
         away = [part - m for part, m in zip(place, middle, strict=True)]
-        at_middle, flat = self._at(middle), self.slopes(self._named(place))
-        J = [flat[self.size * i : self.size * (i + 1)] for i in range(self.size)]
+        linear = self.system.linearised(place, middle)
+        if linear is None:
+            return None
+        at_middle, J = linear
         for value, row in zip(at_middle, J, strict=True):
             if not (value + _dot(row, away)).contains(0):
                 return ()
@@ -176,12 +220,6 @@ class _Search:
         low, high = box[k]
         at = low + (high - low) * self.settings.cut
         return [(*box[:k], ends, *box[k + 1 :]) for ends in ((low, at), (at, high))]
-
-    def _at(self, place: Place) -> list[Any]:
-        return self.values(self._named(place))
-
-    def _named(self, place: Place) -> dict[str, Any]:
-        return dict(zip(self.names, place, strict=True))
 
     @staticmethod
     def _overlap(one: Place, other: Place) -> bool:

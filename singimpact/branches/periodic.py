@@ -8,15 +8,17 @@ missed.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.expressions import names_in
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import as_float, constant, rational_near
 from singimpact.branches.closing import Closing
 from singimpact.branches.digits import in_digits
+from singimpact.branches.enclosed_closing import closed_boxes
 from singimpact.branches.one_impact import phases_and_speeds
 from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits, same_states
 from singimpact.branches.resting import chatter_orbits, free_orbits
@@ -48,7 +50,9 @@ SETTINGS = PeriodicSettings()
 SEARCHED = "found from a grid of starts and from grazes: it is not shown that there are no others"
 
 
-def periodic(osc: Oscillator, n: Any, k: int, start: Any = None, *, digits: int | None = None) -> PeriodicOrbits:
+def periodic(
+    osc: Oscillator, n: Any, k: int, start: Any = None, *, v: Any = None, digits: int | None = None
+) -> PeriodicOrbits:
     """The orbits of n impacts in k periods of the forcing.
 
     Parameters
@@ -57,6 +61,8 @@ def periodic(osc: Oscillator, n: Any, k: int, start: Any = None, *, digits: int 
     n : impacts, a whole number; `math.inf` for orbits that chatter to rest and lift off; 0 for orbits without impact.
     k : periods, a whole number >= 1.
     start : states to start from in place of a grid: (tau, v), or a sequence of n of them, or a `PeriodicOrbit`.
+    v : (low, high), for models without a closed form and n = 1 or 2: `.complete` then tells by a proof whether there
+        are others with all velocities after impacts in this window; with n = 1 this takes seconds, with n = 2 minutes.
     digits : decimal digits; the orbits then hold mpmath numbers.
 
     Returns
@@ -77,7 +83,7 @@ def periodic(osc: Oscillator, n: Any, k: int, start: Any = None, *, digits: int 
     """
     if osc.period is None:
         raise InputError("the forcing has no period: a periodic orbit needs one")
-    k = _count("k", k, 1)
+    k, window = _count("k", k, 1), None if v is None else _window(v)
     if n == np.inf:
         return chatter_orbits(osc, k)
     n = _count("n", n, 0)
@@ -95,6 +101,8 @@ def periodic(osc: Oscillator, n: Any, k: int, start: Any = None, *, digits: int 
         raise refuse("start", start, f"a state near an orbit of {n} impacts in {k} periods; Newton's method finds none")
     if doubts is None:
         doubts = partial(_doubts_of_two, osc, k, list(orbits))
+    elif window is not None and n < 3 and SEARCHED in doubts:
+        doubts = partial(_doubts_in_window, osc, (n, k), window, list(orbits))
     if digits is not None:
         orbits = [in_digits(osc, orbit, checked_digits(digits)) for orbit in orbits]
     return PeriodicOrbits(orbits, doubts)
@@ -105,6 +113,16 @@ def _count(name: str, value: Any, least: int) -> int:
         more = ", or math.inf" if name == "n" else ""
         raise refuse(name, value, f"a whole number from {least} to {SETTINGS.most}{more}")
     return int(value)
+
+
+def _window(v: Any) -> tuple[Fraction, Fraction]:
+    try:
+        low, high = (rational_near(constant("v", part), 64) for part in v)
+    except (TypeError, ValueError):
+        raise refuse("v", v, "two numbers (low, high), 0 <= low < high") from None
+    if not 0 <= low < high:
+        raise refuse("v", v, "two numbers (low, high), 0 <= low < high")
+    return low, high
 
 
 def _all(osc: Oscillator, n: int, k: int) -> tuple[list[Array], tuple[str, ...] | None]:
@@ -129,12 +147,34 @@ def _doubts_of_two(osc: Oscillator, k: int, listed: list[PeriodicOrbit]) -> tupl
     points, boxes = proved
     doubts = [] if boxes.complete else [
         f"{len(boxes.undecided)} boxes of phases and flight times, of {boxes.looked_at}, are not decided"]  # fmt: skip
-    closing = Closing(family(osc), 2, k)
+    return (*doubts, *_lacking(osc, (2, k), points, listed))
+
+
+def _doubts_in_window(
+    osc: Oscillator, counts: tuple[int, int], speeds: tuple[Fraction, Fraction], listed: list[PeriodicOrbit]
+) -> tuple[str, ...]:
+    """Why there may be more orbits of one or two impacts with all velocities in a window than those listed."""
+    try:
+        points, boxes = closed_boxes(osc, *counts, speeds)
+    except InputError as reason:
+        return SEARCHED, f"f, g or rho is not analytic: {reason}"
+    doubts = [] if boxes.complete else [
+        f"{len(boxes.undecided)} boxes of phases and velocities, of {boxes.looked_at}, are not decided"]  # fmt: skip
+    return (*doubts, *_lacking(osc, counts, points, listed))
+
+
+def _lacking(
+    osc: Oscillator, counts: tuple[int, int], points: list[Array], listed: list[PeriodicOrbit]
+) -> tuple[str, ...]:
+    """Visible orbits next to points with a solution each that are not in a list."""
+    closing = Closing(family(osc), *counts)
     refined = [closing.newton(point) for point in points]
-    if any(each is None for each in refined):
-        doubts.append("Newton's method does not arrive at an orbit that exists")
-    shown = [orbit for orbit in _judged(osc, 2, k, [each[0] for each in refined if each is not None]) if orbit.visible]
-    lacking = [orbit for orbit in shown if not any(same_states(orbit, other, SETTINGS.apart) for other in listed)]
+    doubts = (
+        ("Newton's method does not arrive at an orbit that exists",) if any(each is None for each in refined) else ()
+    )
+    shown = _judged(osc, *counts, [each[0] for each in refined if each is not None])
+    lacking = [orbit for orbit in shown
+               if orbit.visible and not any(same_states(orbit, other, SETTINGS.apart) for other in listed)]  # fmt: skip
     return (*doubts, *(f"the list lacks {orbit!r}" for orbit in lacking))
 
 
@@ -144,7 +184,7 @@ def _from_start(osc: Oscillator, n: int, k: int, start: Any) -> list[Array]:
     if isinstance(start, PeriodicOrbit):
         start = list(zip(np.asarray(start.tau, dtype=float), np.asarray(start.v, dtype=float), strict=True))
     try:
-        states = np.array([[as_float(_exact(part)) for part in state] for state in _pairs(start)])
+        states = np.array([[as_float(constant("start", part)) for part in state] for state in _pairs(start)])
     except (TypeError, ValueError):
         raise refuse("start", start, "(tau, v), or n such pairs, or a PeriodicOrbit") from None
     if states.ndim != 2 or states.shape[1:] != (2,) or len(states) not in (1, n):
@@ -158,12 +198,6 @@ def _from_start(osc: Oscillator, n: int, k: int, start: Any) -> list[Array]:
 def _pairs(start: Any) -> list[Any]:
     rows = list(start)
     return [rows] if len(rows) == 2 and not np.ndim(rows[0]) else rows
-
-
-def _exact(value: Any) -> Any:
-    from singimpact.algebra.numbers import constant
-
-    return constant("start", value)
 
 
 def _judged(osc: Oscillator, n: int, k: int, points: list[Array]) -> list[PeriodicOrbit]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
+from fractions import Fraction
 
 import mpmath
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 import singimpact as si
 from singimpact.branches import resting, solutions
 from singimpact.branches.closing import Closing
-from singimpact.branches.periodic import _doubts_of_two, periodic
+from singimpact.branches.periodic import _doubts_in_window, _doubts_of_two, periodic
 from singimpact.branches.starts import conditions
 from singimpact.flights.family import family
 from singimpact.impact_oscillator import ImpactOscillator, linear
@@ -213,3 +214,37 @@ def test_two_impact_orbits_are_all_found(seed: int) -> None:
     for k in (1, 2, 3):
         found = linear(*numbers, damping=rng.choice(["0", "0.05", "0.3"])).periodic(2, k)
         assert found.complete, (numbers, k, found.notes)
+
+
+DUFFING = ImpactOscillator("x + x**3/10", "cos(4*t)", 0, "0.5")
+
+
+def test_a_window_of_velocities_of_a_nonlinear_model() -> None:
+    """The one orbit of the window is found by balls alone; a list without it is not complete, one with it is."""
+    (doubt,) = _doubts_in_window(DUFFING, (1, 2), (Fraction(2, 5), Fraction(3, 5)), [])
+    assert "the list lacks <(1, 2) orbit, stable: (tau, v) = (1.08739, 0.496883)>" in doubt
+    found = DUFFING.periodic(1, 2, v=("0.45", "0.55"))
+    assert (len(found), found.complete) == (1, True)
+    with pytest.raises(InputError, match=r"v = \(1, 0\) is not accepted"):
+        DUFFING.periodic(1, 2, v=(1, 0))
+
+
+def test_where_f_is_not_analytic_boxes_are_left() -> None:
+    kink = ImpactOscillator("sqrt(x**2)", "cos(4*t)", "-0.05", "0.5")
+    found = _doubts_in_window(kink, (1, 2), (Fraction(49, 100), Fraction(1, 2)), [])
+    assert "are not decided" in found[0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("osc", "n", "k", "v"),
+    [
+        (DUFFING, 1, 2, (0, 2)),
+        (ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "-0.3", "0.6"), 1, 1, (0, 3)),
+        (DUFFING, 2, 2, ("0.3", "0.6")),
+    ],
+)
+def test_orbits_of_nonlinear_models_are_all_found(osc, n: int, k: int, v) -> None:
+    found = osc.periodic(n, k, v=v)
+    assert len(found) == (n == 1)
+    assert found.complete

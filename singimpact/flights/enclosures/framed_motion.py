@@ -112,6 +112,10 @@ class FramedMotion:
             error = [error[0] + (a - p) * size, error[1] + (b - q) * size]
         self._turned(flow, error)
         self.time = self.time + length
+        self.require_above()
+
+    def require_above(self) -> None:
+        """Refuse a set that may be on the wall at the end of a step."""
         if not self.middle[0] + self._deviation()[0] > 0:
             raise Refused("x - c is not shown positive at the end of a step")
 

@@ -1,0 +1,254 @@
+"""All orbits of one or two impacts in k periods of an analytic model, in a window of velocities: isolated by balls.
+
+A box of states just after an impact is flown through the wall to the end of the k periods. It holds no orbit if the
+flight is below the wall on its way, or misses its own state at the end. With two impacts each time at which the first
+flight may meet the wall is tried; the orbit is looked for from the faster of its two impacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
+from singimpact.algebra.isolated_zeros import IsolatedZeros, Place, zeros_of
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.precision import balls_at, series_of_any_length
+from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
+from singimpact.flights.enclosures.first_root import narrowed
+from singimpact.flights.enclosures.framed_motion import FramedMotion, Pair
+from singimpact.flights.enclosures.tube import Tube, centre, divided
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+BITS = 30
+SEARCH = replace(BOXES, bits=BITS + 24, least=Fraction(1, 2**16), most=100_000)
+PIECES = 6
+"""Times at which the first flight may meet the wall are cut to this power of 2 of a step."""
+WIDEST = 0.3
+"""Boxes wider than this, of a period or of the window, are not flown."""
+
+
+class _Met(NamedTuple):
+    """A time after the launch, x - c and x' then, and the derivatives of both by the launch time and velocity."""
+
+    time: Any
+    height: Any
+    speed: Any
+    columns: list[Pair]
+
+
+class _ThroughTheWall(FramedMotion):
+    """A box of flights that the wall does not stop."""
+
+    def require_above(self) -> None:
+        """Flights may be below the wall."""
+
+    def met(self, s: Any, height: Tube, speed: Tube) -> _Met:
+        """The box at a time s after the step began, which may be a ball."""
+        flow = [[part(s) for part in column] for column in self.by_state]
+        drives = [drive for drive in self.drives if drive >= 0]
+        driven = {d: (value(s), slope(s)) for d, (value, slope) in zip(drives, self.by_drive, strict=True)}
+        columns = [self._mapped(flow, each, driven.get(d)) for each, d in zip(self.full, self.drives, strict=True)]
+        return _Met(self.time + s, height(s), speed(s), columns)
+
+
+class ClosingBoxes:
+    """The closing conditions of one or two impacts over boxes of (tau, v): a `System`.
+
+    Parameters
+    ----------
+    osc : an analytic model. n, k : impacts, 1 or 2, in k periods. speeds : the window of v of every impact.
+    """
+
+    def __init__(self, osc: Oscillator, n: int, k: int, speeds: tuple[Fraction, Fraction]) -> None:
+        assert osc.period is not None
+        programs = programs_of(osc, ())
+        self.n, self.equation, self.law = n, Equation(programs, {}), programs.rho.prepared({})
+        self.balls = Balls(SEARCH.bits)
+        self.span = evaluate(osc.period, {}, self.balls) * k
+        self.period, (self.low, self.high) = as_float(osc.period), (self.balls.rational(part) for part in speeds)
+
+    def without_zeros(self, place: Place) -> bool:
+        """Whether no orbit starts in a box."""
+        tau, v = place
+        if float(tau.rad()) > WIDEST * self.period or float(v.rad()) > WIDEST * float(self.high - self.low):
+            return False
+        with series_of_any_length():
+            try:
+                return not any(self._may_close(v, end) for _, end in self._ends(tau, v, visible=True))
+            except (Refused, ValueError, ZeroDivisionError):
+                return False
+
+    def linearised(self, place: Place, middle: Place) -> tuple[Sequence[Any], Sequence[Sequence[Any]]] | None:
+        """The miss at the middle, and its derivatives over the box; None unless one sequence of impacts may close."""
+        with series_of_any_length():
+            try:
+                over = [each for each in self._ends(*place, visible=False) if self._may_close(place[1], each[1])]
+                if len(over) != 1:
+                    return None
+                ((first, end),) = over
+                if first is not None and not first.speed < 0:
+                    return None
+                rows = self._slopes(place, first, end)
+                at = [each for met, each in self._ends(*middle, visible=False)
+                      if first is None or met is None or met.time.overlaps(first.time)]  # fmt: skip
+                if len(at) != 1:
+                    return None
+                return [at[0].height, self._after(at[0].speed)[0] - middle[1]], rows
+            except (Refused, ValueError, ZeroDivisionError):
+                return None
+
+    def states(self, place: Place) -> list[float]:
+        """tau and v of each impact of the solution in a ball, as `branches.closing` orders them."""
+        tau, v = place
+        with series_of_any_length():
+            ways = [first for first, end in self._ends(tau, v, visible=False) if self._may_close(v, end)]
+            if ways[0] is None:
+                return [float(tau.mid()), float(v.mid())]
+            after = self._after(ways[0].speed)[0]
+            return [float(part.mid()) for part in (tau, tau + ways[0].time, v, after)]
+
+    def _may_close(self, v: Any, end: _Met) -> bool:
+        return end.height.contains(0) and (self._after(end.speed)[0] - v).contains(0)  # type: ignore[no-any-return]
+
+    def _after(self, speed: Any) -> Any:
+        """The velocity after an impact, and its derivative."""
+        return self.law({"v": speed})[:2]
+
+    def _ends(self, tau: Any, v: Any, *, visible: bool) -> Iterator[tuple[_Met | None, _Met]]:
+        """The first impact, of two, and the end, for each way in which the box may fly; visible ones alone, or all."""
+        if self.n == 1:
+            end = self._end(tau, v, self.span, visible)
+            if end is not None:
+                yield None, end
+            return
+        for first in self._impacts(tau, v):
+            after = self._after(first.speed)[0]
+            if visible and (after < self.low or after > self.high or after > v):
+                continue
+            end = self._end(tau + first.time, after, self.span - first.time, visible)
+            if end is not None:
+                yield first, end
+
+    def _motion(self, tau: Any, v: Any) -> _ThroughTheWall:
+        return _ThroughTheWall((self.equation, self.equation), tau, v, BITS, BITS, {})
+
+    def _end(self, tau: Any, v: Any, duration: Any, visible: bool) -> _Met | None:
+        """The box after a duration, which may be a ball; None where all of it is below the wall before."""
+        motion, first, last = self._motion(tau, v), _edge(duration.lower()), _edge(duration.upper())
+        while True:
+            height, speed, length = motion.tubes()
+            if length >= last - motion.time:
+                found = motion.met(duration - motion.time, height, speed)
+                return None if visible and found.speed > 0 else found
+            left = first - motion.time
+            stop = length if length <= left else left
+            if not stop > 0:
+                raise Refused("the end of the last flight is not within a step")
+            if visible and height(stop) < 0:
+                return None
+            motion.advance(centre(stop))
+
+    def _impacts(self, tau: Any, v: Any) -> Iterator[_Met]:
+        """Where the flight may meet the wall, until all of it is below."""
+        motion = self._motion(tau, v)
+        while motion.time < self.span:
+            height, speed, length = motion.tubes()
+            value, rate = divided(height, speed, 1) if motion.launched else (height, speed)
+            pieces, below = _zeros(value, rate, length)
+            for s in pieces:
+                found = motion.met(s, height, speed)
+                if not found.speed > 0 and not found.time > self.span:
+                    yield found
+            if below:
+                return
+            motion.advance(length)
+
+    def _slopes(self, place: Place, first: _Met | None, end: _Met) -> list[list[Any]]:
+        """Derivatives of x - c at the end, and of what v misses, by tau and v."""
+        rate = self._after(end.speed)[1]
+        if first is None:
+            by = end.columns
+        else:
+            tau, push = place[0] + first.time, self._after(first.speed)[1]
+            bend, last = self._force(tau, first), self._force(place[0] + self.span, end)
+            (a, b), (p, q) = end.columns
+            by = []
+            for k, (height, speed) in enumerate(first.columns):
+                late = -height / first.speed
+                start, fast = late + (1 - k), push * (speed + bend * late)
+                by.append((a * start + p * fast - end.speed * late, b * start + q * fast - last * late))
+        return [[part[0] for part in by], [rate * part[1] - k for k, part in enumerate(by)]]
+
+    def _force(self, t: Any, at: _Met) -> Any:
+        """x'' on the wall."""
+        f = self.equation.run("force", x=at.speed * 0, xdot=at.speed)[0]
+        return self.equation.run("forcing", t=t)[0] - f
+
+
+def closed_boxes(
+    osc: Oscillator, n: int, k: int, speeds: tuple[Fraction, Fraction]
+) -> tuple[list[Array], IsolatedZeros]:
+    """All solutions of the closing conditions, virtual ones too, and the boxes that are not decided.
+
+    Parameters
+    ----------
+    osc : an analytic model. n, k : impacts, 1 or 2, in k periods. speeds : the window of v of every impact.
+
+    Examples
+    --------
+    >>> osc = Oscillator("x + x**3/10", "cos(4*t)", 0, "0.5")
+    >>> found, boxes = closed_boxes(osc, 1, 1, (Fraction(1, 2), Fraction(1)))
+    >>> found, boxes.complete
+    ([], True)
+    """
+    assert osc.period is not None
+    period = Fraction(as_float(osc.period))
+    window = (-period / 64, period * Fraction(65, 64)), speeds
+    with balls_at(SEARCH.bits):
+        system = ClosingBoxes(osc, n, k, speeds)
+        made = zeros_of(system, window, SEARCH)
+        return [np.array(system.states(zero)) for zero in made.found], made
+
+
+def _edge(value: Any) -> Any:
+    import flint
+
+    return flint.arb(value)
+
+
+def _zeros(value: Tube, rate: Tube, length: Any) -> tuple[list[Any], bool]:
+    """Where on (0, length] some member of a box may vanish, and whether all of them are negative after that."""
+    from flint import arb
+
+    found: list[Any] = []
+    stack, least = [(arb(0), length)], length * arb(2) ** -PIECES
+    while stack:
+        a, b = stack.pop()
+        piece = a.union(b)
+        here, slope = value(piece), rate(piece)
+        if here > 0:
+            continue
+        if here < 0:
+            return found, True
+        if slope < 0 or slope > 0:
+            try:
+                piece = narrowed(piece, value, rate)
+            except ValueError:  # Newton's ball and the piece are apart: no zero
+                continue
+        elif b - a > least:
+            middle = centre((a + b) / 2)
+            stack += [(middle, b), (a, middle)]
+            continue
+        if found and found[-1].overlaps(piece):
+            found[-1] = found[-1].union(piece)
+        else:
+            found.append(piece)
+    return found, False
