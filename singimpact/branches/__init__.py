@@ -5,7 +5,8 @@ pictures (`scenes`).
 Files: `closing` (the conditions, smooth through a graze; the lowest place of a flight), `free` (those of an orbit
 without impact), `orbits` (the type of an orbit), `solutions` (the orbit at a point), `one_impact` (one impact, linear:
 closed form), `starts` (Newton's method from many starts), `resting` (orbits without impact, and with rest), `digits`,
-`enclosed_orbit` (that one exists: Krawczyk's operator),
+`krawczyk` (Krawczyk's operator), `ball_closing` (the conditions in balls), `enclosed_orbit` (that an orbit exists),
+`enclosed_event` (that an event does),
 `periodic` (the search for all orbits), `continuation` (pseudo-arclength), `events`, `switching` (the other branches at
 an event), `branch`, `kept` (on disk), `event_curve` (events in two parameters); `saddle_arcs` (W^s and W^u next to a
 saddle), `manifold` (grown from there), `cylinder` (polylines of phases and velocities), `homoclinic` (where W^u and W^s

@@ -115,15 +115,15 @@ def certified_hit(
     bits = min(bits + _spare(*expected), most)
     box = framed = any(launch.radii.values())
     if box:
-        coarse = max(coarse, min(bits, ENCLOSURE.guard - floor(log2(max(launch.radii.values())))))
+        coarse = bits_of_a_set(launch, bits)
     elif expected[0] > ENCLOSURE.wrapped:
         framed, coarse = True, bits if derivative else coarse
     singular = 0
     while True:
         begun = None
         try:
-            with _working(bits + ENCLOSURE.guard):
-                begun = _motion(osc, launch, bits, coarse, derivative, framed, expected[0])
+            with working_at(bits + ENCLOSURE.guard):
+                begun = motion_from(osc, launch, bits, coarse, derivative, framed, expected[0])
                 hit = first_hit(begun, Balls(bits).rational(horizon), steps)
                 found = _impact(osc, launch, hit, bits)
                 lack = 0 if box else _lack(found, wanted + 1)
@@ -147,6 +147,11 @@ def certified_hit(
             coarse = bits
 
 
+def bits_of_a_set(launch: Launch, bits: int) -> int:
+    """Bits of the steps of a set: those that its radius leaves, at most `bits`."""
+    return max(ENCLOSURE.coarse, min(bits, ENCLOSURE.guard - floor(log2(max(launch.radii.values())))))
+
+
 def _spare(time: float, condition: float) -> int:
     """Bits that a flight is expected to lose: to its condition, and to the balls that wrap it at every step."""
     lost = ENCLOSURE.lost * time if time < ENCLOSURE.wrapped else 0.0
@@ -154,16 +159,22 @@ def _spare(time: float, condition: float) -> int:
 
 
 @contextmanager
-def _working(bits: int) -> Iterator[None]:
+def working_at(bits: int) -> Iterator[None]:
     """Balls of so many bits, and series that flint does not cut."""
     with series_of_any_length(), balls_at(bits):
         yield
 
 
-def _motion(
-    osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool, time: float
+def motion_from(
+    osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool, time: float = 0.0
 ) -> Any:
-    """The flight from a launch at the working precision."""
+    """The flight from a launch at the working precision.
+
+    Parameters
+    ----------
+    bits, coarse : of the steps of a point, and of a set. derivative : whether columns are carried.
+    framed : whether the state is carried in a frame; else as a ball. time : of the flight in doubles, 0 not known.
+    """
     import flint
 
     names = launch.names
