@@ -16,7 +16,7 @@ from typing import Any
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import Expression, evaluate, names_in, number, substitute
+from singimpact.algebra.expressions import Expression, evaluate, names_in, number
 from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
 from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
 from singimpact.flights.model_numbers import horizon_of
@@ -46,8 +46,7 @@ class Spans:
         self.k, self.over = k, over
         self.tree: Expression = osc.period
         if over is not None and over in names_in(osc.g):
-            fixed = {name: value for name, value in osc.parameters.items() if name != over}
-            moving = common_period(substitute(osc.g, fixed))
+            moving = common_period(osc.forcing((over,)))
             if moving is None:
                 raise ArithmeticError(f"how the period depends on {over} is not known")
             self.tree = moving
@@ -178,16 +177,19 @@ class TouchingClosing(BallClosing):
 
     def arrival(self, point: list[Fraction], radius: Fraction) -> Arrival:
         """The last flight at the time of the touching point, k periods later."""
+        launch, time = self._last(point, radius)
+        return timed_flight(self.model(point), launch, time, self.digits + SPARE, derivative=bool(radius))
+
+    def _last(self, point: list[Fraction], radius: Fraction) -> tuple[Launch, Any]:
+        """The launch of the last flight, and its time."""
         tau, v = self.states(point)[-1]
         ends = [self.balls.interval(part - radius, part + radius) for part in (point[0], tau)]
-        time = self.span(point, radius)[0] + (ends[0] - ends[1] if len(point) > 2 else 0)
-        launch = self.launch((tau, v), radius)
-        return timed_flight(self.model(point), launch, time, self.digits + SPARE, derivative=bool(radius))
+        return self.launch((tau, v), radius), self.span(point, radius)[0] + (ends[0] - ends[1] if len(point) > 2 else 0)
 
     def touches(self, point: list[Fraction], radius: Fraction) -> None:
         """Refuse a box unless the last flight of each of its orbits is above the wall until it touches it."""
-        time = self.arrival(point, radius).time
-        touches_first(self.model(point), self.launch(self.states(point)[-1], radius), time, self.digits + SPARE)
+        launch, time = self._last(point, radius)
+        touches_first(self.model(point), launch, time, self.digits + SPARE)
 
     def miss(self, point: list[Fraction]) -> Any:
         import flint

@@ -10,13 +10,14 @@ from math import ceil, floor, log2
 from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
-from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.ball_flight import BallHit, first_hit
 from singimpact.flights.enclosures.equation import Equation, NoHit, NotAnalytic, Refused, TooLong, programs_of
 from singimpact.flights.enclosures.framed_motion import FramedMotion
 from singimpact.flights.enclosures.plain_motion import PlainMotion
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.period import common_period
 
 
 @dataclass(frozen=True)
@@ -179,7 +180,7 @@ def motion_from(
 
     names = launch.names
     programs = programs_of(osc, names)
-    tau, v = _phase(osc, launch.tau, bits), _ball(launch.v, bits)
+    tau, v = _phase(osc, launch.tau, bits, names), _ball(launch.v, bits)
     if not framed:
         return PlainMotion(Equation(programs, {}), tau, v, bits, launch.removed, derivative, time)
     numbers = {name: _ball(_number(osc, name), bits) for name in names}
@@ -208,19 +209,30 @@ def _radius(size: Fraction) -> Any:
     return flint.arb(0, flint.arb(flint.fmpq(size.numerator, size.denominator)).upper()) if size else flint.arb(0)
 
 
-def _phase(osc: Oscillator, tau: Expression, bits: int) -> Any:
-    """A launch time less whole periods of g: what is far from 0 loses no digits."""
+def _phase(osc: Oscillator, tau: Expression, bits: int, names: tuple[str, ...]) -> Any:
+    """A launch time less whole periods of g: what is far from 0 loses no digits.
+
+    Where the period depends on a number that has a radius, no time is a whole number of periods for all its values.
+    """
     import flint
 
     plain = _ball(tau, bits)
     size = abs(float(plain.mid()))
-    if osc.period is None or not size > 64:
+    if osc.period is None or not size > 64 or _period_moves(osc, names):
         return plain
     more = bits + ENCLOSURE.guard + (int(abs(plain).upper().man_exp()[1]) + 64 if size > 1e15 else 64)
     with balls_at(more + max(int(plain.mid().man_exp()[0]).bit_length(), 0)):
         exact, period = _ball(tau, more), _ball(osc.period, more)
         turns = flint.arb((exact / period).mid()).floor().unique_fmpz()
         return exact - period * turns
+
+
+def _period_moves(osc: Oscillator, names: tuple[str, ...]) -> bool:
+    """Whether the period depends, or may depend, on some numbers."""
+    if not names_in(osc.forcing(names)).intersection(names):
+        return False
+    period = common_period(osc.forcing(names))
+    return period is None or bool(names_in(period).intersection(names))
 
 
 def _impact(osc: Oscillator, launch: Launch, hit: BallHit, bits: int) -> ProvedImpact:

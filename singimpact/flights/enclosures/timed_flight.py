@@ -37,12 +37,11 @@ TIMED = TimedSettings()
 
 
 class Arrival(NamedTuple):
-    """Balls of z, z', z'' at the time, which is a ball too, and of the derivatives of z and z' by tau, v, names.
+    """Balls of z, z', z'' at the time, and of the derivatives of z and z' by tau, v, names.
 
     The derivatives by tau are those at equal time since the launch.
     """
 
-    time: Any
     height: Any
     velocity: Any
     acceleration: Any
@@ -139,7 +138,7 @@ def _flown(osc: Oscillator, launch: Launch, time: Any, bits: int, derivative: bo
                 assert motion.members is not None
                 z, v = (part(left) for part in motion.members)
                 columns = motion.columns_at(left) if derivative else []
-                return Arrival(time, z, v, _acceleration(motion, left), columns)
+                return Arrival(z, v, _acceleration(motion, left), columns)
             motion.advance(_piece(length, left))
 
 
