@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from singimpact.branches.enclosed_event import EnclosedEvent
 
 
+NEAR = 1e-6
+"""How far, relative to 1 or the parameter, an event in doubles is from the one that is proved."""
+
+
 @dataclass(frozen=True, eq=False)
 class Event:
     """An event at a point of a branch.
@@ -90,6 +94,8 @@ class Event:
         if isinstance(found, str):
             virtual = "" if self.orbit.visible else "its orbit is virtual: "
             raise InputError(f"{self!r} is not certified: {virtual}{found}")
+        if not abs(found.parameter.value - self.parameter) <= NEAR * max(1.0, abs(self.parameter)):
+            raise InputError(f"{self!r} is not certified: Newton's method leaves for {found.parameter}")
         return replace(found, kind=self.kind)
 
     def __repr__(self) -> str:

@@ -160,13 +160,20 @@ class Krawczyk:
         return Image(off, slopes) if inside else None
 
     def unique_within(self, point: Point, step: list[Any], own: Fraction) -> Fraction:
-        """The widest radius tried within which the zero is the only one."""
-        radius = KRAWCZYK.widest
-        while radius > max(KRAWCZYK.narrowest, own):
-            if self.image(point, step, radius) is not None:
-                return radius
-            radius /= KRAWCZYK.shrink
-        return own
+        """The widest radius tried within which the zero is the only one; what fails is tried seldom, for it is slow."""
+        radii = [KRAWCZYK.widest]
+        while radii[-1] > max(KRAWCZYK.narrowest, own):
+            radii.append(radii[-1] / KRAWCZYK.shrink)
+        radii = [radius for radius in radii if radius > max(KRAWCZYK.narrowest, own)]
+        low, high = 0, len(radii)  # the widest that is shown is one of these, or `own`
+        at = low
+        while low < high:
+            if self.image(point, step, radii[at]) is not None:
+                high = at
+            else:
+                low = at + 1
+            at = (low + high) // 2
+        return radii[high] if high < len(radii) else own
 
 
 def _round(balls: Balls, radius: Fraction) -> Any:
