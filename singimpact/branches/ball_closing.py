@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 from singimpact.algebra.balls import Balls
@@ -25,6 +24,8 @@ from singimpact.oscillator.period import common_period
 
 SPARE = 6
 """Digits of a flight beside those of the states."""
+CONDITION = 2.0**6
+"""Condition number that is expected of a flight: with it most flights have their digits at the first precision."""
 
 
 class Spans:
@@ -104,18 +105,24 @@ class BallClosing:
         radii = dict.fromkeys(names, radius) if radius else {}
         return Launch(number(state[0]), number(state[1]), 2 if rests else 1, radii)
 
-    def hit(self, model: Oscillator, state: tuple[Fraction, Fraction], radius: Fraction) -> Any:
-        """The next impact, with D G where there is a radius."""
-        launch = self.launch(state, radius)
-        return certified_hit(model, launch, self.digits + SPARE, self.horizon, derivative=bool(radius))
+    def hit(self, point: list[Fraction], index: int, radius: Fraction = Fraction(0)) -> Any:
+        """The impact after a state of a point, with D G over the box where there is a radius."""
+        states = self.states(point)
+        launch, last = self.launch(states[index], radius), index == len(states) - 1
+        time = float(states[(index + 1) % len(states)][0] - states[index][0])
+        time += float(self.span(point)[0].mid()) if last else 0.0
+        return certified_hit(
+            self.model(point), launch, self.digits + SPARE, self.horizon, derivative=bool(radius),
+            expected=(max(time, 0.0), CONDITION),
+        )  # fmt: skip
 
     def miss(self, point: list[Fraction]) -> Any:
         """F at a point, as a column."""
         import flint
 
-        model, states, rows = self.model(point), self.states(point), []
-        for i, state in enumerate(states):
-            hit = self.hit(model, state, Fraction(0))
+        states, rows = self.states(point), []
+        for i in range(len(states)):
+            hit = self.hit(point, i)
             tau, v = (self.balls.rational(part) for part in states[(i + 1) % len(states)])
             later = self.span(point)[0] if i == len(states) - 1 else 0
             rows += [[hit.tau - tau - later], [hit.v - v]]
@@ -123,8 +130,8 @@ class BallClosing:
 
     def slopes(self, point: list[Fraction], radius: Fraction) -> tuple[list[list[list[Any]]], Any]:
         """D G over the box round each state, with a third column for the number; and the derivative of k P."""
-        model = self.model(point)
-        return [self.hit(model, state, radius).derivative for state in self.states(point)], self.span(point, radius)[1]
+        count = len(self.states(point))
+        return [self.hit(point, i, radius).derivative for i in range(count)], self.span(point, radius)[1]
 
     def matrix(self, slopes: tuple[list[list[list[Any]]], Any]) -> Any:
         """D F from the D G: blocks beside the diagonal, less the identity."""
@@ -194,16 +201,15 @@ class TouchingClosing(BallClosing):
     def miss(self, point: list[Fraction]) -> Any:
         import flint
 
-        model, states, rows = self.model(point), self.states(point), []
-        for state, after in pairwise(states):
-            hit = self.hit(model, state, Fraction(0))
+        rows = []
+        for i, after in enumerate(self.states(point)[1:]):
+            hit = self.hit(point, i)
             rows += [[hit.tau - self.balls.rational(after[0])], [hit.v - self.balls.rational(after[1])]]
         last = self.arrival(point, Fraction(0))
         return flint.arb_mat([*rows, [last.height], [last.velocity]])
 
     def slopes(self, point: list[Fraction], radius: Fraction) -> Any:
-        model = self.model(point)
-        blocks = [self.hit(model, state, radius).derivative for state in self.states(point)[:-1]]
+        blocks = [self.hit(point, i, radius).derivative for i in range(len(self.states(point)) - 1)]
         return TouchingSlopes(blocks, self.arrival(point, radius), self.span(point, radius)[1])
 
     def matrix(self, slopes: Any) -> Any:

@@ -38,6 +38,7 @@ class EventSettings:
     Parameters
     ----------
     apart : of the held unknown, between the first two orbits of a secant. secants : at most.
+    middle : how near the middle of the interval the event is, in half lengths.
     spare, more, most : digits of the orbits at the ends beside those asked for; where the signs there are open so many
         more, and at most so many.
     reach : radius of the box of the curve, over half the length of the interval of the held unknown.
@@ -45,6 +46,7 @@ class EventSettings:
 
     apart: Fraction = Fraction(1, 10**8)
     secants: int = 12
+    middle: Fraction = Fraction(1, 1000)
     spare: int = 10
     more: int = 10
     most: int = 60
@@ -179,7 +181,7 @@ class _Curve:
         spare = SETTINGS.spare
         while spare <= SETTINGS.most:
             operator = self._operator(near, spare)
-            near = self._crossing(operator, near)
+            near = self._crossing(operator, near, half * SETTINGS.middle)
             ends = [self._end(operator, near, shift) for shift in (-half, half)]
             if all(end.sign for end in ends):
                 break
@@ -195,7 +197,7 @@ class _Curve:
         digits = self.digits + spare
         bits = ceil(digits * BITS_A_DIGIT) + 64
         closing = BallClosing(self.orbit.oscillator, self.orbit.k, digits, bits, self.over)
-        return Krawczyk.along_curve(closing, near, Fraction(1, 10 ** (digits + 2)))
+        return Krawczyk(closing, near, Fraction(1, 10 ** (digits + 2)))
 
     def _test(self, slopes: Any) -> Any:
         """What vanishes at the event, over a box."""
@@ -208,8 +210,8 @@ class _Curve:
                 return 1 + trace + determinant
         return 1 - determinant
 
-    def _crossing(self, operator: Krawczyk, near: Point) -> Point:
-        """An orbit where the test vanishes, by secants: nothing is proved here."""
+    def _crossing(self, operator: Krawczyk, near: Point, close: Fraction) -> Point:
+        """An orbit where the test vanishes up to `close` in the held unknown, by secants: nothing is proved here."""
         balls = operator.equations.balls
 
         def test(point: Point) -> Fraction:
@@ -222,10 +224,10 @@ class _Curve:
         for _ in range(SETTINGS.secants):
             if values[0] == values[1]:
                 raise Refused("the test of the event does not vary next to it")
-            shift = values[1] * (other[operator.held] - one[operator.held]) / (values[0] - values[1])
-            shift = as_rational(balls.rational(shift))
+            gap = other[operator.held] - one[operator.held]
+            shift = as_rational(balls.rational(values[1] * gap / (values[0] - values[1])))
             one, other = other, operator.solved(operator.moved(other, shift))
-            if abs(shift) < 10 * operator.small:
+            if abs(shift * gap) < close:  # about the error that a secant leaves
                 return other
             values = values[1], test(other)
         raise Refused("the event is not reached from here")

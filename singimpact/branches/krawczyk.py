@@ -74,28 +74,21 @@ class Krawczyk:
 
     Parameters
     ----------
-    equations : F, of as many equations as there are free unknowns. near : about the zero. small : wanted of it.
-    held : the index of an unknown that keeps its value; None where all are free.
+    equations : F, of as many equations as there are unknowns, or of one less: then the unknown is held by which the
+        curve of zeros goes fastest. near : about the zero. small : wanted of it.
     """
 
-    def __init__(self, equations: Equations, near: Point, small: Fraction, held: int | None = None) -> None:
+    def __init__(self, equations: Equations, near: Point, small: Fraction) -> None:
+        slopes = equations.matrix(equations.slopes(near, KRAWCZYK.first))
+        held = _fastest(slopes) if slopes.nrows() < len(near) else None
         self.equations, self.small, self.held = equations, small, held
         self.free = [index for index in range(len(near)) if index != held]
-        slopes = equations.matrix(equations.slopes(near, KRAWCZYK.first))
         self.Y = _middles(_middles(self._columns(slopes, self.free)).inv())
         self.tangent = [Fraction(0)] * len(near)
         if held is not None:
             for index, part in zip(self.free, (self.Y * self._columns(slopes, [held])).entries(), strict=True):
                 self.tangent[index] = -as_rational(part)
             self.tangent[held] = Fraction(1)
-
-    @classmethod
-    def along_curve(cls, equations: Equations, near: Point, small: Fraction) -> Krawczyk:
-        """Where there is one unknown more than equations: the one is held by which the curve of zeros goes fastest."""
-        table = _middles(equations.matrix(equations.slopes(near, KRAWCZYK.first))).table()
-        rows = np.array([[float(part) for part in row] for row in table])
-        held = int(np.argmax(np.abs(np.linalg.svd(rows)[2][-1])))
-        return cls(equations, near, small, held)
 
     def moved(self, point: Point, shift: Fraction) -> Point:
         """About the zero where the held unknown has another value."""
@@ -174,6 +167,12 @@ class Krawczyk:
                 low = at + 1
             at = (low + high) // 2
         return radii[high] if high < len(radii) else own
+
+
+def _fastest(slopes: Any) -> int:
+    """The largest component of the vector that a matrix with one column too many maps to 0, in doubles."""
+    rows = np.array([[float(part) for part in row] for row in _middles(slopes).table()])
+    return int(np.argmax(np.abs(np.linalg.svd(rows)[2][-1])))
 
 
 def _round(balls: Balls, radius: Fraction) -> Any:

@@ -173,8 +173,8 @@ def test_a_parameter_off_by_one_in_the_eighth_digit_is_refused(duffing, monkeypa
     """The point between the ends is forged: it is an orbit of the curve, and the event is elsewhere."""
     honest = room._Curve._crossing
 
-    def forged(self, operator, near):
-        return operator.solved(operator.moved(honest(self, operator, near), Fraction(1, 10**8)))
+    def forged(self, operator, near, close):
+        return operator.solved(operator.moved(honest(self, operator, near, close), Fraction(1, 10**8)))
 
     monkeypatch.setattr(room._Curve, "_crossing", forged)
     for kind in ("fold", "period-doubling"):
