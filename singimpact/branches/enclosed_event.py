@@ -42,6 +42,7 @@ class EventSettings:
     spare, more, most : digits of the orbits at the ends beside those asked for; where the signs there are open so many
         more, and at most so many.
     reach : radius of the box of the curve, over half the length of the interval of the held unknown.
+    rounding : of the largest velocity; a velocity that is further below 0 is that of a virtual orbit.
     """
 
     apart: Fraction = Fraction(1, 10**8)
@@ -51,6 +52,7 @@ class EventSettings:
     more: int = 10
     most: int = 60
     reach: int = 4
+    rounding: float = 1e-6
 
 
 SETTINGS = EventSettings()
@@ -106,6 +108,11 @@ def enclosed_event(kind: str, orbit: PeriodicOrbit, over: str, parameter: float,
     >>> print(enclosed_event("graze", found, "A", 0.3687, 20).parameter)
     0.36878177829171549240
     """
+    speeds = np.asarray(orbit.v, dtype=float)
+    if kind == "graze":  # the velocity of the touching point is rounding
+        speeds = np.delete(speeds, np.argmin(np.abs(speeds)))
+    if speeds.size and speeds.min() < -SETTINGS.rounding * np.abs(speeds).max():
+        return f"an impact has the velocity {speeds.min():.6g}"
     bits = ceil((digits + SETTINGS.most) * BITS_A_DIGIT) + 64
     with balls_at(bits):
         try:

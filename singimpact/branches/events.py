@@ -72,7 +72,7 @@ class Event:
         Notes
         -----
         A graze or hidden impact is shown to be the only one in a box, a fold, doubling or torus by a change of sign on
-        a curve of orbits: see `EnclosedEvent.shown` and `unique_within`. It takes 0.1 to 2 s an impact.
+        a curve of orbits: see `EnclosedEvent.shown` and `unique_within`. It takes 0.02 to 2 s.
 
         Examples
         --------
