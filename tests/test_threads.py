@@ -47,6 +47,14 @@ def points(digits):
     )
 
 
+@functools.cache
+def events():
+    """The graze and the doubling of a branch."""
+    (orbit,) = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45").periodic(1, 1)
+    found = si.branch(orbit, "amplitude", (-0.6, -0.3)).events
+    return [event for event in found if event.orbit.visible and event.kind in ("graze", "period-doubling")]
+
+
 def series(name, **more):
     """A series of a model; of gamma and its like also the enclosures."""
 
@@ -71,6 +79,7 @@ CALLS = {
         [lambda d: CUBIC.enclosed_impact("1.2", "0.1", radii={"v": "1e-6"}, digits=d)], (12, 30),
     ),
     "PeriodicOrbit.certified": ([lambda d: CLOSED.periodic(1, 2)[0].certified(d)], (20,)),
+    "Event.certified": ([lambda d: [event.certified(d) for event in events()]], (15, 30)),
     "ImpactOscillator.chatter_limit": (
         [lambda d: WAVES.chatter_limit("1.2", "0.01", digits=d), lambda d: BENT.chatter_limit("1.2", "0.01", digits=d)],
         (12, 30),

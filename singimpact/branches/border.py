@@ -67,7 +67,7 @@ class BorderOrbit:
     over : the number that is varied.
     parameter : its value; an mpmath number with digits. error : an estimate of its error, or a bound where `certified`.
     certified : a value with a radius in which a border orbit is proved to be; None without digits, and where balls do
-        not decide. Linear models only.
+        not decide. For analytic models whose restitution is a number.
     release, end : the zeros of a_c at which it begins and ends. period : from one to the other, in periods of the
         forcing: a whole number where both are one zero.
     tau, v : its first state after which a_c presses up to the end. slope : d(v - gamma)/d(parameter) there.
@@ -142,7 +142,7 @@ def border_orbits(
     ----------
     osc : a model with a period, r < 1. over : the number that is varied: "clearance", "restitution", a parameter, or
         another that `with_number` puts in. between : its ends; about the model's value without them.
-    digits : decimal digits of the number, 16 or more, which is certified where the model is linear.
+    digits : decimal digits of the number, 16 or more, which is certified where the restitution is a number.
     periods : of the forcing, within which the orbit returns.
     points : values at which orbits are flown before the places between them are refined.
 

@@ -1,10 +1,10 @@
 """Released orbits in many digits: the number of a border orbit, and a proof that one lies in a ball.
 
-The proof, for linear models.  (1) For every value in the ball the orbit comes to the same impact, transversally, after
-which a_c presses up to the zero where gamma ends.  (2) At one end of the ball its chatter completes before that zero,
-at the other a flight passes it.  While a_c presses every impact is transversal, for x'' = a_c < 0 where x' = 0; so each
-fate of (2) belongs to an open set of values, and between the two ends lies a value with neither: its impacts are
-infinitely many and accumulate at the zero.
+The proof, of analytic models whose restitution is a number.  (1) For every value in the ball the orbit comes to the
+same impact, transversally, after which a_c presses up to the zero where gamma ends.  (2) At one end of the ball its
+chatter completes before that zero, at the other a flight passes it.  While a_c presses every impact is transversal, for
+x'' = a_c < 0 where x' = 0 at the wall; so each fate of (2) belongs to an open set of values, and between the two ends
+lies a value with neither: its impacts are infinitely many and accumulate at the zero.
 """
 
 from __future__ import annotations
@@ -23,10 +23,8 @@ from singimpact.algebra.precision import balls_at, digits_at, for_user
 from singimpact.algebra.solving import newton_in_balls
 from singimpact.branches.released import Return
 from singimpact.contact.next_zero import ContactZero, next_zero
-from singimpact.dynamics.enclosed import enclosable, end_of_gamma, searched, side
-from singimpact.flights.balls import LinearFlow
+from singimpact.dynamics.enclosed import Flow, enclosable, end_of_gamma, flow_of, searched, side
 from singimpact.flights.impact_map import impact_map
-from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
@@ -93,7 +91,7 @@ class DigitOrbits:
         model = self.found.releases.model(value)
         with balls_at(self.bits):
             start, end = self._zeros(model)
-            fly = self._in_balls if _closed(model) else self._in_digits
+            fly = self._in_balls if enclosable(model) else self._in_digits
             return fly(model, start, end.moved(self.bits), count)
 
     def missed(self, impacts: int, value: Fraction) -> Any | None:
@@ -125,7 +123,7 @@ class DigitOrbits:
         return found[0], found[1]
 
     def _in_balls(self, model: Oscillator, start: ContactZero, end: Any, count: int) -> list[Landing]:
-        flow, rows = LinearFlow(model, self.bits), list[Landing]()
+        flow, rows = flow_of(model, self.bits), list[Landing]()
         time, v, removed = start.moved(self.bits).mid(), flow.number(Fraction(0)), start.order + 2
         while len(rows) < count:
             hit = flow.first_hit(time, v, removed=removed)
@@ -186,8 +184,8 @@ def in_digits(found: Return, scale: float, digits: int) -> InDigits | None:
 def _proved(found: Return, near: Fraction, digits: int) -> tuple[Certified | None, str]:
     """A ball about a value in which a border orbit is proved to be, or why there is none."""
     model = found.releases.model(near)
-    if not _closed(model):
-        return None, "not certified: balls fly linear models with a number for restitution"
+    if not enclosable(model):
+        return None, "not certified: balls fly orbits of models with a number below 1 for restitution"
     margin = abs(near) / (4 * 10**digits)
     low, high = near - margin, near + margin
     bits = ceil(digits * BITS_A_DIGIT) + 64
@@ -209,27 +207,22 @@ def _proved(found: Return, near: Fraction, digits: int) -> tuple[Certified | Non
     return from_ends(low, high, digits), ""
 
 
-def _closed(model: Oscillator) -> bool:
-    """Whether a model flies in balls over a number of its own: in closed form."""
-    return linear_form(model) is not None and enclosable(model)
-
-
-def _flow(found: Return, ends: tuple[Fraction, Fraction], bits: int) -> LinearFlow:
+def _flow(found: Return, ends: tuple[Fraction, Fraction], bits: int) -> Flow:
     """The flow of all values from one to another."""
     low, high = ends
     if low == high:
-        return LinearFlow(found.releases.model(low), bits)
+        return flow_of(found.releases.model(low), bits)
     ball = Balls(bits).interval(low, high)
-    return LinearFlow(found.releases.model((low + high) / 2), bits, (found.releases.over, ball))
+    return flow_of(found.releases.model((low + high) / 2), bits, (found.releases.over, ball))
 
 
-def _fate(flow: LinearFlow, times: tuple[float, float], entry: int) -> int | None:
+def _fate(flow: Flow, times: tuple[float, float], entry: int) -> int | None:
     """-1 where chatter completes before the second zero, 1 where a flight passes it; None undecided."""
     reached = _followed(flow, times, entry)
     return None if reached is None else side(flow, reached[2], *reached[:2])
 
 
-def _followed(flow: LinearFlow, times: tuple[float, float], entry: int) -> tuple[Any, Any, Any] | None:
+def _followed(flow: Flow, times: tuple[float, float], entry: int) -> tuple[Any, Any, Any] | None:
     """Time and velocity of an impact of the released orbit, and the zero of a_c before which a_c presses.
 
     Parameters
@@ -249,7 +242,7 @@ def _followed(flow: LinearFlow, times: tuple[float, float], entry: int) -> tuple
     return (time, v, end) if _presses(flow.acceleration, time, end, SETTINGS.around) else None
 
 
-def _rising_zero(flow: LinearFlow, near: float) -> Any | None:
+def _rising_zero(flow: Flow, near: float) -> Any | None:
     """The zero of a_c next to a double, where it is the only one and a_c rises; for every value in the flow's balls."""
     middle = flow.number(Fraction(near))
     reach = flow.number(SETTINGS.around)

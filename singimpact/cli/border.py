@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 @click.option("--to", "high", metavar="NUMBER", help="Its largest value; one and a half of the model's without it.")
 @click.option("--periods", type=click.IntRange(1, 1000), default=1, show_default=True, help="Within which it returns.")
 @click.option("--points", type=click.IntRange(2, 1_000_000), default=200, show_default=True, help="Values looked at.")
-@click.option("--digits", type=int, metavar="N", help="Decimal digits, certified where the model is linear.")
+@click.option("--digits", type=int, metavar="N", help="Decimal digits, certified where r is a number.")
 @click.option("--cascade", is_flag=True, help="Give edges and attractors beside each; -o does, too.")
 @click.option("-o", "--output", metavar="FILE.png", help="The picture of the first one's cascade: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give them as JSON.")

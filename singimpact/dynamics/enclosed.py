@@ -62,9 +62,14 @@ def enclosable(osc: Oscillator) -> bool:
     return not names_in(osc.restitution) and as_float(osc.restitution) < 1
 
 
-def flow_of(osc: Oscillator, bits: int) -> Flow:
-    """The flights of a model in balls at the precision that is set: a closed form, or enclosures."""
-    return AnalyticFlow(osc, bits) if linear_form(osc) is None else LinearFlow(osc, bits)
+def flow_of(osc: Oscillator, bits: int, number: tuple[str, Any] | None = None) -> Flow:
+    """The flights of a model in balls at the precision that is set: a closed form, or enclosures.
+
+    Parameters
+    ----------
+    number : name and ball of a number of the model that takes every value in the ball.
+    """
+    return AnalyticFlow(osc, bits, number) if linear_form(osc) is None else LinearFlow(osc, bits, number)
 
 
 def with_more_bits(

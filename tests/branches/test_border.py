@@ -21,6 +21,7 @@ from singimpact.branches import border_digits, cascade, settled
 from singimpact.branches.released import Releases
 from singimpact.cli.border import told
 from singimpact.flights.balls import LinearFlow
+from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.inputs import InputError
 from singimpact.scenes.border import draw_border
 
@@ -241,13 +242,47 @@ def test_a_flow_of_all_numbers_in_a_ball_contains_each():
             assert hit.time.rad() < 1e-6
 
 
-@pytest.mark.slow
-def test_nonlinear_models_are_not_certified_and_say_so():
-    found = si.border_orbits(DUFFING, between=(0.5404, 0.5405), points=2, digits=18)[0]
-    assert found.certified is None
-    assert found.notes == ("not certified: balls fly linear models with a number for restitution",)
-    rough = si.border_orbits(DUFFING, between=(0.5404, 0.5405), points=2)[0]
+def test_analytic_flows_of_all_numbers_in_a_ball_contain_each():
+    numbers = {"omega": "2.8", "b": "0.1"}
+    osc = si.ImpactOscillator("x + b*xdot + 0.3*x**3", "cos(omega*t)", "0.55", "0.5", numbers)
+    for name, middle in (("clearance", 0.55), ("restitution", 0.5), ("omega", 2.8), ("b", 0.1)):
+        with balls_at(160):
+            low, high = Fraction(middle) - Fraction(1, 10**9), Fraction(middle) + Fraction(1, 10**9)
+            wide = AnalyticFlow(osc, 160, (name, Balls(160).interval(low, high)))
+            hit = wide.first_hit(wide.number(Fraction(3)), wide.number(Fraction(1, 5)))
+            for value in (low, high, Fraction(middle)):
+                one = AnalyticFlow(osc.replace(**{name: value}), 160)
+                inside = one.first_hit(one.number(Fraction(3)), one.number(Fraction(1, 5)))
+                assert hit.time.contains(inside.time)
+                assert (wide.r * hit.velocity).contains(one.r * inside.velocity)
+                assert wide.acceleration(wide.number(Fraction(3)), 1).contains(
+                    one.acceleration(one.number(Fraction(3)), 1))  # fmt: skip
+            assert hit.time.rad() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("over", "between"),
+    [("clearance", (0.5404, 0.5405)), ("restitution", (0.5176, 0.5177)), ("damping", (-0.12, -0.119))],
+)
+def test_nonlinear_models_are_certified(over, between):
+    (found,) = si.border_orbits(DUFFING, over, between=between, points=2, digits=18)
+    assert found.certified.contains(found.parameter)
+    assert found.certified.radius < 1e-18
+    assert found.notes == ()
+    (rough,) = si.border_orbits(DUFFING, over, between=between, points=2)
     assert abs(float(found.parameter - mpmath.mpf(rough.parameter))) <= rough.error
+    right = exact("c", found.certified.value)
+    for wrong in (right + Fraction(1, 10**8), right + Fraction(1, 10**16), right - Fraction(1, 10**16)):
+        proof, note = border_digits._proved(rough.returned, wrong, 18)
+        assert proof is None
+        assert "one fate" in note
+
+
+def test_a_restitution_that_is_a_law_is_not_certified_and_says_so():
+    osc = si.ImpactOscillator("x", "cos(2.8*t)", 0.6, "-0.6*v + 0.1*v**2")
+    (found,) = si.border_orbits(osc, between=(0.68, 0.7), points=2, digits=16)
+    assert found.certified is None
+    assert found.notes == ("not certified: balls fly orbits of models with a number below 1 for restitution",)
 
 
 # ---- the cascade

@@ -3,6 +3,7 @@
 `equation` is a model as programs over balls, `taylor_step` a step whose cut-off is bounded on a complex disc, `tube`
 a polynomial with its error, `first_root` the root that is proved to be the first. `plain_motion` carries a state as a
 ball, `framed_motion` as a centre, columns and a rotated box; `ball_flight` follows either to its hit, `certified_hit`
-raises the precision until the digits asked for are there; `analytic_flow` flies impact after impact at one precision.
+raises the precision until the digits asked for are there, `timed_flight` flies to a given time, where it touches the
+wall; `analytic_flow` flies impact after impact at one precision.
 Not here: closed forms of linear models (`flights.balls`), doubles (`flights.kernels`), orbits (`dynamics`).
 """

@@ -14,6 +14,7 @@ from singimpact.flights.enclosures.certified_hit import ENCLOSURE
 from singimpact.flights.enclosures.equation import Equation, NoHit, Refused, programs_of
 from singimpact.flights.enclosures.plain_motion import PlainMotion
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import RESTITUTION
 
 
 class AnalyticFlow:
@@ -22,6 +23,8 @@ class AnalyticFlow:
     Parameters
     ----------
     osc : the model, its restitution a number. bits : of the balls, at which the flow is made and used.
+    number : name and ball of a number of the model that takes every value in the ball; what is returned then holds for
+        each of them.
 
     Examples
     --------
@@ -33,17 +36,20 @@ class AnalyticFlow:
     1.769788982840214783740587
     """
 
-    def __init__(self, osc: Oscillator, bits: int) -> None:
-        self.balls, self.equation = Balls(bits), Equation(programs_of(osc, ()), {})
-        self.r = evaluate(osc.restitution, {}, self.balls)
+    def __init__(self, osc: Oscillator, bits: int, number: tuple[str, Any] | None = None) -> None:
+        moving = dict([number] if number else [])
+        self.balls, self.equation = Balls(bits), Equation(programs_of(osc, tuple(moving)), moving)
+        self.r = moving[RESTITUTION] if RESTITUTION in moving else evaluate(osc.restitution, moving, self.balls)
         self.longest = Fraction(10_000)
 
     def number(self, value: Fraction) -> Any:
         """A rational as a ball."""
         return self.balls.rational(value)
 
-    def acceleration(self, tau: Any) -> Any:
-        """a_c at tau."""
+    def acceleration(self, tau: Any, order: int = 0) -> Any:
+        """a_c, or its derivative of order 1, at tau."""
+        if order:
+            return self.equation.run("forcing", t=tau)[order]
         zero = self.number(Fraction(0))
         return self.equation.run("forcing", t=tau)[0] - self.equation.run("force", x=zero, xdot=zero)[0]
 

@@ -10,13 +10,14 @@ from math import ceil, floor, log2
 from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
-from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.ball_flight import BallHit, first_hit
 from singimpact.flights.enclosures.equation import Equation, NoHit, NotAnalytic, Refused, TooLong, programs_of
 from singimpact.flights.enclosures.framed_motion import FramedMotion
 from singimpact.flights.enclosures.plain_motion import PlainMotion
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.period import common_period
 
 
 @dataclass(frozen=True)
@@ -116,15 +117,15 @@ def certified_hit(
     box = framed = any(launch.radii.values())
     if box:
         # digits beyond the width of a box are lost in it: derivatives over the box carry no more
-        coarse = max(coarse, min(bits, ENCLOSURE.guard - floor(log2(max(launch.radii.values())))))
+        coarse = bits_of_a_set(launch, bits)
     elif expected[0] > ENCLOSURE.wrapped:
         framed, coarse = True, bits if derivative else coarse
     singular = 0
     while True:
         begun = None
         try:
-            with _working(bits + ENCLOSURE.guard):
-                begun = _motion(osc, launch, bits, coarse, derivative, framed, expected[0])
+            with working_at(bits + ENCLOSURE.guard):
+                begun = motion_from(osc, launch, bits, coarse, derivative, framed, expected[0])
                 hit = first_hit(begun, Balls(bits).rational(horizon), steps)
                 found = _impact(osc, launch, hit, bits)
                 lack = 0 if box else _lack(found, wanted + 1)
@@ -150,6 +151,11 @@ def certified_hit(
             coarse = bits
 
 
+def bits_of_a_set(launch: Launch, bits: int) -> int:
+    """Bits of the steps of a set: those that its radius leaves, at most `bits`."""
+    return max(ENCLOSURE.coarse, min(bits, ENCLOSURE.guard - floor(log2(max(launch.radii.values())))))
+
+
 def _spare(time: float, condition: float) -> int:
     """Bits that a flight is expected to lose: to its condition, and to the balls that wrap it at every step."""
     lost = ENCLOSURE.lost * time if time < ENCLOSURE.wrapped else 0.0
@@ -157,21 +163,27 @@ def _spare(time: float, condition: float) -> int:
 
 
 @contextmanager
-def _working(bits: int) -> Iterator[None]:
+def working_at(bits: int) -> Iterator[None]:
     """Balls of so many bits, and series that flint does not cut."""
     with series_of_any_length(), balls_at(bits):
         yield
 
 
-def _motion(
-    osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool, time: float
+def motion_from(
+    osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool, time: float = 0.0
 ) -> Any:
-    """The flight from a launch at the working precision."""
+    """The flight from a launch at the working precision.
+
+    Parameters
+    ----------
+    bits, coarse : of the steps of a point, and of a set. derivative : whether columns are carried.
+    framed : whether the state is carried in a frame; else as a ball. time : of the flight in doubles, 0 not known.
+    """
     import flint
 
     names = launch.names
     programs = programs_of(osc, names)
-    tau, v = _phase(osc, launch.tau, bits), _ball(launch.v, bits)
+    tau, v = _phase(osc, launch.tau, bits, names), _ball(launch.v, bits)
     if not framed:
         return PlainMotion(Equation(programs, {}), tau, v, bits, launch.removed, derivative, time)
     numbers = {name: _ball(_number(osc, name), bits) for name in names}
@@ -200,13 +212,16 @@ def _radius(size: Fraction) -> Any:
     return flint.arb(0, flint.arb(flint.fmpq(size.numerator, size.denominator)).upper()) if size else flint.arb(0)
 
 
-def _phase(osc: Oscillator, tau: Expression, bits: int) -> Any:
-    """A launch time less whole periods of g: what is far from 0 loses no digits."""
+def _phase(osc: Oscillator, tau: Expression, bits: int, names: tuple[str, ...]) -> Any:
+    """A launch time less whole periods of g: what is far from 0 loses no digits.
+
+    Where the period depends on a number that has a radius, no time is a whole number of periods for all its values.
+    """
     import flint
 
     plain = _ball(tau, bits)
     size = abs(float(plain.mid()))
-    if osc.period is None or not size > 64:
+    if osc.period is None or not size > 64 or _period_moves(osc, names):
         return plain
     # the fraction of tau/period has the digits asked for only if the product with all whole periods has them
     more = bits + ENCLOSURE.guard + (int(abs(plain).upper().man_exp()[1]) + 64 if size > 1e15 else 64)
@@ -214,6 +229,14 @@ def _phase(osc: Oscillator, tau: Expression, bits: int) -> Any:
         exact, period = _ball(tau, more), _ball(osc.period, more)
         turns = flint.arb((exact / period).mid()).floor().unique_fmpz()
         return exact - period * turns
+
+
+def _period_moves(osc: Oscillator, names: tuple[str, ...]) -> bool:
+    """Whether the period depends, or may depend, on some numbers."""
+    if not names_in(osc.forcing(names)).intersection(names):
+        return False
+    period = common_period(osc.forcing(names))
+    return period is None or bool(names_in(period).intersection(names))
 
 
 def _impact(osc: Oscillator, launch: Launch, hit: BallHit, bits: int) -> ProvedImpact:

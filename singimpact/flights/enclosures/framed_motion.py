@@ -42,6 +42,7 @@ class FramedMotion:
         (self.of_centre, self.equation), self.bits, self.coarse = equations, bits, coarse
         self.step: Step | None = None
         self.wide: Step | None = None
+        self.members: tuple[Tube, Tube] | None = None  # z and z' of all members on the step
         self.removed, self.time, self.flown = removed, arb(0), 0
         self.tau, self.middle_tau = tau, tau
         self.middle: Pair = arb(0), centre(v)
@@ -92,13 +93,24 @@ class FramedMotion:
         value, slope = self.own
         for (psi, rate), size in zip(columns, sizes, strict=True):
             value, slope = _added(value, psi, size), _added(slope, rate, size)
+        self.members = value, slope
         return value, slope, wide.length
 
-    def advance(self, length: Any) -> None:
-        """To a time within the step."""
+    def columns_at(self, length: Any) -> list[Pair]:
+        """The derivatives of z and z' by tau (at equal time since the launch), v and names, at a time in the step."""
+        flow, driven = self._responses(length)
+        return [self._mapped(flow, each, driven.get(drive)) for each, drive in zip(self.full, self.drives, strict=True)]
+
+    def _responses(self, length: Any) -> tuple[list[list[Any]], dict[int, Pair]]:
+        """The derivatives by the state at the beginning of the step, and by what drives it."""
         flow = [[part(length) for part in column] for column in self.by_state]  # flow[j] = column j
         driven = {drive: (value(length), slope(length)) for drive, (value, slope) in zip(
             [drive for drive in self.drives if drive >= 0], self.by_drive, strict=True)}  # fmt: skip
+        return flow, driven
+
+    def advance(self, length: Any) -> None:
+        """To a time within the step."""
+        flow, driven = self._responses(length)
         self.full = [self._mapped(flow, each, driven.get(drive)) for each, drive in zip(
             self.full, self.drives, strict=True)]  # fmt: skip
         # the part of each column that rounding moves goes into the box of errors, the rest stays a point: Lohner's set,

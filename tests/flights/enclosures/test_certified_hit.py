@@ -134,6 +134,18 @@ def test_far_from_time_zero_no_digits_are_lost():
         assert abs(near.v.value - far.v.value) <= near.v.radius + far.v.radius
 
 
+@pytest.mark.parametrize("tau", ["1.4", "101.4"])
+@pytest.mark.parametrize(("name", "text"), [("w", "cos(w*t)"), ("A", "A*cos(1.7*t)")])
+def test_the_derivative_by_a_number_far_from_time_zero(tau, name, text):
+    """Of a launch time far from 0 whole periods are taken off only where the number does not move the period."""
+    osc = ImpactOscillator("x + 0.1*xdot + 0.3*x**3", text, "0.3", "0.6", {name: "1.7"})
+    found = osc.enclosed_impact(tau, "0.6", radii={name: "1e-8"}, digits=12)
+    ends = [osc.replace(**{name: 1.7 + s}).impact_map(float(tau), 0.6) for s in (-1e-6, 1e-6)]
+    for part, row in zip(("tau", "v"), found.derivative, strict=True):
+        difference = (getattr(ends[1], part) - getattr(ends[0], part)) / 2e-6
+        assert float(row[2].value) == pytest.approx(difference, rel=1e-5)
+
+
 def test_arrays_have_a_certificate_for_each_state():
     step = DUFFING.impact_map([[1.4, 1.2]], [[0.6], [0.0]], digits=20)
     assert step.certified.shape == (2, 2)

@@ -1,0 +1,187 @@
+"""Krawczyk's operator: a zero of F that is proved to exist, alone in a box, or one for each value of a held unknown.
+
+Y is about the inverse of D F at the centre x. If, for a box X round x,
+
+    x - Y F(x) + (1 - Y D F(X)) (X - x)   lies inside X,
+
+there is one zero of F in X and no other. Where one unknown is held, at any value within d of its centre, F(x) gains the
+term D F(X) e (-d ... d), e that unknown, and there is one zero for each of its values: a curve, which has no end in X.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Protocol
+
+import numpy as np
+
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.flights.enclosures.equation import Refused
+
+Point = list[Fraction]
+
+
+@dataclass(frozen=True)
+class KrawczykSettings:
+    """Boxes that are tried.
+
+    Parameters
+    ----------
+    first : radius, of times and velocities, of the boxes over which Y is computed.
+    widest, narrowest, shrink : of the boxes in which the zero is shown to be the only one.
+    rounds : of Newton's method, each of which gains about as many digits as `first` has.
+    margin : of the last box, over the step that Newton's method would still take.
+    """
+
+    first: Fraction = Fraction(1, 10**10)
+    widest: Fraction = Fraction(1, 10**3)
+    narrowest: Fraction = Fraction(1, 10**9)
+    shrink: int = 4
+    rounds: int = 40
+    margin: int = 4
+
+
+KRAWCZYK = KrawczykSettings()
+
+
+class Equations(Protocol):
+    """F in balls."""
+
+    @property
+    def balls(self) -> Balls: ...
+
+    def miss(self, point: Point) -> Any:
+        """F at a point, as a column."""
+
+    def slopes(self, point: Point, radius: Fraction) -> Any:
+        """What D F over the box of a radius round a point is made from; `Refused` where it is not bounded."""
+
+    def matrix(self, slopes: Any) -> Any:
+        """D F, with a column for each unknown, the held one among them."""
+
+
+@dataclass(frozen=True)
+class Image:
+    """What Krawczyk's operator gives of a box: the zero less the centre, and the slopes over the box."""
+
+    offsets: list[Any]
+    slopes: Any
+
+
+class Krawczyk:
+    """F with Y at a point near its zero.
+
+    Parameters
+    ----------
+    equations : F, of as many equations as there are unknowns, or of one less: then the unknown is held by which the
+        curve of zeros goes fastest. near : about the zero. small : wanted of it.
+    """
+
+    def __init__(self, equations: Equations, near: Point, small: Fraction) -> None:
+        slopes = equations.matrix(equations.slopes(near, KRAWCZYK.first))
+        held = _fastest(slopes) if slopes.nrows() < len(near) else None
+        self.equations, self.small, self.held = equations, small, held
+        self.free = [index for index in range(len(near)) if index != held]
+        self.Y = _middles(_middles(self._columns(slopes, self.free)).inv())
+        self.tangent = [Fraction(0)] * len(near)
+        if held is not None:
+            for index, part in zip(self.free, (self.Y * self._columns(slopes, [held])).entries(), strict=True):
+                self.tangent[index] = -as_rational(part)
+            self.tangent[held] = Fraction(1)
+
+    def moved(self, point: Point, shift: Fraction) -> Point:
+        """About the zero where the held unknown has another value."""
+        balls = self.equations.balls
+        moved = [as_rational(balls.rational(x + part * shift)) for x, part in zip(point, self.tangent, strict=True)]
+        if self.held is not None:
+            moved[self.held] = point[self.held] + shift
+        return moved
+
+    @staticmethod
+    def _columns(matrix: Any, kept: list[int]) -> Any:
+        import flint
+
+        return flint.arb_mat([[row[j] for j in kept] for row in matrix.table()])
+
+    def solved(self, point: Point) -> Point:
+        """A zero to the digits wanted, by Newton's method with Y: nothing is proved here."""
+        balls, small = self.equations.balls, self.equations.balls.rational(self.small)
+        for _ in range(KRAWCZYK.rounds):
+            move = (self.Y * self.equations.miss(point)).entries()
+            point = list(point)
+            for index, part in zip(self.free, move, strict=True):
+                point[index] = as_rational(balls.rational(point[index]) - part)
+            if all(abs(part) < small for part in move):
+                return point
+        raise Refused("Newton's method does not come to the digits")
+
+    def step(self, point: Point) -> list[Any]:
+        """The step that Newton's method would still take."""
+        return (self.Y * self.equations.miss(point)).entries()  # type: ignore[no-any-return]
+
+    def own_radius(self, step: list[Any]) -> Fraction:
+        """The radius of a box that is wide enough for a zero so near."""
+        import flint
+
+        left = max(as_rational(flint.arb(abs(part).upper())) for part in step)
+        return max(KRAWCZYK.margin * left, self.small / 10)
+
+    def image(self, point: Point, step: list[Any], radius: Fraction, spread: Fraction = Fraction(0)) -> Image | None:
+        """The image of the box of a radius, of every unknown; None where it does not lie inside.
+
+        Parameters
+        ----------
+        step : of Newton's method at the point. spread : of the held unknown, at most the radius.
+        """
+        import flint
+
+        try:
+            slopes = self.equations.slopes(point, radius)
+        except Refused:
+            return None
+        matrix = self.equations.matrix(slopes)
+        size, balls = len(self.free), self.equations.balls
+        one = flint.arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+        rest = (one - self.Y * self._columns(matrix, self.free)).table()
+        reach, drift = _round(balls, radius), [flint.arb(0)] * size
+        if self.held is not None and spread:
+            drift = [part * _round(balls, spread) for part in (self.Y * self._columns(matrix, [self.held])).entries()]
+        off = [sum((part * reach for part in row), moved - s)
+               for s, moved, row in zip(step, drift, rest, strict=True)]  # fmt: skip
+        inside = all(part.is_finite() and abs(part) < balls.rational(radius) for part in off)
+        return Image(off, slopes) if inside else None
+
+    def unique_within(self, point: Point, step: list[Any], own: Fraction) -> Fraction:
+        """The widest radius tried within which the zero is the only one; what fails is tried seldom, for it is slow."""
+        radii = [KRAWCZYK.widest]
+        while radii[-1] > max(KRAWCZYK.narrowest, own):
+            radii.append(radii[-1] / KRAWCZYK.shrink)
+        radii = [radius for radius in radii if radius > max(KRAWCZYK.narrowest, own)]
+        low, high = 0, len(radii)  # the widest that is shown is one of these, or `own`
+        at = low
+        while low < high:
+            if self.image(point, step, radii[at]) is not None:
+                high = at
+            else:
+                low = at + 1
+            at = (low + high) // 2
+        return radii[high] if high < len(radii) else own
+
+
+def _fastest(slopes: Any) -> int:
+    """The largest component of the vector that a matrix with one column too many maps to 0, in doubles."""
+    rows = np.array([[float(part) for part in row] for row in _middles(slopes).table()])
+    return int(np.argmax(np.abs(np.linalg.svd(rows)[2][-1])))
+
+
+def _round(balls: Balls, radius: Fraction) -> Any:
+    import flint
+
+    return flint.arb(0, balls.rational(radius).upper())
+
+
+def _middles(matrix: Any) -> Any:
+    import flint
+
+    return flint.arb_mat([[flint.arb(part.mid()) for part in row] for row in matrix.table()])

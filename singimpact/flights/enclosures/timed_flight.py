@@ -1,0 +1,187 @@
+"""Flights to a given time in balls: where they touch the wall, the time of a hit is no smooth function, and z, z' are.
+
+z = x - c,   z'   at a time T after the launch,   with their derivatives by tau, v, and numbers of the model.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil
+from typing import Any, NamedTuple
+
+from singimpact.algebra.balls import BITS_A_DIGIT
+from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, bits_of_a_set, motion_from, working_at
+from singimpact.flights.enclosures.equation import Refused
+from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
+from singimpact.flights.enclosures.framed_motion import FramedMotion, Pair
+from singimpact.flights.enclosures.tube import Tube, centre, divided
+from singimpact.oscillator.model import Oscillator
+
+
+@dataclass(frozen=True)
+class TimedSettings:
+    """How a flight is cut.
+
+    Parameters
+    ----------
+    near : of the time that is left, a step that would end beyond this part of it goes half of the way.
+    halvings : of the last piece, on which z'' > 0 is shown.
+    """
+
+    near: float = 0.8
+    halvings: int = 30
+
+
+TIMED = TimedSettings()
+
+
+class Arrival(NamedTuple):
+    """Balls of z, z', z'' at the time, and of the derivatives of z and z' by tau, v, names.
+
+    The derivatives by tau are those at equal time since the launch.
+    """
+
+    height: Any
+    velocity: Any
+    acceleration: Any
+    columns: list[Pair]
+
+
+def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, derivative: bool = False) -> Arrival:
+    """A flight at a time, whatever it meets only at its end.
+
+    Parameters
+    ----------
+    time : a ball. digits : after the point, of z and z' of a launch that is a point.
+    derivative : whether the derivatives are enclosed too.
+
+    Raises
+    ------
+    Refused : x - c is not shown positive at the end of a step before; or the digits are not reached.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.numbers import constant
+    >>> from singimpact.algebra.balls import Balls
+    >>> launch, osc = Launch(constant("tau", 0), constant("v", 1)), Oscillator("x", "0", 0, 1)
+    >>> print(timed_flight(osc, launch, Balls(100).rational(Fraction(1)), 20).height.str(20, radius=False))
+    0.84147098480789650665
+    """
+    bits = ceil(digits * BITS_A_DIGIT) + ENCLOSURE.spare
+    most, box = ENCLOSURE.most * bits + ENCLOSURE.room, any(launch.radii.values())
+    small = Fraction(1, 10**digits)
+    while True:
+        why = "the digits are not reached"
+        try:
+            found = _flown(osc, launch, time, bits, derivative)
+            if box or all(part.rad() < float(small) for part in (found.height, found.velocity)):
+                return found
+        except Refused as reason:
+            if box:
+                raise
+            why = str(reason)
+        if bits >= most:
+            raise Refused(f"{why} (at {bits} bits)")
+        bits = min(int(bits * ENCLOSURE.more), most)
+
+
+def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int) -> None:
+    """Show that z > 0 between the launch and a time at which z = z' = 0, as the caller knows of that flight.
+
+    z > 0 is shown up to a last piece, and there z'' > 0: a function with z = z' = 0 at its end is then positive on it.
+
+    Raises
+    ------
+    Refused : some member of the box may meet the wall before, or is pressed to it where it touches.
+    """
+    bits = ceil(digits * BITS_A_DIGIT) + ENCLOSURE.spare
+    with working_at(bits + ENCLOSURE.guard):
+        motion = _begun(osc, launch, bits, False)
+        while True:
+            inner, length = _step(motion)
+            left = time - motion.time
+            if _reaches(length, left):
+                return _touches_in_step(motion, inner, left)
+            part = _piece(length, left)
+            _above(inner, part, bits)
+            motion.advance(part)
+
+
+def _touches_in_step(motion: FramedMotion, inner: tuple[Tube, Tube], left: Any) -> None:
+    """The same in the step of the touching point."""
+    last = centre(left)
+    for _ in range(TIMED.halvings):
+        before = centre(left - last)
+        if _bends_upwards(motion, before.union(left)):
+            if before > 0:
+                _above(inner, before, motion.bits)
+            return
+        last = last / 2
+    raise Refused("the mass is not shown to be driven off the wall where it touches it")
+
+
+def _begun(osc: Oscillator, launch: Launch, bits: int, derivative: bool) -> FramedMotion:
+    coarse = bits_of_a_set(launch, bits) if any(launch.radii.values()) else bits
+    motion = motion_from(osc, launch, bits, coarse, derivative, True)
+    assert isinstance(motion, FramedMotion)
+    return motion
+
+
+def _flown(osc: Oscillator, launch: Launch, time: Any, bits: int, derivative: bool) -> Arrival:
+    with working_at(bits + ENCLOSURE.guard):
+        motion = _begun(osc, launch, bits, derivative)
+        while True:
+            _, length = _step(motion)
+            left = time - motion.time
+            if _reaches(length, left):
+                assert motion.members is not None
+                z, v = (part(left) for part in motion.members)
+                columns = motion.columns_at(left) if derivative else []
+                return Arrival(z, v, _acceleration(motion, left), columns)
+            motion.advance(_piece(length, left))
+
+
+def _step(motion: FramedMotion) -> tuple[tuple[Tube, Tube], Any]:
+    """z and its slope on the next step, without the zero of the launch; and the length of the step."""
+    motion.flown += 1
+    if motion.flown > ENCLOSURE.steps:
+        raise Refused(f"{ENCLOSURE.steps} steps in balls do not reach the time")
+    value, slope, length = motion.tubes()
+    if not motion.launched:
+        return (value, slope), length
+    inner = divided(value, slope, motion.removed)
+    if not inner[0].polynomial[0] > 0:
+        raise Refused("the mass is not shown to leave the wall")
+    return inner, length
+
+
+def _reaches(length: Any, left: Any) -> bool:
+    return bool(left.upper() <= length)
+
+
+def _piece(length: Any, left: Any) -> Any:
+    """As far as this step goes: not so near the time that the height there is rounding."""
+    return length if length < left * TIMED.near else centre(left / 2)
+
+
+def _above(inner: tuple[Tube, Tube], length: Any, bits: int) -> None:
+    """Show that there is no zero up to a length."""
+    try:
+        root = first_root(*inner, length, bits)
+    except (NearGraze, RootAtEnd):
+        raise Refused("the flight is not shown to be above the wall before it touches it") from None
+    if root is not None:
+        raise Refused("the flight meets the wall before it touches it")
+
+
+def _bends_upwards(motion: FramedMotion, during: Any) -> bool:
+    return bool(_acceleration(motion, during) > 0)
+
+
+def _acceleration(motion: FramedMotion, during: Any) -> Any:
+    """z'' at times since the beginning of the step."""
+    assert motion.members is not None
+    z, v = (part(during) for part in motion.members)
+    forcing = motion.equation.run("forcing", t=motion.tau + motion.time + during)[0]
+    return forcing - motion.equation.run("force", x=z, xdot=v)[0]
