@@ -5,11 +5,11 @@ pictures (`scenes`).
 Files: `closing` (the conditions, smooth through a graze; the lowest place of a flight), `free` (those of an orbit
 without impact), `orbits` (the type of an orbit), `solutions` (the orbit at a point), `one_impact` (one impact, linear:
 closed form), `starts` (Newton's method from many starts), `resting` (orbits without impact, and with rest), `digits`,
-`enclosed_orbit` (that one exists: Krawczyk's operator),
+`krawczyk` (a zero in a box, the only one), `enclosed_orbit` (a periodic orbit that is proved to exist),
 `periodic` (the search for all orbits), `continuation` (pseudo-arclength), `events`, `switching` (the other branches at
 an event), `branch`, `kept` (on disk), `event_curve` (events in two parameters); `saddle_arcs` (W^s and W^u next to a
 saddle), `manifold` (grown from there), `cylinder` (polylines of phases and velocities), `homoclinic` (where W^u and W^s
-cross); `border` (released orbits that return onto gamma), `released` (that orbit), `border_digits`, `cascade` (the
-edges beside it), `settled` (the periodic orbit to which an orbit converges), `transitions`
-(those of P with the orbits between them).
+cross), `saddle_cones` (W^u and W^s proved to lie in wedges), `enclosed_crossing` (a crossing that is proved); `border`
+(released orbits that return onto gamma), `released` (that orbit), `border_digits`, `cascade` (the edges beside it),
+`settled` (the periodic orbit to which an orbit converges), `transitions` (those of P with the orbits between them).
 """

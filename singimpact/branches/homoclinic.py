@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,8 +21,12 @@ from singimpact.branches.saddle_arcs import LocalArc, checked_saddle
 from singimpact.dynamics.growth import Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.derivative import derivative
+from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse
 from singimpact.surface.curve import RESOLUTION
+
+if TYPE_CHECKING:
+    from singimpact.branches.enclosed_crossing import EnclosedCrossing
 
 Array = np.ndarray[Any, Any]
 
@@ -90,6 +94,38 @@ class Crossing:
     def weakest(self) -> float:
         """The least v of the impacts: near 0 the orbit nearly grazes."""
         return float(self.states[:, 1].min())
+
+    def certified(self, digits: int = 30) -> EnclosedCrossing:
+        """The orbit, proved to exist: a transverse crossing of the true W^u and W^s.
+
+        Parameters
+        ----------
+        digits : of the point; its angle and the impacts at both ends may have fewer, each number has its radius.
+
+        Raises
+        ------
+        InputError : an orbit that is not proved, with the reason.
+
+        Notes
+        -----
+        Of a homoclinic orbit this is what the theorem of Smale and Birkhoff assumes: some iterate of the impact map has
+        a horseshoe near it, with infinitely many periodic orbits and positive entropy.
+
+        Examples
+        --------
+        >>> from singimpact.impact_oscillator import linear
+        >>> (saddle,) = linear("2.8", 0, "0.8").periodic(1, 1)
+        >>> homoclinic_points(saddle)[0].certified(20)
+        <certified homoclinic point (1.7728431768964407999, 0.42819799134690829201), angle 1.29636, 37 impacts>
+        """
+        from singimpact.branches.enclosed_crossing import enclosed_crossing
+
+        wanted = checked_digits(digits)
+        ends = (self.unstable, self.unstable if self.kind == "homoclinic" else self.stable)
+        found = enclosed_crossing(ends, self.states, self.index, wanted)
+        if isinstance(found, str):
+            raise InputError(f"{self!r} is not certified: {found}")
+        return found
 
     def __repr__(self) -> str:
         return (
