@@ -21,6 +21,7 @@ import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT
 from singimpact.algebra.certified import Certified, from_ball
+from singimpact.algebra.numbers import exact
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.enclosed_orbit import EnclosedOrbit
 from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Zero, proved, upper
@@ -41,13 +42,16 @@ class EnclosedCrossingSettings:
     ----------
     spare : digits beside those asked for, of the balls and of the wedges; a wedge of length s is 10^3 s^2 wide or less.
     attempts, more : where the digits are not reached, so often so many digits are added.
-    impacts : of an orbit at most.
+    moved : how far, in tau and in v, the proved states may lie from those that are given.
+    impacts : of an orbit at most. digits : at most, so that places on the wedges are doubles.
     """
 
     spare: int = 10
     attempts: int = 3
     more: int = 6
+    moved: Fraction = Fraction(1, 10**4)
     impacts: int = 1000
+    digits: int = 500
 
 
 SETTINGS = EnclosedCrossingSettings()
@@ -63,7 +67,8 @@ class EnclosedCrossing:
     angle : at which they cross there, in radians, of tau and v as numbers: `Certified`, above 0.
     states : all impacts as pairs of `Certified`, from W^u next to one saddle to W^s next to the other; those at both
         ends have fewer digits. index : of (tau, v) among them.
-    unique_within : no other such orbit of as many impacts has all its states within this distance, in tau and in v.
+    unique_within : no other orbit of as many impacts from the wedge of W^u to that of W^s has all its states within
+        this distance, in tau and in v.
     kind : "homoclinic" or "heteroclinic". unstable, stable : the saddles that it leaves and comes to, proved.
     slopes : (L_u, L_s): at the ends W^u and W^s deviate from the eigenvectors' lines by slopes of at most these.
 
@@ -112,6 +117,8 @@ def enclosed_crossing(
     states : impacts from next to the first impact of one saddle to next to that of the other, shape (N + 1, 2), about.
     index : of the state with all digits. digits : of that state.
     """
+    if digits > SETTINGS.digits:
+        return f"at most {SETTINGS.digits} digits are certified"
     why = ""
     for attempt in range(SETTINGS.attempts):
         working = digits + SETTINGS.spare + attempt * SETTINGS.more
@@ -120,10 +127,10 @@ def enclosed_crossing(
             found = proved(lambda w=working, b=bits: _enclosed(ends, states, index, (digits, w, b)))  # type: ignore[misc]
         if isinstance(found, str):
             return found
-        radius = max(float(found.tau.radius), float(found.v.radius))
-        if radius < 10.0**-digits:
+        radius = max(exact("radius", part.radius) for part in (found.tau, found.v))
+        if radius < Fraction(1, 10**digits):
             return found  # type: ignore[no-any-return]
-        why = f"the enclosure has a radius of {radius:.1g}"
+        why = f"the enclosure has a radius of {float(radius):.1g}"
     return why
 
 
@@ -138,6 +145,8 @@ def _enclosed(
     first = [near[0], *(Fraction(float(x)) for state in start[1:-1] for x in state), near[1]]
     operator = Krawczyk(between, first)
     at = operator.centre(first, working)
+    if max(abs(one - other) for one, other in zip(at, first, strict=True)) > SETTINGS.moved:
+        raise Refused("Newton's method leaves the states")
     step = operator.step(at)
     small = Fraction(1, 10 ** (working + 2))
     own = [max(KRAWCZYK.margin * upper(part), small) for part in step]
@@ -149,7 +158,8 @@ def _enclosed(
     angle = _angle(between, tight, place)
     if not angle > 0:
         raise Refused("the angle of W^u and W^s is not told from 0")
-    unique = operator.unique_within(at, step, max(own))
+    least = min(radius / unit for radius, unit in zip(own, between.radii(Fraction(1)), strict=True))
+    unique = operator.unique_within(at, step, least)
     shown = [(_shown(tau, digits), _shown(v, digits)) for tau, v in between.states(tight)]
     wedges = (between.leaving(at[0], own[0]).slope, between.coming(at[-1], own[-1]).slope)
     return EnclosedCrossing(
