@@ -30,6 +30,7 @@ from singimpact.branches.saddle_cones import Cones, Pair, smooth
 from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.enclosures.certified_hit import ProvedImpact
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
 
@@ -70,6 +71,7 @@ class EnclosedCrossing:
     unique_within : no other orbit of as many impacts from the wedge of W^u to that of W^s has all its states within
         this distance, in tau and in v.
     kind : "homoclinic" or "heteroclinic". unstable, stable : the saddles that it leaves and comes to, proved.
+    oscillator : the model.
     slopes : (L_u, L_s): at the ends W^u and W^s deviate from the eigenvectors' lines by slopes of at most these.
 
     Notes
@@ -87,6 +89,7 @@ class EnclosedCrossing:
     kind: str
     unstable: EnclosedOrbit
     stable: EnclosedOrbit
+    oscillator: Oscillator
     slopes: tuple[Fraction, Fraction]
 
     @property
@@ -164,7 +167,8 @@ def _enclosed(
     wedges = (between.leaving(at[0], own[0]).slope, between.coming(at[-1], own[-1]).slope)
     return EnclosedCrossing(
         *shown[place], _shown(angle, digits), tuple(shown), place, unique,
-        "homoclinic" if come is leave else "heteroclinic", leave.orbit, come.orbit, wedges,
+        "homoclinic" if come is leave else "heteroclinic", leave.orbit, come.orbit,
+        leave.saddle.oscillator, wedges,
     )  # fmt: skip
 
 

@@ -180,6 +180,19 @@ def test_the_wedges_are_in_the_radius(monkeypatch, found):
     assert wide.tau.radius > 10 * narrow.tau.radius
 
 
+def test_drawn_over_its_manifolds(found, proved):
+    axes = si.plot(list(found.manifolds))
+    limits = axes.get_xlim(), axes.get_ylim()
+    assert si.plot(proved, axes) is axes
+    assert (axes.get_xlim(), axes.get_ylim()) == limits
+    assert [text.get_text() for text in axes.texts] == ["1", "2", "3"]
+    assert [text.xy[0] for text in axes.texts] == pytest.approx([0.13424366, 1.77284318, 0.24480574], abs=1e-7)
+    assert axes.get_legend().get_texts()[-1].get_text() == (
+        "impacts of a certified homoclinic orbit, angle 1.2964 at 2"
+    )
+    assert si.plot(proved).get_xlim()[0] == 0
+
+
 def test_too_many_digits_are_refused(found):
     with pytest.raises(InputError, match="at most 500 digits"):
         found[0].certified(501)
