@@ -9,7 +9,8 @@ closed form), `starts` (Newton's method from many starts), `resting` (orbits wit
 `periodic` (the search for all orbits), `continuation` (pseudo-arclength), `events`, `switching` (the other branches at
 an event), `branch`, `kept` (on disk), `event_curve` (events in two parameters); `saddle_arcs` (W^s and W^u next to a
 saddle), `manifold` (grown from there), `cylinder` (polylines of phases and velocities), `homoclinic` (where W^u and W^s
-cross), `saddle_cones` (W^u and W^s proved to lie in wedges), `enclosed_crossing` (a crossing that is proved); `border`
-(released orbits that return onto gamma), `released` (that orbit), `border_digits`, `cascade` (the edges beside it),
-`settled` (the periodic orbit to which an orbit converges), `transitions` (those of P with the orbits between them).
+cross), `saddle_cones` (W^u and W^s proved to lie in wedges), `enclosed_crossing` (a crossing that is proved),
+`horseshoe` (chaos beside it, proved); `border` (released orbits that return onto gamma), `released` (that orbit),
+`border_digits`, `cascade` (the edges beside it), `settled` (the periodic orbit to which an orbit converges),
+`transitions` (those of P with the orbits between them).
 """

@@ -143,7 +143,7 @@ def _enclosed(
     digits, working, bits = wanted
     leave = Cones(ends[0], working, bits)
     come = leave if ends[1] is ends[0] else Cones(ends[1], working, bits)
-    near, start, turned = _prolonged(leave, come, states, working)
+    near, start, turned = prolonged(leave, come, states, working)
     between = _Between(leave, come, start)
     first = [near[0], *(Fraction(float(x)) for state in start[1:-1] for x in state), near[1]]
     operator = Krawczyk(between, first)
@@ -180,7 +180,7 @@ def _shown(ball: Any, digits: int) -> Certified:
 # ---- the ends
 
 
-def _prolonged(leave: Cones, come: Cones, states: Array, working: int) -> tuple[tuple[Fraction, Fraction], Array, int]:
+def prolonged(leave: Cones, come: Cones, states: Array, working: int) -> tuple[tuple[Fraction, Fraction], Array, int]:
     """s_u and s_s about, the states with turns added at both saddles, and how many impacts were added at the first.
 
     A wedge at s is s^2 wide, and the width at the middle is that times what the turns in between contract:

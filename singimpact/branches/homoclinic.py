@@ -27,6 +27,7 @@ from singimpact.surface.curve import RESOLUTION
 
 if TYPE_CHECKING:
     from singimpact.branches.enclosed_crossing import EnclosedCrossing
+    from singimpact.branches.horseshoe import Horseshoe
 
 Array = np.ndarray[Any, Any]
 
@@ -108,8 +109,7 @@ class Crossing:
 
         Notes
         -----
-        Of a homoclinic orbit this is what the theorem of Smale and Birkhoff assumes: some iterate of the impact map has
-        a horseshoe near it, with infinitely many periodic orbits and positive entropy.
+        Of a homoclinic orbit this is what the theorem of Smale and Birkhoff assumes; `horseshoe` does without it.
 
         Examples
         --------
@@ -125,6 +125,29 @@ class Crossing:
         found = enclosed_crossing(ends, self.states, self.index, wanted)
         if isinstance(found, str):
             raise InputError(f"{self!r} is not certified: {found}")
+        return found
+
+    def horseshoe(self) -> Horseshoe:
+        """Chaos next to a homoclinic orbit, proved: loops near the saddle and along the orbit, in any order.
+
+        Raises
+        ------
+        InputError : a heteroclinic orbit; one of which no horseshoe is proved, with the reason.
+
+        Examples
+        --------
+        >>> from singimpact.impact_oscillator import linear
+        >>> (saddle,) = linear("2.8", 0, "0.8").periodic(1, 1)
+        >>> homoclinic_points(saddle)[0].horseshoe()
+        <certified horseshoe: loops of 1 and 17 impacts in any order, entropy >= 0.125665>
+        """
+        from singimpact.branches.horseshoe import horseshoe
+
+        if self.kind != "homoclinic":
+            raise InputError(f"{self!r} is not accepted: a horseshoe needs an orbit that comes back to its saddle")
+        found = horseshoe(self.unstable, self.states)
+        if isinstance(found, str):
+            raise InputError(f"no horseshoe is proved next to {self!r}: {found}")
         return found
 
     def __repr__(self) -> str:

@@ -142,6 +142,13 @@ def upper(number: Any) -> Fraction:
     return as_rational(flint.arb(abs(number).upper()))
 
 
+def least(number: Any) -> Fraction:
+    """A rational that is at most the size of every number in a ball."""
+    import flint
+
+    return as_rational(flint.arb(abs(number).lower()))
+
+
 def proved(attempt: Callable[[], Any]) -> Any:
     """The result of an attempt, or the reason as text."""
     try:

@@ -28,7 +28,7 @@ from typing import Any
 
 from singimpact.algebra.balls import as_rational
 from singimpact.algebra.numbers import exact
-from singimpact.branches.enclosed_orbit import EnclosedMap, EnclosedOrbit, enclosed_orbit
+from singimpact.branches.enclosed_orbit import POINT, EnclosedMap, EnclosedOrbit, enclosed_orbit
 from singimpact.branches.krawczyk import upper
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.certified_hit import ProvedImpact
@@ -134,20 +134,35 @@ class Cones:
 
     def _derivative(self, radii: Pair) -> Any:
         """D R over the box of these radii round the saddle."""
-        import flint
-
-        middle, total = self.centre, flint.arb_mat([[1, 0], [0, 1]])
-        for _ in range(int(self.saddle.n)):
-            hit = smooth(self.map(middle, radii))
-            total = flint.arb_mat(hit.derivative) * total
-            middle = as_rational(hit.tau), as_rational(hit.v)
-            radii = upper(hit.tau - hit.tau.mid()), upper(hit.v - hit.v.mid())
-        return total
+        return derivative_over(self.map, self.centre, radii, int(self.saddle.n))
 
     def _matrix(self, rows: list[list[Fraction]]) -> Any:
         import flint
 
         return flint.arb_mat([[self.map.balls.rational(part) for part in row] for row in rows])
+
+
+def derivative_over(flown: EnclosedMap, centre: Pair, radii: Pair, impacts: int) -> Any:
+    """D G^m over a box, for m impacts, each of which is shown to be smooth."""
+    import flint
+
+    total = flint.arb_mat([[1, 0], [0, 1]])
+    for _ in range(impacts):
+        hit = smooth(flown(centre, radii))
+        total = flint.arb_mat(hit.derivative) * total
+        centre = as_rational(hit.tau), as_rational(hit.v)
+        radii = upper(hit.tau - hit.tau.mid()), upper(hit.v - hit.v.mid())
+    return total
+
+
+def image_of(flown: EnclosedMap, centre: Pair, impacts: int) -> tuple[Any, Any]:
+    """Balls of tau and v of a state after some impacts."""
+    radii = POINT
+    for _ in range(impacts):
+        hit = flown(centre, radii)
+        centre = as_rational(hit.tau), as_rational(hit.v)
+        radii = upper(hit.tau - hit.tau.mid()), upper(hit.v - hit.v.mid())
+    return hit.tau, hit.v
 
 
 def smooth(hit: ProvedImpact) -> ProvedImpact:

@@ -1,4 +1,8 @@
-"""Chaos of an impact oscillator, certified: a transverse homoclinic orbit of x'' + x = cos 2.8 t, c = 0, r = 4/5."""
+"""Chaos of an impact oscillator, certified: x'' + x = cos 2.8 t, c = 0, r = 4/5.
+
+`b:homoclinic` : a transverse homoclinic orbit, the hypothesis of the theorem of Smale and Birkhoff.
+`b:horseshoe` : sets that are crossed by images of one another, from which chaos follows without that theorem.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,8 @@ from typing import NamedTuple
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.numbers import exact
 from singimpact.branches.enclosed_crossing import EnclosedCrossing
-from singimpact.branches.homoclinic import homoclinic_points
+from singimpact.branches.homoclinic import Crossing, homoclinic_points
+from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.periodic import periodic
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
@@ -37,8 +42,8 @@ class Stated(NamedTuple):
 
 
 @cache
-def _certified(restitution: str) -> EnclosedCrossing | str:
-    """The homoclinic orbit of fewest impacts, proved; or why there is none."""
+def _first(restitution: str) -> Crossing | str:
+    """The homoclinic orbit of fewest impacts, in doubles; or why there is none."""
     osc = Oscillator("x", "cos(2.8*t)", 0, restitution)
     saddles = [orbit for orbit in periodic(osc, 1, 1) if orbit.visible and not orbit.stable]
     if not saddles:
@@ -46,8 +51,25 @@ def _certified(restitution: str) -> EnclosedCrossing | str:
     found = homoclinic_points(saddles[0], v=1)
     if not found:
         return f"r = {restitution}: no crossing of W^u and W^s is found"
+    return found[0]
+
+
+@cache
+def _certified(restitution: str) -> EnclosedCrossing | str:
+    """It, proved; or why it is not."""
+    found = _first(restitution)
     try:
-        return found[0].certified(DIGITS)
+        return found if isinstance(found, str) else found.certified(DIGITS)
+    except InputError as reason:
+        return str(reason)
+
+
+@cache
+def _horseshoe(restitution: str) -> Horseshoe | str:
+    """The horseshoe beside it; or why none is proved."""
+    found = _first(restitution)
+    try:
+        return found if isinstance(found, str) else found.horseshoe()
     except InputError as reason:
         return str(reason)
 
@@ -106,6 +128,26 @@ def _near(state: tuple[Certified, Certified], saddle: tuple[Certified, Certified
     return max(abs(tau - period * round(tau / period)), abs(v)) < NEAR
 
 
+def _chaotic(stated: tuple[str, tuple[int, int], str]) -> Check:
+    """(r, loops, h): loops of these lengths are followed in any order, and the entropy is at least h."""
+    restitution, loops, entropy = stated
+    found = _horseshoe(restitution)
+    if isinstance(found, str):
+        return Check(False, "certified", found, {"fails": found})
+    bound = exact("value", found.entropy.value) - exact("radius", found.entropy.radius)
+    return every(
+        [
+            (
+                f"{len(found.sets)} parallelograms, round the saddle and along the homoclinic orbit, are crossed by images "
+                f"of one another: loops of {found.loops[0]} and {found.loops[1]} impacts follow in any order",
+                found.loops == loops,
+            ),
+            (f"the entropy of G is at least {found.entropy}", Fraction(entropy) <= bound),
+        ],
+        "certified",
+    )
+
+
 TRUE = Stated(
     "4/5",
     ("2.2146319327", "0.2689418160"),
@@ -113,11 +155,12 @@ TRUE = Stated(
     "1.2963606016",
 )
 
+CHAOS = ("4/5", (1, 17), "0.1256")
+
 CLAIMS = (
     claim(
-        "b:horseshoe",
-        "x'' + x = cos 2.8t, c = 0, r = 4/5 has a transverse homoclinic orbit along which G is smooth: a horseshoe, by "
-        "the theorem of Smale and Birkhoff",
+        "b:homoclinic",
+        "x'' + x = cos 2.8t, c = 0, r = 4/5: a saddle has a transverse homoclinic orbit along which G is smooth",
         Statement(
             r"\ddot x+x=\cos 2.8t,\ c=0,\ r=\tfrac45,\ p=(2.2146319327,0.2689418160):\quad "
             r"W^u(p)\pitchfork W^s(p)\ \text{at}\ (1.7728431769,0.4281979913)",
@@ -131,6 +174,22 @@ CLAIMS = (
             TRUE._replace(saddle=("0.2757899", "0.3556722")),
             TRUE._replace(angle="0.0000000000"),
             TRUE._replace(restitution="0.8000001"),
+        ),
+    ),
+    claim(
+        "b:horseshoe",
+        "x'' + x = cos 2.8t, c = 0, r = 4/5: loops of 1 and of 17 impacts in any order, entropy at least 0.1256",
+        Statement(
+            r"\ddot x+x=\cos 2.8t,\ c=0,\ r=\tfrac45:\quad"
+            r"h_{\rm top}(G)\ge\ln x>0.1256,\quad x^{-1}+x^{-17}=1",
+            CHAOS,
+        ),
+        _chaotic,
+        (
+            ("1/10", *CHAOS[1:]),
+            ("4/5", (1, 16), "0.1256"),
+            ("4/5", (2, 17), "0.1256"),
+            ("4/5", (1, 17), "0.1257"),
         ),
     ),
 )
