@@ -138,8 +138,8 @@ def _chaotic(stated: tuple[str, tuple[int, int], str]) -> Check:
     return every(
         [
             (
-                f"{len(found.sets)} parallelograms, round the saddle and along the homoclinic orbit, are crossed by images "
-                f"of one another: loops of {found.loops[0]} and {found.loops[1]} impacts follow in any order",
+                f"{len(found.sets)} parallelograms, round the saddle and along the homoclinic orbit, are crossed by "
+                f"images of one another: loops of {found.loops[0]} and {found.loops[1]} impacts follow in any order",
                 found.loops == loops,
             ),
             (f"the entropy of G is at least {found.entropy}", Fraction(entropy) <= bound),
