@@ -139,6 +139,7 @@ def manifolds(place: Path) -> None:
     si.plot(found).figure.savefig(place / "manifold_tangle.png", dpi=110)
     certified = si.plot(found[0].certified(), axes=si.plot(list(found.manifolds)))
     certified.figure.savefig(place / "manifold_certified.png", dpi=110)
+    si.plot(found[0].horseshoe()).figure.savefig(place / "manifold_horseshoe.png", dpi=110)
 
     waves = si.ImpactOscillator("x", "-cos(2.8*t) - h*cos(5.6*t)", "0.3", "0.8", {"h": -1})
     changes = si.transitions(waves, "h", ("-1.5", "-1.1"), (-2, 2), orbits=[(1, 1)])

@@ -34,6 +34,7 @@ from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.saddle_cones import Cones, Pair, derivative_over, image_of
 from singimpact.flights.derivative import derivative
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
 
@@ -94,12 +95,13 @@ class Horseshoe:
     ----------
     loops : impacts of the short loop, next to the saddle, and of the long one, along the homoclinic orbit.
     entropy : `Certified` lower bound of the topological entropy of the impact map, per impact.
-    sets : N and the sets of the long loop, in their order.
+    sets : N and the sets of the long loop, in their order. oscillator : the model.
     """
 
     loops: tuple[int, int]
     entropy: Certified
     sets: tuple[CrossedSet, ...]
+    oscillator: Oscillator
 
     def __repr__(self) -> str:
         return (
@@ -193,7 +195,7 @@ class _Route:
         if not (seen.width(sets[-1].radii) > a and seen.height(sets[-1].radii) < a):
             raise Refused("the image of the last set does not cross that round the saddle")
         loops = self.n, self.n + len(frames)
-        return Horseshoe(loops, _entropy(*loops), tuple(sets))
+        return Horseshoe(loops, _entropy(*loops), tuple(sets), self.cones.saddle.oscillator)
 
     def _frames(self, j: int, k: int) -> list[tuple[Pair, Pair]]:
         """Columns next to the tangents of W^u and W^s at the impacts j ... k - 1."""

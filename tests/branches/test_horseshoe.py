@@ -104,6 +104,18 @@ def test_a_state_that_follows_a_sequence_of_loops(found):
     assert abs(at(sum(ends) / 2, count)) < 1
 
 
+def test_drawn(found):
+    """The outlines that are drawn: the image of N reaches 2.96 half widths of it, on both sides."""
+    axes = si.plot(found)
+    lines = {line.get_label(): line.get_xydata() for line in axes.lines}
+    assert list(lines) == ["image of $N$", "image of $B_{16}$", "$B_1$, the first set of the long loop",
+                           "$N$, round the saddle", "saddle"]  # fmt: skip
+    image = lines["image of $N$"]
+    assert np.abs(image).max(axis=0) == pytest.approx([2.958, 0.2164], abs=2e-3)
+    assert np.abs(lines["image of $B_{16}$"][:, 0]).max() > 1
+    assert np.abs(lines["$B_1$, the first set of the long loop"][:, 0]).min() > 1
+
+
 def test_a_map_that_stretches_less_is_refused(monkeypatch, crossing):
     honest = room.derivative_over
     monkeypatch.setattr(room, "derivative_over", lambda *given: honest(*given) * (flint.arb(1) / 3))
