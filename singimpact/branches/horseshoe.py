@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import takewhile
+from itertools import product, takewhile
 from math import ceil, sqrt
 from typing import Any, NamedTuple
 
@@ -47,6 +47,7 @@ class HorseshoeSettings:
     ----------
     digits : of the images. near : digits that choose how near to the saddle the orbit is followed.
     widest : the largest N, relative to the period. share : of the gaps beside it that B_j fills.
+    widths : of the other sets at most, relative to N: an impact of a turn may shorten what the whole turn stretches.
     margin : by how much a set is narrower, and higher, than the image that crosses it.
     """
 
@@ -54,6 +55,7 @@ class HorseshoeSettings:
     near: int = 24
     widest: float = 0.1
     share: Fraction = Fraction(1, 2)
+    widths: tuple[int, ...] = (1, 5)
     margin: Fraction = Fraction(9, 10)
 
 
@@ -128,12 +130,12 @@ def _search(saddle: PeriodicOrbit, states: Array, bits: int) -> Horseshoe:
     _, states, _ = prolonged(cones, cones, states, SETTINGS.near)
     route = _Route(cones, states)
     n, why = int(saddle.n), "no impact of the orbit is near enough to the saddle"
-    for j in range(n * ((len(states) - 1) // n), -1, -n):
+    for j, widest in product(range(n * ((len(states) - 1) // n), -1, -n), SETTINGS.widths):
         size = abs(route.places[j, 0])
         if not (abs(route.places[j, 1]) < 0.1 * size < 0.1 * SETTINGS.widest * route.period):
             continue
         try:
-            return route.looped(j, Fraction(size / sqrt(route.far)))
+            return route.looped(j, Fraction(size / sqrt(route.far)), widest)
         except Refused as reason:
             why = str(reason)
     raise Refused(why)
@@ -170,7 +172,7 @@ class _Route:
         self.places = away @ np.array([[float(part) for part in row] for row in cones.coordinates]).T
         self.slopes = derivative(cones.saddle.oscillator, states[:-1, 0], states[:-1, 1]).matrix
 
-    def looped(self, j: int, a: Fraction) -> Horseshoe:
+    def looped(self, j: int, a: Fraction, widest: int) -> Horseshoe:
         """The loops through an N of this size and the impact j; `Refused` where a set is not crossed."""
         home = CrossedSet(self.cones.centre, _rows(self.cones.frame), (a, a))
         ends = range(len(self.states) - 1, j, -self.n)
@@ -184,7 +186,11 @@ class _Route:
             centre = tuple(Fraction(float(part)) for part in self.states[j + i])
             new = CrossedSet(centre, frame, (Fraction(0), Fraction(0)))  # type: ignore[arg-type]
             seen = self._image(sets[-1], new, 1 if i else self.n)
-            width = self._beside(new, seen, home) if i == 0 else min(SETTINGS.margin * seen.width(sets[-1].radii), a)
+            width = (
+                self._beside(new, seen, home)
+                if i == 0
+                else min(SETTINGS.margin * seen.width(sets[-1].radii), widest * a)
+            )
             if not width > 0:
                 raise Refused(f"the image of the set before impact {j + i} does not stretch")
             radii = width, seen.height(sets[-1].radii) / SETTINGS.margin
