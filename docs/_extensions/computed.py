@@ -135,14 +135,17 @@ def manifolds(place: Path) -> None:
     both = [si.manifold(saddle, stable, v=1) for stable in (True, False)]
     over = si.plot(both, axes=si.plot(si.basins(osc, ((0, "2*pi/2.8"), (0, 1)), 600)))
     over.figure.savefig(place / "manifold_basins.png", dpi=110)
-    tangle = si.plot(si.homoclinic_points(si.linear("2.8", 0, "0.8").periodic(1, 1)[0]))
-    tangle.figure.savefig(place / "manifold_tangle.png", dpi=110)
+    found = si.homoclinic_points(si.linear("2.8", 0, "0.8").periodic(1, 1)[0])
+    si.plot(found).figure.savefig(place / "manifold_tangle.png", dpi=110)
+    certified = si.plot(found[0].certified(), axes=si.plot(list(found.manifolds)))
+    certified.figure.savefig(place / "manifold_certified.png", dpi=110)
+    si.plot(found[0].horseshoe()).figure.savefig(place / "manifold_horseshoe.png", dpi=110)
 
     waves = si.ImpactOscillator("x", "-cos(2.8*t) - h*cos(5.6*t)", "0.3", "0.8", {"h": -1})
-    found = si.transitions(waves, "h", ("-1.5", "-1.1"), (-2, 2), orbits=[(1, 1)])
-    swan = next(i for i, each in enumerate(found) if each.kind == "swan, negative")
+    changes = si.transitions(waves, "h", ("-1.5", "-1.1"), (-2, 2), orbits=[(1, 1)])
+    swan = next(i for i, each in enumerate(changes) if each.kind == "swan, negative")
     sides = Figure(figsize=(11.0, 5.4), layout="constrained").subplots(1, 2, sharey=True)
-    si.plot(found.both_sides(swan, apart="0.05", v=(0, "0.8"), size=400), sides)
+    si.plot(changes.both_sides(swan, apart="0.05", v=(0, "0.8"), size=400), sides)
     sides[0].figure.savefig(place / "transition_sides.png", dpi=110)
 
 

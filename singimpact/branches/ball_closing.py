@@ -16,14 +16,13 @@ from typing import Any
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
+from singimpact.branches.enclosed_map import SPARE
 from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
 from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
 from singimpact.flights.model_numbers import horizon_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import common_period
 
-SPARE = 6
-"""Digits of a flight beside those of the states."""
 CONDITION = 2.0**6
 """Condition number that is expected of a flight: with it most flights have their digits at the first precision."""
 

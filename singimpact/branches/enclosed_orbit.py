@@ -14,8 +14,7 @@ from singimpact.algebra.balls import BITS_A_DIGIT
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.ball_closing import BallClosing, return_slope
-from singimpact.branches.krawczyk import Krawczyk
-from singimpact.flights.enclosures.equation import Refused
+from singimpact.branches.krawczyk import Krawczyk, proved
 from singimpact.oscillator.model import Oscillator
 
 
@@ -54,20 +53,15 @@ def enclosed_orbit(osc: Oscillator, times: Any, speeds: Any, k: int, digits: int
     states = [Fraction(float(part)) for pair in zip(times, speeds, strict=True) for part in pair]
     bits = ceil(digits * BITS_A_DIGIT) + 64
     with balls_at(bits):
-        try:
-            return _proved(BallClosing(osc, k, digits, bits), states, digits)
-        except (Refused, ZeroDivisionError) as reason:
-            return str(reason)
+        return proved(lambda: _enclosed(BallClosing(osc, k, digits, bits), states, digits))  # type: ignore[no-any-return]
 
 
-def _proved(orbit: BallClosing, states: list[Fraction], digits: int) -> EnclosedOrbit | str:
+def _enclosed(orbit: BallClosing, states: list[Fraction], digits: int) -> EnclosedOrbit:
     operator = Krawczyk(orbit, states, Fraction(1, 10 ** (digits + 2)))
     states = operator.solved(states)
     step = operator.step(states)
     own = operator.own_radius(step)
-    tight = operator.image(states, step, own)
-    if tight is None:
-        return "Krawczyk's operator does not map the box into itself: the orbit may be double, or graze"
+    tight = operator.tight(states, step, own)
     unique = operator.unique_within(states, step, own)
     numbers = [from_ball(orbit.balls.rational(x) + part, digits) for x, part in zip(states, tight.offsets, strict=True)]
     multipliers, stable = _multipliers(return_slope(tight.slopes), digits)

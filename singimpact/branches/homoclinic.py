@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,8 +21,13 @@ from singimpact.branches.saddle_arcs import LocalArc, checked_saddle
 from singimpact.dynamics.growth import Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.derivative import derivative
+from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse
 from singimpact.surface.curve import RESOLUTION
+
+if TYPE_CHECKING:
+    from singimpact.branches.enclosed_crossing import EnclosedCrossing
+    from singimpact.branches.horseshoe import Horseshoe
 
 Array = np.ndarray[Any, Any]
 
@@ -90,6 +95,60 @@ class Crossing:
     def weakest(self) -> float:
         """The least v of the impacts: near 0 the orbit nearly grazes."""
         return float(self.states[:, 1].min())
+
+    def certified(self, digits: int = 30) -> EnclosedCrossing:
+        """The orbit, proved to exist: a transverse crossing of the true W^u and W^s.
+
+        Parameters
+        ----------
+        digits : of the point; its angle and the impacts at both ends may have fewer, each number has its radius.
+
+        Raises
+        ------
+        InputError : an orbit that is not proved, with the reason.
+
+        Notes
+        -----
+        Of a homoclinic orbit this is what the theorem of Smale and Birkhoff assumes; `horseshoe` does without it.
+
+        Examples
+        --------
+        >>> from singimpact.impact_oscillator import linear
+        >>> (saddle,) = linear("2.8", 0, "0.8").periodic(1, 1)
+        >>> homoclinic_points(saddle)[0].certified(20)
+        <certified homoclinic point (1.7728431768964407999, 0.42819799134690829201), angle 1.29636, 37 impacts>
+        """
+        from singimpact.branches.enclosed_crossing import enclosed_crossing
+
+        wanted = checked_digits(digits)
+        ends = (self.unstable, self.unstable if self.kind == "homoclinic" else self.stable)
+        found = enclosed_crossing(ends, self.states, self.index, wanted)
+        if isinstance(found, str):
+            raise InputError(f"{self!r} is not certified: {found}")
+        return found
+
+    def horseshoe(self) -> Horseshoe:
+        """Chaos next to a homoclinic orbit, proved: loops near the saddle and along the orbit, in any order.
+
+        Raises
+        ------
+        InputError : a heteroclinic orbit; one of which no horseshoe is proved, with the reason.
+
+        Examples
+        --------
+        >>> from singimpact.impact_oscillator import linear
+        >>> (saddle,) = linear("2.8", 0, "0.8").periodic(1, 1)
+        >>> homoclinic_points(saddle)[0].horseshoe()
+        <certified horseshoe: loops of 1 and 17 impacts in any order, entropy >= 0.125665>
+        """
+        from singimpact.branches.horseshoe import horseshoe
+
+        if self.kind != "homoclinic":
+            raise InputError(f"{self!r} is not accepted: a horseshoe needs an orbit that comes back to its saddle")
+        found = horseshoe(self.unstable, self.states)
+        if isinstance(found, str):
+            raise InputError(f"no horseshoe is proved next to {self!r}: {found}")
+        return found
 
     def __repr__(self) -> str:
         return (

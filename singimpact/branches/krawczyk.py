@@ -10,6 +10,7 @@ term D F(X) e (-d ... d), e that unknown, and there is one zero for each of its 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Protocol
@@ -20,6 +21,8 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.flights.enclosures.equation import Refused
 
 Point = list[Fraction]
+Radius = Fraction | Sequence[Fraction]
+"""Of every unknown, or one for each."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +57,8 @@ class Equations(Protocol):
     def miss(self, point: Point) -> Any:
         """F at a point, as a column."""
 
-    def slopes(self, point: Point, radius: Fraction) -> Any:
-        """What D F over the box of a radius round a point is made from; `Refused` where it is not bounded."""
+    def slopes(self, point: Point, radius: Any) -> Any:
+        """What D F over a box round a point is made from; `Refused` where it is not bounded."""
 
     def matrix(self, slopes: Any) -> Any:
         """D F, with a column for each unknown, the held one among them."""
@@ -63,8 +66,9 @@ class Equations(Protocol):
 
 @dataclass(frozen=True)
 class Image:
-    """What Krawczyk's operator gives of a box: the zero less the centre, and the slopes over the box."""
+    """What Krawczyk's operator gives of a box: its centre, the zero less the centre, and the slopes over the box."""
 
+    centre: Point
     offsets: list[Any]
     slopes: Any
 
@@ -76,10 +80,15 @@ class Krawczyk:
     ----------
     equations : F, of as many equations as there are unknowns, or of one less: then the unknown is held by which the
         curve of zeros goes fastest. near : about the zero. small : wanted of it.
+    radii : of the box that contains all that is within a distance; the distance itself for every unknown without it.
     """
 
-    def __init__(self, equations: Equations, near: Point, small: Fraction) -> None:
-        slopes = equations.matrix(equations.slopes(near, KRAWCZYK.first))
+    def __init__(
+        self, equations: Equations, near: Point, small: Fraction,
+        radii: Callable[[Fraction], Radius] = lambda distance: distance,
+    ) -> None:  # fmt: skip
+        self.radii = radii
+        slopes = equations.matrix(equations.slopes(near, radii(KRAWCZYK.first)))
         held = _fastest(slopes) if slopes.nrows() < len(near) else None
         self.equations, self.small, self.held = equations, small, held
         self.free = [index for index in range(len(near)) if index != held]
@@ -122,13 +131,10 @@ class Krawczyk:
 
     def own_radius(self, step: list[Any]) -> Fraction:
         """The radius of a box that is wide enough for a zero so near."""
-        import flint
+        return max(KRAWCZYK.margin * max(map(upper, step)), self.small / 10)
 
-        left = max(as_rational(flint.arb(abs(part).upper())) for part in step)
-        return max(KRAWCZYK.margin * left, self.small / 10)
-
-    def image(self, point: Point, step: list[Any], radius: Fraction, spread: Fraction = Fraction(0)) -> Image | None:
-        """The image of the box of a radius, of every unknown; None where it does not lie inside.
+    def image(self, point: Point, step: list[Any], radius: Radius, spread: Fraction = Fraction(0)) -> Image | None:
+        """The image of a box; None where it does not lie inside.
 
         Parameters
         ----------
@@ -143,14 +149,22 @@ class Krawczyk:
         matrix = self.equations.matrix(slopes)
         size, balls = len(self.free), self.equations.balls
         one = flint.arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
-        rest = (one - self.Y * self._columns(matrix, self.free)).table()
-        reach, drift = _round(balls, radius), [flint.arb(0)] * size
+        rest = one - self.Y * self._columns(matrix, self.free)
+        each = [radius] * len(point) if isinstance(radius, Fraction) else list(radius)
+        radii, drift = [each[index] for index in self.free], [flint.arb(0)] * size
+        spreads = (rest * flint.arb_mat([[_round(balls, part)] for part in radii])).entries()
         if self.held is not None and spread:
             drift = [part * _round(balls, spread) for part in (self.Y * self._columns(matrix, [self.held])).entries()]
-        off = [sum((part * reach for part in row), moved - s)
-               for s, moved, row in zip(step, drift, rest, strict=True)]  # fmt: skip
-        inside = all(part.is_finite() and abs(part) < balls.rational(radius) for part in off)
-        return Image(off, slopes) if inside else None
+        off = [wide + moved - s for s, moved, wide in zip(step, drift, spreads, strict=True)]
+        inside = all(part.is_finite() and abs(part) < balls.rational(r) for part, r in zip(off, radii, strict=True))
+        return Image(point, off, slopes) if inside else None
+
+    def tight(self, point: Point, step: list[Any], radius: Radius) -> Image:
+        """As `image`, with a reason where the box is refused."""
+        found = self.image(point, step, radius)
+        if found is None:
+            raise Refused("Krawczyk's operator does not map the box into itself: the orbit may be double, or graze")
+        return found
 
     def unique_within(self, point: Point, step: list[Any], own: Fraction) -> Fraction:
         """The widest radius tried within which the zero is the only one; what fails is tried seldom, for it is slow."""
@@ -161,12 +175,41 @@ class Krawczyk:
         low, high = 0, len(radii)  # the widest that is shown is one of these, or `own`
         at = low
         while low < high:
-            if self.image(point, step, radii[at]) is not None:
+            if self.image(point, step, self.radii(radii[at])) is not None:
                 high = at
             else:
                 low = at + 1
             at = (low + high) // 2
         return radii[high] if high < len(radii) else own
+
+
+def upper(ball: Any) -> Fraction:
+    """A rational that is at least the size of every number in a ball.
+
+    Examples
+    --------
+    >>> import flint
+    >>> 1.75 <= upper(flint.arb(-1.5, 0.25)) < 1.76
+    True
+    """
+    import flint
+
+    return as_rational(flint.arb(abs(ball).upper()))
+
+
+def least(ball: Any) -> Fraction:
+    """A rational that is at most the size of every number in a ball."""
+    import flint
+
+    return as_rational(flint.arb(abs(ball).lower()))
+
+
+def proved(attempt: Callable[[], Any]) -> Any:
+    """The result of an attempt, or the reason as text."""
+    try:
+        return attempt()
+    except (Refused, ZeroDivisionError) as reason:
+        return str(reason)
 
 
 def _fastest(slopes: Any) -> int:

@@ -4,7 +4,7 @@ Not here: what is drawn (`dynamics`, `surface`, `flights`), text with formulas (
 (`paper.figures`).
 Files: `drawing` (`plot`: one call for everything that can be drawn), `orbit` (x(t), sections), `orbit_sheet` (three
 panels), `scene` (a window and its layers), `layer_data` (what layers ask for), `layers`, `cached` (results on disk),
-`style` (colours and lines), `basins`, `bifurcation`, `branches`, `manifolds` (W^s and W^u), `border` (the
+`style` (colours and lines), `basins`, `bifurcation`, `branches`, `manifolds` (W^s and W^u), `horseshoe`, `border` (the
 cascade of a border orbit), `both_sides` (of a transition), `label_places` (names beside points), `clearance_frames`,
 `flown_in_page` and `explore` (the page; what runs in the browser is in the folder `page`).
 """

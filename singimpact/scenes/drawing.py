@@ -7,8 +7,10 @@ from typing import Any
 
 from singimpact.branches.border import BorderOrbit
 from singimpact.branches.branch import Branch
+from singimpact.branches.enclosed_crossing import EnclosedCrossing
 from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.homoclinic import Crossings
+from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.manifold import Manifold
 from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins import Basins
@@ -21,7 +23,8 @@ from singimpact.scenes.bifurcation import draw_bifurcation
 from singimpact.scenes.border import draw_border
 from singimpact.scenes.both_sides import draw_both_sides
 from singimpact.scenes.branches import draw_branches, draw_event_curves
-from singimpact.scenes.manifolds import draw_crossings, draw_manifolds
+from singimpact.scenes.horseshoe import draw_horseshoe
+from singimpact.scenes.manifolds import draw_certified_crossing, draw_crossings, draw_manifolds
 from singimpact.scenes.orbit import draw_orbit, draw_section
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import PENS
@@ -38,12 +41,12 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     Parameters
     ----------
     thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a branch or an event curve or a list of
-        them, W^s or W^u of a saddle or a list of them, the points where two cross, a border orbit, of which the cascade
-        is drawn, both sides of a transition (on two axes), a curve or a list of curves of one plane, or an impact
-        surface, of which Z and H are drawn.
+        them, W^s or W^u of a saddle or a list of them, the points where two cross, a certified orbit in which they do,
+        a certified horseshoe, a border orbit, of which the cascade is drawn, both sides of a transition (on two axes),
+        a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
     axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
-        manifolds on those of basins.
+        manifolds on those of basins, and a certified orbit on those of manifolds.
     height : of branches and bifurcation diagrams: "v", velocities after the impacts, or "phase", their phases in
         periods. A branch of orbits without impact alone is shown by its lowest x - c, beside others at v = 0.
 
@@ -127,6 +130,8 @@ def _beside() -> Any:
 Drawer = Callable[[Any, Any], Any]
 ALONE: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
     (Crossings, HIGH, draw_crossings),
+    (EnclosedCrossing, HIGH, draw_certified_crossing),
+    (Horseshoe, WIDE, draw_horseshoe),
     (Orbit, WIDE, draw_orbit),
     (Section, HIGH, draw_section),
     (Basins, HIGH, draw_basins),

@@ -1,4 +1,4 @@
-"""Pictures of W^s and W^u of saddles, and of the points where they cross, alone or over basins."""
+"""Pictures of W^s and W^u of saddles, of the points where they cross, and of a certified orbit in which they do."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import as_float
+from singimpact.branches.enclosed_crossing import EnclosedCrossing
 from singimpact.branches.homoclinic import Crossings
 from singimpact.branches.manifold import Manifold
 from singimpact.inputs import refuse
@@ -27,6 +29,9 @@ class ManifoldPictureSettings:
     marked: int = 60
     # orbits whose impacts are all marked, the first ones
     orbits: int = 1
+    # of a certified orbit: size of its impacts; those farther from the saddle than this are numbered, in sides
+    impact: float = 5.0
+    away: float = 0.1
 
 
 SETTINGS = ManifoldPictureSettings()
@@ -86,6 +91,45 @@ def draw_crossings(found: Crossings, axes: Any) -> Any:
     axes.set_xlim(*limits[0])
     axes.set_ylim(*limits[1])
     axes.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3,
+                frameon=False, fontsize="small")  # fmt: skip
+    return axes
+
+
+def draw_certified_crossing(found: EnclosedCrossing, axes: Any) -> Any:
+    """Draw the impacts of a certified orbit; those away from the saddles are numbered in their order.
+
+    Parameters
+    ----------
+    axes : of matplotlib; limits of a picture that is there are kept.
+    """
+    from matplotlib.patheffects import withStroke
+
+    fresh, entries = not axes.has_data(), _entries(axes)
+    limits, pen = (axes.get_xlim(), axes.get_ylim()), PENS["certified"]
+    assert found.oscillator.period is not None
+    period = as_float(found.oscillator.period)
+    states = np.array([[float(tau.value) % period, float(v.value)] for tau, v in found.states])
+    saddles = np.array([[float(tau.value) % period, float(v.value)] for each in (found.unstable, found.stable)
+                        for tau, v in zip(each.tau, each.v, strict=True)])  # fmt: skip
+    top = 1.2 * float(max(states[:, 1].max(), saddles[:, 1].max()))
+    gaps = (states[:, None] - saddles) / [period, top]
+    gaps[..., 0] -= np.rint(gaps[..., 0])
+    away = np.hypot(*gaps.transpose(2, 0, 1)).min(axis=1) > SETTINGS.away
+    axes.plot(*states.T, "o", color=pen.color, markersize=SETTINGS.impact, zorder=8)
+    for number, place in enumerate(states[away], start=1):
+        axes.annotate(str(number), place, (6, 5), textcoords="offset points", zorder=9, fontweight="bold",
+                      color=pen.color, path_effects=[withStroke(linewidth=3, foreground="white")])  # fmt: skip
+    axes.plot(*saddles.T, "s", color=BLACK, markerfacecolor="white", markersize=SETTINGS.saddle, zorder=8)
+    at = int(away[: found.index + 1].sum())
+    words = f"impacts of a certified {found.kind} orbit, angle {float(found.angle.value):.4f} at {at}"
+    entries[words] = _mark("o", SETTINGS.impact, pen.color, pen.color)
+    entries["saddle"] = _mark("s", SETTINGS.saddle, BLACK)
+    axes.set_xlim(*((0.0, period) if fresh else limits[0]))
+    axes.set_ylim(*((0.0, top) if fresh else limits[1]))
+    if fresh:
+        axes.set_xlabel(r"launch phase $\tau$")
+        axes.set_ylabel("launch velocity $v$")
+    axes.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2,
                 frameon=False, fontsize="small")  # fmt: skip
     return axes
 

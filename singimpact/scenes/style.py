@@ -64,6 +64,7 @@ PENS = {
     "W^s": Pen(BLUE, width=1.0, words="stable manifold"),
     "W^u": Pen(VERMILLION, DASHES, 1.0, "unstable manifold"),
     "crossing": Pen(BLACK, words="crossing"),
+    "certified": Pen(GREEN, words="certified orbit"),
     "before": Pen(GREY, DASHES, 1.4, "before"),
     "at": Pen(BLACK, DASH_DOT, 1.4, "at the transition"),
 }

@@ -15,6 +15,8 @@ KINDS = {
     "b:cascade-contraction": "proved",
     "b:cascade-contraction-r": "proved",
     "b:cascade": "supported",
+    "b:homoclinic": "certified",
+    "b:horseshoe": "certified",
 }
 
 

@@ -1,7 +1,7 @@
 """Claims that the paper does not have, apart from its 131: `BEYOND` is file -> its claims, imported when called.
 
 Not here: claims of the paper (`claims.sections`). None is printed anywhere, so none is corrected; mutants stand beside.
-Files: `cascade` (border orbits and the cascade beside them).
+Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a certified homoclinic orbit).
 """
 
 from __future__ import annotations
@@ -17,4 +17,10 @@ def _cascade() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
-BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {"cascade": _cascade}
+def _horseshoe() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import horseshoe as section
+
+    return section.CLAIMS
+
+
+BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {"cascade": _cascade, "horseshoe": _horseshoe}

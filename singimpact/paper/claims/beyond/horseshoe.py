@@ -1,0 +1,195 @@
+"""Chaos of an impact oscillator, certified: x'' + x = cos 2.8 t, c = 0, r = 4/5.
+
+`b:homoclinic` : a transverse homoclinic orbit, the hypothesis of the theorem of Smale and Birkhoff.
+`b:horseshoe` : sets that are crossed by images of one another, from which chaos follows without that theorem.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cache
+from math import pi
+from typing import NamedTuple
+
+from singimpact.algebra.certified import Certified
+from singimpact.algebra.numbers import exact
+from singimpact.branches.enclosed_crossing import EnclosedCrossing
+from singimpact.branches.homoclinic import Crossing, homoclinic_points
+from singimpact.branches.horseshoe import Horseshoe
+from singimpact.branches.periodic import periodic
+from singimpact.inputs import InputError
+from singimpact.oscillator.model import Oscillator
+from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.verifiers import every
+
+claim = in_section("beyond")
+
+DIGITS = 30
+NEAR = Fraction(1, 10)
+"""Impacts farther than this from the saddle, in tau or in v, are those of the excursion; the others are within 0.07."""
+
+
+class Stated(NamedTuple):
+    """What is stated of the model with a restitution: decimals, correct to half a unit of their last place.
+
+    saddle : (tau, v) of the (1, 1) orbit. away : the impacts that are not near it. angle : at the second of these.
+    """
+
+    restitution: str
+    saddle: tuple[str, str]
+    away: tuple[tuple[str, str], ...]
+    angle: str
+
+
+@cache
+def _first(restitution: str) -> Crossing | str:
+    """The homoclinic orbit of fewest impacts, in doubles; or why there is none."""
+    osc = Oscillator("x", "cos(2.8*t)", 0, restitution)
+    saddles = [orbit for orbit in periodic(osc, 1, 1) if orbit.visible and not orbit.stable]
+    if not saddles:
+        return f"r = {restitution}: no (1, 1) orbit is a saddle"
+    found = homoclinic_points(saddles[0], v=1)
+    if not found:
+        return f"r = {restitution}: no crossing of W^u and W^s is found"
+    return found[0]
+
+
+@cache
+def _certified(restitution: str) -> EnclosedCrossing | str:
+    """It, proved; or why it is not."""
+    found = _first(restitution)
+    try:
+        return found if isinstance(found, str) else found.certified(DIGITS)
+    except InputError as reason:
+        return str(reason)
+
+
+@cache
+def _horseshoe(restitution: str) -> Horseshoe | str:
+    """The horseshoe beside it; or why none is proved."""
+    found = _first(restitution)
+    try:
+        return found if isinstance(found, str) else found.horseshoe()
+    except InputError as reason:
+        return str(reason)
+
+
+def _is(ball: Certified, text: str, period: float = 0.0) -> bool:
+    """Whether every number of a ball rounds to a decimal, or to one a period away."""
+    value, unit = exact("value", ball.value), Fraction(1, 10 ** len(text.partition(".")[2]))
+    turns = round((float(value) - float(text)) / period) if period else 0
+    # a period in doubles moves the value by 1e-15: nothing beside half a unit
+    off = abs(value - turns * Fraction(period) - Fraction(text))
+    return off + exact("radius", ball.radius) < unit / 2
+
+
+def _crosses(stated: Stated) -> Check:
+    """Whether the certified orbit is the stated one."""
+    found = _certified(stated.restitution)
+    if isinstance(found, str):
+        return Check(False, "certified", found, {"fails": found})
+    period = 2 * pi / 2.8
+    at, multipliers = found.unstable, [pair[0] for pair in found.unstable.multipliers or ()]
+    away = [state for state in found.states if not _near(state, (at.tau[0], at.v[0]), period)]
+    places = ", ".join(f"({float(tau.value) % period:.6f}, {float(v.value):.6f})" for tau, v in away)
+    return every(
+        [
+            (
+                f"the (1, 1) orbit ({at.tau[0]}, {at.v[0]}) exists",
+                _is(at.tau[0], stated.saddle[0], period) and _is(at.v[0], stated.saddle[1]),
+            ),
+            (
+                f"it is a saddle, with the multipliers {' and '.join(map(str, multipliers))}",
+                at.stable is False and len(multipliers) == 2,
+            ),
+            (
+                f"an orbit of {found.impacts} impacts from W^u to W^s exists, the only one within "
+                f"{float(found.unique_within):.1g}; all flights next to its closure are proved to be first hits with "
+                "x' < 0: G is smooth along it",
+                found.kind == "homoclinic",
+            ),
+            (
+                f"{len(away)} of its impacts are farther than {float(NEAR)} from the saddle: {places}",
+                len(away) == len(stated.away)
+                and all(_is(tau, t, period) and _is(v, w) for (tau, v), (t, w) in zip(away, stated.away, strict=True)),
+            ),
+            (
+                f"W^u and W^s cross at ({found.tau}, {found.v}) at the angle {found.angle}: transversally",
+                _is(found.angle, stated.angle) and found.angle.value > found.angle.radius,
+            ),
+        ],
+        "certified",
+    )
+
+
+def _near(state: tuple[Certified, Certified], saddle: tuple[Certified, Certified], period: float) -> bool:
+    """Whether a state is within `NEAR` of the saddle; balls and the period in doubles are far narrower than the gap."""
+    tau, v = (float(part.value) - float(of.value) for part, of in zip(state, saddle, strict=True))
+    return max(abs(tau - period * round(tau / period)), abs(v)) < NEAR
+
+
+def _chaotic(stated: tuple[str, tuple[int, int], str]) -> Check:
+    """(r, loops, h): loops of these lengths are followed in any order, and the entropy is at least h."""
+    restitution, loops, entropy = stated
+    found = _horseshoe(restitution)
+    if isinstance(found, str):
+        return Check(False, "certified", found, {"fails": found})
+    bound = exact("value", found.entropy.value) - exact("radius", found.entropy.radius)
+    return every(
+        [
+            (
+                f"{len(found.sets)} parallelograms, round the saddle and along the homoclinic orbit, are crossed by "
+                f"images of one another: loops of {found.loops[0]} and {found.loops[1]} impacts follow in any order",
+                found.loops == loops,
+            ),
+            (f"the entropy of G is at least {found.entropy}", Fraction(entropy) <= bound),
+        ],
+        "certified",
+    )
+
+
+TRUE = Stated(
+    "4/5",
+    ("2.2146319327", "0.2689418160"),
+    (("0.1342436603", "0.1959835644"), ("1.7728431769", "0.4281979913"), ("0.2448057373", "0.4468342542")),
+    "1.2963606016",
+)
+
+CHAOS = ("4/5", (1, 17), "0.1256")
+
+CLAIMS = (
+    claim(
+        "b:homoclinic",
+        "x'' + x = cos 2.8t, c = 0, r = 4/5: a saddle has a transverse homoclinic orbit along which G is smooth",
+        Statement(
+            r"\ddot x+x=\cos 2.8t,\ c=0,\ r=\tfrac45,\ p=(2.2146319327,0.2689418160):\quad "
+            r"W^u(p)\pitchfork W^s(p)\ \text{at}\ (1.7728431769,0.4281979913)",
+            TRUE,
+        ),
+        _crosses,
+        (
+            TRUE._replace(restitution="1/10"),
+            TRUE._replace(away=TRUE.away[:2]),
+            TRUE._replace(away=(TRUE.away[0], ("1.7728431669", "0.4281979913"), TRUE.away[2])),
+            TRUE._replace(saddle=("0.2757899", "0.3556722")),
+            TRUE._replace(angle="0.0000000000"),
+            TRUE._replace(restitution="0.8000001"),
+        ),
+    ),
+    claim(
+        "b:horseshoe",
+        "x'' + x = cos 2.8t, c = 0, r = 4/5: loops of 1 and of 17 impacts in any order, entropy at least 0.1256",
+        Statement(
+            r"\ddot x+x=\cos 2.8t,\ c=0,\ r=\tfrac45:\quad"
+            r"h_{\rm top}(G)\ge\ln x>0.1256,\quad x^{-1}+x^{-17}=1",
+            CHAOS,
+        ),
+        _chaotic,
+        (
+            ("1/10", *CHAOS[1:]),
+            ("4/5", (1, 16), "0.1256"),
+            ("4/5", (2, 17), "0.1256"),
+            ("4/5", (1, 17), "0.1257"),
+        ),
+    ),
+)
