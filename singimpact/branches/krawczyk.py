@@ -115,13 +115,13 @@ class Krawczyk:
 
     def solved(self, point: Point) -> Point:
         """A zero to the digits wanted, by Newton's method with Y: nothing is proved here."""
-        balls, small = self.equations.balls, self.equations.balls.rational(self.small)
+        balls = self.equations.balls
         for _ in range(KRAWCZYK.rounds):
-            move = (self.Y * self.equations.miss(point)).entries()
+            move = [as_rational(part) for part in self.step(point)]
             point = list(point)
             for index, part in zip(self.free, move, strict=True):
-                point[index] = as_rational(balls.rational(point[index]) - part)
-            if all(abs(part) < small for part in move):
+                point[index] = as_rational(balls.rational(point[index] - part))
+            if all(abs(part) < self.small for part in move):
                 return point
         raise Refused("Newton's method does not come to the digits")
 
