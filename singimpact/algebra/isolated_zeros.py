@@ -32,8 +32,8 @@ class BoxSettings:
 
     Parameters
     ----------
-    bits : of the balls. least : size of a box, in parts of the window, below which it is undecided.
-    most : boxes looked at before the rest is undecided.
+    bits : of the balls. least : size of a box, in parts of the unknowns' sizes, below which it is undecided.
+    most : boxes looked at before the rest is undecided. lost : undecided ones of the least size after which it is too.
     cut : where a box is cut: off the middle, for there are zeros at places of symmetry.
     wider : each box is looked at with this part of it more on every side, so that no zero is on an edge.
     rounds : of Krawczyk's operator on the box of a zero.
@@ -42,6 +42,7 @@ class BoxSettings:
     bits: int = 128
     least: Fraction = Fraction(1, 2**20)
     most: int = 20_000
+    lost: int = 20_000
     cut: Fraction = Fraction(127, 256)
     wider: Fraction = Fraction(1, 16)
     rounds: int = 60
@@ -132,9 +133,16 @@ class _Formulas:
         return dict(zip(self.names, place, strict=True))
 
 
-def zeros_of(system: System, window: Box, settings: BoxSettings = SETTINGS) -> IsolatedZeros:
-    """The zeros of a system in a window, with balls of the precision at hand."""
-    search = _Search(system, window, settings)
+def zeros_of(
+    system: System, window: Box, settings: BoxSettings = SETTINGS, sizes: Sequence[Fraction] | None = None
+) -> IsolatedZeros:
+    """The zeros of a system in a window, with balls of the precision at hand.
+
+    Parameters
+    ----------
+    sizes : of the unknowns, in parts of which boxes are compared; those of the window without them.
+    """
+    search = _Search(system, window, settings, sizes or [high - low for low, high in window])
     with ProgressLine() as line:
         return search.run(lambda count: line.show(count, None, "boxes"))
 
@@ -142,14 +150,14 @@ def zeros_of(system: System, window: Box, settings: BoxSettings = SETTINGS) -> I
 class _Search:
     """Boxes on a stack."""
 
-    def __init__(self, system: System, window: Box, settings: BoxSettings) -> None:
-        self.system, self.window, self.settings = system, window, settings
+    def __init__(self, system: System, window: Box, settings: BoxSettings, sizes: Sequence[Fraction]) -> None:
+        self.system, self.window, self.settings, self.sizes = system, window, settings, sizes
         self.balls, self.size = Balls(settings.bits), len(window)
 
     def run(self, shown: Callable[[int], None]) -> IsolatedZeros:
         """Cut boxes until each is decided or too small."""
         stack, found, undecided, count = [self.window], list[Place](), list[Box](), 0
-        while stack and count < self.settings.most:
+        while stack and count < self.settings.most and len(undecided) < self.settings.lost:
             shown(count)
             count += 1
             box = stack.pop()
@@ -212,8 +220,8 @@ class _Search:
         return tuple(moved) if all(part.is_finite() for part in moved) else None
 
     def _cut(self, box: Box) -> list[Box]:
-        """Two boxes, cut across the side that is the largest part of the window."""
-        shares = [(high - low) / (end - start) for (low, high), (start, end) in zip(box, self.window, strict=True)]
+        """Two boxes, cut across the largest side."""
+        shares = [(high - low) / size for (low, high), size in zip(box, self.sizes, strict=True)]
         k = shares.index(max(shares))
         if shares[k] < self.settings.least:
             return []

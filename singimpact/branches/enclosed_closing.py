@@ -28,11 +28,11 @@ from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
 BITS = 30
-SEARCH = replace(BOXES, bits=BITS + 24, least=Fraction(1, 2**16), most=100_000)
+SEARCH = replace(BOXES, bits=BITS + 24, least=Fraction(1, 2**16), most=100_000, lost=20)
 PIECES = 6
 """Times at which the first flight may meet the wall are cut to this power of 2 of a step."""
 WIDEST = 0.3
-"""Boxes wider than this, of a period or of the window, are not flown."""
+"""Boxes wider than this, of a period or of the highest velocity, are not flown."""
 
 
 class _Met(NamedTuple):
@@ -78,7 +78,7 @@ class ClosingBoxes:
     def without_zeros(self, place: Place) -> bool:
         """Whether no orbit starts in a box."""
         tau, v = place
-        if float(tau.rad()) > WIDEST * self.period or float(v.rad()) > WIDEST * float(self.high - self.low):
+        if float(tau.rad()) > WIDEST * self.period or float(v.rad()) > WIDEST * float(self.high):
             return False
         with series_of_any_length():
             try:
@@ -214,7 +214,7 @@ def closed_boxes(
     window = (-period / 64, period * Fraction(65, 64)), speeds
     with balls_at(SEARCH.bits):
         system = ClosingBoxes(osc, n, k, speeds)
-        made = zeros_of(system, window, SEARCH)
+        made = zeros_of(system, window, SEARCH, (period, speeds[1]))
         return [np.array(system.states(zero)) for zero in made.found], made
 
 

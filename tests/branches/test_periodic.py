@@ -219,16 +219,22 @@ def test_two_impact_orbits_are_all_found(seed: int) -> None:
 DUFFING = ImpactOscillator("x + x**3/10", "cos(4*t)", 0, "0.5")
 
 
+@pytest.mark.slow
 def test_a_window_of_velocities_of_a_nonlinear_model() -> None:
     """The one orbit of the window is found by balls alone; a list without it is not complete, one with it is."""
     (doubt,) = _doubts_in_window(DUFFING, (1, 2), (Fraction(2, 5), Fraction(3, 5)), [])
     assert "the list lacks <(1, 2) orbit, stable: (tau, v) = (1.08739, 0.496883)>" in doubt
     found = DUFFING.periodic(1, 2, v=("0.45", "0.55"))
     assert (len(found), found.complete) == (1, True)
-    with pytest.raises(InputError, match=r"v = \(1, 0\) is not accepted"):
-        DUFFING.periodic(1, 2, v=(1, 0))
 
 
+@pytest.mark.parametrize("v", [(1, 0), 3, (0, "a"), (-1, 2), (0, 1, 2)])
+def test_windows_that_are_none(v) -> None:
+    with pytest.raises(InputError, match=r"v = .* is not accepted: give two numbers \(low, high\)"):
+        DUFFING.periodic(1, 2, v=v)
+
+
+@pytest.mark.slow
 def test_where_f_is_not_analytic_boxes_are_left() -> None:
     kink = ImpactOscillator("sqrt(x**2)", "cos(4*t)", "-0.05", "0.5")
     found = _doubts_in_window(kink, (1, 2), (Fraction(49, 100), Fraction(1, 2)), [])
