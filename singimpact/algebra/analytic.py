@@ -68,6 +68,7 @@ class Recorder:
 
     def _place(self, kind: str, *parts: Any) -> Place:
         operation = (kind, parts)
+        # hash-consing: an operation that stands already is not written again
         at = self.places.get(operation)
         if at is None:
             at = self.places[operation] = len(self.operations)
@@ -299,6 +300,7 @@ def _of_one_sign(function: str, u: Any) -> Any:
 def _tanh(u: Any) -> Any:
     """Of a series, by the exponential that is not large."""
     above = u[0].mid() > 0
+    # e^{-2|u|} does not overflow, and its difference from 1 keeps its digits where |u| is large
     small = (-2 * u if above else 2 * u).exp()
     quotient = (1 - small) / (1 + small)
     return quotient if above else -quotient

@@ -175,6 +175,7 @@ class _Search:
         place = tuple(self.balls.interval(*ends) for ends in box)
         if self.system.without_zeros(place):
             return ()
+        # a zero on an edge lies inside the wider box of one of the two neighbours
         spare = [(high - low) * self.settings.wider for low, high in box]
         wider = tuple(self.balls.interval(low - w, high + w) for (low, high), w in zip(box, spare, strict=True))
         moved = self._krawczyk(wider)
@@ -210,6 +211,7 @@ class _Search:
                 return ()
         matrix = np.array([[float(slope.mid()) for slope in row] for row in J])
         try:
+            # Y need not be exact: any regular matrix makes the operator right, a good one makes it contract
             Y = [[self.balls.rational(Fraction(float(part))) for part in row] for row in np.linalg.inv(matrix)]
         except (np.linalg.LinAlgError, ValueError, OverflowError):
             return None
@@ -225,6 +227,7 @@ class _Search:
         k = shares.index(max(shares))
         if shares[k] < self.settings.least:
             return []
+        # cut off the middle: zeros like to lie at places of symmetry
         low, high = box[k]
         at = low + (high - low) * self.settings.cut
         return [(*box[:k], ends, *box[k + 1 :]) for ends in ((low, at), (at, high))]

@@ -199,6 +199,7 @@ def _proved(found: Return, near: Fraction, digits: int) -> tuple[Certified | Non
                 sides[value] = known or _fate(_flow(found, (value, value), bits), times, found.entry)
         if followed and None not in sides.values():
             break
+        # the fates of both ends are open while rounding is wider than their distance from gamma
         bits *= 2
     else:
         return None, f"not certified: balls of {bits // 2} bits do not decide what the orbits next to it do"
@@ -260,6 +261,7 @@ def _presses(acceleration: Callable[..., Any], time: Any, end: Any, around: Frac
     while pieces and left:
         low, top = pieces.pop()
         left -= 1
+        # next to the zero itself a_c is known to rise, so pieces end `around` before it
         if low >= top or acceleration(balls.interval(low, top)) < 0:
             continue
         middle = (low + top) / 2

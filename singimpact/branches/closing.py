@@ -53,6 +53,7 @@ class Loop:
         size = max(abs(zero), abs(one), abs(two))
         if not np.isfinite(size):
             return np.full(2, np.nan, dtype=complex)
+        # a_2 = 0: the last flight ends in a graze, whose multiplier is infinite
         if abs(two) <= 1e-14 * size:
             return np.array([np.inf, -zero / one if one else np.nan], dtype=complex)
         root = np.sqrt(complex(one * one - 4 * zero * two))
@@ -101,6 +102,7 @@ class Closing:
             velocity, factor, by_law = self.family.rebound(float(end.place[1]), values)
             after, last = (i + 1) % n, i == n - 1
             miss[2 * i], miss[2 * i + 1] = end.place[0], velocity - point[n + after]
+            # rho changes the second condition, and so every derivative in its row, by its slope
             scale = np.array([1.0, factor])
             slope[2 * i : 2 * i + 2, i] += scale * (end.by_tau - end.by_time)
             slope[2 * i : 2 * i + 2, n + i] += scale * end.by_v
@@ -141,6 +143,7 @@ class Closing:
         """Sizes of the parts of a point: a period, the largest velocity or one that a period gives, 1."""
         n, values = self.n, self.values(point)
         period = self.family.period(values).value
+        # a scale for orbits without a fast impact: what the force gives in a sixteenth of a period
         push = max(abs(float(self.family.end(values, i * period / 8, 0.0, 0.0).by_time[1])) for i in range(8))
         speeds = np.full(n, max(float(np.abs(point[n : 2 * n]).max()), push * period / 16, 1e-300))
         return np.concatenate([np.full(n, period), speeds, np.ones(len(self.family.over))])

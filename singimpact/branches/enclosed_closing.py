@@ -152,6 +152,7 @@ class ClosingBoxes:
             stop = length if length <= left else left
             if not stop > 0:
                 raise Refused("the end of the last flight is not within a step")
+            # all members are behind the wall here: none of them is an orbit
             if visible and height(stop) < 0:
                 return None
             motion.advance(centre(stop))
@@ -182,6 +183,8 @@ class ClosingBoxes:
             (a, b), (p, q) = end.columns
             by = []
             for k, (height, speed) in enumerate(first.columns):
+                # the first impact moves by this; the second flight then starts later and, with its end fixed, is
+                # shorter
                 late = -height / first.speed
                 start, fast = late + (1 - k), push * (speed + bend * late)
                 by.append((a * start + p * fast - end.speed * late, b * start + q * fast - last * late))

@@ -285,6 +285,8 @@ class _Walk:
             tests["degenerate graze"] = self._push(at)
         elif self.kind == "fold":
             size = 2 * n
+            # at a fold the conditions have a null vector; at a cusp it is tangent to the curve of folds (Kuznetsov, ch.
+            # 8)
             vector = np.linalg.svd(self.closing.at(at).slope[:, :size] * self.scales[:size])[2][-1]
             slope = self.gradient(at)[:size] * self.scales[:size]
             turned = vector if vector[int(np.argmax(np.abs(vector)))] > 0 else -vector

@@ -118,6 +118,7 @@ def conditions(closing: Closing, points: Array) -> tuple[Array, Array]:
     place, speed, bend = ends(osc, launches, speeds, spans)
     by_v, by_v_dot, by_tau, by_tau_dot = variations(osc, launches, speeds, spans).T
     with np.errstate(all="ignore"):
+        # the same blocks as `Closing.at`, for many points at once
         factor = rebound_slope(osc, speed)
         miss = np.empty((m, 2 * n))
         miss[:, ::2] = place.reshape(m, n)

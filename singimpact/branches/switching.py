@@ -104,6 +104,7 @@ def _doubled(orbit: PeriodicOrbit, over: str, parameter: float) -> list[Periodic
     once = closing_of(orbit.oscillator, n, orbit.k, ())
     at = _point(orbit)
     loop = once.at(at)
+    # the eigenvector of -1: the doubled orbit alternates along it
     vector = np.linalg.svd(loop.slope[:, : 2 * n] - 2 * loop.wrap)[2][-1]
     osc = orbit.oscillator
     twice: AnyClosing = closing_of(osc, 2 * n, 2 * orbit.k, (over,))

@@ -88,6 +88,7 @@ def _formulas(osc: Oscillator, k: int) -> TwoFlights | None:
     )
     slope, rate = derivative(flight.from_rest, "t"), derivative(flight.by_speed, "t")
     du, dB = (slope, substitute(slope, later)), (rate, substitute(rate, later))
+    # Cramer's rule for v_1 and v_2; 1 - r^2 B' B' is the determinant
     shared = Power(subtract(number(1), multiply(r, r, *dB)), number(-1))
     speeds = tuple(multiply(shared, subtract(multiply(r, r, dB[1 - i], du[i]), multiply(r, du[1 - i]))) for i in (0, 1))
     heights = tuple(add(u[i], multiply(speeds[i], B[i])) for i in (0, 1))

@@ -97,6 +97,7 @@ class DiscWriter:
         size, radius = f"abs({self.centre(moving[0])})", self.radius(moving[0])
         for factor in moving[1:]:
             other, more = f"abs({self.centre(factor)})", self.radius(factor)
+            # |uv - u0 v0| <= r_u (|v0| + r_v) + |u0| r_v
             radius = f"({radius} * ({other} + {more}) + {size} * {more})"
             size = f"{size} * {other}"
         return f"abs({self.constant(multiply(*steady))}) * {radius}" if steady else radius
@@ -108,6 +109,7 @@ class DiscWriter:
         if moves(exponent):  # e^(exponent log base)
             inner = multiply(exponent, Call("log", base))
             return f"exp_radius({value}, {self.centre(inner)}, {self.radius(inner)})"
+        # 1/(1 + e^w) = (1 - tanh(w/2))/2: poles of tanh alone, and no overflow
         if (argument := logistic_argument(tree)) is not None:
             return f"0.5 * tanh_radius({self.centre(argument)} * 0.5, {self.radius(argument)} * 0.5)"
         return self._shaped(base, exponent, "power", f"{value}, ")
@@ -131,6 +133,7 @@ class DiscWriter:
                 at = f"{self.centre(square.root)}, {self.radius(square.root)}"
                 return f"min({plain}, bell_radius({value}, {at}, -{self.constant(square.factor)}))"
             case "sin" | "cos":
+                # |sin(u + d) - sin u| <= |cos u| |sin d| + |sin u| |1 - cos d| on the disc
                 other = Call("cos" if function == "sin" else "sin", argument)
                 return f"circular_radius({value}, {self.centre(other)}, {radius})"
             case "tan":

@@ -95,9 +95,11 @@ def guided(osc: Oscillator, tau: Expression, v: float, end: ContactZero, digits:
     rows = zip(found.tau.tolist(), found.v.tolist(), found.slopes.T.tolist(), strict=True)
     for n, (time, speed, (a, b, c, d)) in enumerate(rows, 1):
         sigma = time - end.tau
+        # D G of each impact applied to (0, 1): how the state answers to the first velocity
         column = (1 + a) * column[0] + b * column[1], -r * (c * column[0] + d * column[1])
         along = sum((j + 1 + i) * part * sigma ** (j + i) for i, part in enumerate(g))
         slope = column[1] - along * column[0]
+        # beyond this the distance from gamma has grown so far that the doubles of the guide tell nothing
         if not (sigma < 0 < speed and abs(slope) * SETTINGS.rough * v < SETTINGS.drift * speed):
             break
         sizes.append(abs(slope) / speed)

@@ -136,6 +136,7 @@ def chaotic(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
         away = np.stack([(ends[1].tau - ends[0].tau) / period, (ends[1].v - ends[0].v) / fast])
         away[0] -= np.rint(away[0])
         with np.errstate(all="ignore"):
+            # Benettin et al. (1980): the distance is measured, then set back to `apart` along the same direction
             size = np.hypot(*away)
             row[alive] = np.log(np.maximum(size, 1e-16) / SETTINGS.apart)
             step = away * np.where(size > 1e-16, SETTINGS.apart / size, 1.0)
@@ -147,6 +148,7 @@ def chaotic(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
         alive[np.flatnonzero(alive)[~good]] = False
         if not alive.any():
             break
+    # the first quarter, in which the distance turns towards the direction that grows, is left out
     late = growth[SETTINGS.rounds // 4 :, alive] / SETTINGS.block
     result = np.zeros(tau.size, dtype=bool)
     if alive.any():

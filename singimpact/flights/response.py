@@ -42,6 +42,7 @@ class Response:
     def conditions(self, tau: Array, v: Array, time: Array, velocity: Array) -> tuple[Array, Array]:
         """kappa = 1 + (|dT/dtau| max(|tau|, |T|) + |dT/dv| v)/T, and so for x' at the hit; nan where there is none."""
         with np.errstate(all="ignore"):
+            # tau is rounded with its own size, and with that of the flight time where it is smaller
             reach = np.maximum(np.abs(tau), time)
             late = 1 + (np.abs(self.time_by_tau) * reach + np.abs(self.time_by_v) * v) / time
             moved = 1 + (np.abs(self.velocity_by_tau) * reach + np.abs(self.velocity_by_v) * v) / np.abs(velocity)
@@ -96,6 +97,7 @@ def _acceleration(osc: Oscillator, tau: Array, time: Array, velocity: Array) -> 
         forcing = evaluate(osc.forcing(), {"t": start + time}, DOUBLES) + 0 * velocity
         force = evaluate(osc.force(), {"x": as_float(osc.clearance), "xdot": velocity}, DOUBLES)
         found = np.asarray(forcing - force)
+        # where g and f nearly cancel, doubles keep too few digits of x''
         for index in np.flatnonzero(np.abs(found) < LIMITS.cancelled * np.abs(forcing)):
             found[index] = _cancelled(osc, start[index] + time[index], velocity[index])
     return found
