@@ -38,6 +38,12 @@ def swans(digits):
     return [point.certified(digits) for point in si.swan_points("x + 3*x**3/10", "cos(2*t)")]
 
 
+@functools.cache
+def crossing():
+    """A homoclinic point."""
+    return si.homoclinic_points(si.linear("2.8", 0, "0.8").periodic(1, 1)[0], v=1)[0]
+
+
 def points(digits):
     found = si.tangency_points(WAVES, digits=digits)
     return (
@@ -79,6 +85,7 @@ CALLS = {
         [lambda d: CUBIC.enclosed_impact("1.2", "0.1", radii={"v": "1e-6"}, digits=d)], (12, 30),
     ),
     "PeriodicOrbit.certified": ([lambda d: CLOSED.periodic(1, 2)[0].certified(d)], (20,)),
+    "Crossing.certified": ([lambda d: crossing().certified(d)], (5,)),
     "Event.certified": ([lambda d: [event.certified(d) for event in events()]], (15, 30)),
     "ImpactOscillator.chatter_limit": (
         [lambda d: WAVES.chatter_limit("1.2", "0.01", digits=d), lambda d: BENT.chatter_limit("1.2", "0.01", digits=d)],
