@@ -128,8 +128,9 @@ def enclosed_crossing(
         bits = ceil(working * BITS_A_DIGIT) + 64
         with balls_at(bits):
             found = proved(lambda w=working, b=bits: _enclosed(ends, states, index, (digits, w, b)))  # type: ignore[misc]
-        if isinstance(found, str):
-            return found
+        if isinstance(found, str):  # nearer to the saddles the boxes are smaller
+            why = found
+            continue
         radius = max(exact("radius", part.radius) for part in (found.tau, found.v))
         if radius < Fraction(1, 10**digits):
             return found  # type: ignore[no-any-return]
