@@ -238,7 +238,7 @@ def in_threads(tasks):
 
 
 @pytest.mark.usefixtures("often")
-@pytest.mark.parametrize("rounds", [1, pytest.param(8, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("rounds", [1, pytest.param(4, marks=pytest.mark.slow)])
 def test_eight_threads_give_the_bits_of_one(alone, rounds):
     before = mpmath.mp.prec, flint.ctx.prec
     quick, slow = work(set(CALLS) - set(SLOW)), work(SLOW)
