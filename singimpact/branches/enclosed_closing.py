@@ -36,12 +36,16 @@ WIDEST = 0.3
 
 
 class _Met(NamedTuple):
-    """A time after the launch, x - c and x' then, and the derivatives of both by the launch time and velocity."""
+    """A time after the launch, x - c and x' then, and the derivatives of both by the launch time and velocity.
+
+    inside : whether the time is apart from both ends of its step, so that no zero leaves it between members of a box.
+    """
 
     time: Any
     height: Any
     speed: Any
     columns: list[Pair]
+    inside: bool = True
 
 
 class _ThroughTheWall(FramedMotion):
@@ -50,13 +54,11 @@ class _ThroughTheWall(FramedMotion):
     def require_above(self) -> None:
         """Flights may be below the wall."""
 
-    def met(self, s: Any, height: Tube, speed: Tube) -> _Met:
+    def met(self, s: Any) -> _Met:
         """The box at a time s after the step began, which may be a ball."""
-        flow = [[part(s) for part in column] for column in self.by_state]
-        drives = [drive for drive in self.drives if drive >= 0]
-        driven = {d: (value(s), slope(s)) for d, (value, slope) in zip(drives, self.by_drive, strict=True)}
-        columns = [self._mapped(flow, each, driven.get(d)) for each, d in zip(self.full, self.drives, strict=True)]
-        return _Met(self.time + s, height(s), speed(s), columns)
+        assert self.members is not None
+        height, speed = (part(s) for part in self.members)
+        return _Met(self.time + s, height, speed, self.columns_at(s))
 
 
 class ClosingBoxes:
@@ -94,7 +96,7 @@ class ClosingBoxes:
                 if len(over) != 1:
                     return None
                 ((first, end),) = over
-                if first is not None and not first.speed < 0:
+                if first is not None and not (first.speed < 0 and first.inside and first.time < self.span):
                     return None
                 rows = self._slopes(place, first, end)
                 at = [each for met, each in self._ends(*middle, visible=False)
@@ -142,11 +144,13 @@ class ClosingBoxes:
 
     def _end(self, tau: Any, v: Any, duration: Any, visible: bool) -> _Met | None:
         """The box after a duration, which may be a ball; None where all of it is below the wall before."""
+        if not duration > 0:  # members whose first impact is later than the end are no orbits
+            duration = (duration * 0).union(_edge(duration.upper()))
         motion, first, last = self._motion(tau, v), _edge(duration.lower()), _edge(duration.upper())
         while True:
-            height, speed, length = motion.tubes()
+            height, _, length = motion.tubes()
             if length >= last - motion.time:
-                found = motion.met(duration - motion.time, height, speed)
+                found = motion.met(duration - motion.time)
                 return None if visible and found.speed > 0 else found
             left = first - motion.time
             stop = length if length <= left else left
@@ -165,7 +169,7 @@ class ClosingBoxes:
             value, rate = divided(height, speed, 1) if motion.launched else (height, speed)
             pieces, below = _zeros(value, rate, length)
             for s in pieces:
-                found = motion.met(s, height, speed)
+                found = motion.met(s)._replace(inside=bool(s > 0 and s < length))
                 if not found.speed > 0 and not found.time > self.span:
                     yield found
             if below:
