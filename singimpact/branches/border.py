@@ -36,7 +36,7 @@ EPSILON = 2.0**-52
 
 @dataclass(frozen=True)
 class SearchSettings:
-    """How border orbits are looked for."""
+    """Settings of the search for border orbits."""
 
     # the next piece of a search begins so far from a border orbit, in units of the distance between two values
     away: float = 1e-3
@@ -48,7 +48,7 @@ class SearchSettings:
     width: float = 1e-4
     # roundings of phase and velocity where the orbit comes back
     roundings: float = 8.0
-    # digits at least, where some are asked for
+    # least number of digits where `digits` is given
     digits: int = 16
     # roundings of the number: of 28 that were compared with 22 digits the worst was off by 2.8
     ulps: float = 4.0
@@ -96,14 +96,14 @@ class BorderOrbit:
 
     @cached_property
     def cascade(self) -> Cascade:
-        """The edges between numbers of impacts beside it, to the digits that were asked for; found when asked for."""
+        """The edges between numbers of impacts beside it, to `digits` digits; computed when first read."""
         value = None if self.digits is None else self.parameter
         scale = abs(self.v / self.slope) if self.slope else np.nan
         return cascade(self.returned, self.oscillator, (value, self.error, scale), self.digits)
 
     @property
     def value_text(self) -> str:
-        """The value of the parameter with the digits that were asked for, or those of a double."""
+        """The value of the parameter with `digits` digits, or as a double."""
         if self.digits is None:
             return f"{float(self.parameter):.16g}"
         return text_of(self.parameter, self.digits)
@@ -194,7 +194,7 @@ def _ends(osc: Oscillator, over: str, between: Any) -> tuple[float, float]:
 
 
 class _Search:
-    """Border orbits found so far, and what is to be said."""
+    """Border orbits found so far, and the notes."""
 
     def __init__(self, releases: Releases, values: list[float]) -> None:
         self.releases, self.values, self.spacing = releases, values, values[1] - values[0]

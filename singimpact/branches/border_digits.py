@@ -161,7 +161,7 @@ def in_digits(found: Return, scale: float, digits: int) -> InDigits | None:
     middle, unit = Fraction(found.value), Fraction(scale)
     extra = max(0, ceil(log10(scale / abs(found.value)))) + 1 if found.value else 0
     orbits = DigitOrbits(found, digits + extra)
-    # v/gamma is a positive number with the relative error that `searched` knows
+    # v/gamma is a positive number; its relative error is in `searched`
     with balls_at(orbits.bits):
         near = searched(
             lambda impacts, share: orbits.missed(impacts, middle + (share - 1) * unit),

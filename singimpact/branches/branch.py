@@ -332,7 +332,7 @@ class _Walk:
             gap[:n] -= period * np.rint(gap[0] / period)
         return curve.passes(start, here, after, gap)
 
-    # ---- what is seen at a point
+    # ---- a point: visible or not, events
 
     def _row(self, point: Point) -> tuple[Point, Array, bool]:
         loop = self.closing.at(point.at)

@@ -35,7 +35,7 @@ Array = np.ndarray[Any, Any]
 class CascadeSettings:
     """How edges are found, and how many."""
 
-    # the largest distance looked at, as a part of that at which v/gamma changes by itself; never beyond the search for
+    # the largest distance searched, as a fraction of that at which v/gamma itself changes; never beyond the search for
     # border orbits
     start: float = 0.25
     # of one distance to the next; between those with two edges or more there are others, down to a relative width
@@ -43,7 +43,7 @@ class CascadeSettings:
     narrow: float = 1e-3
     # edges that are found by counting impacts; each next one is extrapolated from the three before
     regular: int = 5
-    # edges are looked for down to so many times the error of the border orbit, and no more than these
+    # edges are searched down to this many times the error of the border orbit, and at most this many
     least: float = 1e5
     most: int = 400
     # they end where so many ratios in a row differ from the one before by less, as a part of ratio - 1: the difference
@@ -56,7 +56,7 @@ class CascadeSettings:
     safety: float = 3.0
     # digits of mu
     digits: int = 20
-    # roundings of the number between the border orbit and the nearest model that is looked at
+    # rounding units of the parameter between the border orbit and the nearest model flown
     apart: float = 1e3
 
 
@@ -118,7 +118,7 @@ class Cascade:
         steps = np.diff(ratios)
         for i in range(len(ratios) - 4):
             three = [_aitken(*ratios[j : j + 3].tolist()) for j in range(i, i + 3)]
-            # steps that are nearly equal enlarge rounding twice over, and what is left of the approach alike
+            # nearly equal steps amplify rounding twice, and amplify the remaining distance alike
             same = steps[i + 3] == steps[i + 2] or not steps[i + 2]
             grown = np.inf if same else max(1.0, 1 / abs(1 - steps[i + 3] / steps[i + 2])) ** 2
             error = SETTINGS.safety * grown * float(max(three) - min(three) + errors[i : i + 5].sum())
@@ -128,7 +128,7 @@ class Cascade:
 
     @cached_property
     def windows(self) -> tuple[CascadeWindow, ...]:
-        """What attracts the released orbit in the middle of each window between two edges, found when asked for."""
+        """The attractor of the released orbit in the middle of each window between two edges, read lazily."""
         return self.sampled(1)
 
     def sampled(self, count: int) -> tuple[CascadeWindow, ...]:
@@ -317,7 +317,7 @@ class _Edges:
             rows += self._between(rows[-1], (distance, count)) if rows else []
             rows.append((distance, count))
             found = _regular(rows)
-            # edges farther away are kept too, but not before it is seen that they are regular
+            # edges farther away are kept too, once their ratios are regular
             if len(found) >= 2 * SETTINGS.regular:
                 return found[: SETTINGS.regular]
             distance *= SETTINGS.factor

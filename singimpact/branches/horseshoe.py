@@ -214,7 +214,7 @@ class _Route:
         return [_rows(np.stack(pair, axis=1).tolist()) for pair in zip(ahead, behind[:0:-1], strict=True)]
 
     def _image(self, one: CrossedSet, other: CrossedSet, impacts: int) -> _Image:
-        """Of one set by so many impacts, seen from another one."""
+        """The image of one set under n impacts, in the coordinates of another one."""
         import flint
 
         landed = image_of(self.map, one.centre, impacts)

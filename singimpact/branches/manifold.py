@@ -29,7 +29,7 @@ Array = np.ndarray[Any, Any]
 class ManifoldSettings:
     """How far a manifold is grown."""
 
-    # the highest v that is looked at: in largest velocities of the orbit, and in largest a_c times a period
+    # the highest v computed: in largest velocities of the orbit, and in largest a_c times a period
     highest: tuple[float, float] = (3.0, 0.25)
     # states are followed up to this part of the highest v: from there they may come back
     reach: float = 2.0
@@ -40,7 +40,7 @@ class ManifoldSettings:
     points: int = 1_000_000
     # images of the fundamental piece, of every impact of the orbit
     turns: int = 2000
-    # a piece that is nearer than this to what is there, in resolutions, adds nothing
+    # a piece within this distance of the curve so far, in resolutions, is left out
     distinct: float = 0.25
     # but a whole turn of a side is followed on, for so many turns, while it is longer than this
     lingering: int = 400
@@ -297,7 +297,7 @@ class _Grown:
         return bool((np.hypot(*away.transpose(2, 0, 1)).min(axis=1) < self.window.resolution).all())
 
     def _adds(self, points: Array) -> bool:
-        """Whether a piece is away from what is there; so are pieces above the window, which may come back to it."""
+        """Whether a piece is away from the curve so far; so are pieces above the window, which may return to it."""
         seen = points[points[:, 1] <= self.window.y[1]]
         return not len(seen) or not self._nearby.all_on(seen)
 
@@ -360,7 +360,7 @@ class _Grown:
         points = piece.points[piece.points[:, 1] <= self.window.y[1]]
         return float(np.hypot(*(np.diff(points, axis=0) / self.window.sides).T).sum())
 
-    # ---- what is returned
+    # ---- results
 
     def curves(self) -> Iterator[Curve]:
         """Pieces that follow one another, from the saddle outwards, cut where they leave the window or a period."""

@@ -126,7 +126,7 @@ def _window(v: Any) -> tuple[Fraction, Fraction]:
 
 
 def _all(osc: Oscillator, n: int, k: int) -> tuple[list[Array], tuple[str, ...] | None]:
-    """Points of all solutions found, and why there may be others; None where `_doubts_of_two` tells."""
+    """Points of all solutions found, and why there may be others; None where `_doubts_of_two` decides."""
     linear = not names_in(osc.restitution) and linear_form(osc) is not None
     if n == 1 and linear:
         solutions = phases_and_speeds(osc, k)

@@ -33,9 +33,9 @@ class ReleasedSettings:
     longest: int = 4096
     # impacts at most
     impacts: int = 200_000
-    # impacts flown on where what is left of a chatter does not end before the zero of a_c
+    # impacts flown on where the rest of a chatter does not end before the zero of a_c
     more: int = 8
-    # steps of Newton's method for a zero of a_c, and the part of a period before it from which its double is looked for
+    # steps of Newton's method for a zero of a_c; the search in doubles begins this fraction of a period before it
     steps: int = 20
     before: float = 1e-9
 

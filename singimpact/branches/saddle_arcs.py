@@ -134,7 +134,7 @@ class LocalArc:
 
 
 def checked_saddle(saddle: Any) -> PeriodicOrbit:
-    """The orbit, if it is a saddle whose impacts the mass sees.
+    """The orbit, if it is a saddle with visible impacts.
 
     Raises
     ------

@@ -42,7 +42,7 @@ SETTINGS = SettledSettings()
 
 
 def settled_orbit(osc: Oscillator, tau: Any, v: Any = 0) -> PeriodicOrbit | None:
-    """The periodic orbit on which the orbit of a state settles; None where none of 250 impacts or fewer is seen.
+    """The periodic orbit on which the orbit of a state settles; None where none of at most 250 impacts is found.
 
     Notes
     -----

@@ -36,11 +36,11 @@ WORDS = ("stable", "neutral", "unstable", "virtual")
 
 @dataclass(frozen=True)
 class OrbitSettings:
-    """Where orbits are looked for between transitions."""
+    """Settings of the search for orbits between transitions."""
 
     # n, k at most
     most: int = 8
-    # values at which orbits are looked for, at least; the middle between neighbouring transitions is one always
+    # least number of values at which orbits are searched; the middle between neighbouring transitions is always one
     samples: int = 5
     # an orbit is one of a branch when its states differ by less than this, of a period and of the largest velocity,
     # from those of the next point of the branch

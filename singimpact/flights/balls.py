@@ -158,7 +158,7 @@ class LinearFlow:
             if not abs(height) < abs(speed * time) * NEAR.numerator / NEAR.denominator:
                 return None
             step = -height / speed
-            # next to a graze the step is not short beside speed/curve, and what is left is of its third order
+            # next to a graze the step is not short beside speed/curve; the error left is of third order in the step
             near_enough = bool(abs(step * curve) < abs(speed) / 10**9)
             step *= 1 - step * curve / (2 * speed)
             if near_enough:
@@ -191,7 +191,7 @@ class LinearFlow:
         return 1 / (2 * self.fastest)
 
     def _expansion(self, tau: Any, v: Any, reach: Any, removed: int) -> tuple[Any, Any]:
-        """y and dy/dt on (0, reach] as polynomials whose last coefficients contain what is cut."""
+        """y and dy/dt on (0, reach] as polynomials; the last coefficients contain the truncation error."""
         import flint
 
         zero, one = self.number(Fraction(0)), self.number(Fraction(1))
@@ -230,7 +230,7 @@ class LinearFlow:
 
 @lru_cache(maxsize=64)
 def linear_flow(osc: Oscillator, bits: int) -> LinearFlow | None:
-    """The flow of a linear model, whatever its restitution; None without a closed form.
+    """The flow of a linear model with any restitution; None without a closed form.
 
     Examples
     --------

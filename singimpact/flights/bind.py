@@ -146,7 +146,7 @@ def floats_of() -> dict[str, Any]:
 
 @lru_cache(maxsize=64)
 def over_mpmath(context: Any, flow: str = "", exact_restart: bool = True) -> dict[str, Any]:
-    """The kernels over numbers of an mpmath context, at whatever precision it has."""
+    """The kernels over numbers of an mpmath context, at the precision of the context."""
     return over_lists(flow, "", exact_restart)(
         {name: getattr(context, {"log": "ln"}.get(name, name)) for name in FUNCTIONS}
     )

@@ -15,7 +15,7 @@ Array = np.ndarray[Any, Any]
 SPARSE = ("depth", "bound")
 """Numbers that few flights have."""
 ALWAYS = ("status", "cause")
-"""Fields that are there whatever arrays a caller gives."""
+"""Fields that are filled for any arrays of the caller."""
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,7 @@ def where(osc: Oscillator, tau: float, numbers: Array) -> str:
 
 
 def explained(osc: Oscillator, tau: float, numbers: Array, cause: Cause, path: Any) -> tuple[Cause, str]:
-    """The cause of an undecided flight, told apart further, and a clause about where it came to.
+    """The cause of an undecided flight in finer classes, and a clause that names the time that the flight reached.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.nearest_zero import Zero
 
-SPARE_BITS = (64, 320)  # beside the digits asked for: at first, and for a phase or a graze that costs more
+SPARE_BITS = (64, 320)  # beyond `digits`: in the first attempt, and for large phases and grazes, which lose more
 
 
 class Proof(NamedTuple):
@@ -81,7 +81,7 @@ def _named(found: Proof, osc: Oscillator, states: States, index: int) -> Proof:
 
 
 def _expected(rough: tuple[float, float] | None) -> tuple[float, float]:
-    """Flight time and condition of a hit, where doubles know them."""
+    """Flight time and condition number of a hit from double precision, where it decides the flight."""
     if rough is None:
         return inf, 1.0
     time, condition = rough

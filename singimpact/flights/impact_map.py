@@ -151,7 +151,7 @@ def _flights(osc: Oscillator, states: States, digits: int | None, allowance: All
 
 
 def _allowance(osc: Oscillator, tolerance: Any, horizon: Any, steps: Any) -> Allowance | None:
-    """What is asked for; None for the defaults."""
+    """The options of one call; None stands for a default."""
     if tolerance is horizon is steps is None:
         return None
     return Allowance(horizon_of(osc, horizon), _tolerance(tolerance), checked_steps(steps))

@@ -25,7 +25,7 @@ Array = np.ndarray[Any, Any]
 
 
 def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) -> Flight:
-    """First hits with `digits` digits, with the conditions that doubles know.
+    """First hits with `digits` digits, and their condition numbers from double precision.
 
     All are flown in doubles before: a flight that does not come back there does not here, and the number of its Taylor
     steps is known.

@@ -33,7 +33,7 @@ class CompilingSettings:
 
     # seconds of interpreted flights after which a model of its own f and g is compiled: most sessions fly fewer
     wait: float = 0.25
-    # seconds between two looks at the cache while a process compiles
+    # seconds between two reads of the cache while a process compiles
     look: float = 0.2
     # seconds after which a process that compiles is taken for dead
     dead: float = 300.0
@@ -104,7 +104,7 @@ class Machine:
             time.sleep(SETTINGS.look / 10)
             if self.place(name).is_file():
                 break
-        if not waited:  # a damaged file was seen, and named, a moment before
+        if not waited:  # a damaged file has just been reported
             return None
         self._looked.pop(name, None)
         return self.entry(name)
@@ -134,7 +134,7 @@ class Machine:
         return cache_folder() / FOLDER / f"{self.digest}.asked"
 
     def _compile_elsewhere(self, name: str) -> bool:
-        """Start a process of low priority that compiles, unless one is at work for this cache; whether it was asked."""
+        """Start a process of low priority that compiles, unless one runs for this cache; returns whether it started."""
         request = self._request
         try:
             folder(request.parent)

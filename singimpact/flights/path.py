@@ -27,7 +27,7 @@ Array = np.ndarray[Any, Any]
 
 
 class Path(NamedTuple):
-    """x and x' at the times asked for; nan where the solution does not reach."""
+    """x and x' at given times; nan at times that the solution does not reach."""
 
     x: Any
     xdot: Any

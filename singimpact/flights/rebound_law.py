@@ -19,7 +19,7 @@ DOUBLINGS = 64
 STEPS = 120
 DIGITS = 20  # of a speed that doubles leave open
 FLAT = 64  # roundings of v that one rounding of the speed may stand for
-SPARE = 40  # digits beside twice those asked for: at a greatest rebound half of the digits are lost
+SPARE = 40  # digits beyond 2 `digits`: half of the digits are lost where rho has a maximum
 
 Array = np.ndarray[Any, Any]
 
@@ -97,7 +97,7 @@ def speed_before(osc: Oscillator, v: Array) -> Array:
 
 
 def _decided(osc: Oscillator, v: Array, speed: Array) -> Array:
-    """Where rho is nearly flat its rounding decides the speed, or whether there is one: asked with more digits."""
+    """Near a maximum of rho rounding decides the speed, or whether one exists: inverted with more digits."""
     _, slope = _rebound(osc, speed)
     with np.errstate(all="ignore"):
         flat = (speed > 0) & ~(np.spacing(v) < FLAT * np.spacing(speed) * slope)

@@ -94,7 +94,7 @@ def _plain(values: Any) -> bool:
 
 def _zero_beside(osc: Oscillator, written: Any, digits: int | None) -> Zero | None:
     if not isinstance(written, float | np.floating):
-        return None  # what is written exactly is meant exactly
+        return None  # numbers given as text are exact
     return zero_beside(osc, float(written), 256 + 4 * (digits if isinstance(digits, int) else 15))
 
 

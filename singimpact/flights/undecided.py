@@ -255,7 +255,7 @@ def conditions(osc: Oscillator, states: States, chosen: Array, time: Array, velo
 
 
 def notes_of(osc: Oscillator, states: States, fates: Fates) -> dict[int, str]:
-    """A note for each flight that is lost; causes are told apart."""
+    """A note for each undecided flight, with its cause."""
     notes = {}
     for index in np.flatnonzero(fates.lost).tolist():
         tau = float(states.tau[index])

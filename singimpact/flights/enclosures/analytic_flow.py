@@ -1,4 +1,4 @@
-"""Flights of an analytic model in balls, impact after impact: what orbits ask of a flow, at one precision."""
+"""Flights of an analytic model in balls, impact after impact, at one precision: the flow that orbits use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""First hits with the digits asked for, proved: balls of growing precision, until they are narrow enough."""
+"""First hits enclosed to `digits` digits: the precision of the balls grows until their radii are small enough."""
 
 from __future__ import annotations
 
@@ -213,7 +213,7 @@ def _radius(size: Fraction) -> Any:
 
 
 def _phase(osc: Oscillator, tau: Expression, bits: int, names: tuple[str, ...]) -> Any:
-    """A launch time less whole periods of g: what is far from 0 loses no digits.
+    """A launch time less whole periods of g, so that times far from 0 lose no digits.
 
     Where the period depends on a number that has a radius, no time is a whole number of periods for all its values.
     """
@@ -223,7 +223,7 @@ def _phase(osc: Oscillator, tau: Expression, bits: int, names: tuple[str, ...]) 
     size = abs(float(plain.mid()))
     if osc.period is None or not size > 64 or _period_moves(osc, names):
         return plain
-    # the fraction of tau/period has the digits asked for only if the product with all whole periods has them
+    # the fraction of tau/period has `digits` digits only if the number of whole periods times the period has them
     more = bits + ENCLOSURE.guard + (int(abs(plain).upper().man_exp()[1]) + 64 if size > 1e15 else 64)
     with balls_at(more + max(int(plain.mid().man_exp()[0]).bit_length(), 0)):
         exact, period = _ball(tau, more), _ball(osc.period, more)

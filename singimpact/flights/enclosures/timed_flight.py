@@ -49,7 +49,7 @@ class Arrival(NamedTuple):
 
 
 def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, derivative: bool = False) -> Arrival:
-    """A flight at a time, whatever it meets only at its end.
+    """A flight at a given time; contact with the wall is allowed at its end only.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, der
 
 
 def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int) -> None:
-    """Show that z > 0 between the launch and a time at which z = z' = 0, as the caller knows of that flight.
+    """Show that z > 0 between the launch and a time at which z = z' = 0; the caller has proved the latter.
 
     z > 0 is shown up to a last piece, and there z'' > 0: a function with z = z' = 0 at its end is then positive on it.
 

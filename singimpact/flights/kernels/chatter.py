@@ -1,4 +1,4 @@
-"""Chatter of a linear model to its end in one loop: impacts, the terms of what is left, and the error of the sum.
+"""Chatter of a linear model to its end in one loop: impacts, the series for the remaining time, and its error.
 
 Every flight leaves a row, so that its rounding is carried to the end by D G afterwards: products of D G from the start
 would have to be inverted, and lose all digits after a hundred impacts.
@@ -108,7 +108,7 @@ def chatter_left(v: float, a: float, r: float, p: Any, launch: Any) -> Any:
         a_d2 -= rate * rate * along
         a_d3 -= rate * rate * rate * across
     first, second, third, last = linear_chatter_terms(v, r, a, a_d1, a_d2, a_d3, p.damping, p.stiffness)
-    # a coefficient may happen to be small: the term before lets expect this one
+    # a coefficient may happen to be small, so the size of this term is estimated from the term before
     likely = abs(third) * abs(third / first) ** 0.5
     # the larger of the two, and nan where one of them is
     error = likely if not likely <= abs(last) else abs(last)

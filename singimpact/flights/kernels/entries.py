@@ -89,7 +89,7 @@ def batch_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, o
     model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
     batch = batch_model(flat, scratch, sizes, work)
     if sizes[KIND] == PREPARE_BATCH:
-        # states that a batch hands over are flown through the other table
+        # states that a batch cannot decide are flown with the table of one flight
         tabulate(model.numbers, model.table)
         bounds(model.numbers, model.table)
         tabulate(model.numbers, batch.table)

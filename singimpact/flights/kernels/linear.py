@@ -94,7 +94,7 @@ def triple(a: complex, b: complex, c: complex, t: float) -> complex:
 
 
 def restart(launch: Any, v: float, time: float, z: float, u: float, noise: float, ulp: float, p: Any) -> Any:  # noqa: ARG001
-    """x - c and x' at `time` from the launch, whatever the steps before have lost; and how well they are known."""
+    """x - c and x' at `time`, from the launch, so that errors of earlier steps do not enter; and their errors."""
     root = complex_sqrt(complex(p.damping * p.damping / 4 - p.stiffness))
     a, b = -p.damping / 2 + root, -p.damping / 2 - root
     free = pair(a, b, time)

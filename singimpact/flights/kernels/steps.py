@@ -18,7 +18,7 @@ def disc(X: Any, W: Any, n: int, R: Any, p: Any) -> Any:  # noqa: ARG001
 
 
 def step_size_of_discs(X: Any, W: Any, z: Any, n: int, longest: Any, ulp: Any, p: Any, pace: Any) -> Any:
-    """(step, how far beyond it roots may be looked for, pace): the longest step whose cut-off is proved to be small."""
+    """(step, distance beyond it within which roots are valid, pace): the longest step of proved small truncation."""
     wish = wished_step(X, z, n, longest, ulp)
     step, pace = proved_step(X, W, n, wish, ulp, p, pace)
     return step, 65 / 64, pace
@@ -88,7 +88,7 @@ def searched_step(X: Any, W: Any, n: int, wish: Any, enough: Any, ulp: Any, p: A
         bound, _suspect = disc(X, W, n, R, p)
         fit = allowed_step(bound, R, X, n, wish, ulp)
         if fit > 1.02 * best:
-            # a step that fills its disc asks for a larger one
+            # a step as long as the radius of its disc: try a larger disc next
             best, best_R, upwards = fit, R, upwards or fit > 0.69 * R
         elif best > 0 and (upwards or attempt != 1):
             break

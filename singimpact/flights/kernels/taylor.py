@@ -49,7 +49,7 @@ def taylor_flight(
         h, overlap, pace = step_size(X, W, z, order, longest, ulp, p, pace)
         if not abs(u) < 1e150 or not abs(z) < 1e150:
             return 23, time, u, z, noise
-        # a step that time cannot tell from none
+        # a step below one rounding unit of the time
         if not h > ulp * time:
             return 22, time, u, z, zero + singular_part(X, W, order, max(h, ulp * (time + ulp)), p)
         # a step beyond the horizon decides nothing more; twice, so that the last one is not cut to rounding

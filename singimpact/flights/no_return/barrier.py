@@ -31,7 +31,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class BarrierSettings:
-    """Where barriers are looked for.
+    """Where barriers are searched.
 
     Attributes
     ----------
