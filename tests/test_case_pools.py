@@ -320,6 +320,7 @@ def test_the_width_of_a_cluster_is_its_cores_and_not_ours(cluster, monkeypatch):
     assert place.width == 2
 
 
+@pytest.mark.slow
 def test_cases_that_look_like_tasks_of_the_cluster_are_cases(cluster):
     assert sweep(lambda pair: pair[1], [(abs, -2), (abs, -3)], cluster).tolist() == [-2, -3]
 
@@ -329,6 +330,7 @@ def test_a_case_that_ends_its_workers_ends_the_sweep_in_one_line(cluster):
         sweep(os._exit, [3], cluster)
 
 
+@pytest.mark.slow
 def test_basins_and_diagrams_on_a_cluster(cluster):
     osc = si.linear(2, "0.7", "0.5")
     assert np.array_equal(

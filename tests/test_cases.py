@@ -472,6 +472,7 @@ def test_chunks_end_after_a_time_and_not_after_a_count():
     assert max(sizes[-3:]) <= 5
 
 
+@pytest.mark.slow
 def test_memory_holds_a_few_chunks_of_large_results(tmp_path, monkeypatch):
     """Of 160 MB, written to a store, no more than chunks of a megabyte are in memory."""
     require("kept.zarr")

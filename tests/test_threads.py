@@ -116,6 +116,7 @@ CALLS = {
     }.items()
 }  # fmt: skip
 SLOW = ("ImpactOscillator.periodic", "threshold")  # flown by two threads alone
+SECONDS = {*SLOW, "Crossing.certified", "Event.certified", "border_orbits"}  # left to the slow test
 
 
 def bits(value):
@@ -171,8 +172,8 @@ def few_starts():
 
 @pytest.fixture(scope="module")
 def alone(few_starts):  # noqa: ARG001
-    """What one thread gives."""
-    return {job: done(job) for job in work(CALLS)}
+    """The result of a job in one thread, computed once."""
+    return functools.cache(done)
 
 
 @pytest.fixture
@@ -237,17 +238,22 @@ def in_threads(tasks):
     return results
 
 
+NAMES = [set(CALLS) - SECONDS, pytest.param(set(CALLS), marks=pytest.mark.slow)]
+
+
 @pytest.mark.usefixtures("often")
-@pytest.mark.parametrize("rounds", [1, pytest.param(4, marks=pytest.mark.slow)])
-def test_eight_threads_give_the_bits_of_one(alone, rounds):
+@pytest.mark.parametrize("names", NAMES, ids=["those of milliseconds", "all"])
+def test_eight_threads_give_the_bits_of_one(alone, names):
     before = mpmath.mp.prec, flint.ctx.prec
-    quick, slow = work(set(CALLS) - set(SLOW)), work(SLOW)
-    for _ in range(rounds):
+    quick, slow = work(sorted(names - set(SLOW))), work(sorted(names & set(SLOW)))
+    for job in quick + slow:
+        alone(job)
+    for _ in range(4 if names == set(CALLS) else 1):
         forget()
         shifted = [quick[7 * n :] + quick[: 7 * n] for n in range(THREADS)]
         tasks = [jobs + (slow if n % 4 == 0 else []) for n, jobs in enumerate(shifted)]
         for found in in_threads(tasks):
-            assert {job: value for job, value in found.items() if value != alone[job]} == {}
+            assert {job: value for job, value in found.items() if value != alone(job)} == {}
     assert (mpmath.mp.prec, flint.ctx.prec) == before
 
 
@@ -258,23 +264,26 @@ class Untouched(list):
         raise AssertionError("the precision of mpmath.mp is set")
 
 
-def test_results_do_not_depend_on_the_precisions_of_the_user(alone, monkeypatch):
+@pytest.mark.parametrize("names", NAMES, ids=["those of milliseconds", "all"])
+def test_results_do_not_depend_on_the_precisions_of_the_user(alone, names, monkeypatch):
     """What is computed under no precision of its own would be computed with 20 bits here."""
     own = precision._own_context()
     before = mpmath.mp.prec, flint.ctx.prec, own.prec
+    wanted = {job: alone(job) for job in work(sorted(names))}
     forget()
     try:
         mpmath.mp.prec, flint.ctx.prec, own.prec = 20, 20, 20
         monkeypatch.setattr(mpmath.mp, "_prec_rounding", Untouched(mpmath.mp._prec_rounding))
-        assert [job for job in work(set(CALLS)) if done(job) != alone[job]] == []
+        assert [job for job, value in wanted.items() if done(job) != value] == []
         assert (mpmath.mp.prec, flint.ctx.prec, own.prec) == (20, 20, 20)
     finally:
         monkeypatch.undo()
         mpmath.mp.prec, flint.ctx.prec, own.prec = before
 
 
+@pytest.mark.slow
 def test_an_orbit_was_found(alone):
-    assert alone["ImpactOscillator.periodic", 0, 25]
+    assert alone(("ImpactOscillator.periodic", 0, 25))
 
 
 def test_inverse_map_has_its_digits():

@@ -53,6 +53,7 @@ def test_group_at_its_smallest_size(name):
     assert not found.skipped
 
 
+@pytest.mark.slow
 def test_growth_is_shown_beside_that_of_the_work():
     found = measured("growth", SMALL)
     fits = {(fit.case, fit.method): fit for fit in exponents(found.rows)}

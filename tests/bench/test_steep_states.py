@@ -67,6 +67,7 @@ KNOWN = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("force", "forcing", "plain", "layer", "launch", "time"), KNOWN)
 def test_both_truths_give_known_flight_times(force, forcing, plain, layer, launch, time) -> None:
     motion = Motion(graded_steps.compiled(plain), NO_NUMBERS, np.array([layer], dtype=float), 0.0)

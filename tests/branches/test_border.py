@@ -278,6 +278,7 @@ def test_nonlinear_models_are_certified(over, between):
         assert "one fate" in note
 
 
+@pytest.mark.slow
 def test_a_restitution_that_is_a_law_is_not_certified_and_says_so():
     osc = si.ImpactOscillator("x", "cos(2.8*t)", 0.6, "-0.6*v + 0.1*v**2")
     (found,) = si.border_orbits(osc, between=(0.68, 0.7), points=2, digits=16)
@@ -418,6 +419,7 @@ def test_refusals(osc, keywords, sentence):
 # ---- shown
 
 
+@pytest.mark.slow
 def test_picture():
     upper, lower = Figure().subplots(2)
     draw_border(doubles("3/10"), upper, lower)

@@ -138,6 +138,7 @@ def test_a_doubled_branch_meets_the_one_that_it_left() -> None:
     assert kinds(found).count("fold") == 2  # none where it meets them
 
 
+@pytest.mark.slow
 def test_an_orbit_that_touches_the_wall_is_visible() -> None:
     duffing = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "A*cos(1.7*t)", "-0.3", "0.6", {"A": 1})
     (orbit,) = duffing.periodic(1, 1, start=(2.12287, 1.16715))

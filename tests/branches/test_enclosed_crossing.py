@@ -48,6 +48,7 @@ def landed(tau, v, time):
     return x, -r * speed
 
 
+@pytest.mark.slow
 def test_every_impact_leads_to_the_next_one_in_closed_form(proved):
     with mpmath.workdps(60):
         period, wall = 2 * mpmath.pi / mpmath.mpf("2.8"), mpmath.mpf(10) ** -28
@@ -136,6 +137,7 @@ def test_a_stable_orbit_has_no_cones():
         Cones(orbit, 30, BITS).wedge(Fraction(1, 2**20))
 
 
+@pytest.mark.slow
 def test_states_beside_the_orbit_are_refused(found):
     moved = found[0].states.copy()
     moved[found[0].index] += 0.02
@@ -143,6 +145,7 @@ def test_states_beside_the_orbit_are_refused(found):
         replace(found[0], states=moved).certified(12)
 
 
+@pytest.mark.slow
 def test_an_orbit_that_stays_at_the_saddle_is_no_homoclinic_one(saddle):
     staying = np.repeat([[float(saddle.tau[0]), float(saddle.v[0])]], 12, axis=0)
     staying[0] += 1e-6 * np.array([1.0, -0.49])

@@ -115,6 +115,7 @@ def test_grazes_of_orbits_without_impact(over):
 # ---- other integrators
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["graze", "hidden impact"])
 def test_runge_kutta_sees_the_touch(duffing, kind):
     (event,) = events(duffing, kind)
@@ -144,6 +145,7 @@ def test_doubles_see_the_multiplier(duffing, kind, multiplier):
     assert ball.over == "A"
 
 
+@pytest.mark.slow
 def test_more_digits_lie_in_fewer(duffing):
     for event in duffing.events:
         if event.orbit.visible:
@@ -154,6 +156,7 @@ def test_more_digits_lie_in_fewer(duffing):
             assert many.parameter.radius < mpmath.mpf("1e-40")
 
 
+@pytest.mark.slow
 def test_a_torus():
     osc = si.ImpactOscillator("x - mu*(1 - x**2)*xdot", "A*cos(w*t)", 0, "0.9", {"mu": "0.2", "A": "1.5", "w": "2.2"})
     (orbit,) = osc.periodic(1, 1, start=(2.64089, 2.19428))
@@ -266,6 +269,7 @@ def test_events_of_orbits_without_impact_are_refused(duffing):
 # ---- pieces
 
 
+@pytest.mark.slow
 def test_d_f_is_that_of_differences():
     """Columns by the states and by numbers, one of which the period depends on; both closings."""
     (orbit,) = DUFFING.periodic(2, 1, start=(1.95786, 0.662042))

@@ -109,6 +109,7 @@ def test_the_angle_is_that_of_the_curves(found: Crossings) -> None:
         assert (orbit.angles > 1e-3).all()
 
 
+@pytest.mark.slow
 def test_each_orbit_once_and_more_with_the_length(found: Crossings) -> None:
     assert len(found) == 23
     starts = [each.s[0] for each in found]
@@ -134,6 +135,7 @@ def test_heteroclinic_orbits_join_two_saddles() -> None:
     assert repr(orbit).startswith("<heteroclinic point (")
 
 
+@pytest.mark.slow
 def test_of_a_saddle_of_three_impacts() -> None:
     saddle = saddle_of(CHAOTIC, 3)
     there = si.homoclinic_points(saddle, length=5)

@@ -76,6 +76,7 @@ def test_the_first_set_of_the_long_loop_lies_beside_that_round_the_saddle(found)
     assert first.corners.shape == (4, 2)
 
 
+@pytest.mark.slow
 def test_a_state_that_follows_a_sequence_of_loops(found):
     """Long, short, short, long, by bisection: as many impacts as doubles tell states of N apart."""
     home, *way = found.sets
@@ -116,12 +117,14 @@ def test_drawn(found):
     assert np.abs(lines["$B_1$, the first set of the long loop"][:, 0]).min() > 1
 
 
+@pytest.mark.slow
 def test_a_map_that_stretches_less_is_refused(monkeypatch, crossing):
     honest = room.derivative_over
     monkeypatch.setattr(room, "derivative_over", lambda *given: honest(*given) * (flint.arb(1) / 3))
     assert isinstance(horseshoe(crossing.unstable, crossing.states), str)
 
 
+@pytest.mark.slow
 def test_refusals(crossing):
     moved = crossing.states.copy()
     moved[crossing.index] += 0.05

@@ -150,6 +150,7 @@ def test_vertices_far_along_the_stable_manifold_come_to_the_saddle(bounding: Man
         assert away < 1e-3
 
 
+@pytest.mark.slow
 def test_the_boundary_of_the_basins_is_the_stable_manifold_place_by_place(found: si.basins, bounding: Manifold) -> None:
     """All 6535 places between unlike neighbours of 300 x 300 states lie within 0.52 of a cell of W^s."""
     assert {name for _, name, _ in found.classes} == {"(3, 3) orbit", "(1, 1) orbit"}

@@ -125,6 +125,7 @@ def test_the_forcing_may_vanish_at_an_end() -> None:
     assert [each.value for each in found] == pytest.approx([0.5])
 
 
+@pytest.mark.slow
 def test_both_sides_of_a_transition(waves: OrbitTransitions) -> None:
     index = [each.kind for each in waves].index("swan, negative")
     both = waves.both_sides(index, apart="0.05", v=(0, "0.8"), size=40)

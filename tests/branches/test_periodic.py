@@ -198,6 +198,7 @@ def test_a_list_that_lacks_an_orbit_is_not_complete() -> None:
     assert "the list lacks <(2, 2) orbit, stable" in _doubts_of_two(osc, 2, [])[0]
 
 
+@pytest.mark.slow
 def test_what_is_not_decided_of_two_impacts_is_said() -> None:
     # r = 1, omega = 2: every phase closes after two impacts
     found = linear(2, 0, 1).periodic(2, 2)

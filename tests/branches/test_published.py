@@ -177,6 +177,7 @@ def resonance(request):
                               for kind, event in found.items()}  # fmt: skip
 
 
+@pytest.mark.slow
 def test_folds_and_doublings_are_those_of_the_closed_form(resonance) -> None:
     truth, _, curves = resonance
     assert {"fold", "graze", "period-doubling"} <= set(curves)

@@ -28,6 +28,7 @@ def test_an_orbit_of_one_impact_scales_with_the_amplitude():
     assert "up and down" in repr(found)
 
 
+@pytest.mark.slow
 def test_a_motion_without_impact_is_carried_until_it_meets_the_wall():
     osc = si.linear("0.8", -1, "0.8", damping="0.05", amplitude="-0.45")
     found = si.bifurcation(osc, "clearance", ("-1.6", "-1"), 25, start=("0.1", 1), impacts=200, kept=1, direction="up")

@@ -60,6 +60,7 @@ def test_shapes_broadcast() -> None:
         LINEAR.impact_map(np.zeros(1000), np.ones(2000))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_blocks")
 def test_depth_of_the_few_that_have_one() -> None:
     # every hundredth flight touches with no velocity: a swan seen from its own launch

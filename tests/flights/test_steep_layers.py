@@ -116,6 +116,7 @@ def test_a_long_flight_keeps_its_errors() -> None:
     assert abs(float(more.flight_time) / hit.flight_time - 1) <= hit.time_error < 1e-11
 
 
+@pytest.mark.slow
 def test_a_mass_that_cannot_come_back_is_not_flown() -> None:
     barred = si.ImpactOscillator("x+x**3/10+1000*xdot", "cos(t)", -1, "1/2")
     assert list(barred.first_hit(0, [0.5, 1]).status) == [Status.escaped] * 2

@@ -80,6 +80,7 @@ def test_next_to_the_launch_boxes_are_decided_by_the_third_and_fourth_derivative
     assert not blind.touches(period, (0.1, 0.14), (-1.0, 1.0)).complete
 
 
+@pytest.mark.slow
 def test_what_is_not_proved_is_said():
     duffing = si.ImpactOscillator("x + 0.3*x**3", "cos(2*t)", 0, "0.5")
     found = transitions(duffing, "clearance", (0.7, 0.95), (-1, 1))

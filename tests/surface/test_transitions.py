@@ -40,6 +40,7 @@ def test_swans_over_a_parameter_lie_between_the_ends_each_once():
     assert found.complete
 
 
+@pytest.mark.slow
 def test_a_double_zero_that_stays_is_said():
     """a_c = cos wt - 1 has a double zero at every w, so that none of them is alone; nothing is called complete."""
     found = transitions(si.linear(2, 1, "0.5"), "omega", ("1.2", "1.3"))
@@ -94,6 +95,7 @@ def test_a_piece_of_z_is_born_in_the_lips_that_are_found():
     assert sorted(pieces) == [0, 1]
 
 
+@pytest.mark.slow
 def test_curves_of_swan_points_over_two_numbers():
     """f(c) = max of g: c + 0.3 c^3 = 1 whatever w; over the height h of the forcing c + 0.3 c^3 = h."""
     model = si.ImpactOscillator("x + 0.3*x**3", "h*cos(w*t)", 0, "0.6", parameters={"w": "1.7", "h": 1})

@@ -55,6 +55,7 @@ def test_an_edited_verifier_runs_with_its_file_and_their_dependants_only(decided
     assert decided == ["s3-Dp", "s3-Dphi", "s3-DG", "s3-eigenvectors", "s3-slope-r", "t:t1", "s4b-back"]
 
 
+@pytest.mark.slow
 def test_edited_trials_run_the_claims_of_the_files_that_take_them(decided, edited):
     claims = select(["e:meq", "s5-phi", "s6p-AB"])
     run(claims, kept=True)
