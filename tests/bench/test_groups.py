@@ -16,7 +16,7 @@ from singimpact.bench.groups import GROUPS, impact_map, measured, regimes, serie
 from singimpact.bench.measuring import FULL, QUICK, Effort, measure
 
 SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)
-COSTLY = ("series", "figures", "commands", "start", "scale", "branches")
+COSTLY = ("series", "figures", "commands", "start", "scale", "branches", "orbit", "growth", "threshold", "sweep")
 EVENTS = {"scipy DOP853, terminal event", "heyoka, terminal event"}
 PEERS = {
     "map": EVENTS,

@@ -262,7 +262,11 @@ def test_analytic_flows_of_all_numbers_in_a_ball_contain_each():
 
 @pytest.mark.parametrize(
     ("over", "between"),
-    [("clearance", (0.5404, 0.5405)), ("restitution", (0.5176, 0.5177)), ("damping", (-0.12, -0.119))],
+    [
+        ("clearance", (0.5404, 0.5405)),
+        ("restitution", (0.5176, 0.5177)),
+        pytest.param("damping", (-0.12, -0.119), marks=pytest.mark.slow),
+    ],
 )
 def test_nonlinear_models_are_certified(over, between):
     (found,) = si.border_orbits(DUFFING, over, between=between, points=2, digits=18)

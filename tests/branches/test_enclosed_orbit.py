@@ -12,7 +12,7 @@ from singimpact.inputs import InputError
 DUFFING = ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 
 
-@pytest.mark.parametrize(("n", "k", "stable"), [(2, 1, False), (3, 2, True)])
+@pytest.mark.parametrize(("n", "k", "stable"), [(2, 1, False), pytest.param(3, 2, True, marks=pytest.mark.slow)])
 def test_orbits_of_duffing(n, k, stable):
     (orbit,) = DUFFING.periodic(n, k)
     found = orbit.certified(25)
