@@ -17,6 +17,7 @@ _LATEX = {
     "~": r"\textasciitilde{}",
     "<": r"\textless{}",
     ">": r"\textgreater{}",
+    "|": r"\textbar{}",
 }
 _FORMULA = re.compile(r"(\$[^$]*\$)")
 

@@ -1,12 +1,17 @@
 """`singimpact claims`, `errata` and `fixed-points` on the real claims."""
 
+import dataclasses
 import json
 import shutil
+from collections import Counter
 from xml.etree import ElementTree
 
 import pytest
 
 import singimpact as si
+from singimpact.paper.sections.errata import Erratum
+from singimpact.paper.sections.places import place_of
+from singimpact.paper.sections.remarks import GRADES, REMARKS
 
 
 def test_list_and_show(singimpact):
@@ -74,7 +79,39 @@ def test_effective_verdicts_are_told(errata):
 
 
 def test_markdown_has_all_of_them(errata):
-    assert errata.markdown().count("\n## ") == len(errata)
+    text = errata.markdown()
+    assert text.count("\n### ") == len(errata.remarks)
+    assert [f"`{entry.verdict.id}`: " in text for entry in errata] == [True] * len(errata)
+
+
+def test_each_misprint_has_one_remark_and_each_remark_a_misprint(errata):
+    remarked = [name for remark in REMARKS for name in remark.claims]
+    assert sorted(remarked) == sorted(entry.verdict.id for entry in errata)
+    assert {remark.grade for remark in REMARKS} == set(GRADES)
+    told = [entry.as_dict() for entry in errata]
+    assert Counter(each["grade"] == "reading" for each in told) == {False: 29, True: 11}
+    assert all(each["reason"] and each["survives"] and each["page"] for each in told)
+    assert "40 statements fail as printed, in 33 remarks: 29 errors" in errata.text()
+
+
+def test_a_misprint_without_a_remark_is_no_erratum(errata):
+    entry = Erratum(dataclasses.replace(errata[0].verdict, id="e:meq"), {})
+    with pytest.raises(LookupError, match="e:meq is corrected and has no remark"):
+        entry.as_dict()
+
+
+def test_every_claim_has_its_place_in_the_paper():
+    places = {name: place_of(name) for name in si.claims}
+    assert all(place.page in range(1, 25) for place in places.values())
+    assert (places["e:meq"].numbers, str(places["t:t3"])) == ("(29)", "p. 18, Theorem 5.3")
+    with pytest.raises(KeyError):
+        place_of("b:cascade")
+
+
+def test_reasons_and_not_the_names_of_checks_are_printed(errata):
+    for text in (errata.text(), errata.markdown(), errata.latex()):
+        assert "fails:" not in text
+        assert "positive for every k" not in text
 
 
 @pytest.mark.slow
@@ -82,7 +119,10 @@ def test_markdown_has_all_of_them(errata):
 def test_latex_compiles_without_overfull_lines(errata):
     from singimpact.documents.compiling import compiled
 
-    assert max(compiled(errata.latex()).overfull, default=0) <= 20
+    made = compiled(errata.latex())
+    assert max(made.overfull, default=0) <= 20
+    assert "the list ends on page 2" in made.log
+    assert ".pk" not in made.log  # every font is an outline font
 
 
 def test_errata_from_the_command_line(singimpact, tmp_path):

@@ -89,6 +89,7 @@ def test_escaped_text_has_no_sign_with_a_meaning(text):
         r"\textasciitilde{}",
         r"\textless{}",
         r"\textgreater{}",
+        r"\textbar{}",
     ):
         bare = bare.replace(command, "")
     for sign in "{}$&#%_":

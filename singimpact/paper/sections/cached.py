@@ -1,4 +1,4 @@
-"""Derivations kept in the user's cache folder as their words and equations, under the source that they come from."""
+"""Derivations and the legend of the errata, kept in the user's cache folder under the source that they come from."""
 
 from __future__ import annotations
 
@@ -32,5 +32,19 @@ def kept_sections(names: Sequence[str] = ()) -> list[Section]:
     from singimpact.paper.sections.derivations import sections
 
     made = sections(names)
+    cache.keep(place, cache.packed(made))
+    return made
+
+
+def kept_legend() -> tuple[str, ...]:
+    """The result of `legend.legend`, from the cache if it was computed before."""
+    place = cache_folder() / "derivations" / f"{cache.key_of(['legend'], LIBRARIES, ABOVE)}.legend"
+    content = cache.recall(place)
+    if content is not None:
+        found: tuple[str, ...] = cache.unpacked(content, ())
+        return found
+    from singimpact.paper.sections.legend import legend
+
+    made = legend()
     cache.keep(place, cache.packed(made))
     return made

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.documents import escape
 from singimpact.documents.breaking import wrapping
+from singimpact.paper.sections.cached import kept_legend
+from singimpact.paper.sections.letters import in_letters
+from singimpact.paper.sections.places import PAPER, VERSION, Place, place_of
+from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
 
 if TYPE_CHECKING:
     from singimpact.paper.claims.claim import Claim, Verdict
@@ -28,6 +33,19 @@ class Erratum:
     dependants: dict[str, str]
 
     @property
+    def place(self) -> Place:
+        """Page, equation and theorem of the paper."""
+        return place_of(self.verdict.id)
+
+    @property
+    def remark(self) -> Remark:
+        """What kind of misprint it is, why, and what it does not touch; several misprints may share one remark."""
+        found = remark_on(self.verdict.id)
+        if found is None:
+            raise LookupError(f"{self.verdict.id} is corrected and has no remark in remarks.py")
+        return found
+
+    @property
     def witness(self) -> str:
         """The numbers at which the printed statement fails, on one line."""
         return ", ".join(f"{name} = {value}" for name, value in (self.verdict.witness or {}).items())
@@ -40,13 +58,21 @@ class Erratum:
     @property
     def survives(self) -> str:
         """The claims that rest on it, with their verdicts for the corrected statement."""
-        return ", ".join(f"{name} ({kind})" for name, kind in self.dependants.items()) or "nothing rests on it"
+        return ", ".join(f"{name} ({kind})" for name, kind in self.dependants.items())
 
     def as_dict(self) -> dict[str, Any]:
         """The erratum as plain data."""
-        verdict = self.verdict
+        verdict, place, remark = self.verdict, self.place, self.remark
         names = ("id", "section", "title", "printed", "corrected", "corrected_kind", "effective", "evidence")
         return {name: getattr(verdict, name) for name in names} | {
+            "page": place.page,
+            "equations": list(place.equations),
+            "statement": place.statement,
+            "line": place.line,
+            "grade": remark.grade,
+            "reason": remark.reason,
+            "survives": remark.survives,
+            "same_remark": [name for name in remark.claims if name != verdict.id],
             "witness": dict(verdict.witness or {}),
             "trials": [asdict(trial) for trial in verdict.trials],
             "dependants": self.dependants,
@@ -78,73 +104,183 @@ class Errata(Sequence[Erratum]):
     def _repr_markdown_(self) -> str:
         return self.markdown()
 
+    @property
+    def remarks(self) -> list[tuple[Erratum, ...]]:
+        """The misprints in groups, each explained by one remark, in the order of their first places in the paper."""
+        groups: dict[Remark, list[Erratum]] = {}
+        for entry in self:
+            groups.setdefault(entry.remark, []).append(entry)
+        return sorted((tuple(group) for group in groups.values()), key=lambda group: group[0].place.line)
+
+    @property
+    def summary(self) -> str:
+        """How many statements fail, and how many of which grade."""
+        grades = Counter(entry.remark.grade for entry in self)
+        errors = ", ".join(f"{grades[name]} {PLURALS[name]}" for name in GRADES if name != "reading")
+        return (
+            f"{len(self)} statements fail as printed, in {len(self.remarks)} remarks: {len(self) - grades['reading']} "
+            f"errors ({errors}) and {grades['reading']} {PLURALS['reading']}."
+        )
+
     def text(self) -> str:
         """Plain text, for a terminal."""
-        parts = [f"{len(self)} statements fail as printed"]
-        for entry in self:
-            v = entry.verdict
-            parts.append(
-                f"{v.id}  (section {v.section})  {v.title}\n  printed    {v.printed}\n"
-                f"  corrected  {v.corrected}   [{v.effective}]\n  why        {v.evidence}\n"
-                f"  witness    {entry.witness}\n"
-                + "".join(f"  tried      {line}\n" for line in entry.trials)
-                + f"  survives   {entry.survives}"
-            )
+        parts = [f"{PAPER}\n{VERSION}\n\n{self.summary}"]
+        for number, group in enumerate(self.remarks, 1):
+            remark = group[0].remark
+            head = f"{number}. {_places(group)}: {GRADES[remark.grade]}\n  why        {_plain(remark.reason)}\n"
+            parts.append(head + "\n".join(_text_entry(entry) for entry in group)
+                         + f"\n  survives   {_plain(remark.survives)}")  # fmt: skip
         return "\n\n".join(parts)
 
     def markdown(self) -> str:
-        """Markdown with formulas between dollar signs."""
-        parts = ["# Errata", f"{len(self)} statements fail as printed."]
-        for entry in self:
-            v = entry.verdict
-            parts.append(
-                f"## `{v.id}` (section {v.section})\n\n{escape.markdown(v.title)}.\n\n"
-                f"- printed: {wrapping(v.printed)}\n- corrected ({v.effective}): {wrapping(v.corrected or '')}\n"
-                f"- why: {escape.markdown(v.evidence)}\n- witness: {escape.markdown(entry.witness)}\n"
-                + "".join(f"- tried: {escape.markdown(line)}\n" for line in entry.trials)
-                + f"- what rests on it: {escape.markdown(entry.survives)}"
-            )
+        """Markdown with formulas between dollar signs: a table for a first look, then each remark."""
+        parts = ["# Errata", f"*{PAPER}.* {VERSION}", self.summary, "## At a glance"]
+        parts.append("\n".join(_brief_markdown(number, group) for number, group in enumerate(self.remarks, 1)))
+        parts += ["## Letters and models", "\n".join(f"- {line}" for line in kept_legend())]
+        parts.append("## One by one")
+        for number, group in enumerate(self.remarks, 1):
+            remark = group[0].remark
+            head = f"### {number}. {_places(group)}: {GRADES[remark.grade]}\n\n{remark.reason}\n\n"
+            parts.append(head + "\n".join(_markdown_entry(entry) for entry in group)
+                         + f"\n- what survives: {remark.survives}")  # fmt: skip
         return "\n\n".join(parts) + "\n"
 
     def latex(self) -> str:
-        """A LaTeX document."""
-        items = "\n".join(_latex_entry(entry) for entry in self)
-        return _DOCUMENT.replace("COUNT", str(len(self))).replace("ITEMS", items)
+        """A LaTeX document: two pages for a first look, then each remark with its numbers."""
+        fields = {
+            "PAPER": escape.latex(PAPER),
+            "VERSION": escape.latex(VERSION),
+            "SUMMARY": escape.latex(self.summary),
+            "BRIEF": "\n".join(_brief_latex(group) for group in self.remarks),
+            "LEGEND": "\n".join(rf"\item {escape.latex_words(line)}" for line in kept_legend()),
+            "ITEMS": "\n".join(_latex_remark(number, group) for number, group in enumerate(self.remarks, 1)),
+        }
+        document = _DOCUMENT
+        for name, text in fields.items():
+            document = document.replace(f"<{name}>", text)
+        return document
 
     def as_dict(self) -> dict[str, Any]:
         """The errata as plain data; ``singimpact errata --json`` prints it."""
-        return {"errata": [entry.as_dict() for entry in self]}
+        return {"paper": PAPER, "version": VERSION, "grades": GRADES, "errata": [entry.as_dict() for entry in self]}
 
 
 _DOCUMENT = r"""\documentclass[11pt,a4paper]{article}
 \usepackage[margin=18mm]{geometry}
-\usepackage[T1]{fontenc}
 \usepackage{amsmath,amssymb}
 \setlength{\parindent}{0pt}
 \emergencystretch=3em
+\newcommand{\say}[1]{\item[\normalfont\textit{#1}]}
+\newenvironment{numbers}%
+  {\begin{description}\setlength{\itemsep}{0pt}\setlength{\parskip}{0pt}\setlength{\parsep}{0pt}}%
+  {\end{description}}
+\renewcommand{\labelitemi}{$\bullet$}  % the bullet of text comes from a bitmap font
 \begin{document}
 \section*{Errata}
-COUNT statements fail as printed.
+\textit{<PAPER>}
 
-ITEMS
+\smallskip
+{\small <VERSION>}
+
+\medskip
+<SUMMARY> Each line says where, what to read, and why; the numbers behind it follow after the list.
+
+{\small\raggedright
+\begin{enumerate}\setlength{\itemsep}{1pt}\setlength{\parskip}{0pt}
+<BRIEF>
+\end{enumerate}}
+
+\typeout{the list ends on page \thepage}
+\newpage
+\section*{Letters and models}
+{\small
+\begin{itemize}\setlength{\itemsep}{1pt}
+<LEGEND>
+\end{itemize}}
+
+\section*{One by one}
+<ITEMS>
 \end{document}
 """
+
+
+def _places(group: Sequence[Erratum]) -> str:
+    """The places of a remark, each once."""
+    return "; ".join(dict.fromkeys(str(entry.place) for entry in group))
+
+
+def _plain(words: str) -> str:
+    """Words without the dollar signs of their formulas."""
+    return words.replace("$", "")
+
+
+def _numbers(entry: Erratum) -> list[tuple[str, str]]:
+    """The numbers that a person can check."""
+    return [("witness", entry.witness), *(("tried", line) for line in entry.trials)]
+
+
+def _text_entry(entry: Erratum) -> str:
+    v = entry.verdict
+    lines = [f"{v.id}: {v.title}", f"  printed    {v.printed}", f"  corrected  {v.corrected}   [{v.effective}]"]
+    lines += [f"  {name:11}{told}" for name, told in _numbers(entry)]
+    return "\n".join(lines + [f"  used by    {entry.survives}"] * bool(entry.dependants))
+
+
+def _brief_markdown(number: int, group: Sequence[Erratum]) -> str:
+    remark = group[0].remark
+    read = "; ".join(wrapping(entry.verdict.corrected or "") for entry in group)
+    return f"{number}. {_places(group)} ({remark.grade}). Read {read}. {remark.reason}"
+
+
+def _markdown_entry(entry: Erratum) -> str:
+    v = entry.verdict
+    lines = [
+        f"`{v.id}`: {_words_markdown(v.title)}.\n",
+        f"- printed: {wrapping(v.printed)}",
+        f"- corrected ({v.effective}): {wrapping(v.corrected or '')}",
+        *(f"- {name}: {_words_markdown(told)}" for name, told in _numbers(entry)),
+    ]
+    return "\n".join(lines + [f"- used by: {escape.markdown(entry.survives)}"] * bool(entry.dependants)) + "\n"
+
+
+def _words_markdown(words: str) -> str:
+    return escape.markdown_words(in_letters(words))
+
+
+def _brief_latex(group: Sequence[Erratum]) -> str:
+    remark = group[0].remark
+    read = ";\\ ".join(f"${entry.verdict.corrected}$" for entry in group)
+    place = escape.latex(_places(group))
+    return rf"\item \textbf{{{place}}} ({remark.grade}). Read {read}. {escape.latex_words(remark.reason)}"
+
+
+def _latex_remark(number: int, group: Sequence[Erratum]) -> str:
+    remark = group[0].remark
+    head = (
+        rf"\subsection*{{{number}. {escape.latex(_places(group))}: \normalfont {escape.latex(GRADES[remark.grade])}}}"
+    )
+    return "\n".join(
+        [
+            head,
+            rf"\raggedright {escape.latex_words(remark.reason)}\par",
+            *(_latex_entry(entry) for entry in group),
+            rf"\textit{{What survives:}} {escape.latex_words(remark.survives)}",
+            "",
+        ]
+    )
 
 
 def _latex_entry(entry: Erratum) -> str:
     v = entry.verdict
     rows = [
         ("printed", f"${v.printed}$"),
-        ("corrected", f"${v.corrected}$ ({v.effective})"),
-        ("why", escape.latex(v.evidence)),
-        ("witness", escape.latex(entry.witness)),
-        *(("tried", escape.latex(line)) for line in entry.trials),
-        ("survives", escape.latex(entry.survives)),
+        ("corrected", f"${v.corrected}$ ({escape.latex(v.effective)})"),
+        *((name, escape.latex_words(in_letters(told))) for name, told in _numbers(entry)),
     ]
-    body = "\n".join(rf"\item[\textit{{{name}}}] {text}" for name, text in rows)
-    head = rf"\subsection*{{\texttt{{{escape.latex(v.id)}}} \normalfont(section {escape.latex(v.section)})}}"
-    listed = f"\\begin{{description}}\\setlength{{\\itemsep}}{{0pt}}\n{body}\n\\end{{description}}\n"
-    return f"{head}\n\\raggedright {escape.latex(v.title)}.\n{listed}"
+    rows += [("used by", escape.latex(entry.survives))] * bool(entry.dependants)
+    body = "\n".join(rf"\say{{{name}}} {text}" for name, text in rows)
+    head = rf"\texttt{{{escape.latex(v.id)}}}: {escape.latex_words(in_letters(v.title))}."
+    return f"\\par {head}\n\\begin{{numbers}}\n{body}\n\\end{{numbers}}"
 
 
 def errata(on_start: Callable[[Entry | Claim, int, int], None] | None = None) -> Errata:

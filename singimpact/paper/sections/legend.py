@@ -1,0 +1,38 @@
+"""The letters of the errata, and the models on which statements are tried, so that a trial can be repeated by hand."""
+
+from __future__ import annotations
+
+from singimpact.documents.breaking import wrapping
+from singimpact.impact_oscillator import ImpactOscillator
+
+LETTERS = (
+    "$a,a',a'',\\ldots$ are $a_c(\\tau)=g(\\tau)-f(c,0)$ and its derivatives at $\\tau_*$; $f_{ij}$ the derivatives of "
+    "$f$ at $(c,0)$, $i$ times by $x$ and $j$ times by $\\dot x$; $b=\\partial\\ddot x/\\partial v=-f_{01}$; "
+    "$\\sigma=\\tau-\\tau_*$; $k=\\frac16a'$ and $\\ell=-\\frac1{24}a''$, but in section 4.1(b) $\\ell$ is the slope "
+    "$t/\\sigma$ of a ray, as in the paper.",
+    "$\\lambda=m_3-\\frac12$ (at a swan point $1+m_*$) is the factor by which one impact shortens $\\sigma$ along "
+    "$\\gamma$, and $\\mu$ the multiplier across; the eigenvalue that the paper calls $\\lambda$ in Theorem 4.1 is "
+    "$\\Lambda$ here.",
+    "A statement is tried on true motions, which scipy's integrator DOP853, closed forms with many digits or the "
+    "impact map compute. Where no other point is named the trial is made at the point that the statement is about.",
+)
+
+
+def legend() -> tuple[str, ...]:
+    """Sentences; formulas in them stand between dollar signs."""
+    from singimpact.contact.points import tangency_points
+    from singimpact.contact.swans import swan_points_over_clearance
+    from singimpact.paper.trials import true_orbits, true_sheet
+
+    models = {name: ImpactOscillator(**model.to_dict()) for name, model in true_orbits.MODELS.items()}
+    lines = []
+    for name, osc in (models | true_sheet.DAMPED).items():
+        points = {point.kind: f"{float(point.tau):.10f}" for point in tangency_points(osc)}
+        swan = next(point for point in swan_points_over_clearance(osc) if point.kind == "negative")
+        model = wrapping(osc._repr_latex_().strip("$"))
+        lines.append(
+            f'The model "{name}" is {model}. Regular point $\\tau={true_sheet.REGULAR}$; tangency points with '
+            f"$a'>0$ at $\\tau_*={points['gamma']}$ and with $a'<0$ at $\\tau_*={points['foliation']}$; negative swan "
+            f"at $c_0={float(swan.clearance):.10g}$, $\\tau_*={float(swan.tau):.10g}$."
+        )
+    return (*LETTERS, *lines)
