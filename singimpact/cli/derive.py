@@ -123,9 +123,22 @@ def _write(told: list[Section], marks: dict[str, Mark], form: str, output: str) 
     from singimpact.store import written
 
     try:
-        files = as_files(told, marks, form)
+        files = as_files(told, marks, form, _picture)
     except CompileError as error:
         raise click.ClickException(str(error)) from None
     for name, content in files.items():
         with written(Path(output) / name) as draft:
             draft.write_bytes(content)
+
+
+def _picture(name: str) -> bytes:
+    """A figure of the paper as PDF, from its computed data."""
+    from tempfile import TemporaryDirectory
+
+    from singimpact.cli.pictures import save
+    from singimpact.paper.figures.cached import kept_picture
+    from singimpact.paper.figures.rendering import drawn
+
+    with TemporaryDirectory() as place:
+        save(drawn(kept_picture(int(name.removeprefix("figure")))), f"{place}/{name}.pdf")
+        return Path(place, f"{name}.pdf").read_bytes()

@@ -33,7 +33,8 @@ def save(figure: Any, output: str | Path, dpi: int = 150) -> None:
     import matplotlib
 
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(kind)
-    with written(output) as draft, matplotlib.rc_context({"svg.hashsalt": "singimpact"}):
+    # letters of a PDF as TrueType outlines: printers refuse matplotlib's own Type 3
+    with written(output) as draft, matplotlib.rc_context({"svg.hashsalt": "singimpact", "pdf.fonttype": 42}):
         figure.savefig(draft, format=kind, dpi=dpi, metadata=dated)
 
 

@@ -49,12 +49,12 @@ def require_latex() -> None:
         raise InputError("format = 'pdf' needs the program latexmk, which is not found: give latex, or install it")
 
 
-def compiled(source: str, beside: Mapping[str, str] | None = None) -> Compiled:
+def compiled(source: str, beside: Mapping[str, str | bytes] | None = None) -> Compiled:
     """The PDF of a LaTeX document.
 
     Parameters
     ----------
-    source : the document. beside : file name -> text of what it takes in.
+    source : the document. beside : file name -> content of what it takes in, texts and pictures.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def compiled(source: str, beside: Mapping[str, str] | None = None) -> Compiled:
     require_latex()
     with tempfile.TemporaryDirectory() as folder:
         for name, text in {**(beside or {}), "document.tex": source}.items():
-            (Path(folder) / name).write_text(text, encoding="utf-8")
+            (Path(folder) / name).write_bytes(text.encode() if isinstance(text, str) else text)
         _run(folder)
         log = (Path(folder) / "document.log").read_text(encoding="utf-8", errors="replace")
         return Compiled((Path(folder) / "document.pdf").read_bytes(), log)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from singimpact.documents.rendering import MASTER, Marks, as_data, as_latex, as_markdown, as_master, as_piece
 from singimpact.documents.steps import Section
@@ -18,12 +18,22 @@ def as_text(shown: Sequence[Section], marks: Marks, form: str) -> str:
     return _json({"sections": [as_data(section, marks) for section in shown]})
 
 
-def as_files(shown: Sequence[Section], marks: Marks, form: str) -> dict[str, bytes]:
-    """File name -> content: one a section, and for LaTeX the master that takes them in; a PDF is one file."""
+def as_files(
+    shown: Sequence[Section], marks: Marks, form: str, drawn: Callable[[str], bytes] | None = None
+) -> dict[str, bytes]:
+    """File name -> content: one a section, and for LaTeX the master that takes them in; a PDF is one file.
+
+    Parameters
+    ----------
+    shown, marks : as of `as_latex`. form : ``latex``, ``pdf``, ``markdown`` or ``json``.
+    drawn : gives the picture of a name as PDF, for a PDF; None leaves pictures out.
+    """
     if form == "pdf":
         from singimpact.documents.compiling import compiled
 
-        return {f"{MASTER}.pdf": compiled(as_latex(shown, marks)).pdf}
+        names = [step.picture for section in shown for step in section.steps if step.picture and drawn]
+        pictures = {f"{name}.pdf": drawn(name) for name in names} if drawn else {}
+        return {f"{MASTER}.pdf": compiled(as_latex(shown, marks), pictures).pdf}
     if form == "markdown":
         return {f"{section.name}.md": as_markdown(section, marks).encode() for section in shown}
     if form == "json":

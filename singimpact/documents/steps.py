@@ -17,12 +17,14 @@ class Step:
         tuple; empty when the step is words alone.
     label : the label of the equation, the paper's where it has one, e.g. ``e:meq``; what the golden files know it by.
     claims : ids of the claims whose verdicts stand beside the equation.
+    picture : the name, without its ending, of a picture below the step; it is left out where there is no such file.
     """
 
     text: str
     equation: str | tuple[str, ...] = ""
     label: str = ""
     claims: tuple[str, ...] = ()
+    picture: str = ""
 
     @property
     def formula(self) -> str:

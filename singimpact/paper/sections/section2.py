@@ -12,7 +12,9 @@ from singimpact.theory.notation import joined, latex
 
 def told() -> Section:
     """The steps of section 2."""
-    return Section("section2", "2. The impact surface near the launches at rest", (*_flight(), *_sheet(), *_maps()))
+    return Section(
+        "section2", "2. The impact surface near the launches at rest", (*_flight(), *_sheet(), *_maps(), *_singular())
+    )
 
 
 def _flight() -> tuple[Step, ...]:
@@ -25,7 +27,7 @@ def _flight() -> tuple[Step, ...]:
             "$t$: $x_c = c + t y_c$, and the quotient is smooth.",
             rows(r"y_c(\tau_* + \sigma, v; t)", parts, 4),
             "e:yeq",
-            ("e:yeq",),
+            ("e:yeq", "s2-ivp"),
         ),
     )
 
@@ -45,6 +47,7 @@ def _sheet() -> tuple[Step, ...]:
             "turn of $v \\leftarrow v - y_c$:",
             rows(r"v_c(\tau_* + \sigma, t)", by_degree(with_b(route.v_c(2)), sigma, t), 3),
             "e:imp",
+            ("s2-two-sheets", "s2-smooth"),
         ),
         Step(
             "The first term says how steeply the sheet leaves $\\Pi_0$. It holds at every phase, as $\\tau_*$ was any:",
@@ -77,5 +80,43 @@ def _maps() -> tuple[Step, ...]:
         Step(
             "With the bounce $R : (\\tau, v) \\mapsto (\\tau, -r v)$ the dynamics is $G_c$, defined by $G_c \\circ "
             "p_c = R \\circ \\phi_c$ on the flights whose landing is the first one."
+        ),
+    )
+
+
+def _singular() -> tuple[Step, ...]:
+    """Where the two maps are singular, the first hit, and the correspondence of launches and landings."""
+    return (
+        Step(
+            "Where $y_c = 0$ the velocity is $\\dot x_c = t\\, \\partial y_c/\\partial t$, and implicit "
+            "differentiation turns it into the slope of the sheet:",
+            r"\dot x_c = -t\, \frac{\partial y_c}{\partial v}\, \frac{\partial v_c}{\partial t}",
+            "s2-xdot",
+            ("s2-horizon",),
+        ),
+        Step(
+            "So $p_c$ is singular on the horizon $H_c$, the flights that graze at their end, and of $\\Pi_0$ at the "
+            "tangency points alone. At folds and cusps it has Whitney's normal forms. Of $\\phi_c$ the same holds "
+            "after the involution, which takes $H_c$ to the set $Z_c$ of flights launched at rest:",
+            r"\det D\phi_c(\tau, t) = -\frac{\partial v_c}{\partial t}(\tau + t, -t)",
+            "s2-det-phi",
+            ("p:phising-set", "p:phising-fold", "p:phising-cusp", "s2-fold-cusp-forms"),
+            "figure1",
+        ),
+        Step(
+            "A mass meets the wall at the first zero of $x_c - c$, which defines $F_c$, the map from states to "
+            "flights. At rest it lifts off where $x_c > c$ for small $t > 0$, and stays otherwise. $F_c$ jumps only "
+            "where that first hit is a graze.",
+            "",
+            "",
+            ("s2-lift-off-sign", "s2-first-hit-rest", "s2-discontinuity"),
+        ),
+        Step(
+            "Read backwards in time a flight that ends at rest is one that begins at rest. So $p_c$ and $\\phi_c$ "
+            "exchange $H_c$ and $Z_c$ off $\\Pi_0$: what the outline $P_c = p_c(H_c)$ shows at a launch, $\\Pi_0$ "
+            "shows at the landing. At visible points $G_c \\circ p_c = R \\circ \\phi_c$.",
+            "",
+            "",
+            ("s2-corr-sets", "p:corresp", "s2-G-semiconj"),
         ),
     )

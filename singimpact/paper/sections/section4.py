@@ -9,9 +9,10 @@ from singimpact.documents.steps import Section, Step
 from singimpact.paper.claims.next_sigma import next_sigma
 from singimpact.paper.routes import fold
 from singimpact.paper.routes import implicit as route
-from singimpact.paper.routes.implicit import r, sigma, t
+from singimpact.paper.routes.implicit import r, sigma, t, v
 from singimpact.paper.sections.letters import rows, with_b
 from singimpact.paper.sections.section4_blowup import blow_up, in_lambda
+from singimpact.paper.sections.section4_foliation import foliation
 from singimpact.theory.notation import latex
 
 u, w = sympy.symbols("u w")
@@ -19,7 +20,48 @@ u, w = sympy.symbols("u w")
 
 def told() -> Section:
     """The steps of section 4."""
-    return Section("section4", "4. Tangency points", (*_sheet(), *_fold(), *_return(), *blow_up(), *in_lambda()))
+    steps = (*_derivatives(), *_sheet(), *_fold(), *_return(), *blow_up(), *in_lambda(), *foliation())
+    return Section("section4", "4. Tangency points", steps)
+
+
+def _derivatives() -> tuple[Step, ...]:
+    """The derivatives of y_c on t = 0, and what the chain rule makes of them."""
+    flight = route.y_c(3)
+    at = {sigma: 0, t: 0, v: 0}
+    first, mixed, second = (with_b(sympy.expand(sympy.diff(flight, *by).subs(at))) for by in ((t,), (t, v), (t, t)))
+    slope = -first
+    bend = sympy.expand(-second - 2 * mixed * slope)
+    return (
+        Step(
+            "The zeros of $a_c$ move with the clearance, so $a', a'', \\ldots$ at $\\tau_*$ depend on $c$. For $x'' + "
+            "x = \\cos \\omega t$ they are those of $a_c(\\tau) = \\cos \\omega\\tau - c$.",
+            "",
+            "",
+            ("s4-depends-on-c", "e:lin"),
+        ),
+        Step(
+            "The expansion of $v_c$ follows from derivatives of $y_c$ at $t = 0$: those by $t$ are half the "
+            "acceleration and a third of the jerk at rest, and the jerk is $a' + ab$, since the force of damping "
+            "changes by $-b$ times the velocity that the acceleration gives:",
+            (
+                rf"\frac{{\partial y_c}}{{\partial t}} &= {latex(first)}\,,",
+                rf"\frac{{\partial^2 y_c}}{{\partial t\, \partial v}} &= {latex(mixed)}\,,",
+                rf"\frac{{\partial^2 y_c}}{{\partial t^2}} &= {factored(second)}\,.",
+            ),
+            "s4-y-derivatives",
+        ),
+        Step(
+            "Differentiating $y_c(\\tau, v_c; t) = 0$ twice by $t$, with $\\partial y_c/\\partial v = 1$ and $v_t = "
+            f"{latex(slope)}$ for $\\partial v_c/\\partial t$, gives $v_{{tt}} = -y_{{tt}} - 2 y_{{tv}} v_t$:",
+            rf"\frac{{\partial^2 v_c}}{{\partial t^2}} = -\bigl({latex(second)}\bigr) - 2 \bigl({latex(mixed)}\bigr) "
+            rf"\bigl({latex(slope)}\bigr) = {latex(bend)}",
+            "s4-chain-rule",
+        ),
+        Step(
+            "With the jerk taken as $a'$ alone the last term would be $\\frac12 ab$ instead of $\\frac16 ab$, and the "
+            "coefficient of $t^2$, half of it, would have $\\frac14 ab$ for $\\frac1{12} ab$."
+        ),
+    )
 
 
 def _sheet() -> tuple[Step, ...]:
@@ -68,7 +110,7 @@ def _fold() -> tuple[Step, ...]:
             "and the map to the impact",
             rf"\phi : (\sigma, t) \mapsto \bigl({latex(landing)},\ {factored(impact)} + O(3)\bigr)",
             "e:phinew",
-            ("e:phinew",),
+            ("e:phinew", "s4-Z-line"),
         ),
         Step(
             "The map $p$ is singular on the horizon, where $\\partial v_c/\\partial t = 0$: flights that touch the "

@@ -41,13 +41,14 @@ def _blown_up() -> tuple[Step, ...]:
             "the ray of slope $m$",
             rf"Q_r(1, m) = {in_powers(fold.Q_at_one(), r)}",
             "s4-Q1m",
+            ("s4-Qr-zeros", "s4-Er-closed"),
         ),
         Step(
             "which is $Q$ for short, with $Q'$ its derivative by $m$. The blown-up map on the visible part, $s < 0$ "
             "and $m > \\tfrac12$, is",
             (rf"\bar s &= \bigl({latex(rate)}\bigr)\, s + O(s^2)\,,", rf"\bar m &= {latex(with_Q(image))} + O(s)\,."),
             "s4-blowup",
-            ("s4-blowup",),
+            ("s4-blowup", "s4-domain"),
         ),
     )
 
@@ -76,6 +77,13 @@ def _fixed_points() -> tuple[Step, ...]:
             rf"r = {latex(fold.r_of_m())}",
             "s4-r-of-m",
             ("s4-m3",),
+        ),
+        Step(
+            "On the ray of $m_1$ the images under $p$ and $q$ run in opposite directions and lie in $v \\le 0$; on "
+            "that of $m_2$ they run in opposite directions too, since $m_2 - \\tfrac12 < 0$, though in $v > 0$.",
+            "",
+            "",
+            ("s4-m1", "s4-m1-gradient", "s4-m2", "s4-m2-sign"),
         ),
     )
 
@@ -108,7 +116,7 @@ def _multipliers() -> tuple[Step, ...]:
             "$r$ in $(0, 1)$ the point $m_3$ is a saddle:",
             rf"D\bar h(0, m) = {latex(with_Q_in(fold.Dh_blown_up()))}",
             "s4-Dh-form",
-            ("s4-Dh-form", "s4-saddle-m3"),
+            ("s4-Dh-form", "s4-saddle-m3", "s4-mu-direction"),
         ),
         Step(
             "For $a' > 0$ the ray of $m_3$ lies in $v > 0$. The stable manifold of the saddle leaves $s = 0$ there, "
@@ -116,7 +124,7 @@ def _multipliers() -> tuple[Step, ...]:
             "= m_3 \\sigma$:",
             rf"\gamma : \ v = {latex(fold.gamma_leading())}\, {latex(sigma**2)} + O(3)\,, \qquad m = m_3",
             "s4-gamma-leading",
-            ("t:t2-exists", "t:t2-unique"),
+            ("t:t2-exists", "t:t2-unique", "s4-beta-tangent"),
         ),
     )
 
@@ -166,6 +174,11 @@ def in_lambda() -> tuple[Step, ...]:
         Step(
             "so that one of them stays above 1 as long as $r < 1$: $\\gamma$ repels orbits beside it while it "
             "attracts those on it. Its orbits reach the tangency point after infinitely many impacts; orbits below "
-            "chatter to rest before, orbits above leave the wall."
+            "chatter to rest before, orbits above leave the wall across the arc $P_*$ of the outline, where $F$ is "
+            "torn. At the tangency point itself the mass lifts off.",
+            "",
+            "",
+            ("t:t2-sides", "t:t2-fixed", "s4-P-star"),
+            "figure5",
         ),
     )

@@ -113,6 +113,15 @@ def _in_lambda() -> tuple[Step, ...]:
             "For $a'' < 0$ this is a saddle for every $r$ in $(0, 1)$, and the curve that it carries begins with",
             rf"\gamma : \ v = {latex(curve)}\, {latex(sigma**3)} + O(4)",
             "s5-gamma-leading",
-            ("t:t3", "t:t3-unique", "t:t3-eigenvalue-limit"),
+            ("t:t3", "t:t3-unique", "t:t3-eigenvalue-limit", "t:t3-repelling"),
+        ),
+        Step(
+            "For $a'' < 0$ the sheet rises with $t$ everywhere near $w_*$, so $F$ is defined and continuous there, "
+            "with a cube root at $w_*$; states off $\\gamma$ lie on stable manifolds of regular points. For $a'' > 0$ "
+            "the sheet lies in $v < 0$, and no impact of low velocity follows.",
+            "",
+            "",
+            ("s5-vt-positive", "s5-F-smooth", "t:t3-others", "s5-positive"),
+            "figure8",
         ),
     )

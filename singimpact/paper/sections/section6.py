@@ -26,7 +26,7 @@ def _model() -> tuple[Step, ...]:
             "of the lengths that go with it, every oscillator tends to one model as $c \\to c_0$:",
             rf"a(\sigma) = {latex(swan.acceleration())}",
             "s6-model",
-            ("s6-d", "s6-c-side"),
+            ("s6-d", "s6-c-side", "s6-a0-typo"),
         ),
         Step(
             "with $\\kappa > 0$ at a positive swan and $\\kappa < 0$ at a negative one. Two integrations give the "
@@ -106,6 +106,7 @@ def _positive() -> tuple[Step, ...]:
             r"\gamma \cap \Pi_0 = \{B,\ (\sigma_\gamma, 0)\},\quad -\sqrt{3} < \sigma_\gamma < -1",
             "s6p-gamma",
             ("s6p-gamma", "s6p-eps"),
+            "figure12",
         ),
     )
 
@@ -133,6 +134,7 @@ def _negative() -> tuple[Step, ...]:
             rf"\phi(DA) = [-1, 1] \times 0,\quad \phi(C) = {latex(swan.reset(C))}",
             "s6n-maps",
             ("s6n-maps", "s6n-AB"),
+            "figure15",
         ),
         Step(
             f"From $A$ the orbit goes to $R(C'')$, which depends on ${velocity}$ alone,",
@@ -145,6 +147,6 @@ def _negative() -> tuple[Step, ...]:
             "loops around the inverse images of $\\delta$, which accumulate on the invariant curve of $A$:",
             r"A \in W^s(X),\quad X = (\tau_3, 0),\quad \tau_3 > \tau_2",
             "s6n-X",
-            ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate"),
+            ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate", "s7-loops"),
         ),
     )
