@@ -25,6 +25,37 @@ def claims() -> str:
     return "\n".join([*head, *rows, ""])
 
 
+def graph(place: Path) -> str:
+    """Which claims rest on which, as a picture and as a table; a page for who wants to know what falls with a claim."""
+    import singimpact as si
+    from singimpact.paper.claims import INDEX
+    from singimpact.paper.claims.graph import as_svg, dependants
+
+    found = si.verify()
+    _put(place / "graph.svg", as_svg(INDEX, {v.id: v.kind if v.corrected else v.effective for v in found}))
+    above = {v.id: [name for name, entry in INDEX.items() if v.id in entry.rests_on] for v in found}
+    rows = [
+        f"| `{v.id}` | {v.kind} | {v.effective} | {_ids(v.rests_on)} | {_ids(above[v.id])} "
+        f"| {len(dependants(INDEX, v.id))} |"
+        for v in found
+    ]
+    told = [
+        "# What rests on what",
+        "The verdict is that of the claim's own argument; the effective verdict is the weakest along all that it rests "
+        "on, and the one to quote. The last column is the number of claims that fall with it, directly or not.",
+        "A column of the picture is one step further from the equation of motion, an arrow leads from a claim to one "
+        "that it rests on, colours are verdicts: green proved, blue supported, orange corrected, grey cited. [The "
+        "picture by itself](graph.svg).",
+        "![Claims as boxes in columns, with arrows between those that rest on one another](graph.svg)",
+        "\n".join(["| claim | verdict | effective | rests on | used by | falls |", "|---|---|---|---|---|---|", *rows]),
+    ]
+    return "\n\n".join(told) + "\n"
+
+
+def _ids(names: Any) -> str:
+    return " ".join(f"`{name}`" for name in names) or "none"
+
+
 def _worth(verdict: Any) -> str:
     return f" ({verdict.corrected_kind})" if verdict.corrected_kind else ""
 
@@ -154,7 +185,8 @@ def build(app: Any) -> None:
     from singimpact.store import folder
 
     place = folder(Path(app.srcdir) / "computed")
-    pages = {"errata.md": errata, "claims.md": claims, "commands.md": commands, "figures.md": lambda: figures(place)}
+    pages = {"errata.md": errata, "claims.md": claims, "commands.md": commands, "figures.md": lambda: figures(place),
+             "graph.md": lambda: graph(place)}  # fmt: skip
     for name, page in pages.items():
         _put(place / name, page())
     branches(place)

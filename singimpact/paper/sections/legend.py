@@ -6,6 +6,7 @@ from singimpact.documents.breaking import wrapping
 from singimpact.impact_oscillator import ImpactOscillator
 
 LETTERS = (
+    "A matter of reading: what is meant is right, what is written says more.",
     "$a,a',a'',\\ldots$ are $a_c(\\tau)=g(\\tau)-f(c,0)$ and its derivatives at $\\tau_*$; $f_{ij}$ the derivatives of "
     "$f$ at $(c,0)$, $i$ times by $x$ and $j$ times by $\\dot x$; $b=\\partial\\ddot x/\\partial v=-f_{01}$; "
     "$\\sigma=\\tau-\\tau_*$; $k=\\frac16a'$ and $\\ell=-\\frac1{24}a''$, but in section 4.1(b) $\\ell$ is the slope "

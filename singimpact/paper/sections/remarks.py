@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from functools import cache
 
 GRADES = {
-    "slip": "a slip of the pen",
-    "sign": "a wrong sign",
-    "constant": "a wrong constant",
-    "argument": "a step of an argument that has to be repaired",
-    "reading": "a matter of reading: what is meant is right, what is written says more",
+    "slip": "slip of the pen",
+    "sign": "wrong sign",
+    "constant": "wrong constant",
+    "argument": "argument to repair",
+    "reading": "matter of reading",
 }
 PLURALS = {
     "slip": "slips of the pen",
