@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from math import floor, log10
 from typing import Any
 
 from singimpact.notebook import table
@@ -73,9 +74,13 @@ class Trial:
 def compared(
     model: str, quantity: str, found: float, printed: float, corrected: float, tolerance: float = 1e-3
 ) -> Trial:
-    """A trial of two numbers against the one found, to a part `tolerance` of the largest of the three."""
+    """A trial of two numbers against the one found, to a part `tolerance` of the largest of the three.
+
+    Shown are the digits that are compared, and one more.
+    """
     near = tolerance * max(abs(found), abs(printed), abs(corrected))
-    told = [f"{value:.8g}" for value in (found, printed, corrected)]
+    digits = 1 - floor(log10(tolerance))
+    told = [f"{value:.{digits}g}" for value in (found, printed, corrected)]
     holds = [abs(value - found) <= near for value in (printed, corrected)]
     return Trial(model, quantity, told[0], told[1], told[2], holds[0], holds[1])
 
