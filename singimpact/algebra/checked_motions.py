@@ -10,7 +10,20 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from singimpact.algebra.plain import Terms, at, cut, line, plus, powers, slope, substituted, terms, times, weight
+from singimpact.algebra.plain import (
+    Terms,
+    at,
+    cut,
+    line,
+    plus,
+    powers,
+    short_times,
+    slope,
+    substituted,
+    terms,
+    times,
+    weight,
+)
 
 ONE, ZERO = Fraction(1), Fraction(0)
 
@@ -89,5 +102,5 @@ def _pushed(
     for part, power in zip(acceleration, powers(clock, len(acceleration), weights, order), strict=False):
         total = plus(total, times(part, power))
     for (i, k), part in zip(pairs, jets, strict=True):
-        total = plus(total, times(part, cut(times(xs[i], speeds[k]), weights, order)), -ONE)
+        total = plus(total, times(part, short_times(xs[i], speeds[k], weights, order)), -ONE)
     return total

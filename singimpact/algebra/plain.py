@@ -81,7 +81,8 @@ def at(poly: Terms, index: int, value: Fraction) -> Terms:
     """The polynomial with one variable set to a number; the variable stays, to power 0."""
     total: Terms = {}
     for key, coefficient in poly.items():
-        total = plus(total, {_moved(key, index, 0): coefficient * value ** key[index]})
+        place = _moved(key, index, 0)
+        total[place] = total.get(place, Fraction(0)) + coefficient * value ** key[index]
     return {key: coefficient for key, coefficient in total.items() if coefficient}
 
 
@@ -97,6 +98,24 @@ def weight(key: tuple[int, ...], weights: Sequence[int]) -> int:
 def cut(poly: Terms, weights: Sequence[int], order: int | None) -> Terms:
     """The terms of at most this weighted degree; all of them for None."""
     return poly if order is None else {key: value for key, value in poly.items() if weight(key, weights) <= order}
+
+
+def short_times(left: Terms, right: Terms, weights: Sequence[int], order: int | None) -> Terms:
+    """The product, cut; no term is formed that is cut away."""
+    if order is None:
+        return times(left, right)
+    by_degree: dict[int, Terms] = {}
+    for key, value in right.items():
+        by_degree.setdefault(weight(key, weights), {})[key] = value
+    total: Terms = {}
+    for one, value in left.items():
+        room = order - weight(one, weights)
+        for degree, part in by_degree.items():
+            if degree <= room:
+                for two, other in part.items():
+                    key = tuple(map(int.__add__, one, two))
+                    total[key] = total.get(key, 0) + value * other
+    return {key: value for key, value in total.items() if value}
 
 
 def substituted(
@@ -120,8 +139,8 @@ def substituted(
             rest = _moved(rest, index, 0)
         term: Terms = {rest: value}
         for index in images:
-            term = times(term, raises[index, 0][key[index]])
-            term = cut(times(term, raises[index, 1][top[index] - key[index]]), weights, order)
+            for power in (raises[index, 0][key[index]], raises[index, 1][top[index] - key[index]]):
+                term = short_times(term, power, weights, order)
         above = plus(above, term)
     below: Terms = {(0,) * size: Fraction(1)}
     for index in images:
@@ -133,5 +152,5 @@ def powers(base: Terms, count: int, weights: Sequence[int], order: int | None) -
     """The powers 0, ..., count of a polynomial, each cut."""
     found: list[Terms] = [{(0,) * len(weights): Fraction(1)}]
     for _ in range(count):
-        found.append(cut(times(found[-1], base), weights, order))
+        found.append(short_times(found[-1], base, weights, order))
     return found

@@ -67,7 +67,7 @@ def test_each_coefficient_of_a_derivation_matters(verdicts):
     # (or, 0 being 0/1, the denominator of 0)
     sides = [(part, part[path[0]]) for part, path in without_effect]
     assert all(part["order"] is not None or side["images"] or not side["outer"][0] for part, side in sides)
-    assert len(without_effect) < tried / 20
+    assert len(without_effect) < tried / 8
 
 
 def test_each_number_of_a_proof_of_signs_matters(verdicts):

@@ -252,7 +252,7 @@ def test_verify_from_the_command_line():
 
 def test_for_all_r_rests_on_certificates(verdicts):
     kinds = {name: [c["kind"] for c in verdicts[name].certificates] for name in CLAIMS}
-    assert kinds["s4-root-places"] == ["chain"]
+    assert "chain" in kinds["s4-root-places"]
     assert kinds["s4-saddle-m3"].count("value") >= 4
     assert kinds["s4-saddle-m3"].count("positive") >= 3
     assert {"value", "positive", "count"} <= set(kinds["s5-mstar-place"])
