@@ -51,7 +51,7 @@ def substitution(
     """  # noqa: E501
     if not gathering():
         return
-    sides = [side if isinstance(side, At) else At(side) for side in (left, right)]
+    sides = [_used(side if isinstance(side, At) else At(side)) for side in (left, right)]
     relation, last = where if where is not None else (None, None)
     parts = [relation or sympy.Integer(0), *small]
     parts += [part for side in sides for part in (side.outer, *side.images, *side.images.values())]
@@ -69,10 +69,14 @@ def substitution(
     left_behind(data)
 
 
+def _used(side: At) -> At:
+    """A composition with the images of those variables that occur in its outer function."""
+    occurring = sympy.sympify(side.outer).free_symbols
+    return At(side.outer, {name: image for name, image in side.images.items() if name in occurring})
+
+
 def _side(side: At, variables: Sequence[Any]) -> dict[str, Any]:
-    images = [
-        [variables.index(name), _pair(image, variables)] for name, image in side.images.items() if name in variables
-    ]
+    images = [[variables.index(name), _pair(image, variables)] for name, image in side.images.items()]
     return {"outer": _pair(side.outer, variables), "images": sorted(images, key=lambda pair: pair[0])}
 
 
