@@ -85,18 +85,18 @@ def r_of_m() -> Any:
 
 @equation("s5-jacobian")
 def Dh_bar() -> Any:
-    """D h-bar(0, m) where mbar = m: lower triangular, since s = 0 is invariant; * depends on the O(s) terms.
+    """D h-bar(0, m) at the fixed point: lower triangular, since s = 0 is invariant; * depends on the O(s) terms.
 
-    d(mbar)/dm is found by implicit differentiation of the equation of h-bar, and holds where m is its fixed point.
+    d(mbar)/dm is f'(m)/g'(mbar) by implicit differentiation of f(m) = g(mbar).  Its certificate is that the equation of
+    h-bar holds at m + e and mbar = m + e d(mbar)/dm to first order in e, with r that of the fixed point.
     """
     growth, _ = phi_blown_up()
     first = [sympy.diff(s * growth, letter).subs(s, 0) for letter in (s, m)]
     step = At(s * growth, {s: e, m: m + Y * e})  # from (0, m) by e in s and by Y e in m
     substitution(step, first[0] * e + first[1] * Y * e, order=1, small=[e])
-    by_old, by_new = (sympy.diff(h_bar(), letter).subs(mbar, m) for letter in (m, mbar))
-    slope = sympy.factor(sympy.cancel(-by_old / by_new))
-    moved = At(h_bar(), {m: m + e, mbar: m + slope * e})
-    substitution(moved, At(h_bar(), {mbar: m}), order=1, small=[e])
+    slope = sympy.factor(sympy.cancel(sympy.diff(f_map(), m) / sympy.diff(g_map(), m)))
+    moved = At(h_bar(), {m: m + e, mbar: m + slope.subs(r, r_of_m()) * e, r: r_of_m()})
+    substitution(moved, sympy.Integer(0), order=1, small=[e])
     return sympy.Matrix([first, [sympy.Symbol("*"), slope]])
 
 
@@ -104,8 +104,7 @@ def Dh_bar() -> Any:
 def mu_of_m() -> Any:
     """d(mbar)/dm at the fixed point with r eliminated."""
     found = sympy.factor(sympy.cancel(Dh_bar()[1, 1].subs(r, r_of_m())))
-    moved = At(h_bar(), {m: m + e, mbar: m + found * e, r: r_of_m()})  # 0 at e = 0
-    substitution(moved, sympy.Integer(0), order=1, small=[e])
+    substitution(At(Dh_bar()[1, 1], {r: r_of_m()}), found)
     return found
 
 

@@ -120,8 +120,8 @@ MUTANTS = {
         "paper/routes/fold.py", "found = sympy.factor(-cubic.nth(0) / cubic.nth(1))",
         "found = sympy.factor(-cubic.nth(1) / cubic.nth(0))", "s4-m3"),
     "the entry of D h-bar doubled": (
-        "paper/routes/swan.py", "slope = sympy.factor(sympy.cancel(-by_old / by_new))",
-        "slope = sympy.factor(sympy.cancel(-2 * by_old / by_new))", "s5-saddle"),
+        "paper/routes/swan.py", "slope = sympy.factor(sympy.cancel(sympy.diff(f_map(), m)",
+        "slope = sympy.factor(sympy.cancel(2 * sympy.diff(f_map(), m)", "s5-saddle"),
     "a power of the new s": (
         "paper/routes/swan.py", "found = -r * impact - growth**3 * launch", "found = -r * impact - growth**2 * launch",
         "s5-mstar-place"),

@@ -8,13 +8,16 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_in, positive_on
+from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.sections.section4b_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, same
 from singimpact.paper.routes import fold
+from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.fold import k
-from singimpact.paper.routes.implicit import a_symbol, r, sigma, t
+from singimpact.paper.routes.implicit import X, a_symbol, r, sigma, t
 from singimpact.paper.trials import leaves
+from singimpact.theory.sheet import generic_sheet
 
 ell, slope = sympy.symbols("ell p")
 THIRD = sympy.Rational(1, 3)
@@ -26,6 +29,52 @@ def on_ray() -> tuple[Any, Any]:
     launch = sympy.cancel(fold.p()[1].subs(t, ell * sigma) / sigma**2)
     landed = sympy.cancel((-r * second / first**2).subs(t, ell * sigma))
     return sympy.factor(launch), sympy.factor(landed)
+
+
+def _on_rays(stated: tuple[Any, Any, Any, Any, Any]) -> Check:
+    """p and q on t = l sigma to second order, and the monomial stated[4] that divides all that is left out.
+
+    v_c(sigma, 0) = 0, so v_c and the impact velocity have the factor t, which is l sigma here: the factor l stays.
+    """
+    *parts, monomial = stated
+    check = identity(
+        lambda: (
+            fold.p()[0],
+            fold.p()[1].subs(t, ell * sigma),
+            fold.phi()[0].subs(t, ell * sigma),
+            (-r * fold.phi()[1]).subs(t, ell * sigma),
+        )
+    )(tuple(parts))
+    sheet = generic_sheet(1, 4)
+    lowest, divided = [], True
+    for jet, factor, leading in ((sheet.v, 1, parts[1]), (sheet.xdot, -r, parts[3])):
+        series = factor * sheet.to_sympy(jet)
+        left = sympy.expand(series.subs(t, ell * sigma) - leading.subs(k, a_symbol(1) / 6))
+        powers = [key for key, value in sympy.Poly(left, sigma, ell).terms() if value != 0]
+        lowest.append(tuple(min(key[n] for key in powers) for n in (0, 1)))
+        quotient = sympy.cancel(left / monomial)
+        if sympy.fraction(quotient)[1].has(sigma, ell):
+            divided = False
+        else:
+            rest = At(leading.subs(k, a_symbol(1) / 6) + monomial * X, {X: sympy.expand(quotient)})
+            substitution(At(series, {t: ell * sigma}), rest)
+    powers = tuple(sympy.Poly(monomial, sigma, ell).monoms()[0])
+    return every(
+        [
+            (check.evidence, check.holds),
+            ("y_c = v at t = 0, so v_c(sigma, 0) = 0 and both velocities have the factor t", _vanish_at_launch()),
+            (
+                f"to degree 4 what is left out has the factor {monomial} and no higher power",
+                divided and set(lowest) == {powers},
+            ),
+        ],
+        witness=lambda: dict(check.witness or {"factor of what is left out": f"sigma^{lowest[0][0]} l^{lowest[0][1]}"}),
+    )
+
+
+def _vanish_at_launch() -> bool:
+    """Whether y_c(sigma, v; 0) = v, so that v_c(sigma, 0) = 0 whatever the higher terms are."""
+    return is_zero(route.y_c(4).subs(t, 0) - route.v)
 
 
 def _positive_for_all(expression: Any, *, rate: bool = True) -> bool:
@@ -183,6 +232,10 @@ def _ratio(stated: Any) -> Check:
             ("q~/p~ -> r M", is_zero(limit - r * M)),
             ("which is below the bound for l > 0, 0 < r < 1", _positive_for_all(stated - limit)),
             ("the quotient of the bounds of q~ and p~", is_zero(stated / limit - (1 + SLACK) / (1 - SLACK))),
+            (
+                "and the bound is below 1, since M < 1 and 2 + r - r (4 - r) = (1 - r)(2 - r) > 0",
+                _positive_for_all(1 - stated) and positive_on(2 + r - r * (4 - r), r, 0, 1),
+            ),
         ],
         witness=lambda: {
             "l": "1",
@@ -299,8 +352,8 @@ def _epsilon(stated: tuple[int, Any]) -> Check:
                 is_zero(landed + 2 * sigma) and stated[0] == 1 and is_zero(speed - stated[1]),
             ),
             (
-                "v > 0 for k < 0, quadratically tangent to Pi_0",
-                positive_on(speed.subs(r, sympy.Rational(1, 2)), k, -sympy.oo, 0),
+                "v > 0 for k < 0 and every r in (0, 1), quadratically tangent to Pi_0",
+                positive_in(speed, {k: (-sympy.oo, 0), r: (0, 1)}),
             ),
         ]
     )
@@ -350,22 +403,18 @@ CLAIMS = (
         "s4b-rays",
         "p and q on a ray t = l sigma",
         Statement(
-            r"p=(\sigma,-k(3\ell+\ell^2)\sigma^2+O(\sigma^3)),\ q=(\sigma(1+\ell),-rk(3\ell+2\ell^2)\sigma^2+O(\sigma^3))",
-            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2),
+            r"p=(\sigma,-k(3\ell+\ell^2)\sigma^2+O(\ell\sigma^3)),\ q=(\sigma(1+\ell),-rk(3\ell+2\ell^2)\sigma^2+O(\ell\sigma^3))",
+            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**3),
         ),
-        identity(
-            lambda: (
-                fold.p()[0],
-                fold.p()[1].subs(t, ell * sigma),
-                fold.phi()[0].subs(t, ell * sigma),
-                (-r * fold.phi()[1]).subs(t, ell * sigma),
-            )
-        ),
+        _on_rays,
         (
-            (sigma, -_P * sigma**2, sigma * (1 + ell), _Q * sigma**2),
-            (sigma, _P * sigma**2, sigma * (1 - ell), _Q * sigma**2),
+            (sigma, -_P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**3),
+            (sigma, _P * sigma**2, sigma * (1 - ell), _Q * sigma**2, ell * sigma**3),
+            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell**2 * sigma**3),
+            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**4),
+            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, sigma**3),
         ),
-        ("e:pnew", "e:phinew"),
+        ("e:pnew", "e:phinew", "e:yeq"),
     ),
     _claim(
         "s4b-l-range",

@@ -125,11 +125,11 @@ def _slopes(sign: int) -> Check:
 
 
 def _jacobian(stated: Any) -> Check:
-    """The entries but *: d(mbar)/dm comes from implicit differentiation of s5-hbar, and is compared where r = r(m_*)."""
-    derived, at_fixed = swan.Dh_bar(), {r: swan.r_of_m()}
+    """The entries but *, each as derived: d(mbar)/dm by implicit differentiation of s5-hbar."""
+    derived = swan.Dh_bar()
     return identity(
-        lambda: (derived[0, 0], derived[0, 1], swan.mu_of_m()), "the implicit derivative of h-bar at its fixed point"
-    )((stated[0, 0], stated[0, 1], stated[1, 1].subs(at_fixed)))
+        lambda: (derived[0, 0], derived[0, 1], derived[1, 1]), "the derivative of h-bar at its fixed point"
+    )((stated[0, 0], stated[0, 1], stated[1, 1]))
 
 
 def _saddle(stated: tuple[int, int]) -> Check:
