@@ -13,6 +13,11 @@ from singimpact.paper.claims import CLAIMS, run, select
 # proved, and nothing to hand on: the reason
 WITHOUT = {"e:lin": "the period of a cosine, which is no statement about polynomials"}
 SERIES = ("composed", "motion", "flight")
+# proved without a derivation: the reason
+UNDERIVED = WITHOUT | {
+    "s4b-M": "an inequality between two functions that are given in the statement",
+    "s4b-r-ineq": "an inequality between two functions that are given in the statement",
+}
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +39,7 @@ def test_what_is_proved_has_a_certificate(name, verdicts):
     verdict = verdicts[name]
     if (verdict.corrected_kind or verdict.kind) == "proved":
         assert bool(verdict.certificates) != (name in WITHOUT)
+        assert any(part["kind"] in SERIES for part in verdict.certificates) != (name in UNDERIVED)
 
 
 def test_each_certificate_holds_as_json(verdicts):

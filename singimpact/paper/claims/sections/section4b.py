@@ -15,20 +15,23 @@ from singimpact.paper.claims.verifiers import every, identity, is_zero, same
 from singimpact.paper.routes import fold
 from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.fold import k
-from singimpact.paper.routes.implicit import X, a_symbol, r, sigma, t
+from singimpact.paper.routes.implicit import X, Y, a_symbol, r, sigma, t
 from singimpact.paper.trials import leaves
 from singimpact.theory.sheet import generic_sheet
 
-ell, slope = sympy.symbols("ell p")
+ell, slope, mu, nu = sympy.symbols("ell p mu nu")
 THIRD = sympy.Rational(1, 3)
 
 
 def on_ray() -> tuple[Any, Any]:
     """p and q on t = l sigma: v of p over sigma^2, and v of q over the square of its own first component, at sigma = 0."""
     first, second = fold.phi()
-    launch = sympy.cancel(fold.p()[1].subs(t, ell * sigma) / sigma**2)
-    landed = sympy.cancel((-r * second / first**2).subs(t, ell * sigma))
-    return sympy.factor(launch), sympy.factor(landed)
+    launch = sympy.factor(sympy.cancel(fold.p()[1].subs(t, ell * sigma) / sigma**2))
+    landed = sympy.factor(sympy.cancel((-r * second / first**2).subs(t, ell * sigma)))
+    ray = {t: ell * sigma}
+    substitution(At(fold.p()[1], ray), At(sigma**2 * X, {X: launch}))
+    substitution(At(-r * second, ray), At(X * Y**2, {X: landed, Y: first.subs(ray)}))
+    return launch, landed
 
 
 def _on_rays(stated: tuple[Any, Any, Any, Any, Any]) -> Check:
@@ -58,14 +61,14 @@ def _on_rays(stated: tuple[Any, Any, Any, Any, Any]) -> Check:
         else:
             rest = At(leading.subs(k, a_symbol(1) / 6) + monomial * X, {X: sympy.expand(quotient)})
             substitution(At(series, {t: ell * sigma}), rest)
-    powers = tuple(sympy.Poly(monomial, sigma, ell).monoms()[0])
+    stated_powers = tuple(sympy.Poly(monomial, sigma, ell).monoms()[0])
     return every(
         [
             (check.evidence, check.holds),
             ("y_c = v at t = 0, so v_c(sigma, 0) = 0 and both velocities have the factor t", _vanish_at_launch()),
             (
                 f"to degree 4 what is left out has the factor {monomial} and no higher power",
-                divided and set(lowest) == {powers},
+                divided and set(lowest) == {stated_powers},
             ),
         ],
         witness=lambda: dict(check.witness or {"factor of what is left out": f"sigma^{lowest[0][0]} l^{lowest[0][1]}"}),
@@ -120,9 +123,7 @@ def _sector(stated: tuple[Any, Any]) -> Check:
 
 def _image_bounds(bound: Any) -> Check:
     """phi of the sector: with p = t/(sigma + t) in [0, 3/2], v/(sigma + t)^2 = k (3p - p^2) runs from 0 to bound a'."""
-    first, second = fold.phi()
-    ratio = sympy.expand(sympy.cancel((second / (k * first**2)).subs(sigma, t * (1 - slope) / slope)))
-    edge = ratio.subs(slope, sympy.Rational(3, 2))
+    ratio, edge = image_of_sector()
     return every(
         [
             (
@@ -137,9 +138,18 @@ def _image_bounds(bound: Any) -> Check:
     )
 
 
+def image_of_sector() -> tuple[Any, Any]:
+    """(v/(k s^2) of phi as a function of p = t/s, s = sigma + t; its value at the edge p = 3/2, where 3 sigma + t = 0)."""
+    first, second = fold.phi()
+    by_slope = {sigma: t * (1 - slope) / slope}
+    ratio = sympy.expand(sympy.cancel((second / (k * first**2)).subs(by_slope)))
+    substitution(At(second, by_slope), At(k * X * (t / slope) ** 2, {X: ratio}))
+    return ratio, ratio.subs(slope, sympy.Rational(3, 2))
+
+
 def _half_plane(stated: int) -> Check:
-    """The sign of v on {(3/8) a' sigma^2 <= v <= 0}, a' < 0: the half-plane it lies in."""
-    lower = sympy.Rational(3, 8) * a_symbol(1)
+    """The sign of v on T'', between the edge of phi's image and 0, a' < 0: the half-plane it lies in."""
+    lower = image_of_sector()[1] / 6 * a_symbol(1)
     return every(
         [
             (
@@ -170,6 +180,9 @@ def _range(stated: Any) -> Check:
 
 SLACK = (1 - r) / 3
 """By how much the bounds of p~ and q~ leave their limits, relative to these."""
+FOR_K, FOR_L = (sympy.factor(part * SLACK) for part in (-k * (3 + ell), -r * k * (3 + 2 * ell) * (1 + ell)))
+"""The paper's conditions on delta: K delta < FOR_K, L delta < FOR_L, where l mu sigma^3 and l nu sigma^3 are what p and q
+leave out on a ray (s4b-rays), |mu| <= K, |nu| <= L.  As l -> 0 they tend to -k (1 - r) and -r k (1 - r), not to 0."""
 
 
 def _bound_p(stated: Any) -> Check:
@@ -183,7 +196,13 @@ def _bound_p(stated: Any) -> Check:
             (
                 f"p~ - bound = -k ({sympy.factor(leading)}) sigma^{lowest} + ..., positive for l > 0, 0 < r < 1",
                 _positive_for_all(leading),
-            )
+            ),
+            (
+                f"p~ - bound = l sigma^2 ({FOR_K} + mu sigma), so it is positive where K delta < {FOR_K}, for all l at once",
+                is_zero(launch * sigma**2 + ell * sigma**3 * mu - stated - ell * sigma**2 * (FOR_K + mu * sigma))
+                and _positive_for_all((FOR_K + k * (1 - r)) / -k)
+                and positive_in(FOR_K, {ell: (0, sympy.oo), r: (0, 1), k: (-sympy.oo, 0)}),
+            ),
         ],
         witness=lambda: {
             "sigma": "0",
@@ -208,6 +227,17 @@ def _bound_q(stated: Any) -> Check:
                 _positive_for_all(gap),
             ),
             ("with the slack (1 - r)/3 of the limit, as below p~", is_zero(stated / sigma**2 / landed - 1 - SLACK)),
+            (
+                f"bound - q~ = l sigma^2 ({FOR_L} - nu sigma)/(1 + l)^3, so it is positive where L delta < {FOR_L}, for all l at once",
+                is_zero(
+                    stated
+                    - landed * sigma**2
+                    - ell * sigma**3 * nu / (1 + ell) ** 3
+                    - ell * sigma**2 * (FOR_L - nu * sigma) / (1 + ell) ** 3
+                )
+                and _positive_for_all((FOR_L + r * k * (1 - r)) / -k)
+                and positive_in(FOR_L, {ell: (0, sympy.oo), r: (0, 1), k: (-sympy.oo, 0)}),
+            ),
         ],
         witness=lambda: {
             "k": "-1",
