@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import types
 
-from singimpact.algebra import checking, plain
+from singimpact.algebra import checking
 
 
 def const(value):
@@ -135,9 +137,31 @@ WEAKENED = {
     "a form that vanishes on a line": ("4 * a * c > b * b", "4 * a * c >= b * b", definite(["1", "2", "1"])),
     "a form of another sign": ("a > 0 and", "", definite(["-1", "0", "-1"])),
     "a saddle": (" and 4 * a * c > b * b", "", definite(["1", "0", "-1"])),
-    "a difference": ("and not difference", "", identity([const(1), const(1)], [const(2), const(1)])),
+    "another sentence": (
+        "certificate.get(\"says\", said) == said and ", "", definite(["6", "4", "1"]) | {"says": "1 = 2"}),
+}  # fmt: skip
+
+E = [[[0, 1], 1]]  # the small variable, the second of (w, e)
+ONE_TWO, TWO_TWO = ([[[0, 0], n]] for n in (1, 2))
+
+
+def side(outer, *images, below=ONE_TWO):
+    return {"outer": [outer, below], "images": [[index, list(pair)] for index, pair in images]}
+
+
+def composed(left, right, relation=None, order=None, weights=(0, 0)):
+    return {"kind": "composed", "variables": ["w", "e"], "weights": list(weights), "order": order, "left": left,
+            "right": right, "relation": relation}  # fmt: skip
+
+
+SQUARE = [[[2, 0], 1]]
+LINE = [[[1, 0], 1]]  # w
+E_SQUARED_IS_2 = [[[0, 2], 1], [[0, 0], -2]]
+
+IN_IDENTITIES = {
+    "a difference": ("return not difference", "return True", identity([const(1), const(1)], [const(2), const(1)])),
     "nothing by nothing": (
-        "return bool(below and under) and not", "return not", identity([[], []], [const(1), const(1)])),
+        "else lowest)", "else True)", identity([[], []], [const(1), const(1)])),
     "a multiplier of zero": (
         "sound = bool(multiplier) and", "sound =",
         identity([const(1), const(1)], [const(2), const(1)], [[], [], ROOT_OF_TWO])),
@@ -145,19 +169,109 @@ WEAKENED = {
         " and not any(key[-1] for key in multiplier)", "",
         identity([const(1), const(1)], [const(2), const(1)], [ROOT_OF_TWO, const(-1), ROOT_OF_TWO])),
     "a relation of a higher degree": (
-        "max(key[-1] for key in relation) == 2 and", "",
+        "max(key[-1] for key in zero) == 2 and", "",
         identity([OF_DEGREE_3, poly(1, 1)], [[], const(1)], [const(1), const(1), OF_DEGREE_3])),
     "a left denominator that the relation makes zero": (
-        "_norm(below, relation) and", "bool(below) and",
+        "_invertible(left[1], relation, kept) and", "",
         identity([ROOT_OF_TWO, ROOT_OF_TWO], [const(5), const(1)], [const(1), const(-4), ROOT_OF_TWO])),
     "a right denominator that the relation makes zero": (
-        "and _norm(under, relation))", "and bool(under))",
+        "and _invertible(right[1], relation, kept)", "",
         identity([const(5), const(1)], [ROOT_OF_TWO, ROOT_OF_TWO], [const(1), const(4), ROOT_OF_TWO])),
     "a cofactor that is another": (
-        "and times(multiplier, difference) == times(cofactor, relation)", "",
+        "and kept.of(times(multiplier, difference)) == kept.of(times(cofactor, zero))", "",
         identity([const(1), const(1)], [const(2), const(1)], [const(1), [], ROOT_OF_TWO])),
-    "another sentence": (
-        "certificate.get(\"says\", said) == said and ", "", definite(["6", "4", "1"]) | {"says": "1 = 2"}),
+    "a statement that is equal to itself": (
+        "return left != right and _equal(left", "return _equal(left",
+        identity([poly(1, 1), const(1)], [poly(1, 1), const(1)])),
+    "a composition that is equal to itself": (
+        "return data[\"left\"] != data[\"right\"] and", "return", composed(side(LINE), side(LINE))),
+    "an image twice": (
+        "len(images) != len(data[side][\"images\"]) or", "",
+        composed(side(LINE, (0, (TWO_TWO, ONE_TWO)), (0, (ONE_TWO, ONE_TWO))), side(ONE_TWO))),
+    "an image by zero": (
+        "            return False\n        above", "            pass\n        above",
+        composed(side(ONE_TWO, (0, (ONE_TWO, []))), side(ONE_TWO, (1, (ONE_TWO, ONE_TWO))))),
+    "a quotient by something small": (
+        "return poly if self.order is None else cut(poly, self.weights, 0)", "return poly",
+        composed(side([[[0, 2], 1]], below=E), side([]), order=1, weights=(0, 1))),
+    "negative weights": (
+        "type(each) is int and each >= 0 for", "type(each) is int for",
+        composed(side(LINE, (0, ([*LINE, *ONE_TWO], ONE_TWO))), side([*LINE, *ONE_TWO]), order=0, weights=(0, -1))),
+    "an order that is none": (
+        "type(kept.order) is not int or kept.order < 0", "False",
+        composed(side(LINE, (0, ([*LINE, *ONE_TWO], ONE_TWO))), side([*LINE, *ONE_TWO]), order=True)),
+    "weights without an order": (
+        "if kept.order is None and any(kept.weights):", "if False:",
+        composed(side(LINE, (0, ([*LINE, *ONE_TWO], ONE_TWO))), side([*LINE, *ONE_TWO]), weights=(0, 1))),
+    "a small multiplier": (
+        " and kept.spared(multiplier, zero)", "",
+        composed(side(ONE_TWO), side(TWO_TWO), [LINE, [], E_SQUARED_IS_2], 0, (1, 0))),
+}  # fmt: skip
+
+
+def motion(height, acceleration, force=(), launch=None, landing=None, order=None, weights=(1, 1, 1)):
+    """Of x in (sigma, v, t): a_0 alone, unless a list of polynomials is given."""
+    return {"kind": "motion", "variables": ["sigma", "v", "t", "a"][: len(weights)], "weights": list(weights),
+            "order": order, "height": height, "acceleration": acceleration, "force": [list(part) for part in force],
+            "launch": launch, "landing": landing}  # fmt: skip
+
+
+def flight(rise, launch, landing, order=3):
+    """Of x'' = 2."""
+    return {"kind": "flight", "variables": ["z", "sigma", "t"], "weights": [0, 1, 1], "order": order, "rise": rise,
+            "acceleration": [[[[0, 0, 0], 2]]], "force": [], "launch": launch, "landing": landing}  # fmt: skip
+
+
+VT, T, TT, ONE_THREE = [[[0, 1, 1], 1]], [[[0, 0, 1], 1]], [[[0, 0, 2], 1]], [[[0, 0, 0], 1]]
+PUSH = [[[[0, 0, 0], 2]]]  # x'' = 2
+FALL = VT + TT  # its motion
+BACK = [[[0, 0, 1], -1]]  # v = -t brings it back
+RISE = [[[2, 0, 1], 1], [[1, 0, 1], -1]]  # of the flight: (z^2 - z) t
+ANY_SLOPE = [[[0, 1], ONE_THREE], [[0, 1], [[[0, 0, 0], -1]]]]  # x' and -x'
+
+IN_MOTIONS = {
+    "another motion": (
+        "if residual or not starts or data[\"launch\"] is None:\n        return not residual and starts and",
+        "if not starts or data[\"launch\"] is None:\n        return starts and",
+        motion([*VT, [[0, 0, 2], 2]], PUSH)),
+    "a start elsewhere": ("not at(height, 2, ZERO) and at(", "at(", motion(FALL + ONE_THREE, PUSH)),
+    "another start": (
+        " and at(speed, 2, ZERO) == line(ZERO, 1, 1, size)", "", motion([[[0, 1, 1], 2], *TT], PUSH)),
+    "a landing of no launch": (
+        " and data[\"landing\"] is None\n    launch", "\n    launch", motion(FALL, PUSH, landing=T)),
+    "a launch that depends on v": (
+        "any(key[1] for key in launch) or", "",
+        motion(FALL, PUSH, launch=[*BACK, [[0, 2, 0], 1]], order=1)),
+    "a launch of too low a degree": (
+        " or any(weight(key, weights) < weights[1] for key in launch)", "",
+        motion(FALL, PUSH, launch=BACK, order=1, weights=(1, 2, 1))),
+    "a launch that does not come back": ("return not back\n", "return True\n", motion(FALL, PUSH, launch=T)),
+    "a landing after no return": (
+        "return not back and cut(", "return cut(", motion(FALL, PUSH, launch=T, landing=[[[0, 0, 1], 3]])),
+    "another landing": (
+        " and cut(landed, weights, order) == cut(terms(data[\"landing\"]), weights, order)", "",
+        motion(FALL, PUSH, launch=BACK, landing=[[[0, 0, 1], 2]])),
+    "another flight": (
+        "        return False\n    ends", "        pass\n    ends",
+        flight([[[2, 0, 1], 2], [[1, 0, 1], -2]], [[[0, 0, 1], -2]], [[[0, 0, 1], 2]])),
+    "another end of a flight": ("return ends == stated", "return True", flight(RISE, BACK, [[[0, 0, 1], 3]])),
+    "weights of letters": (
+        " or any(weights[3:])", "",
+        motion([[[0, 1, 1, 0], 1]], [[[[0, 0, 0, 1], 1]]], order=2, weights=(1, 1, 1, 9))),
+    "other weights of the state": (
+        " or not right", "", motion(VT, [[], [[[0, 0, 0], 1]]], order=1, weights=(9, 1, 9))),
+    "an order of a motion that is none": (
+        "type(order) is not int or order < 1", "False", motion(VT, PUSH, order=0)),
+    "a jet that is a function of time": (
+        "if any(any(key[:3]) for part", "if False and any(any(key[:3]) for part",
+        motion([*VT, [[0, 0, 3], 1]], [[[[0, 0, 1], 6]]])),
+    "a jet twice": ("len(set(pairs)) < len(pairs) or", "", motion(FALL, PUSH, ANY_SLOPE)),
+    "a power that is no number": (
+        " or not all(type(n) is int and n >= 0 for pair in pairs for n in pair)", "",
+        motion(FALL, PUSH, [[[0, True], []]])),
+    "weights of an exact motion": (
+        "if order is None and weights[:3] != (1, 1, 1):", "if False:", motion(FALL, PUSH, weights=(1, 2, 1))),
+    "a force at rest": ("if (0, 0) in pairs:", "if False:", motion(FALL, [], [[[0, 0], [[[0, 0, 0], -2]]]])),
 }  # fmt: skip
 
 IN_PLAIN = {
@@ -175,31 +289,27 @@ IN_PLAIN = {
 }  # fmt: skip
 
 
+CHAIN = ("plain", "sentences", "checked_identities", "checked_motions", "checking")
+
+
 def without(condition, instead, name):
-    """`accepts` of a checker whose source has one condition taken out."""
-    module = checking if name == "checking" else plain
-    with open(module.__file__) as file:
+    """`accepts` of a checker one of whose files has one condition taken out."""
+    with open(f"{os.path.dirname(checking.__file__)}/{name}.py") as file:
         text = file.read()
     assert text.count(condition) == 1, f"{condition!r} stands {text.count(condition)} times in {name}.py"
     return loaded(name, text.replace(condition, instead))
 
 
 def loaded(name, text):
-    """`accepts` with another source of checking.py, or of plain.py and all that reads by it."""
-    from singimpact.algebra import sentences
-
-    made = types.ModuleType(name)
-    made.__dict__["__file__"] = f"{name}.py"
-    exec(compile(text, f"{name}.py", "exec"), made.__dict__)
-    if name == "checking":
+    """`accepts` of a checker with another source of one of its files."""
+    known = {part: sys.modules[f"singimpact.algebra.{part}"] for part in CHAIN}
+    try:
+        for part in CHAIN:
+            made = types.ModuleType(f"singimpact.algebra.{part}")
+            with open(known[part].__file__) as file:
+                source = text if part == name else file.read()
+            exec(compile(source, f"{part}.py", "exec"), made.__dict__)
+            sys.modules[made.__name__] = made
         return made.accepts
-    changed = {key: part for key, part in vars(made).items() if not key.startswith("__")}
-    rooms = []
-    for room in (sentences, checking):
-        again = types.ModuleType(room.__name__)
-        with open(room.__file__) as file:
-            exec(compile(file.read(), room.__file__, "exec"), again.__dict__)
-        again.__dict__.update({key: part for key, part in changed.items() if key in again.__dict__})
-        rooms.append(again)
-    rooms[1].sentence = rooms[0].sentence
-    return rooms[1].accepts
+    finally:
+        sys.modules.update({f"singimpact.algebra.{part}": module for part, module in known.items()})

@@ -12,6 +12,7 @@ Jets: `jets`, `polynomials` (what they are made of), `jet_maps` (inverses,
 implicit functions, blow-ups), `univariate` (one variable, level by level), `interpolation`, `horner` (on arrays).
 Zeros: `solving` (halving, secants, Newton in balls), `roots` (of polynomials), `zeros` (of functions, by balls),
 `isolated_zeros` (of systems, all in a box), `double_zeros` (of functions with a parameter).
-Proofs: `certificates` (made), `checking` (believed only once checked), `plain` (polynomials of the checker),
-`sentences` (what a certificate says).
+Proofs: `certificates` (of signs, roots and values) and `derivations` (of substitutions and motions) make certificates;
+`gathering` has the collection that they join; `checking` believes one only once checked, with `checked_identities` and
+`checked_motions`; `plain` has the checker's polynomials, `sentences` what a certificate says.
 """

@@ -1,14 +1,13 @@
 """Statements about polynomials "for all r in (0, 1)", proved: certificates made here, and believed once checked.
 
 A certificate is plain data.  It counts only when `checking.accepts` has verified it from the data alone; then it joins
-the collection that the caller has opened (`collected`), beside the verdict that rests on it.
+the collection that the caller has opened (`gathering.collected`), beside the verdict that rests on it.  Certificates of
+series, substitutions and motions are made in `derivations`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise, product
@@ -17,12 +16,11 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.checking import accepts
-from singimpact.algebra.sentences import sentence
+from singimpact.algebra.gathering import Certificate as Certificate
+from singimpact.algebra.gathering import collected as collected
+from singimpact.algebra.gathering import established
 
-Certificate = dict[str, Any]
 Box = Mapping[Any, tuple[Any, Any]]
-_OPEN: ContextVar[list[Certificate] | None] = ContextVar("certificates", default=None)
 
 
 @dataclass(frozen=True)
@@ -39,28 +37,6 @@ class Effort:
 
 
 EFFORT = Effort()
-
-
-@contextmanager
-def collected() -> Iterator[list[Certificate]]:
-    """A list that gathers every certificate established while it is open, each once."""
-    found: list[Certificate] = []
-    token = _OPEN.set(found)
-    try:
-        yield found
-    finally:
-        _OPEN.reset(token)
-
-
-def established(certificate: Certificate) -> bool:
-    """Whether the checker accepts a certificate; if so it joins the open collection, with the sentence of its data."""
-    if not accepts(certificate):
-        return False
-    certificate = {"kind": certificate["kind"], "says": sentence(certificate), **certificate}
-    gathering = _OPEN.get()
-    if gathering is not None and certificate not in gathering:
-        gathering.append(certificate)
-    return True
 
 
 def positive_on(expression: Any, variable: Any, low: Any, high: Any) -> bool:
@@ -321,7 +297,12 @@ def definite(form: Any, x: Any, y: Any) -> int:
 
 
 def identical(left: Any, right: Any) -> bool:
-    """Record that two rational functions are equal, or two with one square root; what has another form is left out."""
+    """Record that two rational functions are equal, or two with one square root.
+
+    Returns
+    -------
+    bool : whether it is recorded; not where both sides are the same polynomials, which proves nothing, or have another form.
+    """  # noqa: E501
     left, right = sympy.sympify(left), sympy.sympify(right)
     root = sorted((p for part in (left, right) for p in part.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2),
                   key=str)[:1]  # fmt: skip
@@ -335,6 +316,8 @@ def identical(left: Any, right: Any) -> bool:
     parts = [relation, *(part for side in sides for part in side)]
     names = sorted({name for part in parts for name in part.free_symbols} - {w}, key=str)
     if not all(part.is_polynomial(*names, w) for side in sides for part in side):
+        return False
+    if [sympy.expand(part) for part in sides[0]] == [sympy.expand(part) for part in sides[1]]:
         return False
     variables = [*names, w]
     data = {

@@ -1,7 +1,8 @@
 """Certificates checked from their data alone: whole numbers and fractions, no algebra system.
 
-A polynomial is a list of [exponents, coefficient].  `certificates` makes them and shares nothing with this file but the
-layout of the data; the sentence that goes with one is made from the data (`sentences`), and another is refused.
+A polynomial is a list of [exponents, coefficient].  `certificates` and `derivations` make them and share nothing with
+this file but the layout of the data; the sentence that goes with one is made from the data (`sentences`), and another
+is refused.  Signs, roots and values are checked here, identities in `checked_identities`, motions in `checked_motions`.
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
+from singimpact.algebra.checked_identities import composed, identity
+from singimpact.algebra.checked_motions import flight, motion
 from singimpact.algebra.plain import Terms, line, plus, raised, rational, row, terms, times
 from singimpact.algebra.sentences import sentence
 
@@ -156,39 +159,14 @@ def _definite(data: Mapping[str, Any]) -> bool:
     return data["sign"] in (-1, 1) and a > 0 and 4 * a * c > b * b
 
 
-def _identity(data: Mapping[str, Any]) -> bool:
-    """Two quotients are equal, or are where a relation holds: multiplier times difference = cofactor times relation."""
-    (above, below), (other, under) = ([terms(part) for part in data[side]] for side in ("left", "right"))
-    difference = plus(times(above, under), times(other, below), Fraction(-1))
-    if data["relation"] is None:
-        return bool(below and under) and not difference
-    multiplier, cofactor, relation = (terms(part) for part in data["relation"])
-    of_a_root = max(key[-1] for key in relation) == 2 and not any(key[-1] for key in multiplier)
-    sound = bool(multiplier) and of_a_root and bool(_norm(below, relation) and _norm(under, relation))
-    return sound and times(multiplier, difference) == times(cofactor, relation)
-
-
-def _norm(poly: Terms, relation: Terms) -> Terms:
-    """A multiple of the product of the values at both roots of a quadratic in the last variable; {} when one is 0."""
-    c0, c1, c2 = (_coefficient(relation, n) for n in range(3))
-    parts = [_coefficient(poly, n) for n in range(max([key[-1] for key in poly] + [1]) + 1)]
-    while len(parts) > 2:  # c2 poly = (c2 w^2 + c1 w + c0)(top w^n) + a poly of a lower degree
-        top = parts.pop()
-        parts = [times(c2, part) for part in parts]
-        parts[-1], parts[-2] = plus(parts[-1], times(top, c1), -ONE), plus(parts[-2], times(top, c0), -ONE)
-    b0, b1 = parts
-    return plus(plus(times(c2, times(b0, b0)), times(c1, times(b0, b1)), -ONE), times(c0, times(b1, b1)))
-
-
-def _coefficient(poly: Terms, power: int) -> Terms:
-    return {(*key[:-1], 0): value for key, value in poly.items() if key[-1] == power}
-
-
 _CHECKS = {
     "positive": _positive,
     "chain": _chain,
     "count": _count,
     "value": _value,
     "definite": _definite,
-    "identity": _identity,
+    "identity": identity,
+    "composed": composed,
+    "motion": motion,
+    "flight": flight,
 }

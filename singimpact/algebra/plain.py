@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -70,3 +70,87 @@ def line(constant: Fraction, slope: int, index: int, size: int) -> Terms:
     """constant + slope x_index."""
     unit = tuple(int(n == index) for n in range(size))
     return plus({(0,) * size: constant}, {unit: Fraction(slope)})
+
+
+def slope(poly: Terms, index: int) -> Terms:
+    """The derivative by one variable."""
+    return {_moved(key, index, key[index] - 1): value * key[index] for key, value in poly.items() if key[index]}
+
+
+def at(poly: Terms, index: int, value: Fraction) -> Terms:
+    """The polynomial with one variable set to a number; the variable stays, to power 0."""
+    total: Terms = {}
+    for key, coefficient in poly.items():
+        place = _moved(key, index, 0)
+        total[place] = total.get(place, Fraction(0)) + coefficient * value ** key[index]
+    return {key: coefficient for key, coefficient in total.items() if coefficient}
+
+
+def _moved(key: tuple[int, ...], index: int, power: int) -> tuple[int, ...]:
+    return (*key[:index], power, *key[index + 1 :])
+
+
+def weight(key: tuple[int, ...], weights: Sequence[int]) -> int:
+    """The weighted degree of a monomial."""
+    return sum(power * each for power, each in zip(key, weights, strict=True))
+
+
+def cut(poly: Terms, weights: Sequence[int], order: int | None) -> Terms:
+    """The terms of at most this weighted degree; all of them for None."""
+    return poly if order is None else {key: value for key, value in poly.items() if weight(key, weights) <= order}
+
+
+def short_times(left: Terms, right: Terms, weights: Sequence[int], order: int | None) -> Terms:
+    """The product, cut; no term is formed that is cut away."""
+    if order is None:
+        return times(left, right)
+    by_degree: dict[int, Terms] = {}
+    for key, value in right.items():
+        by_degree.setdefault(weight(key, weights), {})[key] = value
+    total: Terms = {}
+    for one, value in left.items():
+        room = order - weight(one, weights)
+        for degree, part in by_degree.items():
+            if degree <= room:
+                for two, other in part.items():
+                    key = tuple(map(int.__add__, one, two))
+                    total[key] = total.get(key, 0) + value * other
+    return {key: value for key, value in total.items() if value}
+
+
+def substituted(
+    poly: Terms, images: Mapping[int, tuple[Terms, Terms]], weights: Sequence[int], order: int | None
+) -> tuple[Terms, Terms]:
+    """(above, below): the polynomial with variables replaced by quotients, at the same time; above is cut.
+
+    Examples
+    --------
+    >>> x, y = {(1, 0): Fraction(1)}, {(0, 1): Fraction(1)}
+    >>> substituted({(2, 0): Fraction(3)}, {0: (plus(x, y), x)}, (0, 0), None)[1]
+    {(2, 0): Fraction(1, 1)}
+    """
+    size = len(weights)
+    top = {index: max((key[index] for key in poly), default=0) for index in images}
+    raises = {(i, part): powers(images[i][part], top[i], weights, order) for i in images for part in (0, 1)}
+    above: Terms = {}
+    for key, value in poly.items():
+        rest = key
+        for index in images:
+            rest = _moved(rest, index, 0)
+        term: Terms = {rest: value}
+        for index in images:
+            for power in (raises[index, 0][key[index]], raises[index, 1][top[index] - key[index]]):
+                term = short_times(term, power, weights, order)
+        above = plus(above, term)
+    below: Terms = {(0,) * size: Fraction(1)}
+    for index in images:
+        below = times(below, raised(images[index][1], top[index], size))
+    return cut(above, weights, order), below
+
+
+def powers(base: Terms, count: int, weights: Sequence[int], order: int | None) -> list[Terms]:
+    """The powers 0, ..., count of a polynomial, each cut."""
+    found: list[Terms] = [{(0,) * len(weights): Fraction(1)}]
+    for _ in range(count):
+        found.append(short_times(found[-1], base, weights, order))
+    return found

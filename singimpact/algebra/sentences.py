@@ -96,6 +96,55 @@ def _identity(data: Mapping[str, Any], names: Sequence[str]) -> str:
     return f"{left} = {right}{where}"
 
 
+def _composed(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    left, right = (_at_images(data[side], names) for side in ("left", "right"))
+    where = f" where {polynomial(data['relation'][2], names)} = 0" if data["relation"] else ""
+    return f"{left} = {right}{where}{_order(data, names)}"
+
+
+def _at_images(side: Mapping[str, Any], names: Sequence[str]) -> str:
+    images = ", ".join(f"{names[index]} = {_quotient(pair, names)}" for index, pair in side["images"])
+    outer = _quotient(side["outer"], names)
+    return f"[{outer} at {images}]" if images else outer
+
+
+def _order(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    """Up to which degree, in which variables."""
+    if data["order"] is None:
+        return ""
+    small = [(name, weight) for name, weight in zip(names, data["weights"], strict=True) if weight]
+    told = ", ".join(name if weight == 1 else f"{name} (weight {weight})" for name, weight in small)
+    return f", up to degree {data['order']} in {told}"
+
+
+def _equation(data: Mapping[str, Any], clock: str, names: Sequence[str]) -> str:
+    """The equation of motion that the jets in the data say."""
+    pushed = [f"({polynomial(part, names)})*({clock})**{n}" for n, part in enumerate(data["acceleration"]) if part]
+    held = [f"({polynomial(part, names)})*x**{i}*x'**{k}" for (i, k), part in data["force"]]
+    left = " + ".join(["x''", *held])
+    return f"{left} = {' + '.join(pushed) or '0'}"
+
+
+def _motion(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    sigma, v, t = names[:3]
+    told = f"x = {polynomial(data['height'], names)} solves {_equation(data, f'{sigma} + {t}', names)}"
+    if data["launch"] is not None:
+        told += f", and x/{t} = 0 at {v} = {polynomial(data['launch'], names)}"
+    if data["landing"] is not None:
+        told += f", where x' = {polynomial(data['landing'], names)}"
+    return f"{told}, x = 0 and x' = {v} at {t} = 0{_order(data, names)}"
+
+
+def _flight(data: Mapping[str, Any], names: Sequence[str]) -> str:
+    z, sigma, t = names[:3]
+    launch, landing = (polynomial(data[name], names) for name in ("launch", "landing"))
+    return (
+        f"x = {t}*({polynomial(data['rise'], names)}), time {z}*{t}, solves "
+        f"{_equation(data, f'{sigma} + {z}*{t}', names)}, x = 0 at {z} = 0 with x' = {launch} and at {z} = 1 with "
+        f"x' = {landing}{_order(data, names)}"
+    )
+
+
 _SENTENCES = {
     "positive": _positive,
     "chain": _chain,
@@ -103,4 +152,7 @@ _SENTENCES = {
     "value": _value,
     "definite": _definite,
     "identity": _identity,
+    "composed": _composed,
+    "motion": _motion,
+    "flight": _flight,
 }

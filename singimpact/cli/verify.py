@@ -18,12 +18,21 @@ COLOURS = {"proved": "green", "certified": "green", "corrected": "yellow", "open
 @click.command(short_help="check every claim of the paper and print its verdict")
 @click.argument("ids", metavar="[ID]...", nargs=-1)
 @click.option("--beyond", is_flag=True, help="The claims that are not in the paper, and those they rest on.")
+@click.option("--certificates", metavar="DIR", help="Write one JSON file a claim, with what its proof rests on.")
 @output_options
 @click.pass_context
-def command(ctx: click.Context, ids: tuple[str, ...], beyond: bool, as_json: bool, output: str | None) -> None:
+def command(
+    ctx: click.Context,
+    ids: tuple[str, ...],
+    beyond: bool,
+    certificates: str | None,
+    as_json: bool,
+    output: str | None,
+) -> None:
     """Derive, prove and cross-check every claim, or the named ones and those that they rest on.
 
-    Prints the misprints at the end. The exit code is 1 if a claim ends in `error`.
+    Prints the misprints at the end. The exit code is 1 if a claim ends in `error`. The files of --certificates are
+    checked by a second program, singimpact/certificates/claims_checker.py.
     """
     from singimpact.paper.claims.verdicts import verify
 
@@ -34,6 +43,8 @@ def command(ctx: click.Context, ids: tuple[str, ...], beyond: bool, as_json: boo
             on_start=lambda claim, _, total: line.show(next(done), total, f"{claim.id}  {claim.title}"),
             beyond=beyond,
         )
+    if certificates is not None:
+        found.save_certificates(certificates)
     emit(as_json_text(found.as_dict()) if as_json else found.text(_width(output), _painter(output)), output)
     ctx.exit(found.exit_code)
 

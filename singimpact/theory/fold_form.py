@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
 import sympy
 
+from singimpact.algebra.derivations import At, substitution
+from singimpact.algebra.gathering import gathering, remembered
 from singimpact.algebra.jets import Jet
 from singimpact.contact.contact import Contact, derivative_name
 from singimpact.germs.normal_form import normal_form
@@ -21,6 +22,7 @@ from singimpact.theory.sheet import Sheet, sheet
 from singimpact.theory.symbolic_curve import length_weight
 
 sigma, t, eta, k = sympy.symbols("sigma t eta k")
+T = sympy.Symbol("T")  # the true fold coordinate, in certificates
 
 
 @dataclass(frozen=True)
@@ -73,14 +75,17 @@ def _shown(jet: Jet, made: Sheet) -> Any:
     return made.to_sympy(jet).xreplace({t: eta})
 
 
+@remembered
 def cubic_terms() -> dict[tuple[int, int], Any]:
     """The terms of degree 3 of p in (sigma, eta), lengths in units of k: exponents -> coefficient."""
     made = _sheet(3)
-    poly = sympy.Poly(_shown(_in_eta(made.v), made), sigma, eta)
+    folded = _shown(_in_eta(made.v), made)
+    substitution(At(made.to_sympy(made.v), {t: eta - 3 * sigma / 2}), folded)
+    poly = sympy.Poly(folded, sigma, eta)
     return {key: value for key, value in poly.terms() if sum(key) == 3}
 
 
-@lru_cache(maxsize=8)
+@remembered
 def fold_form(order: int) -> FoldForm:
     """The fold form to total degree `order` >= 3.
 
@@ -94,10 +99,14 @@ def fold_form(order: int) -> FoldForm:
     source = _in_eta(found.source)
     bent = source - source.space.generators()[1]
     lead = made.contact.ring.to_sympy(found.lead)
+    shown, outline = _shown(source, made), made.to_sympy(found.offset)
+    if gathering():  # p in the old coordinates is the fold in the new ones
+        in_old = At(made.to_sympy(made.v), {t: eta - 3 * sigma / 2})
+        substitution(At(lead * T**2 + outline, {T: shown}), in_old, order=order, small=[sigma, eta])
     return FoldForm(
         order=order,
-        source=_shown(source, made),
-        outline=made.to_sympy(found.offset),
+        source=shown,
+        outline=outline,
         normal=(sigma, sympy.expand(k * (made.to_sympy(found.residual) + lead * eta**2))),
         residual_vanishes=found.reached,
         invertible=found.invertible and found.offset.coefficient((1, 0)) == 0,

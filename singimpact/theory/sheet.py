@@ -6,18 +6,21 @@ so the unit interval carries the boundary value problem
     Y'' = t [a(sigma + z t) - (f(c + t Y, Y') - f(c, 0))],    Y(0) = Y(1) = 0.
 
 Part by part in the degree of (sigma, t) the right side is known, and two integrals in z give the next part.  Then
-v_c = Y'(0), and the impact velocity Y'(1) is v_c after the involution.
+v_c = Y'(0), and the impact velocity Y'(1) is v_c after the involution.  Y with both velocities is the certificate that
+a sheet leaves where one is gathered.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
+from singimpact.algebra.gathering import gathering, remembered
 from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.algebra.precision import kept_property
+from singimpact.algebra.rings import Exact
+from singimpact.algebra.symbols import SymbolRing
 from singimpact.contact.contact import Contact
 from singimpact.theory.involution import after_iota
 
@@ -69,14 +72,22 @@ def sheet(contact: Contact, order: int) -> Sheet:
     """
     space = JetSpace(("sigma", "t"), order, contact.ring)
     flight = _Flight(contact, space)
-    parts = {}
+    certified = gathering() and isinstance(contact.ring, SymbolRing | Exact)  # balls and doubles prove no identity
+    parts, rise = dict[int, Any](), dict[Any, Any]()
     for degree in range(contact.order, order):
         twice = flight.twice_integrated(degree)
         launch = flight.launch(twice)
+        if certified:
+            rise |= flight.engine.terms(flight.rise(twice, launch))
         parts[degree + 1] = flight.engine.without(launch, 0, space.polynomials)
         if degree + 1 < order:
             flight.extend(degree, twice, launch)
-    return Sheet(contact, order, space.of_parts(parts))
+    made = Sheet(contact, order, space.of_parts(parts))
+    if certified:
+        from singimpact.algebra import derivations  # loads sympy
+
+        derivations.flight(contact, order, rise, made.v.terms, made.xdot.terms)
+    return made
 
 
 class _Flight:
@@ -103,9 +114,13 @@ class _Flight:
         """The part of Y'(0): Y = twice - z twice(1), and both integrals start from 0."""
         return self.engine.scaled(self.engine.at(twice, 0, Fraction(1)), self._minus)
 
+    def rise(self, twice: Any, launch: Any) -> Any:
+        """The part of Y, from its double integral and its part of Y'(0)."""
+        return self.engine.add(twice, self.engine.dot([(self.z, launch)]))
+
     def extend(self, degree: int, twice: Any, launch: Any) -> None:
         """X of degree + 2 and X' of degree + 1, from the double integral of this degree."""
-        y = self.engine.add(twice, self.engine.dot([(self.z, launch)]))
+        y = self.rise(twice, launch)
         self.xdot[degree + 1] = self.engine.derivative(y, 0)
         self.x[degree + 2] = self.engine.dot([(self.t, y)])
 
@@ -138,7 +153,7 @@ class _Flight:
         return self._products[key]
 
 
-@lru_cache(maxsize=32)
+@remembered
 def generic_sheet(j: int, order: int) -> Sheet:
     """The sheet with symbols for all jets, at contact order j."""
     return sheet(Contact.generic(j, order), order)

@@ -28,6 +28,11 @@ def seeds():
 
     from singimpact.algebra import certificates as make
 
+    def quotients(above, below):
+        """above/below = x + y, not cancelled."""
+        right = [[[[1, 0], 1], [[0, 1], 1]], [[[0, 0], 1]]]
+        return {"kind": "identity", "variables": ["x", "y"], "left": [above, below], "right": right, "relation": None}
+
     x, y, r = sympy.symbols("x y r")
     half, oo = sympy.Rational(1, 2), sympy.oo
     calls = [
@@ -44,7 +49,8 @@ def seeds():
         (make.value_at, (3 * x**2 - y) / (2 * x**2 + 1), x, oo), (make.value_at, x / (x**2 + y), x, -oo),
         (make.value_at, x**3 / (x + y), x, oo), (make.value_at, (x - 1) / (x + y), x, 1),
         (make.definite, -(6 * x**2) - 4 * x * y - y**2, x, y), (make.definite, x**2 + x * y + y**2, x, y),
-        (make.identical, (x + y) ** 2, x**2 + 2 * x * y + y**2), (make.identical, x / (x * y), 1 / y),
+        (make.established, quotients([[[2, 0], 1], [[0, 2], -1]], [[[1, 0], 1], [[0, 1], -1]])),
+        (make.established, quotients([[[2, 0], 2], [[0, 2], -2]], [[[1, 0], 2], [[0, 1], -2]])),
         (make.identical, sympy.sqrt(x / (1 + y)) ** 3, x / (1 + y) * sympy.sqrt(x / (1 + y))),
         (make.identical, y / (1 + sympy.sqrt(x + y)), y * (1 - sympy.sqrt(x + y)) / (1 - x - y)),
     ]  # fmt: skip

@@ -26,6 +26,7 @@ SEEN = ["a negative part", "another polynomial", "a sign unproved", "ends out of
 
 @pytest.mark.parametrize("name", SEEN)
 def test_the_fuzzer_sees_a_weakened_checker(name):
-    condition, instead, _ = false.WEAKENED[name]
-    _, wrong = certificates.fuzzed(4000, 1, false.without(condition, instead, "checking"))
+    file = "checking" if name in false.WEAKENED else "checked_identities"
+    condition, instead, _ = (false.WEAKENED | false.IN_IDENTITIES)[name]
+    _, wrong = certificates.fuzzed(4000, 1, false.without(condition, instead, file))
     assert wrong

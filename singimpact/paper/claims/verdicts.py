@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
+from singimpact.certificates.claims_checker import SCHEMA, digest_of
 from singimpact.notebook import table
 from singimpact.paper.claims.layout import Painter, Row, laid_out, unpainted, wrapped
+from singimpact.store import folder, write_text
 
 if TYPE_CHECKING:
     from singimpact.paper.claims.claim import Claim, Verdict
     from singimpact.paper.claims.index import Entry
 
 ERROR = "error"
+WRITTEN = (  # of a verdict, in the file of its certificates: no seconds, which differ from run to run
+    "id", "verdict", "effective", "section", "title", "printed", "corrected", "corrected_kind", "rests_on", "in_model",
+    "certificates",
+)  # fmt: skip
 CORRECTED = "corrected"
 
 
@@ -87,6 +95,39 @@ class VerdictTable(Sequence["Verdict"]):
     def as_dict(self) -> dict[str, Any]:
         """The verdicts as plain data; ``singimpact verify --json`` prints it."""
         return {"claims": [verdict.as_dict() for verdict in self.verdicts]}
+
+    def save_certificates(self, place: str | Path) -> list[Path]:
+        """Write one JSON file a claim into a folder: its verdict and the certificates that it rests on.
+
+        Parameters
+        ----------
+        place : the folder, made if it is missing; of a file that is there already the content is replaced.
+
+        Returns
+        -------
+        list[Path] : the files, in the order of the claims; ``python singimpact/certificates/claims_checker.py FILE``
+            checks one.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import singimpact as si
+        >>> with tempfile.TemporaryDirectory() as place:
+        ...     [file.name for file in si.verify("e:acc").save_certificates(place)]
+        ['e_yeq.json', 'e_acc.json']
+        """
+        made = folder(place)
+        paths = []
+        for verdict in self.verdicts:
+            content = {"schema": SCHEMA} | {name: value for name, value in verdict.as_dict().items() if name in WRITTEN}
+            paths.append(made / f"{verdict.id.replace(':', '_')}.json")
+            text = json.dumps({**content, "digest": digest_of(content)}, indent=1, ensure_ascii=False)
+            write_text(paths[-1], text + "\n")
+        return paths
 
     def text(self, width: int | None = None, paint: Painter = unpainted) -> str:
         """The table, the count of each verdict, and the list of what is misprinted.

@@ -17,7 +17,8 @@ _SAMPLES = [Fraction(n, d) for n, d in ((3, 5), (7, 4), (2, 9), (11, 6), (5, 13)
 def is_zero(expression: Any) -> bool:
     """Whether an expression with rational coefficients and one square root vanishes identically, decided exactly.
 
-    That the terms of a sum cancel is kept as a certificate.
+    Where its terms cancel by the relation of the root, that is kept as a certificate; rational functions that are the
+    same once they are cancelled leave none.
 
     Raises
     ------
@@ -32,7 +33,7 @@ def is_zero(expression: Any) -> bool:
 
 
 def same(left: Any, right: Any) -> bool:
-    """Whether two expressions are equal, decided as by `is_zero`, with a certificate of that."""
+    """Whether two expressions are equal, decided as by `is_zero`, with its certificate."""
     left, right = sympy.sympify(left), sympy.sympify(right)
     equal = _cancels(sympy.together(left - right))
     if equal:

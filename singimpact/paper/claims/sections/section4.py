@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from math import factorial
 from typing import Any
 
 import sympy
 
+from singimpact.algebra.derivations import At, substitution
 from singimpact.algebra.expressions import Name
 from singimpact.algebra.parsing import parse
 from singimpact.algebra.rings import to_sympy
@@ -15,7 +17,7 @@ from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero
 from singimpact.paper.routes import fold
 from singimpact.paper.routes import implicit as route
-from singimpact.paper.routes.implicit import a_symbol, f_symbol, sigma, t, v
+from singimpact.paper.routes.implicit import X, a_symbol, f_symbol, sigma, t, v
 from singimpact.paper.trials import crosscheck
 from singimpact.theory.notation import latex
 from singimpact.theory.sheet import generic_sheet
@@ -94,8 +96,7 @@ def _at_launch(stated: Any) -> Check:
 
 def _depends_on_c(stated: tuple[Any, Any]) -> Check:
     """d/dc of a' and a'' at tau_*(c), the zero of a_c: implicit differentiation of g(tau) = f(c, 0)."""
-    rate = f_symbol(1, 0) / a1  # d tau_*/dc, from a' dtau_* = f_x dc; at a fixed time a' and a'' do not depend on c
-    derived = (a2 * rate, a_symbol(3) * rate)
+    derived = followed_zero()
     check = identity(lambda: derived, "derived by following the zero tau_*(c) of a_c")(stated)
     return Check(
         check.holds and not any(is_zero(part) for part in derived),
@@ -103,6 +104,28 @@ def _depends_on_c(stated: tuple[Any, Any]) -> Check:
         f"{check.evidence}; tau_* is read as the zero of a_c, since at a fixed time a_c' = g' is free of c",
         check.witness,
     )
+
+
+def followed_zero() -> tuple[Any, Any]:
+    """d/dc of a' and a'' at the zero tau_*(c) of a_c, by implicit differentiation of a_c(tau_*) = g(tau_*) - f(c, 0).
+
+    With c + delta the acceleration at tau_* + sigma is a(sigma) - f_10 delta + O(delta^2).
+    """
+    delta = sympy.Symbol("delta")
+    jets = sum(a_symbol(n) * sigma**n / factorial(n) for n in range(1, 5))
+    acceleration = jets - f_symbol(1, 0) * delta - f_symbol(2, 0) * delta**2 / 2
+    at_zero = {sigma: 0, delta: 0}
+    rate = sympy.cancel(-sympy.diff(acceleration, delta).subs(at_zero) / sympy.diff(acceleration, sigma).subs(at_zero))
+    moved = {sigma: rate * delta}
+    substitution(At(acceleration, moved), sympy.Integer(0), order=1, small=[delta])
+    found = []
+    for order in (1, 2):
+        derivative = sympy.diff(acceleration, sigma, order)
+        by_both = [sympy.diff(derivative, letter).subs(at_zero) for letter in (sigma, delta)]
+        found.append(sympy.cancel(by_both[0] * rate + by_both[1]))
+        start = derivative.subs(at_zero)
+        substitution(At(derivative, moved), At(start + X * delta, {X: found[-1]}), order=1, small=[delta])
+    return found[0], found[1]
 
 
 def _leading(j: int, order: int) -> Any:

@@ -42,15 +42,16 @@ def _discontinuity(stated: tuple[Any, int]) -> Check:
     )
 
 
-def _exists(stated: tuple[int, int]) -> Check:
-    """gamma has the stated tangency, from the stated side: a hyperbolic saddle for every r, found on true orbits."""
-    power, side = stated
+def _exists(stated: tuple[int, int, Any]) -> Check:
+    """(power, side, bound of C/a'): a hyperbolic saddle for every r, and gamma on true orbits; the bound is that of P_*."""
+    power, side, bound = stated
     coefficient = leading_coefficient(1)  # beside a' sigma^2
     cases = true_orbits.gamma_cases(1)
     worst = max(case.error for case in cases)
     curved = all(abs(case.found) > 0 for case in cases) and power == 2
     rate = r_of_lambda(1)
     jump = sympy.cancel(fold.horizon()[1] / (6 * fold.k * route.sigma**2))  # of P_*, beside a' sigma^2 too
+    ends = tuple(value_at(coefficient, lambda_, end) for end in (0, 1))
     return every(
         [
             (
@@ -59,7 +60,13 @@ def _exists(stated: tuple[int, int]) -> Check:
             ),
             (
                 f"gamma lies between Pi_0 and P_*: 0 < coefficient < {jump}",
-                positive_on(coefficient, lambda_, 0, 1) and positive_on(jump - coefficient, lambda_, 0, 1),
+                positive_on(coefficient, lambda_, 0, 1)
+                and positive_on(jump - coefficient, lambda_, 0, 1)
+                and bound == jump,
+            ),
+            (
+                f"it falls from {ends[0]} to {ends[1]} as r grows from 0 to 1",
+                negative_on(sympy.diff(coefficient, lambda_), lambda_, 0, 1) and ends == (sympy.Rational(1, 3), 0),
             ),
             (
                 f"quadratic, from sigma < 0, found on true orbits: {cases[0].line()}; worst relative error {worst:.0e}",
@@ -226,9 +233,14 @@ CLAIMS = (
         id="t:t2-exists",
         section="4.1(a)",
         title="G has an invariant arc gamma, quadratically tangent to Pi_0 from tau < tau_*, between P_* and Pi_0",
-        printed=Statement(r"\gamma:\ v\sim C\sigma^2,\ \sigma<0,\quad0<C<\tfrac38a'", (2, -1)),
+        printed=Statement(r"\gamma:\ v\sim C\sigma^2,\ \sigma<0,\quad0<C<\tfrac38a'", (2, -1, sympy.Rational(3, 8))),
         verify=_exists,
-        mutants=((3, -1), (2, 1)),
+        mutants=(
+            (3, -1, sympy.Rational(3, 8)),
+            (2, 1, sympy.Rational(3, 8)),
+            (2, -1, sympy.Rational(5, 8)),
+            (2, -1, sympy.Rational(1, 3)),
+        ),
         rests_on=("s4-saddle-m3", "s4-horizon-line"),
     ),
     Claim(

@@ -15,7 +15,9 @@ from singimpact.paper.claims.sections.section4a_fold import bent, first_componen
 from singimpact.paper.claims.verifiers import every, identity, is_zero
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import eta, m
-from singimpact.paper.routes.implicit import r, sigma
+from singimpact.paper.routes.implicit import a_symbol, r, sigma, t
+from singimpact.theory.fold_form import fold_form
+from singimpact.theory.sheet import generic_sheet
 
 HALF, THREE_HALVES = sympy.Rational(1, 2), sympy.Rational(3, 2)
 QUARTIC = m**2 * (m - HALF) ** 2
@@ -36,9 +38,30 @@ def _blow_up(stated: tuple[Any, Any, Any]) -> Check:
         (rate, image)
     )
     return every(
-        [(check.evidence, check.holds), *first_component(eta + (rate - m) * sigma, power)],
+        [
+            (check.evidence, check.holds),
+            *first_component(eta + (rate - m) * sigma, power),
+            (
+                "the square of the new eta begins with Q_r at degree 2, so over s^2 it is Q_r(1, m) and a smooth multiple of s",
+                _square_begins_with_Q(),
+            ),
+        ],
         witness=lambda: dict(check.witness or bent(eta + (rate - m) * sigma)),
     )
+
+
+def _square_begins_with_Q() -> bool:
+    """Whether k eta'^2 = P(sigma') - v', in the jets, has no term of degree below 2 and k Q_r in degree 2.
+
+    A change of coordinates (sigma, t) -> (sigma, eta + O(2)) keeps both; on (s, s m) a term of degree n has the factor s^n.
+    """
+    sheet = generic_sheet(1, 4)
+    outline = fold_form(4).outline_of_p.subs(sigma, sigma + t)
+    square = sympy.Poly(sympy.cancel(outline + r * sheet.to_sympy(sheet.xdot)), sigma, t)
+    leading = sum(value * sigma**i * t**n for (i, n), value in square.terms() if i + n == 2)
+    none_below = all(value == 0 for key, value in square.terms() if sum(key) < 2)
+    quadratic = a_symbol(1) / 6 * fold.Q_r().subs(eta, fold.fold_coordinate())
+    return none_below and is_zero(sympy.expand(leading - quadratic))
 
 
 def _q_zeros(stated: tuple[Any, Any, Any]) -> Check:

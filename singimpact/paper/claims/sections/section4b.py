@@ -8,24 +8,76 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_in, positive_on
+from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.sections.section4b_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, same
 from singimpact.paper.routes import fold
+from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.fold import k
-from singimpact.paper.routes.implicit import a_symbol, r, sigma, t
+from singimpact.paper.routes.implicit import X, Y, a_symbol, r, sigma, t
 from singimpact.paper.trials import leaves
+from singimpact.theory.sheet import generic_sheet
 
-ell, slope = sympy.symbols("ell p")
+ell, slope, mu, nu = sympy.symbols("ell p mu nu")
 THIRD = sympy.Rational(1, 3)
 
 
 def on_ray() -> tuple[Any, Any]:
     """p and q on t = l sigma: v of p over sigma^2, and v of q over the square of its own first component, at sigma = 0."""
     first, second = fold.phi()
-    launch = sympy.cancel(fold.p()[1].subs(t, ell * sigma) / sigma**2)
-    landed = sympy.cancel((-r * second / first**2).subs(t, ell * sigma))
-    return sympy.factor(launch), sympy.factor(landed)
+    launch = sympy.factor(sympy.cancel(fold.p()[1].subs(t, ell * sigma) / sigma**2))
+    landed = sympy.factor(sympy.cancel((-r * second / first**2).subs(t, ell * sigma)))
+    ray = {t: ell * sigma}
+    substitution(At(fold.p()[1], ray), At(sigma**2 * X, {X: launch}))
+    substitution(At(-r * second, ray), At(X * Y**2, {X: landed, Y: first.subs(ray)}))
+    return launch, landed
+
+
+def _on_rays(stated: tuple[Any, Any, Any, Any, Any]) -> Check:
+    """p and q on t = l sigma to second order, and the monomial stated[4] that divides all that is left out.
+
+    v_c(sigma, 0) = 0, so v_c and the impact velocity have the factor t, which is l sigma here: the factor l stays.
+    """
+    *parts, monomial = stated
+    check = identity(
+        lambda: (
+            fold.p()[0],
+            fold.p()[1].subs(t, ell * sigma),
+            fold.phi()[0].subs(t, ell * sigma),
+            (-r * fold.phi()[1]).subs(t, ell * sigma),
+        )
+    )(tuple(parts))
+    sheet = generic_sheet(1, 4)
+    lowest, divided = [], True
+    for jet, factor, leading in ((sheet.v, 1, parts[1]), (sheet.xdot, -r, parts[3])):
+        series = factor * sheet.to_sympy(jet)
+        left = sympy.expand(series.subs(t, ell * sigma) - leading.subs(k, a_symbol(1) / 6))
+        powers = [key for key, value in sympy.Poly(left, sigma, ell).terms() if value != 0]
+        lowest.append(tuple(min(key[n] for key in powers) for n in (0, 1)))
+        quotient = sympy.cancel(left / monomial)
+        if sympy.fraction(quotient)[1].has(sigma, ell):
+            divided = False
+        else:
+            rest = At(leading.subs(k, a_symbol(1) / 6) + monomial * X, {X: sympy.expand(quotient)})
+            substitution(At(series, {t: ell * sigma}), rest)
+    stated_powers = tuple(sympy.Poly(monomial, sigma, ell).monoms()[0])
+    return every(
+        [
+            (check.evidence, check.holds),
+            ("y_c = v at t = 0, so v_c(sigma, 0) = 0 and both velocities have the factor t", _vanish_at_launch()),
+            (
+                f"to degree 4 what is left out has the factor {monomial} and no higher power",
+                divided and set(lowest) == {stated_powers},
+            ),
+        ],
+        witness=lambda: dict(check.witness or {"factor of what is left out": f"sigma^{lowest[0][0]} l^{lowest[0][1]}"}),
+    )
+
+
+def _vanish_at_launch() -> bool:
+    """Whether y_c(sigma, v; 0) = v, so that v_c(sigma, 0) = 0 whatever the higher terms are."""
+    return is_zero(route.y_c(4).subs(t, 0) - route.v)
 
 
 def _positive_for_all(expression: Any, *, rate: bool = True) -> bool:
@@ -71,9 +123,7 @@ def _sector(stated: tuple[Any, Any]) -> Check:
 
 def _image_bounds(bound: Any) -> Check:
     """phi of the sector: with p = t/(sigma + t) in [0, 3/2], v/(sigma + t)^2 = k (3p - p^2) runs from 0 to bound a'."""
-    first, second = fold.phi()
-    ratio = sympy.expand(sympy.cancel((second / (k * first**2)).subs(sigma, t * (1 - slope) / slope)))
-    edge = ratio.subs(slope, sympy.Rational(3, 2))
+    ratio, edge = image_of_sector()
     return every(
         [
             (
@@ -88,9 +138,18 @@ def _image_bounds(bound: Any) -> Check:
     )
 
 
+def image_of_sector() -> tuple[Any, Any]:
+    """(v/(k s^2) of phi as a function of p = t/s, s = sigma + t; its value at the edge p = 3/2, where 3 sigma + t = 0)."""
+    first, second = fold.phi()
+    by_slope = {sigma: t * (1 - slope) / slope}
+    ratio = sympy.expand(sympy.cancel((second / (k * first**2)).subs(by_slope)))
+    substitution(At(second, by_slope), At(k * X * (t / slope) ** 2, {X: ratio}))
+    return ratio, ratio.subs(slope, sympy.Rational(3, 2))
+
+
 def _half_plane(stated: int) -> Check:
-    """The sign of v on {(3/8) a' sigma^2 <= v <= 0}, a' < 0: the half-plane it lies in."""
-    lower = sympy.Rational(3, 8) * a_symbol(1)
+    """The sign of v on T'', between the edge of phi's image and 0, a' < 0: the half-plane it lies in."""
+    lower = image_of_sector()[1] / 6 * a_symbol(1)
     return every(
         [
             (
@@ -121,6 +180,9 @@ def _range(stated: Any) -> Check:
 
 SLACK = (1 - r) / 3
 """By how much the bounds of p~ and q~ leave their limits, relative to these."""
+FOR_K, FOR_L = (sympy.factor(part * SLACK) for part in (-k * (3 + ell), -r * k * (3 + 2 * ell) * (1 + ell)))
+"""The paper's conditions on delta: K delta < FOR_K, L delta < FOR_L, where l mu sigma^3 and l nu sigma^3 are what p and q
+leave out on a ray (s4b-rays), |mu| <= K, |nu| <= L.  As l -> 0 they tend to -k (1 - r) and -r k (1 - r), not to 0."""
 
 
 def _bound_p(stated: Any) -> Check:
@@ -134,7 +196,13 @@ def _bound_p(stated: Any) -> Check:
             (
                 f"p~ - bound = -k ({sympy.factor(leading)}) sigma^{lowest} + ..., positive for l > 0, 0 < r < 1",
                 _positive_for_all(leading),
-            )
+            ),
+            (
+                f"p~ - bound = l sigma^2 ({FOR_K} + mu sigma), so it is positive where K delta < {FOR_K}, for all l at once",
+                is_zero(launch * sigma**2 + ell * sigma**3 * mu - stated - ell * sigma**2 * (FOR_K + mu * sigma))
+                and _positive_for_all((FOR_K + k * (1 - r)) / -k)
+                and positive_in(FOR_K, {ell: (0, sympy.oo), r: (0, 1), k: (-sympy.oo, 0)}),
+            ),
         ],
         witness=lambda: {
             "sigma": "0",
@@ -159,6 +227,17 @@ def _bound_q(stated: Any) -> Check:
                 _positive_for_all(gap),
             ),
             ("with the slack (1 - r)/3 of the limit, as below p~", is_zero(stated / sigma**2 / landed - 1 - SLACK)),
+            (
+                f"bound - q~ = l sigma^2 ({FOR_L} - nu sigma)/(1 + l)^3, so it is positive where L delta < {FOR_L}, for all l at once",
+                is_zero(
+                    stated
+                    - landed * sigma**2
+                    - ell * sigma**3 * nu / (1 + ell) ** 3
+                    - ell * sigma**2 * (FOR_L - nu * sigma) / (1 + ell) ** 3
+                )
+                and _positive_for_all((FOR_L + r * k * (1 - r)) / -k)
+                and positive_in(FOR_L, {ell: (0, sympy.oo), r: (0, 1), k: (-sympy.oo, 0)}),
+            ),
         ],
         witness=lambda: {
             "k": "-1",
@@ -183,6 +262,10 @@ def _ratio(stated: Any) -> Check:
             ("q~/p~ -> r M", is_zero(limit - r * M)),
             ("which is below the bound for l > 0, 0 < r < 1", _positive_for_all(stated - limit)),
             ("the quotient of the bounds of q~ and p~", is_zero(stated / limit - (1 + SLACK) / (1 - SLACK))),
+            (
+                "and the bound is below 1, since M < 1 and 2 + r - r (4 - r) = (1 - r)(2 - r) > 0",
+                _positive_for_all(1 - stated) and positive_on(2 + r - r * (4 - r), r, 0, 1),
+            ),
         ],
         witness=lambda: {
             "l": "1",
@@ -299,8 +382,8 @@ def _epsilon(stated: tuple[int, Any]) -> Check:
                 is_zero(landed + 2 * sigma) and stated[0] == 1 and is_zero(speed - stated[1]),
             ),
             (
-                "v > 0 for k < 0, quadratically tangent to Pi_0",
-                positive_on(speed.subs(r, sympy.Rational(1, 2)), k, -sympy.oo, 0),
+                "v > 0 for k < 0 and every r in (0, 1), quadratically tangent to Pi_0",
+                positive_in(speed, {k: (-sympy.oo, 0), r: (0, 1)}),
             ),
         ]
     )
@@ -350,22 +433,18 @@ CLAIMS = (
         "s4b-rays",
         "p and q on a ray t = l sigma",
         Statement(
-            r"p=(\sigma,-k(3\ell+\ell^2)\sigma^2+O(\sigma^3)),\ q=(\sigma(1+\ell),-rk(3\ell+2\ell^2)\sigma^2+O(\sigma^3))",
-            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2),
+            r"p=(\sigma,-k(3\ell+\ell^2)\sigma^2+O(\ell\sigma^3)),\ q=(\sigma(1+\ell),-rk(3\ell+2\ell^2)\sigma^2+O(\ell\sigma^3))",
+            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**3),
         ),
-        identity(
-            lambda: (
-                fold.p()[0],
-                fold.p()[1].subs(t, ell * sigma),
-                fold.phi()[0].subs(t, ell * sigma),
-                (-r * fold.phi()[1]).subs(t, ell * sigma),
-            )
-        ),
+        _on_rays,
         (
-            (sigma, -_P * sigma**2, sigma * (1 + ell), _Q * sigma**2),
-            (sigma, _P * sigma**2, sigma * (1 - ell), _Q * sigma**2),
+            (sigma, -_P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**3),
+            (sigma, _P * sigma**2, sigma * (1 - ell), _Q * sigma**2, ell * sigma**3),
+            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell**2 * sigma**3),
+            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**4),
+            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, sigma**3),
         ),
-        ("e:pnew", "e:phinew"),
+        ("e:pnew", "e:phinew", "e:yeq"),
     ),
     _claim(
         "s4b-l-range",

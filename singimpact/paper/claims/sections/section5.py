@@ -106,6 +106,12 @@ def _place(stated: tuple[Any, Any]) -> Check:
                 and value_at(rule, m, high) == 1
                 and positive_on(sympy.diff(rule, m), m, low, high),
             ),
+            (
+                "none elsewhere: r(m) < 0 for m < -1, 0 at -1, and > 1 for m > 0",
+                negative_on(rule, m, -sympy.oo, -1)
+                and value_at(rule, m, -1) == 0
+                and positive_on(rule - 1, m, 0, sympy.oo),
+            ),
             ("one root there at r = 1/2, by Sturm", roots_inside(half, m, low, high) == 1),
         ]
     )
@@ -119,9 +125,11 @@ def _slopes(sign: int) -> Check:
 
 
 def _jacobian(stated: Any) -> Check:
+    """The entries but *, each as derived: d(mbar)/dm by implicit differentiation of s5-hbar."""
     derived = swan.Dh_bar()
-    slope = sympy.diff(swan.f_map(), m) / sympy.diff(swan.g_map(), m)
-    return identity(lambda: (derived[0, 0], derived[0, 1], slope))((stated[0, 0], stated[0, 1], stated[1, 1]))
+    return identity(
+        lambda: (derived[0, 0], derived[0, 1], derived[1, 1]), "the derivative of h-bar at its fixed point"
+    )((stated[0, 0], stated[0, 1], stated[1, 1]))
 
 
 def _saddle(stated: tuple[int, int]) -> Check:
@@ -132,7 +140,7 @@ def _saddle(stated: tuple[int, int]) -> Check:
     return every(
         [
             ("1 + m_* in (0, 1) and f'/g' > 1 for every r in (0, 1)", (inside, above) == stated),
-            ("s = 0 is invariant, and carries f'/g'", swan.Dh_bar()[0, 1] == 0),
+            ("s' = (1 + m) s, so s = 0 is invariant, and carries f'/g'", swan.Dh_bar()[0, 1] == 0),
         ]
     )
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from math import factorial
 from typing import Any
 
 import sympy
 
 from singimpact.algebra.certificates import definite
+from singimpact.algebra.derivations import At, substitution
 from singimpact.contact.points import tangency_points
 from singimpact.impact_oscillator import linear
 from singimpact.paper.claims.claim import Check, Statement, in_section
@@ -22,18 +24,41 @@ STEP, LIFT = 1e-6, 1e-4  # along sigma to either side of the end of gamma; in v,
 
 def _birth(stated: int) -> Check:
     """Sign of d (c - c_0) for which a_c has two zeros near a swan: a'' sigma^2/2 + (da/dc)(c - c_0) = 0."""
-    second, rate, step = sympy.symbols("a_d2 a_c delta", nonzero=True)
-    near = sympy.Poly(second * sigma**2 / 2 + rate * step, sigma)
-    square = sympy.cancel(-near.nth(0) / near.nth(2))
-    product = sympy.cancel(square * second**2 / (second * rate * step))  # sigma^2 in units of d delta / a''^2
+    rise, bend = zeros_by_clearance()
+    second, rate = sympy.symbols("a_d2 a_c")
+    share = sympy.cancel(second * rate * bend / second**2)  # d (c - c_0) = share a''^2 sigma^2 on the zeros
     return every(
         [
+            ("da/dc != 0, so the zeros are a graph c - c_0 = delta(sigma), with delta'(0) = 0", rise == 0),
             (
-                f"sigma^2 = {product} d (c - c_0)/a''^2: two zeros where d (c - c_0) < 0, none where it is > 0",
-                sympy.sign(product) == stated,
-            )
+                f"d delta(sigma) = {share} a''^2 sigma^2 + O(3): two zeros where d (c - c_0) < 0, none where it is > 0",
+                share.is_Rational and sympy.sign(share) == stated,
+            ),
         ]
     )
+
+
+def zeros_by_clearance() -> tuple[Any, Any]:
+    """(first, second) Taylor coefficient of delta(sigma), a(sigma, delta(sigma)) = 0, where a = a_sigma = 0, a'' != 0.
+
+    a is any function of (sigma, delta), delta = c - c_0, with da/dc != 0, by its Taylor polynomial of degree 3.
+    """
+    delta = sympy.Symbol("delta")
+    jets = {(2, 0): "a_d2", (0, 1): "a_c"}
+    letters = {
+        (i, n): sympy.Symbol(jets.get((i, n), f"a_{i}{n}")) for i in range(4) for n in range(4 - i) if i > 1 or n
+    }
+    near = sum(letter * sigma**i * delta**n / (factorial(i) * factorial(n)) for (i, n), letter in letters.items())
+    at_swan = {sigma: 0, delta: 0}
+    by_clearance = sympy.diff(near, delta).subs(at_swan)
+    rise = sympy.cancel(-sympy.diff(near, sigma).subs(at_swan) / by_clearance)
+    along = sum(
+        (sympy.diff(near, (sigma, 2 - n), (delta, n)).subs(at_swan) * rise**n * (1, 2, 1)[n] for n in range(3)),
+        sympy.Integer(0),
+    )
+    bend = sympy.cancel(-along / by_clearance) / 2
+    substitution(At(near, {delta: rise * sigma + bend * sigma**2}), sympy.Integer(0), order=2, small=[sigma])
+    return rise, bend
 
 
 def _side(stated: int) -> Check:
@@ -104,11 +129,11 @@ def _symmetric(stated: int) -> Check:
 
 def _ends(stated: tuple[int, int]) -> Check:
     """Signs of a' at A and at B for kappa > 0."""
-    slope = sympy.diff(model.acceleration(), sigma) / kappa
-    found = (int(sympy.sign(slope.subs(sigma, -1))), int(sympy.sign(slope.subs(sigma, 1))))
+    slopes = [model.slope_of_acceleration(point[0]) / kappa for point in (model.A, model.B)]
+    found = tuple(int(sympy.sign(slope)) for slope in slopes)
     return every(
-        [(f"a' at A and B is {slope.subs(sigma, -1)} kappa and {slope.subs(sigma, 1)} kappa", found == stated)],
-        witness=lambda: {"kappa": "1", "a'(A)": str(slope.subs(sigma, -1)), "a'(B)": str(slope.subs(sigma, 1))},
+        [(f"a' at A and B is {slopes[0]} kappa and {slopes[1]} kappa", found == stated)],
+        witness=lambda: {"kappa": "1", "a'(A)": str(slopes[0]), "a'(B)": str(slopes[1])},
     )
 
 

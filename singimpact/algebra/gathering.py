@@ -1,0 +1,120 @@
+"""The open collection of certificates, which a derivation hands its own to, also when its value comes from a cache.
+
+Nothing here makes a certificate (`certificates`, `derivations`) or checks one by itself (`checking`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
+
+from singimpact.algebra.checking import accepts
+from singimpact.algebra.sentences import sentence
+
+P = ParamSpec("P")
+R = TypeVar("R")
+Certificate = dict[str, Any]
+_OPEN: ContextVar[list[Certificate] | None] = ContextVar("certificates", default=None)
+
+
+@contextmanager
+def collected() -> Iterator[list[Certificate]]:
+    """A list that gathers every certificate established while it is open, each once."""
+    found: list[Certificate] = []
+    token = _OPEN.set(found)
+    try:
+        yield found
+    finally:
+        _OPEN.reset(token)
+
+
+def established(certificate: Certificate) -> bool:
+    """Whether the checker accepts a certificate; if so it joins the open collection, with the sentence of its data."""
+    if not accepts(certificate):
+        return False
+    certificate = {"kind": certificate["kind"], "says": sentence(certificate), **certificate}
+    gathering = _OPEN.get()
+    if gathering is not None and certificate not in gathering:
+        gathering.append(certificate)
+    return True
+
+
+def gathering() -> bool:
+    """Whether a collection is open: without one a derivation need not make its certificate."""
+    return _OPEN.get() is not None
+
+
+def left_behind(certificate: Certificate) -> None:
+    """The certificate of a derivation joins the open collection.
+
+    Raises
+    ------
+    ArithmeticError : the checker refuses it, so that what was derived is wrong.
+    """
+    if not established(certificate):
+        raise ArithmeticError(f"the certificate of a derivation is refused: {_said(certificate)}")
+
+
+def _said(certificate: Certificate) -> str:
+    try:
+        return sentence(certificate)
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        return f"its data are damaged, {error}"
+
+
+def _handed_on(certificates: Iterable[Certificate]) -> None:
+    """Certificates that were accepted before join the open collection, each once."""
+    found = _OPEN.get()
+    if found is not None:
+        found += [each for each in certificates if each not in found]
+
+
+class Remembered:
+    """The results of a derivation, each with the certificates that were left while it ran.
+
+    A result found while no collection was open has none; it is derived again when one is.
+    """
+
+    def __init__(self) -> None:
+        self._results: dict[Hashable, tuple[Any, tuple[Certificate, ...] | None]] = {}
+
+    def result(self, key: Hashable, derive: Callable[[], R]) -> R:
+        """The result for a key, derived when it is not known; its certificates join the open collection."""
+        if key not in self._results or (gathering() and self._results[key][1] is None):
+            if gathering():
+                with collected() as found:
+                    value = derive()
+                self._results[key] = value, tuple(found)
+            else:
+                self._results[key] = derive(), None
+        known, certificates = self._results[key]
+        _handed_on(certificates or ())
+        return known  # type: ignore[no-any-return]
+
+
+def remembered(function: Callable[P, R]) -> Callable[P, R]:
+    """A derivation whose results are kept, and leave their certificates each time that they are used.
+
+    Examples
+    --------
+    >>> form = {"kind": "definite", "variables": ["x", "y"], "form": ["1", "0", "1"], "sign": 1}
+    >>> derive = remembered(lambda: left_behind(form))
+    >>> derive()
+    >>> for _ in range(2):
+    ...     with collected() as found:
+    ...         derive()
+    ...     print(len(found))
+    1
+    1
+    """
+    results = Remembered()
+
+    @wraps(function)
+    def derive(*args: P.args, **kwargs: P.kwargs) -> R:
+        key = (args, tuple(sorted(kwargs.items())))
+        return results.result(key, lambda: function(*args, **kwargs))
+
+    return derive

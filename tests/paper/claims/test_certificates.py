@@ -1,0 +1,200 @@
+"""Certificates of the claims: none says X = X, each number in one matters, and a wrong derivation loses its claims."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from tampering import bumped, changed, leaves
+
+from singimpact.algebra.checking import accepts
+from singimpact.paper.claims import CLAIMS, run, select
+
+# proved, and nothing to hand on: the reason
+WITHOUT = {"e:lin": "the period of a cosine, which is no statement about polynomials"}
+SERIES = ("composed", "motion", "flight")
+# proved without a derivation: the reason
+UNDERIVED = WITHOUT | {
+    "s4b-M": "an inequality between two functions that are given in the statement",
+    "s4b-r-ineq": "an inequality between two functions that are given in the statement",
+}
+
+
+@pytest.fixture(scope="module")
+def verdicts():
+    return {verdict.id: verdict for verdict in run(select(), kept=True)}
+
+
+def all_of(verdicts):
+    texts = {json.dumps(part): part for verdict in verdicts.values() for part in verdict.certificates}
+    return [json.loads(text) for text in texts]
+
+
+def test_no_certificate_says_that_something_is_equal_to_itself(verdicts):
+    assert not [part["says"] for part in all_of(verdicts) if "left" in part and part["left"] == part["right"]]
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_what_is_proved_has_a_certificate(name, verdicts):
+    verdict = verdicts[name]
+    if (verdict.corrected_kind or verdict.kind) == "proved":
+        assert bool(verdict.certificates) != (name in WITHOUT)
+        assert any(part["kind"] in SERIES for part in verdict.certificates) != (name in UNDERIVED)
+
+
+def test_each_certificate_holds_as_json(verdicts):
+    assert all(accepts(part) for part in all_of(verdicts))
+
+
+def coefficients(certificate):
+    """The paths of the coefficients of polynomials, by their place in [exponents, coefficient]."""
+    for path in leaves(certificate):
+        part = certificate
+        for step in path[:-1]:
+            part = part[step]
+        if isinstance(part, list) and len(part) == 2 and isinstance(part[0], list) and path[-1] == 1:
+            yield path
+
+
+def test_each_coefficient_of_a_derivation_matters(verdicts):
+    """Without the sentence, which would refuse each change by itself: the polynomials themselves are multiplied out."""
+    tried, without_effect = 0, []
+    for certificate in all_of(verdicts):
+        if certificate["kind"] in SERIES:
+            assert not accepts(changed(certificate, next(coefficients(certificate)), bumped))
+            bare = {key: part for key, part in certificate.items() if key != "says"}
+            for path in [path for path in coefficients(bare) if "relation" not in path][:12]:
+                tried += 1
+                if accepts(changed(bare, path, bumped)):
+                    without_effect.append((certificate, path))
+    assert tried > 500
+    # a term that the images of its own side send to 0, or beyond the order
+    assert all(part["kind"] == "composed" and path[1] in ("outer", "images") for part, path in without_effect)
+    # (or, 0 being 0/1, the denominator of 0)
+    sides = [(part, part[path[0]]) for part, path in without_effect]
+    assert all(part["order"] is not None or side["images"] or not side["outer"][0] for part, side in sides)
+    assert len(without_effect) < tried / 8
+
+
+def test_each_number_of_a_proof_of_signs_matters(verdicts):
+    for certificate in all_of(verdicts):
+        if certificate["kind"] not in SERIES:
+            for path in leaves(certificate):
+                if path[-1] in ("roots", "sign", "all", "first") or "expansion" in path:
+                    assert not accepts(changed(certificate, path, bumped)), (certificate["says"], path)
+
+
+# file below singimpact: what stands there, what stands there instead, a claim that must fail
+MUTANTS = {
+    "the launch of a flight turned round": (
+        "theory/sheet.py", "self._minus = ring.rational(Fraction(-1))", "self._minus = ring.rational(Fraction(1))",
+        "e:degen"),
+    "one integral of two": (
+        "theory/sheet.py", "self.engine.integral(self.engine.integral(self._right_side(degree), 0), 0)",
+        "self.engine.integral(self._right_side(degree), 0)", "e:swan"),
+    "a jet of the acceleration without its factorial": (
+        "contact/contact.py", "* ring.rational(Fraction(1, factorial(k))) for k in free", "for k in free",
+        "e:vtaylor-t3"),
+    "the involution with another sign": (
+        "theory/involution.py", "return sigma + t, -t", "return sigma - t, -t", "e:phinew"),
+    "an outline that is halved": (
+        "theory/fold_form.py", "outline = _shown(source, made), made.to_sympy(found.offset)",
+        "outline = _shown(source, made), made.to_sympy(found.offset) / 2", "e:pdef"),
+    "a step of the normal form of another size": (
+        "germs/normal_form.py", "step = value * ring.rational(Fraction(1, power))", "step = value", "e:pdef"),
+    "a motion without a factor": (
+        "paper/routes/implicit.py", "/ ((n + 1) * (n + 2)))", "/ ((n + 1) * (n + 1)))", "e:acc"),
+    "the sheet one degree short": (
+        "paper/routes/implicit.py", "for degree in range(1, order + 1):", "for degree in range(1, order):", "e:pnew"),
+    "DG without the reset": (
+        "paper/routes/implicit.py", "matrix = (restitution * Dphi()", "matrix = (Dphi()", "s3-DG"),
+    "an eigenvector turned round": (
+        "paper/routes/implicit.py", "x, y = -(matrix", "x, y = (matrix", "s3-slope"),
+    "a horizon that is another line": (
+        "paper/routes/fold.py", "line = sympy.cancel(-slope.nth(0) / slope.nth(1))",
+        "line = sympy.cancel(-slope.nth(0) / slope.nth(1) / 2)", "s4-fold-form"),
+    "a square that is doubled": (
+        "paper/routes/fold.py", "found = sympy.expand(sympy.cancel(psi_q()[1] / square))",
+        "found = sympy.expand(2 * sympy.cancel(psi_q()[1] / square))", "e:meq"),
+    "a slope of m' with a factor": (
+        "paper/routes/fold.py", "found = sympy.diff(h_blown_up()[1], m)", "found = 2 * sympy.diff(h_blown_up()[1], m)",
+        "s4-saddle-m3"),
+    "an entry above the diagonal": (
+        "paper/routes/fold.py", "first = [sympy.diff(new, letter).subs(s, 0) for letter in (s, m)]",
+        "first = [sympy.diff(new, letter).subs(s, 1) for letter in (s, m)]", "s4-mu-direction"),
+    "r of m upside down": (
+        "paper/routes/fold.py", "found = sympy.factor(-cubic.nth(0) / cubic.nth(1))",
+        "found = sympy.factor(-cubic.nth(1) / cubic.nth(0))", "s4-m3"),
+    "the entry of D h-bar doubled": (
+        "paper/routes/swan.py", "slope = sympy.factor(sympy.cancel(sympy.diff(f_map(), m)",
+        "slope = sympy.factor(sympy.cancel(2 * sympy.diff(f_map(), m)", "s5-saddle"),
+    "a power of the new s": (
+        "paper/routes/swan.py", "found = -r * impact - growth**3 * launch", "found = -r * impact - growth**2 * launch",
+        "s5-mstar-place"),
+    "P_j without a factor": (
+        "theory/homogeneous.py", "(j + 1) * (j + 2) * launch_velocity(j, sympy.Integer(1), lambda_)",
+        "(j + 1) * launch_velocity(j, sympy.Integer(1), lambda_)", "t:t2-repelling"),
+    "mu without 1/lambda": (
+        "theory/homogeneous.py", "found = sympy.factor((P(j) / Q(j)) ** 2 / lambda_)",
+        "found = sympy.factor((P(j) / Q(j)) ** 2)", "s6n-accumulate"),
+    "a leading coefficient with a factor": (
+        "theory/homogeneous.py", "found = sympy.factor((1 - lambda_) * P(j)",
+        "found = sympy.factor(3 * (1 - lambda_) * P(j)", "t:t3-repelling"),
+    "a launch of the model without a term": (
+        "paper/routes/unfolding.py", "displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2))",
+        "displaced = sum(value * s ** (n + 2) / (n + 2)", "s6-sections"),
+    "a shadow that is another": (
+        "paper/routes/unfolding.py", "found = sympy.expand(total - 2 * t)", "found = sympy.expand(total - t)",
+        "s6n-shadow-neg"),
+    "E mirrored": (
+        "paper/routes/unfolding.py", "E = (-sympy.sqrt(3), 2 * sympy.sqrt(3))",
+        "E = (sympy.sqrt(3), -2 * sympy.sqrt(3))", "s6p-BE"),
+    "a birth of zeros by another power": (
+        "paper/claims/sections/section6.py", "bend = sympy.cancel(-along / by_clearance) / 2",
+        "bend = sympy.cancel(-along / by_clearance**3) / 2", "s6-d"),
+    "a zero followed the wrong way": (
+        "paper/claims/sections/section4.py", "rate = sympy.cancel(-sympy.diff(acceleration, delta)",
+        "rate = sympy.cancel(sympy.diff(acceleration, delta)", "s4-depends-on-c"),
+}  # fmt: skip
+
+PROGRAM = """
+import importlib.machinery, sys
+file, old, new, name = sys.argv[1:]
+loader = importlib.machinery.SourceFileLoader
+read, stats = loader.get_data, loader.path_stats
+
+def get_data(self, path):
+    data = read(self, path)
+    if path.endswith("singimpact/" + file):
+        text = data.decode()
+        assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in {file}"
+        data = text.replace(old, new).encode()
+    return data
+
+def path_stats(self, path):
+    if path.endswith("singimpact/" + file):
+        raise OSError("compiled anew")
+    return stats(self, path)
+
+loader.get_data, loader.path_stats, sys.dont_write_bytecode = get_data, path_stats, True
+from singimpact.paper.claims import CLAIMS, run
+(verdict,) = run([CLAIMS[name]])
+print(verdict.kind, verdict.evidence)
+"""
+
+
+def judged(file, old, new, name):
+    done = subprocess.run([sys.executable, "-c", PROGRAM, file, old, new, name], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("mutant", MUTANTS)
+def test_a_wrong_derivation_loses_its_claim(mutant):
+    *change, name = MUTANTS[mutant]
+    assert judged(*change, name).startswith("error"), mutant
+
+
+def test_the_unchanged_derivation_keeps_it():
+    line = "sigma, t, v, r = sympy.symbols"
+    assert judged("paper/routes/implicit.py", line, line, "s3-DG").startswith("proved")
