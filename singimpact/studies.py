@@ -15,7 +15,7 @@ from singimpact.inputs import InputError, refuse, unknown, whole
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
-    from singimpact.contact.swans import SwanPoint
+    from singimpact.contact.swans import SwanPoints
     from singimpact.dynamics.basins import Basins
     from singimpact.dynamics.bifurcation import Bifurcation
     from singimpact.surface.classification import Classification
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def swan_points(
     f: Any, g: Any, parameters: Mapping[str, Any] | None = None, over: str = "clearance", between: Any = None
-) -> tuple[SwanPoint, ...]:
+) -> SwanPoints:
     """The swan points of x'' + f(x, x') = g(t) as the clearance varies, in the order of tau_*.
 
     Parameters
@@ -34,13 +34,16 @@ def swan_points(
 
     Returns
     -------
-    tuple of SwanPoint : each with `.tau`, `.clearance` (c_0), `.kind` ("positive" | "negative"), `.certified(digits)`
-        and `.oscillator(restitution)`, the model exactly at c_0.
+    SwanPoints : a tuple; `.complete` says whether a second search, in boxes, proves that there are no others. Each has
+        `.tau`, `.clearance` (c_0), `.kind` ("positive" | "negative"), `.certified(digits)` and
+        `.oscillator(restitution)`, the model exactly at c_0.
 
     Examples
     --------
     >>> [(swan.kind, swan.clearance) for swan in swan_points("x", "cos(2*t)")]
     [('negative', 1.0), ('positive', -1.0)]
+    >>> swan_points("x", "cos(2*t)").complete
+    True
     >>> print(swan_points("x + 3*x**3/10", "cos(2*t)")[0].oscillator("0.5").clearance)
     root(u + 0.3*u**3 - 1, 0.829051, 0.829052)
     """

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
 from singimpact.flights.enclosures.first_root import narrowed
-from singimpact.flights.enclosures.framed_motion import FramedMotion, Pair
+from singimpact.flights.enclosures.free_motion import FreeMotion, Met
 from singimpact.flights.enclosures.tube import Tube, centre, divided
 from singimpact.oscillator.model import Oscillator
 
@@ -33,32 +33,6 @@ PIECES = 6
 """Times at which the first flight may meet the wall are cut to this power of 2 of a step."""
 WIDEST = 0.3
 """Boxes wider than this, of a period or of the highest velocity, are not flown."""
-
-
-class _Met(NamedTuple):
-    """A time after the launch, x - c and x' then, and the derivatives of both by the launch time and velocity.
-
-    inside : whether the time is apart from both ends of its step, so that no zero leaves it between members of a box.
-    """
-
-    time: Any
-    height: Any
-    speed: Any
-    columns: list[Pair]
-    inside: bool = True
-
-
-class _ThroughTheWall(FramedMotion):
-    """A box of flights that the wall does not stop."""
-
-    def require_above(self) -> None:
-        """Flights may be below the wall."""
-
-    def met(self, s: Any) -> _Met:
-        """The box at a time s after the step began, which may be a ball."""
-        assert self.members is not None
-        height, speed = (part(s) for part in self.members)
-        return _Met(self.time + s, height, speed, self.columns_at(s))
 
 
 class ClosingBoxes:
@@ -117,14 +91,14 @@ class ClosingBoxes:
             after = self._after(ways[0].speed)[0]
             return [float(part.mid()) for part in (tau, tau + ways[0].time, v, after)]
 
-    def _may_close(self, v: Any, end: _Met) -> bool:
+    def _may_close(self, v: Any, end: Met) -> bool:
         return end.height.contains(0) and (self._after(end.speed)[0] - v).contains(0)  # type: ignore[no-any-return]
 
     def _after(self, speed: Any) -> Any:
         """The velocity after an impact, and its derivative."""
         return self.law({"v": speed})[:2]
 
-    def _ends(self, tau: Any, v: Any, *, visible: bool) -> Iterator[tuple[_Met | None, _Met]]:
+    def _ends(self, tau: Any, v: Any, *, visible: bool) -> Iterator[tuple[Met | None, Met]]:
         """The first impact, of two, and the end, for each way in which the box may fly; visible ones alone, or all."""
         if self.n == 1:
             end = self._end(tau, v, self.span, visible)
@@ -139,14 +113,14 @@ class ClosingBoxes:
             if end is not None:
                 yield first, end
 
-    def _motion(self, tau: Any, v: Any) -> _ThroughTheWall:
-        return _ThroughTheWall((self.equation, self.equation), tau, v, BITS, BITS, {})
+    def _motion(self, tau: Any, v: Any) -> FreeMotion:
+        return FreeMotion((self.equation, self.equation), tau, v, BITS, BITS, {})
 
-    def _end(self, tau: Any, v: Any, duration: Any, visible: bool) -> _Met | None:
+    def _end(self, tau: Any, v: Any, duration: Any, visible: bool) -> Met | None:
         """The box after a duration, which may be a ball; None where all of it is below the wall before."""
         if not duration > 0:  # members whose first impact is later than the end are no orbits
-            duration = (duration * 0).union(_edge(duration.upper()))
-        motion, first, last = self._motion(tau, v), _edge(duration.lower()), _edge(duration.upper())
+            duration = (duration * 0).union(duration.upper())
+        motion, first, last = self._motion(tau, v), duration.lower(), duration.upper()
         while True:
             height, _, length = motion.tubes()
             if length >= last - motion.time:
@@ -161,7 +135,7 @@ class ClosingBoxes:
                 return None
             motion.advance(centre(stop))
 
-    def _impacts(self, tau: Any, v: Any) -> Iterator[_Met]:
+    def _impacts(self, tau: Any, v: Any) -> Iterator[Met]:
         """Where the flight may meet the wall, until all of it is below."""
         motion = self._motion(tau, v)
         while motion.time < self.span:
@@ -176,7 +150,7 @@ class ClosingBoxes:
                 return
             motion.advance(length)
 
-    def _slopes(self, place: Place, first: _Met | None, end: _Met) -> list[list[Any]]:
+    def _slopes(self, place: Place, first: Met | None, end: Met) -> list[list[Any]]:
         """Derivatives of x - c at the end, and of what v misses, by tau and v."""
         rate = self._after(end.speed)[1]
         if first is None:
@@ -194,7 +168,7 @@ class ClosingBoxes:
                 by.append((a * start + p * fast - end.speed * late, b * start + q * fast - last * late))
         return [[part[0] for part in by], [rate * part[1] - k for k, part in enumerate(by)]]
 
-    def _force(self, t: Any, at: _Met) -> Any:
+    def _force(self, t: Any, at: Met) -> Any:
         """x'' on the wall."""
         f = self.equation.run("force", x=at.speed * 0, xdot=at.speed)[0]
         return self.equation.run("forcing", t=t)[0] - f
@@ -223,12 +197,6 @@ def closed_boxes(
         system = ClosingBoxes(osc, n, k, speeds)
         made = zeros_of(system, window, SEARCH, (period, speeds[1]))
         return [np.array(system.states(zero)) for zero in made.found], made
-
-
-def _edge(value: Any) -> Any:
-    import flint
-
-    return flint.arb(value)
 
 
 def _zeros(value: Tube, rate: Tube, length: Any) -> tuple[list[Any], bool]:

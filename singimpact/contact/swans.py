@@ -10,6 +10,7 @@ from typing import Any
 from singimpact.algebra.balls import Balls, Zero, as_rational, derivatives, refined
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.double_zeros import double_zeros
 from singimpact.algebra.expressions import (
     BOUND,
     Call,
@@ -36,6 +37,7 @@ from singimpact.oscillator.model import Oscillator
 
 PARTS = 8  # of a period: the zeros of g' that have a name are looked for at its eighths
 GRID = 10**6  # the ends of a root are multiples of 1/GRID where they can be
+SAME = 1e-9  # two swan points nearer than this, in time and clearance, are one
 SHORT = 1000  # the largest denominator with which c_0 is tried as a rational
 
 
@@ -96,9 +98,33 @@ def evaluate_ball(tree: Expression, bits: int) -> Any:
     return Balls(bits).evaluate(tree, {})
 
 
-def swan_points_over_clearance(
-    model: Oscillator, between: tuple[Fraction, Fraction] | None = None
-) -> tuple[SwanPoint, ...]:
+class SwanPoints(tuple[SwanPoint, ...]):
+    """The swan points of an interval of clearances, in the order of tau_*.
+
+    Attributes
+    ----------
+    model : the family. between : the interval; where none was given, one that holds them all. Both None for constant g.
+    """
+
+    model: Oscillator | None = None
+    between: tuple[Fraction, Fraction] | None = None
+
+    @kept_property
+    def complete(self) -> bool:
+        """Whether a second search, in boxes of times and clearances, proves that there are these and no others."""
+        model = self.model
+        if model is None or self.between is None:
+            return not self
+        push = subtract(model.forcing(), substitute(model.force(), {"x": Name(BOUND), "xdot": number(0)}))
+        times = window(model, derivative(model.forcing(), "t"))
+        made = double_zeros(push, ("t", BOUND), (*times, *self.between))
+        known = [(swan.tau, swan.clearance) for swan in self]
+        inside = [(float(zero.at), float(zero.value)) for zero in made.found if _in_period(model, float(zero.at))]
+        near = [[max(abs(a - p), abs(b - q)) < SAME for p, q in known] for a, b in inside]
+        return made.complete and len(inside) == len(known) and all(map(any, near))
+
+
+def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fraction] | None = None) -> SwanPoints:
     """The swan points of x'' + f = g as the clearance varies in an interval; without one, over all clearances.
 
     a_c'(tau) = g'(tau) is free of c, so tau_* is a zero of g' and c_0 solves f(c, 0) = g(tau_*).
@@ -116,8 +142,9 @@ def swan_points_over_clearance(
     """
     slope = derivative(model.forcing(), "t")
     if "t" not in names_in(slope):
-        return ()
-    found = []
+        return SwanPoints()
+    found: list[SwanPoint] = []
+    ends: list[Fraction] = []
     for zero in isolate(slope, "t", *window(model, slope)):
         if not zero.slope:
             raise InputError(
@@ -126,8 +153,13 @@ def swan_points_over_clearance(
         time = _named_time(model, slope, zero)
         if _in_period(model, as_float(time)):
             kind = "positive" if zero.slope > 0 else "negative"
-            found += [SwanPoint(model, time, place, kind) for place in _clearances(model, time, between)]
-    return tuple(sorted(found, key=lambda point: (point.tau, point.clearance)))
+            places, window_of_them = _clearances(model, time, between)
+            found += [SwanPoint(model, time, place, kind) for place in places]
+            ends += window_of_them
+    made = SwanPoints(sorted(found, key=lambda point: (point.tau, point.clearance)))
+    if ends:
+        made.model, made.between = model, (min(ends), max(ends))
+    return made
 
 
 def _in_period(model: Oscillator, tau: float) -> bool:
@@ -171,8 +203,10 @@ def _exact(tree: Expression, values: dict[str, Expression]) -> Fraction | None:
     return Fraction(int(found.p), int(found.q)) if found.is_Rational else None
 
 
-def _clearances(model: Oscillator, time: Expression, between: tuple[Fraction, Fraction] | None) -> list[Expression]:
-    """The solutions c of f(c, 0) = g(tau_*)."""
+def _clearances(
+    model: Oscillator, time: Expression, between: tuple[Fraction, Fraction] | None
+) -> tuple[list[Expression], tuple[Fraction, Fraction]]:
+    """The solutions c of f(c, 0) = g(tau_*), and an interval that has been searched for them."""
     rest = substitute(model.force(), {"xdot": number(0)})
     value = _exact(model.forcing(), {"t": time})
     level = substitute(model.forcing(), {"t": time}) if value is None else Number(value)
@@ -185,7 +219,7 @@ def _clearances(model: Oscillator, time: Expression, between: tuple[Fraction, Fr
         if not piece.slope:
             raise InputError(f"f(c, 0) - g(tau_*) has a double zero near c = {float(piece.low):.6g}: give between=")
         found.append(_named_place(shifted, piece))
-    return found
+    return found, (low, high)
 
 
 def _named_place(shifted: Expression, piece: Zero) -> Expression:

@@ -1,6 +1,7 @@
-"""Which lips, beaks and swallowtails a linear model has in a window: all of them, by balls.
+"""Which lips, beaks and swallowtails a model has in a window: all of them, by balls.
 
-x - c = u(tau, t) of a flight from rest at tau is a sum of exponentials and waves.  Lips and beaks are the solutions of
+Of a linear model x - c = u(tau, t) of a flight from rest at tau is a sum of exponentials and waves (other models are
+flown in boxes: `enclosed_touches`).  Lips and beaks are the solutions of
 
     a_c(tau) = 0,   u = 0,   u_t = 0        with t != 0, in tau, t and the number that is varied,
 
@@ -28,6 +29,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.oscillator.linear import form_of
 from singimpact.oscillator.linear_flight import linear_flight
 from singimpact.oscillator.moving_number import CLEARANCE
+from singimpact.surface.enclosed_touches import EnclosedTouches
 from singimpact.surface.swan_families import MARGIN, STEPS, Family, Transition
 
 NEAR = 1e-8
@@ -71,12 +73,13 @@ def doubts_left(
     family: Family, ends: tuple[float, float], times: tuple[float, float], listed: Iterable[Transition]
 ) -> tuple[str, ...]:
     """Why lips, beaks or swallowtails may be missing in a list; nothing where balls show that none is."""
-    flight, periods = rest_flight(family), family.periods(np.linspace(*ends, STEPS + 1))
+    periods = family.periods(np.linspace(*ends, STEPS + 1))
     if "t" not in names_in(family.model.forcing(() if family.over == CLEARANCE else (family.over,))):
         return ()  # a_c is constant
-    if flight is None or not periods:
-        return ("lips, beaks and swallowtails are met on a grid: balls show that there are no others of linear models "
-                "with a period alone, at numbers that leave damping and stiffness as they are",)  # fmt: skip
+    if not periods:
+        return ("lips, beaks and swallowtails are met on a grid: balls show that there are no others of models "
+                "with a period alone",)  # fmt: skip
+    flight: RestFlight | EnclosedTouches = rest_flight(family) or EnclosedTouches(family.model, family.over)
     found, length = list(listed), max(periods.values())
     made = flight.touches(length, ends, times)
     doubts = _undecided(made, 2, f"lips and beaks for {family.over}")

@@ -49,8 +49,8 @@ SETTINGS = TransitionSettings()
 class Transitions(tuple[Transition, ...]):
     """Transitions in order, with notes on their completeness.
 
-    Swans are isolated by balls.  The other kinds are met on a grid of the number; for a linear model balls then show
-    that there are no more, when `complete` or `doubts` is first asked for.
+    Swans are isolated by balls.  The other kinds are met on a grid of the number; balls then show that there are no
+    more, when `complete` or `doubts` is first asked for.
     Flights from rest to rest with dx/dv = 0, over which V_c' itself is singular, are no transitions of this list:
     `classify` marks them.
 
@@ -74,7 +74,7 @@ class Transitions(tuple[Transition, ...]):
 
     @property
     def complete(self) -> bool:
-        """Whether it is proved that no transition in the window is missing; it takes a second, or ten."""
+        """Whether it is proved that no transition in the window is missing; it takes 1 s to 1 minute."""
         return not self.doubts
 
 

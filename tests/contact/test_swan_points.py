@@ -136,3 +136,19 @@ def test_a_root_is_a_number():
 def test_what_is_no_root_is_refused(text):
     with pytest.raises(InputError):
         parse(text)
+
+
+@pytest.mark.parametrize("model", [("x", "cos(2*t)"), DUFFING, TWO_WAVES, ("x", "t**2 - t**3/3")])
+def test_a_second_search_finds_the_same(model):
+    swans = si.swan_points(*model)
+    assert swans.complete
+    fewer = type(swans)(swans[1:])
+    fewer.model, fewer.between = swans.model, swans.between
+    assert not fewer.complete
+    assert pickle.loads(pickle.dumps(swans)).between == swans.between
+
+
+def test_an_interval_without_swan_points_is_complete():
+    none = si.swan_points("x", "cos(2*t)", between=(2, 3))
+    assert (len(none), none.complete) == (0, True)
+    assert si.swan_points("x", "1").complete

@@ -82,15 +82,11 @@ def test_next_to_the_launch_boxes_are_decided_by_the_third_and_fourth_derivative
 
 @pytest.mark.slow
 def test_what_is_not_proved_is_said():
-    duffing = si.ImpactOscillator("x + 0.3*x**3", "cos(2*t)", 0, "0.5")
-    found = transitions(duffing, "clearance", (0.7, 0.95), (-1, 1))
-    assert found.swans_complete
-    assert not found.complete
-    assert "met on a grid" in found.doubts[0]
     # a forcing without a period has transitions too, and nothing is proved of them
     polynomial = transitions(si.ImpactOscillator("x", "t**2 - t**3/3", 0, "0.5"), "clearance", (-0.2, 0.2), (-1, 1))
     assert polynomial.swans_complete
     assert not polynomial.complete
+    assert "met on a grid" in polynomial.doubts[0]
     assert transitions(si.ImpactOscillator("x", 1, 0, "0.5"), "clearance", (-0.2, 0.2), (-1, 1)).complete
     # both ends of this flight are tangency points at one value: the equations are not independent there
     undamped = transitions(si.linear("2.8", 0, "0.8"), "clearance", (-0.14, 0.14), (-6, 6))

@@ -88,13 +88,20 @@ class FramedMotion:
         self.step, self.wide = own, wide
         columns = [(height(P, K), speed(P, K)) for P, K in zip(wide.columns, wide.column_bounds, strict=True)]
         self.by_state, self.by_drive = columns[:2], columns[2:]
-        sizes = [*self.delta, *(size for size, drive in zip(self.D, self.drives, strict=True) if drive >= 0)]
         self.own = height(own.coefficients, own.bound), speed(own.coefficients, own.bound)
-        value, slope = self.own
-        for (psi, rate), size in zip(columns, sizes, strict=True):
-            value, slope = _added(value, psi, size), _added(slope, rate, size)
+        value, slope = self._spread()
         self.members = value, slope
         return value, slope, wide.length
+
+    def _spread(self) -> tuple[Tube, Tube]:
+        """z and z' of all members on the step, from those of the centre."""
+        value, slope = self.own
+        for (psi, rate), size in zip(self.by_state, self.delta, strict=True):
+            value, slope = added(value, psi, size), added(slope, rate, size)
+        sizes = [size for size, drive in zip(self.D, self.drives, strict=True) if drive >= 0]
+        for (psi, rate), size in zip(self.by_drive, sizes, strict=True):
+            value, slope = added(value, psi, size), added(slope, rate, size)
+        return value, slope
 
     def columns_at(self, length: Any) -> list[Pair]:
         """The derivatives of z and z' by tau (at equal time since the launch), v and names, at a time in the step."""
@@ -199,7 +206,7 @@ class FramedMotion:
         return self.time + root.intersection(own + later), velocity.intersection(own_velocity + faster)
 
 
-def _added(tube: Tube, column: Tube, size: Any) -> Tube:
+def added(tube: Tube, column: Tube, size: Any) -> Tube:
     """A tube with a column times a deviation."""
     if size == 0:
         return tube
