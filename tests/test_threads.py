@@ -21,6 +21,7 @@ import sympy
 import singimpact as si
 from singimpact import fixed_points, theory
 from singimpact.algebra import precision
+from singimpact.algebra.gathering import Remembered
 from singimpact.branches import starts
 
 THREADS = 8
@@ -152,6 +153,8 @@ def done(job):
 def forget():
     """Empty the caches of numbers, so that threads compute and do not look up."""
     for each in gc.get_objects():
+        if type(each) is Remembered:
+            each.clear()
         if type(each) is functools._lru_cache_wrapper:
             room = (each.__module__ or "").split(".")[:2]
             if (

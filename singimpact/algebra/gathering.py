@@ -81,18 +81,23 @@ class Remembered:
     def __init__(self) -> None:
         self._results: dict[Hashable, tuple[Any, tuple[Certificate, ...] | None]] = {}
 
+    def clear(self) -> None:
+        """Forget all results."""
+        self._results.clear()
+
     def result(self, key: Hashable, derive: Callable[[], R]) -> R:
         """The result for a key, derived when it is not known; its certificates join the open collection."""
-        if key not in self._results or (gathering() and self._results[key][1] is None):
+        known = self._results.get(key)
+        if known is None or (gathering() and known[1] is None):
             if gathering():
                 with collected() as found:
                     value = derive()
-                self._results[key] = value, tuple(found)
+                known = value, tuple(found)
             else:
-                self._results[key] = derive(), None
-        known, certificates = self._results[key]
-        _handed_on(certificates or ())
-        return known  # type: ignore[no-any-return]
+                known = derive(), None
+            self._results[key] = known
+        _handed_on(known[1] or ())
+        return known[0]
 
 
 def remembered(function: Callable[P, R]) -> Callable[P, R]:

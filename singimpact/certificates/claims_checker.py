@@ -100,15 +100,27 @@ class Letters:
         degrees = {key: sum(n * w for n, w in zip(key, weights, strict=True)) for key in self.terms(poly)}
         return self.context.from_dict({key: c for key, c in self.terms(poly).items() if degrees[key] <= order})
 
-    def put(self, poly: Any, images: dict[int, tuple[Any, Any]]) -> tuple[Any, Any]:
-        """(above, below) of a polynomial whose variables are replaced by quotients, all at once."""
+    def power(self, poly: Any, exponent: int, weights: Sequence[int], order: int | None) -> Any:
+        """A power, up to a weighted degree."""
+        if order is None:
+            return poly**exponent
+        found = self.constant(1)
+        for _ in range(exponent):
+            found = self.with_degree(found * poly, weights, order)
+        return found
+
+    def put(
+        self, poly: Any, images: dict[int, tuple[Any, Any]], weights: Sequence[int] = (), order: int | None = None
+    ) -> tuple[Any, Any]:
+        """(above, below) of a polynomial whose variables are replaced by quotients, all at once; above to an order."""
         degrees = [max((key[n] for key in self.terms(poly)), default=0) for n in range(len(self.names))]
         above = self.constant(0)
         for key, value in self.terms(poly).items():
             term = self.constant(value)
             for n, power in enumerate(key):
                 over, under = images.get(n, (self.variables[n], self.constant(1)))
-                term = term * over**power * under ** (degrees[n] - power)
+                part = self.power(over, power, weights, order) * under ** (degrees[n] - power)
+                term = self.with_degree(term * part, weights, order)
             above += term
         below = self.constant(1)
         for n, (_, under) in images.items():
@@ -345,7 +357,7 @@ def composed(data: Any, letters: Letters) -> str:
             if data["relation"] is not None:
                 zero = letters.read(data["relation"][2])
                 need(resultant(letters, lowest, zero, len(letters.names) - 1) != 0, "an image by 0")
-        above, below = (letters.put(letters.read(part), images) for part in side["outer"])
+        above, below = (letters.put(letters.read(part), images, weights, order) for part in side["outer"])
         sides.append((above[0] * below[1], below[0] * above[1]))
         put = ", ".join(f"{letters.names[n]} = {letters.quotient_text(pair)}" for n, pair in side["images"])
         outer = letters.quotient_text(side["outer"])
@@ -358,11 +370,12 @@ def composed(data: Any, letters: Letters) -> str:
 
 
 def equation(data: Any, letters: Letters, x: Any, speed: Any, clock: Any, told: str) -> tuple[Any, str]:
-    """(a - f + f(c, 0) on a motion, the equation as text)."""
+    """(a - f + f(c, 0) on a motion, up to the order; the equation as text)."""
+    scale = data["weights"], data["order"]
     total, pushed, held, seen = letters.constant(0), [], ["x''"], set()
     for n, part in enumerate(data["acceleration"]):
         jet = jet_of(letters, part)
-        total += jet * clock**n
+        total += jet * letters.power(clock, n, *scale)
         if part:
             pushed.append(f"({letters.text(jet)})*({told})**{n}")
     for (i, k), part in data["force"]:
@@ -370,7 +383,7 @@ def equation(data: Any, letters: Letters, x: Any, speed: Any, clock: Any, told: 
         need((i, k) not in seen, "powers that occur twice")
         seen.add((i, k))
         jet = jet_of(letters, part)
-        total -= jet * x**i * speed**k
+        total -= jet * letters.with_degree(letters.power(x, i, *scale) * letters.power(speed, k, *scale), *scale)
         held.append(f"({letters.text(jet)})*x**{i}*x'**{k}")
     return total, f"{' + '.join(held)} = {' + '.join(pushed) or '0'}"
 
@@ -401,11 +414,11 @@ def motion(data: Any, letters: Letters) -> str:
         need(letters.degree(launch, 1) <= 0 and all(n >= weights[1] for n in degrees), "a launch of too low a degree")
         images = {1: (launch, letters.constant(1))}
         quotient = letters.context.from_dict({(*k[:2], k[2] - 1, *k[3:]): c for k, c in letters.terms(x).items()})
-        back, _ = letters.put(quotient, images)
+        back, _ = letters.put(quotient, images, weights, order)
         need(letters.with_degree(back, weights, order) == 0, "it does not come back after t")
         text += f", and x/{names[2]} = 0 at {names[1]} = {letters.text(launch)}"
         if data["landing"] is not None:
-            landed, _ = letters.put(speed, images)
+            landed, _ = letters.put(speed, images, weights, order)
             landing = letters.read(data["landing"])
             need(letters.with_degree(landed - landing, weights, order) == 0, "it lands with another velocity")
             text += f", where x' = {letters.text(landing)}"
