@@ -507,9 +507,9 @@ def periodic_orbit(model: Model, told: dict[str, Any], bits: int) -> None:
         slopes, image = krawczyk(model, point, near, span, bits)
         for part, radius in zip(image, near, strict=True):
             if not abs(part) < radius:
-                raise Refused(
-                    f"Krawczyk's operator maps a side of length {float(radius):.3g} to {float(size(part)):.3g}"
-                )
+                # more bits help a narrow box alone, and only if there may be a zero in it
+                error = Wrong if near is not radii or abs(part) > radius else Refused
+                raise error(f"Krawczyk's operator maps a side of {float(radius):.3g} to {float(size(part)):.3g}")
     total = arb_mat([[1, 0], [0, 1]])
     for slope in slopes:  # over the balls of the states
         total = arb_mat(slope) * total
