@@ -246,16 +246,21 @@ def test_results_without_certificate_are_refused():
 # ---- periodic orbits
 
 ORBITS = {
-    "saddle": (MODELS["duffing"], 2, 1),
-    "three impacts": (MODELS["duffing"], 3, 2),
-    "linear": (si.linear("4.19", "0.17", "0.7"), 2, 2),
-    "complex multipliers": (si.ImpactOscillator("sin(x) + xdot/10", "cos(w*t)", "0", "1/2", {"w": "4"}), 1, 2),
-}
+    "saddle": (MODELS["duffing"], 2, 1, [(1.957856511, 0.662042377), (3.413988162, 0.066334603)]),
+    "three impacts": (MODELS["duffing"], 3, 2, [(1.819875727, 0.495927498), (2.600820600, 0.232388853),
+                                                (5.627117408, 0.759287054)]),
+    "linear": (si.linear("4.19", "0.17", "0.7"), 2, 2, [(0.184300495, 0.117042955), (0.902095350, 0.235121802)]),
+    "complex multipliers": (si.ImpactOscillator("sin(x) + xdot/10", "cos(w*t)", "0", "1/2", {"w": "4"}), 1, 2,
+                            [(1.266516408, 0.404810628)]),
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def orbits():
-    return {name: si.certify(osc.periodic(n, k)[0].certified(20)) for name, (osc, n, k) in ORBITS.items()}
+    return {
+        name: si.certify(osc.periodic(n, k, start=start)[0].certified(20))
+        for name, (osc, n, k, start) in ORBITS.items()
+    }
 
 
 @pytest.mark.parametrize("name", ORBITS)
@@ -263,7 +268,7 @@ def test_a_periodic_orbit_is_accepted_from_its_file(name, orbits, tmp_path):
     path = tmp_path / "orbit.json"
     orbits[name].save(path)
     assert si.read_certificate(path) == orbits[name]
-    _, n, k = ORBITS[name]
+    _, n, k, _ = ORBITS[name]
     assert f"certificate of the ({n}, {k}) periodic orbit" in repr(orbits[name])
 
 
