@@ -7,9 +7,10 @@ flight may meet the wall is tried; the orbit is looked for from the faster of it
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,8 @@ BITS = 30
 SEARCH = replace(BOXES, bits=BITS + 24, least=Fraction(1, 2**16), most=100_000, lost=20)
 PIECES = 6
 """Times at which the first flight may meet the wall are cut to this power of 2 of a step."""
+BEFORE, LEAST = 0.9, 0.05
+"""A step whose end may be an impact ends at this part of the time before it, or not if that is less of the step."""
 WIDEST = 0.3
 """Boxes wider than this, of a period or of the highest velocity, are not flown."""
 
@@ -141,14 +144,27 @@ class ClosingBoxes:
         while motion.time < self.span:
             height, speed, length = motion.tubes()
             value, rate = divided(height, speed, 1) if motion.launched else (height, speed)
-            pieces, below = _zeros(value, rate, length)
+            pieces, slow, below = _zeros(value, rate, length, partial(self._other_speed, speed))
+            stop = length
+            if pieces and not below and not pieces[-1] < length:
+                # a zero at the end of a step may leave it between members: a step that begins before holds it whole
+                before = centre(pieces[-1].lower() * BEFORE)
+                if before > length * LEAST:
+                    stop = before
+                    del pieces[-1]
             for s in pieces:
-                found = motion.met(s)._replace(inside=bool(s > 0 and s < length))
+                stays = s > 0 and s < length and not any(s.overlaps(other) for other in slow)
+                found = motion.met(s)._replace(inside=bool(stays))
                 if not found.speed > 0 and not found.time > self.span:
                     yield found
             if below:
                 return
-            motion.advance(length)
+            motion.advance(stop)
+
+    def _other_speed(self, speed: Tube, during: Any) -> bool:
+        """Whether no velocity after an impact at these times is in the window."""
+        after = self._after(speed(during))[0]
+        return bool(after < self.low or after > self.high)
 
     def _slopes(self, place: Place, first: Met | None, end: Met) -> list[list[Any]]:
         """Derivatives of x - c at the end, and of what v misses, by tau and v."""
@@ -199,11 +215,15 @@ def closed_boxes(
         return [np.array(system.states(zero)) for zero in made.found], made
 
 
-def _zeros(value: Tube, rate: Tube, length: Any) -> tuple[list[Any], bool]:
-    """Where on (0, length] some member of a box may vanish, and whether all of them are negative after that."""
+def _zeros(value: Tube, rate: Tube, length: Any, other: Callable[[Any], bool]) -> tuple[list[Any], list[Any], bool]:
+    """Where on (0, length] some member of a box may vanish, and whether all of them are negative after that.
+
+    Pieces that are left out since `other` holds on them come second.
+    """
     from flint import arb
 
     found: list[Any] = []
+    left_out: list[Any] = []
     stack, least = [(arb(0), length)], length * arb(2) ** -PIECES
     while stack:
         a, b = stack.pop()
@@ -212,7 +232,10 @@ def _zeros(value: Tube, rate: Tube, length: Any) -> tuple[list[Any], bool]:
         if here > 0:
             continue
         if here < 0:
-            return found, True
+            return found, left_out, True
+        if other(piece):
+            left_out.append(piece)
+            continue
         if slope < 0 or slope > 0:
             try:
                 piece = narrowed(piece, value, rate)
@@ -226,4 +249,4 @@ def _zeros(value: Tube, rate: Tube, length: Any) -> tuple[list[Any], bool]:
             found[-1] = found[-1].union(piece)
         else:
             found.append(piece)
-    return found, False
+    return found, left_out, False

@@ -5,7 +5,7 @@ The unknowns are all states of the orbit: no box is carried from impact to impac
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil
 from typing import Any
@@ -28,6 +28,7 @@ class EnclosedOrbit:
         has all its states within this distance, in tau and in v, of these.
     multipliers : two pairs (real part, imaginary part) of `Certified`; None where they may be equal.
     stable : whether both are proved to be below 1 in size; False where one is proved to be above; else None.
+    oscillator, k : the model, and after how many periods the orbit closes.
     """
 
     tau: tuple[Certified, ...]
@@ -35,6 +36,8 @@ class EnclosedOrbit:
     unique_within: Fraction
     multipliers: tuple[tuple[Certified, Certified], ...] | None
     stable: bool | None
+    oscillator: Oscillator | None = field(default=None, repr=False)
+    k: int = 1
 
 
 def enclosed_orbit(osc: Oscillator, times: Any, speeds: Any, k: int, digits: int) -> EnclosedOrbit | str:
@@ -65,7 +68,9 @@ def _enclosed(orbit: BallClosing, states: list[Fraction], digits: int) -> Enclos
     unique = operator.unique_within(states, step, own)
     numbers = [from_ball(orbit.balls.rational(x) + part, digits) for x, part in zip(states, tight.offsets, strict=True)]
     multipliers, stable = _multipliers(return_slope(tight.slopes), digits)
-    return EnclosedOrbit(tuple(numbers[::2]), tuple(numbers[1::2]), unique, multipliers, stable)
+    return EnclosedOrbit(
+        tuple(numbers[::2]), tuple(numbers[1::2]), unique, multipliers, stable, orbit.osc, orbit.spans.k
+    )
 
 
 def _multipliers(total: Any, digits: int) -> tuple[Any, bool | None]:

@@ -6,17 +6,26 @@ import json
 import subprocess
 import sys
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from singimpact.algebra.certified import Certified
+from singimpact.branches.enclosed_orbit import EnclosedOrbit
+from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.certificates.checker import PARTS, SCHEMA, digest_of
 from singimpact.flights.results import CertifiedImpact, Flight
 from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.model import Oscillator
 from singimpact.store import write_text
 
 CHECKER = Path(__file__).with_name("checker.py")
 """The second program: `python checker.py FILE.json`."""
+UNIQUE = Fraction(1, 10**8)
+"""Distance, at most, within which an orbit is certified to be alone: the second program has no frames for boxes."""
+LOST, LOOSE = 6, 1000
+"""Digits that are left out of a multiplier, and factor of its radius."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +66,10 @@ class Certificate:
             raise InputError(f"the certificate is refused: {reason}")
 
     def __repr__(self) -> str:
+        if "states" in self.content:
+            states, k = self.content["states"], self.content["periods"]
+            shown = ", ".join(f"({each['tau']['value']}, {each['v']['value']})" for each in states)
+            return f"<certificate of the ({len(states)}, {k}) {self.content['statement']}: (tau, v) = {shown}>"
         launch = self.content["launch"]
         shown = ", ".join(f"{name} = {self.content[name]['value']}" for name in PARTS[2:])
         return f"<certificate of the {self.content['statement']} from ({launch['tau']}, {launch['v']}): {shown}>"
@@ -67,7 +80,8 @@ def certify(result: Any) -> Certificate:
 
     Parameters
     ----------
-    result : of `osc.impact_map` or `osc.first_hit` for one state with `digits`; or its `.certified`.
+    result : of `osc.impact_map` or `osc.first_hit` for one state with `digits`; a periodic orbit with impacts, of
+        `osc.periodic`; or the `.certified` of one of these.
 
     Returns
     -------
@@ -84,18 +98,47 @@ def certify(result: Any) -> Certificate:
     >>> found
     <certificate of the first impact from (0.9, 0.3): tau = 1.533939680393141763696, v = 0.2033385063288414561421>
     >>> found.check()
+    >>> certify(linear(4, 0, "0.5").periodic(1, 2)[0].certified(15))
+    <certificate of the (1, 2) periodic orbit: (tau, v) = (1.1780972450961725, 0.53333333333333333)>
     """
+    orbit = result.certified() if isinstance(result, PeriodicOrbit) else result
+    if isinstance(orbit, EnclosedOrbit) and orbit.oscillator is not None:
+        return _sealed("periodic orbit", orbit.oscillator, _of_orbit(orbit))
     impact = result.certified if isinstance(result, Flight) else result
     if isinstance(result, Flight) and impact is None:
         why = "; ".join(result.notes.values()) or "it has no digits=: ask for some"
         raise InputError(f"the result is not certified: {why}")
     if not isinstance(impact, CertifiedImpact) or impact.oscillator is None:
-        raise refuse("result", result, "what osc.impact_map(tau, v, digits=30) gives for one state")
+        raise refuse(
+            "result", result, "what osc.impact_map(tau, v, digits=30) gives for one state, or a periodic orbit"
+        )
     numbers = {name: getattr(impact, name).as_dict() for name in PARTS}
     launch = {name: str(part) for name, part in zip(("tau", "v"), impact.launch, strict=True)}
-    content = {"schema": SCHEMA, "statement": "first impact", "model": impact.oscillator.to_dict(), "launch": launch}
-    content |= numbers
+    return _sealed("first impact", impact.oscillator, {"launch": launch, **numbers})
+
+
+def _sealed(statement: str, model: Oscillator, numbers: dict[str, Any]) -> Certificate:
+    content = {"schema": SCHEMA, "statement": statement, "model": model.to_dict(), **numbers}
     return Certificate({**content, "digest": digest_of(content)})
+
+
+def _of_orbit(orbit: EnclosedOrbit) -> dict[str, Any]:
+    """What is said of a periodic orbit, as text."""
+    assert orbit.oscillator is not None
+    states = [{"tau": tau.as_dict(), "v": v.as_dict()} for tau, v in zip(orbit.tau, orbit.v, strict=True)]
+    multipliers = [
+        {"real": _wider(real), "imaginary": _wider(imaginary)} for real, imaginary in orbit.multipliers or ()
+    ]
+    return {"period": str(orbit.oscillator.period), "periods": str(orbit.k), "states": states,
+            "unique_within": str(min(orbit.unique_within, UNIQUE)), "multipliers": multipliers}  # fmt: skip
+
+
+def _wider(number: Certified) -> dict[str, str]:
+    """A multiplier with a radius that leaves room for another enclosure of the derivative."""
+    told = number.as_dict()
+    least = Fraction(max(abs(Fraction(told["value"])), Fraction(1))) / 10 ** (number.digits - LOST)
+    radius = max(LOOSE * Fraction(told["radius"]), least)
+    return {"value": told["value"], "radius": f"{float(radius):.3g}"}
 
 
 def read_certificate(path: Any) -> Certificate:

@@ -162,7 +162,7 @@ def test_both_programs_enclose_the_same_impacts(name):
         flint.ctx.prec, flint.ctx.cap = 160, checker.TERMS
         try:
             exact = (checker.ball(Fraction(part)) for part in (tau, v))
-            time, velocity = checker.flight(model, *exact, 100)
+            time, velocity, _ = checker.flight(model, *exact, 100)
             for ball, told in ((time, found.flight_time), (velocity, found.velocity)):
                 text = told.as_dict()
                 claimed = checker.ball(Fraction(text["value"])) + checker.within(checker.ball(Fraction(text["radius"])))
@@ -183,13 +183,15 @@ def test_three_traps_of_balls():
     flint.ctx.prec, flint.ctx.cap = 100, checker.TERMS
     try:
         model = checker.Model({"f": "sin(x)", "g": "0", "clearance": "0", "restitution": "1"})
-        X = checker.taylor(model, flint.arb(0), flint.arb(1), flint.arb(1), 40)
+        (X,) = checker.taylor(model, flint.arb(0), [flint.arb(1)], [flint.arb(1)], 40)
         assert len(X) == 41
         assert all(a.mid() != 0 for a in X[11:])
         kink = checker.Model({"f": "sqrt(x)", "g": "0", "clearance": "0", "restitution": "1"})
-        assert checker.defect(kink, flint.arb(0), [flint.arb(1), flint.arb(0), flint.arb("-0.5")], flint.arb(4)) is None
         assert (
-            checker.defect(kink, flint.arb(0), [flint.arb(1), flint.arb(0), flint.arb("-0.5")], flint.arb(0.1))
+            checker.defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(4)) is None
+        )
+        assert (
+            checker.defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(0.1))
             is not None
         )
     finally:
@@ -202,7 +204,7 @@ def test_three_traps_of_balls():
         ({}, "only certificates"),
         ({"schema": checker.SCHEMA, "statement": "it is so"}, "only certificates"),
         ({"schema": checker.SCHEMA, "statement": "first impact", "digest": "0"}, "digest"),
-        (renewed({"schema": checker.SCHEMA, "statement": "first impact"}), "not a certificate: KeyError"),
+        (renewed({"schema": checker.SCHEMA, "statement": "first impact"}), "not a certificate: ValueError"),
     ],
 )
 def test_what_is_no_certificate_is_refused(content, why):
@@ -250,3 +252,166 @@ def test_results_without_certificate_are_refused():
         si.certify(si.linear(2, 1, "0.5").impact_map(0, 0, digits=20))
     with pytest.raises(InputError, match="is refused: only certificates"):
         Certificate({}).check()
+
+
+# ---- periodic orbits
+
+ORBITS = {
+    "saddle": (MODELS["duffing"], 2, 1, [(1.957856511, 0.662042377), (3.413988162, 0.066334603)]),
+    "three impacts": (MODELS["duffing"], 3, 2, [(1.819875727, 0.495927498), (2.600820600, 0.232388853),
+                                                (5.627117408, 0.759287054)]),
+    "linear": (si.linear("4.19", "0.17", "0.7"), 2, 2, [(0.184300495, 0.117042955), (0.902095350, 0.235121802)]),
+    "complex multipliers": (si.ImpactOscillator("sin(x) + xdot/10", "cos(w*t)", "0", "1/2", {"w": "4"}), 1, 2,
+                            [(1.266516408, 0.404810628)]),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def orbits():
+    return {
+        name: si.certify(osc.periodic(n, k, start=start)[0].certified(20))
+        for name, (osc, n, k, start) in ORBITS.items()
+    }
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_a_periodic_orbit_is_accepted_from_its_file(name, orbits, tmp_path):
+    path = tmp_path / "orbit.json"
+    orbits[name].save(path)
+    assert si.read_certificate(path) == orbits[name]
+    _, n, k, _ = ORBITS[name]
+    assert f"certificate of the ({n}, {k}) periodic orbit" in repr(orbits[name])
+
+
+def places_of(content, path=()):
+    """The places of all numbers of a certificate, in lists too."""
+    for key, part in content.items() if isinstance(content, dict) else enumerate(content):
+        if isinstance(part, dict | list):
+            yield from places_of(part, (*path, key))
+        elif key not in ("schema", "statement", "digest") and re.search(r"\d", part):
+            yield (*path, key)
+
+
+def test_any_changed_number_of_an_orbit_is_refused(orbits):
+    content = orbits["saddle"].content
+    places = list(places_of(content))
+    assert len(places) > 20
+    for place in places:
+        with pytest.raises(checker.Refused, match="digest"):
+            checker.check(changed(content, place))
+        if place[-1] == "radius" or place[-1] == "unique_within":
+            continue
+        forged = changed(content, place)
+        if place[-1] == "value":  # the last digits are within the radius
+            inner = forged
+            for key in place[:-1]:
+                inner = inner[key]
+            text = inner["value"]
+            inner["value"] = text[:-12] + str((int(text[-12]) + 1) % 10) + text[-11:] if len(text) > 14 else "0.1"
+        with pytest.raises(checker.Refused):
+            checker.check(renewed(forged))
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"period": "pi"}, "is not shown to have the period pi"),
+        ({"periods": "2"}, "Krawczyk"),
+        ({"periods": "0"}, "an orbit has impacts"),
+        ({"states": []}, "an orbit has impacts"),
+        ({"unique_within": "1/10"}, "refused|shown|Krawczyk|maps|grew|lost|disc|step"),
+        ({"multipliers": [{name: {"value": "0", "radius": "1e-9"} for name in ("real", "imaginary")}] * 2},
+         "a multiplier is"),
+    ],
+)  # fmt: skip
+def test_false_statements_about_an_orbit_are_refused(change, why, orbits):
+    with pytest.raises(checker.Refused, match=why):
+        checker.check(renewed({**orbits["saddle"].content, **change}))
+
+
+def test_states_of_a_virtual_orbit_are_refused():
+    """A solution of the closing conditions whose flight is below the wall on its way: another impact comes before."""
+    osc = si.linear("2.8", "0.1", "0.8")
+    from singimpact.branches.two_impacts import two_impacts
+
+    points, _ = two_impacts(osc, 2)
+    visible = [tuple(np.round(orbit.v, 8)) for orbit in osc.periodic(2, 2)]
+    refused = 0
+    for first, second, v, after in points:
+        speeds = {tuple(np.round(pair, 8)) for pair in ((v, after), (after, v))}
+        if min(v, after) <= 0 or abs(v - after) < 1e-6 or speeds.intersection(visible):
+            continue
+        states = [{"tau": {"value": repr(float(t)), "radius": "1e-9"}, "v": {"value": repr(float(w)), "radius": "1e-9"}}
+                  for t, w in ((first, v), (second, after))]  # fmt: skip
+        content = {"schema": checker.SCHEMA, "statement": "periodic orbit", "model": osc.to_dict(), "states": states,
+                   "period": str(osc.period), "periods": "2", "unique_within": "1e-8", "multipliers": []}  # fmt: skip
+        with pytest.raises(checker.Refused):
+            checker.check(renewed(content))
+        refused += 1
+    assert refused
+
+
+@pytest.mark.parametrize(
+    ("g", "period", "holds"),
+    [
+        ("cos(1.7*t)", "(20/17)*pi", True),
+        ("cos(1.7*t)", "(10/17)*pi", False),
+        ("cos(1.7*t + 1)*sin(w*t/2)", "40*pi/17", True),
+        ("exp(-cos(pi*t)) + 3", "2", True),
+        ("cos(t) + t/1000", "2*pi", False),
+        ("cos(t**2)", "2*pi", False),
+        ("cos(sqrt(2)*t)", "2*pi/sqrt(2)", False),  # true, and not shown
+    ],
+)
+def test_a_period_is_shown_exactly(g, period, holds):
+    formula = checker.Formula(g, {"w": "1.7"})
+    if holds:
+        checker.require_period(formula, period)
+        return
+    with pytest.raises(checker.Refused, match="not shown to have the period"):
+        checker.require_period(formula, period)
+
+
+@pytest.mark.parametrize("name", ["duffing", "layer", "law"])
+def test_derivatives_of_the_impact_map_contain_differences(name):
+    """D G of the second program over a ball of states, against difference quotients of first impacts in doubles."""
+    osc, tau, v, h = MODELS[name], 1.4, 0.6, 1e-5
+    flint.ctx.prec, flint.ctx.cap = 130, checker.TERMS
+    try:
+        rows = checker.impact(checker.Model(osc.to_dict()), flint.arb(tau, 1e-9), flint.arb(v, 1e-9), 96)
+        known = [[(float(part.mid()), float(part.rad())) for part in row] for row in rows]
+    finally:
+        flint.ctx.prec, flint.ctx.cap = 53, 10
+    for k, shift in enumerate(((h, 0), (0, h))):
+        ends = [osc.impact_map(tau + s * shift[0], v + s * shift[1]) for s in (1, -1)]
+        quotient = [(ends[0].tau - ends[1].tau) / (2 * h), (ends[0].v - ends[1].v) / (2 * h)]
+        for row, value in zip(known, quotient, strict=True):
+            assert abs(row[k][0] - value) < 1e-7 + row[k][1]
+            assert row[k][1] < 1e-2
+
+
+@pytest.mark.parametrize("condition", ["abs(part) < radius", "span if i == n - 1 else 0"])
+def test_a_checker_without_a_condition_accepts_what_is_false(condition, orbits):
+    """Krawczyk's condition, and the period that is taken off, are what refuses: without them it is otherwise."""
+    text = CHECKER.read_text(encoding="utf-8")
+    assert text.count(condition) == 1
+    weak = {"__name__": "weak"}
+    exec(compile(text.replace(condition, "True" if "abs" in condition else "0"), "weak", "exec"), weak)
+    content = json.loads(json.dumps(orbits["saddle"].content))
+    if "abs" in condition:
+        content["states"][0]["v"]["value"] = "0.66"
+        content["multipliers"] = []
+        with pytest.raises(checker.Refused):
+            checker.check(renewed(content))
+        weak["check"](renewed(content))
+    else:
+        with pytest.raises(weak["Refused"]):
+            weak["check"](content)
+
+
+def test_orbits_that_are_not_certified_are_refused():
+    (orbit,) = si.linear(4, 0, "0.5").periodic(1, 2)
+    assert "certificate of the (1, 2) periodic orbit" in repr(si.certify(orbit))
+    for chatter in si.linear(2, "0.99", "0.5").periodic(float("inf"), 1):
+        with pytest.raises(InputError, match="an orbit with impacts"):
+            si.certify(chatter)

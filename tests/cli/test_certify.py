@@ -36,3 +36,15 @@ def test_refusals(given, why, singimpact):
     refused = singimpact("certify", *given)
     assert refused.exit_code == 2
     assert why in refused.output
+
+
+def test_a_periodic_orbit_is_written_and_checked(singimpact, tmp_path):
+    path = tmp_path / "orbit.json"
+    model = ["--omega", "4", "--clearance", "0", "--restitution", "0.5"]
+    made = singimpact("certify", *model, "--orbit", "1", "2", "--digits", "15", "-o", path)
+    assert (made.exit_code, made.output) == (0, "")
+    assert json.loads(path.read_text())["statement"] == "periodic orbit"
+    assert "certificate of the (1, 2) periodic orbit" in singimpact("certify", path).output
+    none = singimpact("certify", *model, "--orbit", "2", "1")
+    assert none.exit_code == 2
+    assert "--orbit 2 1: 0 orbits are found" in none.output
