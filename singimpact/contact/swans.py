@@ -104,6 +104,13 @@ class SwanPoints(tuple[SwanPoint, ...]):
     Attributes
     ----------
     model : the family. between : the interval; where none was given, one that holds them all. Both None for constant g.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import linear
+    >>> found = swan_points_over_clearance(linear(2, 0, "1/2"))
+    >>> [(float(swan.clearance), swan.kind) for swan in found], found.complete
+    ([(1.0, 'negative'), (-1.0, 'positive')], True)
     """
 
     model: Oscillator | None = None

@@ -11,6 +11,7 @@ import sympy
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from singimpact.algebra.derivations import motion
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.solving import halved, secant
 from singimpact.impact_oscillator import ImpactOscillator
@@ -160,6 +161,29 @@ def touching_flight(x: Any = PATH**3 * (1 - PATH) ** 2) -> TouchingFlight:
         velocity=after.subs(at),
         mixed=sympy.diff(after, s, e).subs(at),
     )
+
+
+def exact_sheet(height: Any) -> tuple[Any, Any]:
+    """(v_c, x-dot) of a polynomial motion x = height(v, t) launched at 0 from c = 0; the certificate is left.
+
+    Examples
+    --------
+    >>> from singimpact.paper.routes.implicit import t, v
+    >>> exact_sheet(v * t + t**2 / 2)
+    (-t/2, t/2)
+    """
+    from singimpact.paper.routes.implicit import sigma, t, v
+
+    forcing = sympy.Poly(sympy.diff(height, t, 2), t)
+    launch = sympy.expand(-sympy.cancel((height - v * t) / t))
+    landing = sympy.expand(sympy.diff(height, t).subs(v, launch))
+    jets = [forcing.nth(n) for n in range(forcing.degree() + 1)]
+    # at other launch times the motion has the same acceleration, counted from there
+    moved = sum(jet * ((sigma + t) ** (n + 2) - sigma ** (n + 2) - (n + 2) * sigma ** (n + 1) * t)
+                / ((n + 1) * (n + 2)) for n, jet in enumerate(jets))  # fmt: skip
+    whole = sympy.expand(v * t + moved)
+    motion((sigma, v, t), whole, jets, {}, launch=sympy.expand(-sympy.cancel(moved / t)))
+    return launch, landing
 
 
 @dataclass(frozen=True)

@@ -54,14 +54,14 @@ def _determinant(place: Place, t: float) -> float:
     return (by_t - place.impact(step, t) + place.impact(-step, t)) / (2 * step)
 
 
-def _cusps(_printed: Any, corrected: str) -> list[Trial]:
+def _cusps(_printed: Any, corrected: tuple[Any, ...]) -> list[Trial]:
     """Flights from rest with a = 0, a' != 0 that touch c at rest, and beside each one that crosses c there."""
     s = surfaces.PATH
     found = []
     for touching, crossing in ((s**3 * (1 - s) ** 2, s**3 * (1 - s)), (s**3 * (2 - s) ** 2, s**3 * (2 - s) * (1 + s))):
         at_rest, passing = surfaces.touching_flight(touching), surfaces.touching_flight(crossing)
         ready = at_rest.acceleration == 0 and at_rest.slope != 0 and at_rest.velocity == 0
-        holds = corrected == "x-dot != 0" and passing.velocity != 0 and passing.mixed != 0
+        holds = len(corrected) == 2 and passing.velocity != 0 and passing.mixed != 0
         told = f"{at_rest.mixed} where x-dot = 0, {passing.mixed} where x-dot = {passing.velocity} on {crossing}"
         found.append(
             Trial(f"x = {touching}", "v_(sigma t), not 0 at a cusp", told, "not 0 at all", "not 0 where x-dot is not",
@@ -70,14 +70,14 @@ def _cusps(_printed: Any, corrected: str) -> list[Trial]:
     return found
 
 
-def _lift_off(printed: str, corrected: str) -> list[Trial]:
+def _lift_off(printed: Any, corrected: Any) -> list[Trial]:
     """Whether the mass leaves the obstacle, against whether the free flight is above each level."""
     found = []
     for place in regular():
         clearance = surfaces.clearance(place.model)
         height = float(place.model.flight(place.tau, 0.0, 0.01).x)
         flies = place.model.first_hit(place.tau, 0.0).status != Status.sticks
-        says = {level: height > value for level, value in (("0", 0.0), ("c", clearance))}
+        says = {level: height > number(level, {"c": clearance}) for level in (printed, corrected)}
         found.append(
             Trial(place.name, f"it lifts off, x_c(0.01) = {height:.9f}, c = {clearance:g}", str(flies),
                   str(says[printed]), str(says[corrected]), says[printed] == flies, says[corrected] == flies)

@@ -214,6 +214,19 @@ def _limit(stated: Any) -> Check:
     )
 
 
+def limit_in_words(j: int) -> str:
+    """The limit of the eigenvalue as the larger root of the characteristic polynomial; trace and determinant by lambda."""
+    matrix = DG_on_ray(j)
+    larger = eigenvalues_on_gamma(j)[0]
+    if not is_zero(larger**2 - matrix.trace() * larger + matrix.det()):
+        raise ArithmeticError("the eigenvalue is no root of the characteristic polynomial")
+    trace, determinant = (latex(sympy.factor(part)) for part in (matrix.trace(), matrix.det()))
+    return (
+        r"\lim_{w\to w_*,\,w\in\gamma}\Lambda(w)>1,\ \text{the larger root of}\ \Lambda^2-T\Lambda+D=0,\ "
+        rf"T={trace},\ D={determinant}"
+    )
+
+
 def _lambda_half() -> Any:
     equation = sympy.Poly(sympy.fraction(sympy.together(r_of_lambda(1) - HALF))[0], lambda_)
     return next(root for root in equation.nroots(n=30) if 0 < root < 1)
@@ -304,7 +317,7 @@ CLAIMS = (
         printed=Statement(r"\lim_{w\to w_*,\,w\in\gamma}\Lambda(w)=1", sympy.Integer(1)),
         verify=_limit,
         corrected=lambda: Statement(
-            rf"\lim_{{w\to w_*,\,w\in\gamma}}\Lambda(w)={latex(eigenvalues_on_gamma(1)[0])}>1",
+            limit_in_words(1),
             eigenvalues_on_gamma(1)[0],
         ),
         mutants=(sympy.Integer(2), lambda_, eigenvalues_on_gamma(1)[1]),

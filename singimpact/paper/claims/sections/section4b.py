@@ -86,19 +86,30 @@ def _positive_for_all(expression: Any, *, rate: bool = True) -> bool:
 
 
 def _continuous(side: int) -> Check:
-    """v on the horizon has the stated sign off w_*, and F has no jump near a tangency with a' < 0."""
+    """v on the horizon has the stated sign off w_*, and F has no jump near a tangency with a' < 0.
+
+    dv/dt = -k l(sigma, t) + O(2) with l linear and positive on both edges of the sector 3 sigma + t >= 0, t >= 0, so on
+    all of it but 0, where it is above a multiple of |(sigma, t)|: no graze, and F is continuous.
+    """
     _, outline = fold.horizon()
     height = sympy.cancel(outline / k / sigma**2)
+    launch = sympy.cancel(fold.p()[1] / -k)
+    rise = sympy.expand(sympy.diff(launch, t))
+    edges = [{sigma: 1, t: 0}, {sigma: -1, t: 3}]
+    bounds = all(is_zero(launch.subs(edge)) for edge in edges)
     found = leaves.no_jumps()
     return every(
         [
             (f"v on the horizon is {height} k sigma^2 + O(3) with k < 0", height.is_positive and side == -1),
             (
+                f"dv/dt = -k ({rise}), positive on both edges of the sector, where v = 0",
+                bounds and all(rise.subs(edge) > 0 for edge in edges) and sympy.Poly(rise, sigma, t).is_homogeneous,
+            ),
+            (
                 f"no jump of F among {found.states} neighbouring states on two models, largest step {found.largest:.1e}",
                 found.largest < 0.05,
             ),
-        ],
-        kind="supported",
+        ]
     )
 
 

@@ -90,7 +90,7 @@ MUTANTS = {
         "theory/sheet.py",
         "self._minus = ring.rational(Fraction(-1))",
         "self._minus = ring.rational(Fraction(1))",
-        "e:degen e:phinew e:vtaylor-t2 s4b-rays s5-positive s5-vt-positive"),
+        "e:degen e:phinew e:vtaylor-t2 s4b-rays s5-F-smooth s5-positive s5-vt-positive"),
     "one integral of two": (
         "theory/sheet.py",
         "self.engine.integral(self.engine.integral(self._right_side(degree), 0), 0)",
@@ -120,13 +120,13 @@ MUTANTS = {
         "paper/routes/implicit.py",
         "/ ((n + 1) * (n + 2)))",
         "/ ((n + 1) * (n + 1)))",
-        "e3 e:acc s2-first-hit-rest s2-ivp s2-two-sheets t:t2-fixed"),
+        "e3 e:acc s2-first-hit-rest s2-ivp s2-lift-off-sign s2-two-sheets t:t2-fixed"),
     "the sheet one degree short": (
         "paper/routes/implicit.py",
         "for degree in range(1, order + 1):",
         "for degree in range(1, order):",
         "e:acc e:pnew e:yeq s3-Dp s3-Dphi s3-dvdt s4-Z-line s4-saddle s4b-Np s4b-T2-bounds "
-        "s4b-T2-place s4b-eps s4b-l-range s4b-p-bound s4b-q-bound s4b-ratio s4b-sector"),
+        "s4b-T2-place s4b-continuous s4b-eps s4b-l-range s4b-p-bound s4b-q-bound s4b-ratio s4b-sector"),
     "DG without the reset": (
         "paper/routes/implicit.py",
         "matrix = (restitution * Dphi()",
@@ -223,6 +223,31 @@ MUTANTS = {
         "scaled = sympy.expand(e**2 * acceleration()",
         "scaled = sympy.expand(e**3 * acceleration()",
         "s6-a0-typo"),
+    "a group law with another sign": (
+        "paper/routes/variations.py",
+        "difference = P - (u - v * q - A * b)",
+        "difference = P - (u + v * q - A * b)",
+        "p:phising-cusp s2-smooth"),
+    "an involution that exchanges nothing": (
+        "paper/routes/variations.py",
+        "INVOLUTION = {v: u, u: v}",
+        "INVOLUTION = {v: v, u: u}",
+        "p:phising-cusp p:phising-set s2-corr-sets"),
+    "a second derivative with another sign": (
+        "paper/routes/variations.py",
+        "(by * k + E) * e**2 / 2, order=2",
+        "(by * k - E) * e**2 / 2, order=2",
+        "p:phising-fold"),
+    "a velocity with a factor": (
+        "paper/routes/variations.py",
+        "velocity = y + t * y_t",
+        "velocity = y + 2 * t * y_t",
+        "p:phising-set s2-discontinuity s2-horizon"),
+    "an exact motion without a factor": (
+        "paper/trials/surfaces.py",
+        "/ ((n + 1) * (n + 2)) for n, jet in enumerate(jets)",
+        "/ (n + 1) for n, jet in enumerate(jets)",
+        "p:corresp s2-G-semiconj s2-corr-sets"),
 }  # fmt: skip
 
 PROGRAM = """
