@@ -76,6 +76,7 @@ def test_a_changed_file_is_refused(folder, tmp_path):
     assert "certificate 0" in done.stdout.splitlines()[1]
 
 
+@pytest.mark.slow
 def test_each_changed_number_is_refused(folder):
     """With the digest renewed: the certificate itself is refused."""
     rng = random.Random(20)
@@ -106,6 +107,7 @@ def test_a_false_certificate_is_refused(name):
     assert not holds(json.loads(json.dumps(certificate)))
 
 
+@pytest.mark.slow
 def test_the_two_checkers_agree_on_damaged_certificates(folder):
     """The sentence is renewed, so that the mathematics decides: a change may be another true statement."""
     rng, both = random.Random(7), 0

@@ -83,7 +83,9 @@ def noticed(mutant: Mutant, copy: Path) -> str:
     path = copy / mutant.file
     whole = path.read_text()
     path.write_text(mutant.applied(whole))
-    environment = os.environ | {"PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
+    # not those of a run of tests that this one may be a part of, nor of what counts its lines
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("SLIPCOVER", "PYTEST"))}
+    environment |= {"PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
     try:
         for target in [mutant.file, *GUARDS[mutant.file]]:
             if not (copy / target).exists():
