@@ -239,7 +239,8 @@ def _true_identity(data, rng):
 
     size = len(data["variables"])
     for _ in range(6):
-        point = [Fraction(rng.randint(-99, 99), 64) + Fraction(1, 1009) for _ in range(size)]
+        # no two coordinates alike: a quotient that is not cancelled has no value where they are
+        point = [Fraction(rng.randint(-99, 99), 64) + Fraction(1, 1009 + 2 * n) for n in range(size)]
         if data["relation"] is None:
             values = [point]
         else:
