@@ -33,6 +33,10 @@ class FakeVerdict:
     seconds: float = 0.125
 
     @property
+    def worth(self):
+        return self.effective
+
+    @property
     def in_words(self):
         return self.kind if self.effective == self.kind else f"{self.kind} ({self.effective})"
 

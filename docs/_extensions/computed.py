@@ -32,22 +32,24 @@ def graph(place: Path) -> str:
     from singimpact.paper.claims.graph import as_svg, dependants
 
     found = si.verify()
-    _put(place / "graph.svg", as_svg(INDEX, {v.id: v.kind if v.corrected else v.effective for v in found}))
+    _put(place / "graph.svg", as_svg(INDEX, {v.id: v.in_words if v.corrected else v.worth for v in found}))
     above = {v.id: [name for name, entry in INDEX.items() if v.id in entry.rests_on] for v in found}
     rows = [
-        f"| `{v.id}` | {v.kind} | {v.effective} | {_ids(v.rests_on)} | {_ids(above[v.id])} "
-        f"| {len(dependants(INDEX, v.id))} |"
+        f"| `{v.id}` | {v.title} | {v.kind} | {v.effective} | {', '.join(v.effective_modulo) or '-'} "
+        f"| {_ids(v.rests_on)} | {_ids(above[v.id])} | {len(dependants(INDEX, v.id))} |"
         for v in found
     ]
+    head = "| claim | what it says | verdict | effective | modulo | rests on | used by | falls |"
     told = [
         "# What rests on what",
         "The verdict is that of the claim's own argument; the effective verdict is the weakest along all that it rests "
-        "on, and the one to quote. The last column is the number of claims that fall with it, directly or not.",
+        "on, and the one to quote. *Modulo* are the theorems that this argument and those below it use; they are not "
+        "proved here. The last column is the number of claims that fall with it, directly or not.",
         "A column of the picture is one step further from the equation of motion, an arrow leads from a claim to one "
-        "that it rests on, colours are verdicts: green proved, blue supported, orange corrected, grey cited. [The "
-        "picture by itself](graph.svg).",
+        "that it rests on, colours are verdicts: green proved, teal proved modulo a theorem, pale green proved in the "
+        "model, yellow certified, blue supported, orange corrected, grey cited. [The picture by itself](graph.svg).",
         "![Claims as boxes in columns, with arrows between those that rest on one another](graph.svg)",
-        "\n".join(["| claim | verdict | effective | rests on | used by | falls |", "|---|---|---|---|---|---|", *rows]),
+        "\n".join([head, "|---" * head.count(" | ") + "|---|", *rows]),
     ]
     return "\n\n".join(told) + "\n"
 
@@ -57,7 +59,11 @@ def _ids(names: Any) -> str:
 
 
 def _worth(verdict: Any) -> str:
-    return f" ({verdict.corrected_kind})" if verdict.corrected_kind else ""
+    from singimpact.paper.claims.claim import told
+
+    if verdict.corrected_kind:
+        return f" ({told(verdict.corrected_kind, verdict.modulo)})"
+    return told(verdict.kind, verdict.modulo).removeprefix(verdict.kind)
 
 
 def commands() -> str:

@@ -1,8 +1,10 @@
 """The second program for claims: `python claims_checker.py DIR/*.json`, DIR of `singimpact verify --certificates DIR`.
 
 This file stands alone.  It imports python-flint and the standard library; its polynomials are flint's, its rules and
-its sentences are written anew.  A file holds when its digest is that of its content and every certificate in it follows
-from its own numbers: polynomials are multiplied out, put into one another, differentiated and compared.
+its sentences are written anew.  A file holds when its digest is that of its content, the words of its
+verdicts agree and every certificate in it follows from its own numbers: polynomials are multiplied out, put into one
+another, differentiated and compared.  Words agree when the effective verdict is no stronger than the argument, "proved"
+uses no theorem and "proved modulo" names one.
 
 A polynomial is a list of [exponents, coefficient], a coefficient a whole number or the text of a fraction.  The kinds:
 
@@ -30,6 +32,8 @@ from typing import Any
 from flint import fmpq, fmpq_mpoly_ctx
 
 SCHEMA = "singimpact claim 1"
+MODULO, IN_MODEL = "proved modulo", "proved in the model"
+STRONGEST_FIRST = ("proved", MODULO, IN_MODEL, "certified", "supported", "cited", "open", "error")
 ENDS = ("-oo", "oo")
 
 
@@ -474,8 +478,30 @@ def digest_of(told: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
 
 
+def check_words(told: dict[str, Any]) -> None:
+    """Nothing where the verdicts of a file agree: the effective one is no stronger than the argument and its theorems.
+
+    Raises
+    ------
+    Refused : they do not, and why.
+    """
+    own = told["corrected_kind"] if told["verdict"] == "corrected" else told["verdict"]
+    worth, modulo, below = told["effective"], told.get("modulo", []), told.get("effective_modulo", [])
+    need(own in STRONGEST_FIRST and own != IN_MODEL, f"{own!r} is no verdict on an argument")
+    need(worth in STRONGEST_FIRST, f"{worth!r} is no effective verdict")
+    for names in (modulo, below):
+        need(isinstance(names, list) and all(isinstance(name, str) and name for name in names), "a theorem has no name")
+    need(set(modulo) <= set(below), "a theorem of the argument is missing from those of the effective verdict")
+    for word, names in ((own, modulo), (worth, below)):
+        need(word != "proved" or not names, f"proved, but modulo {', '.join(names)}")
+        need(word != MODULO or names, f"{MODULO} no theorem")
+    need(STRONGEST_FIRST.index(worth) >= STRONGEST_FIRST.index(own), f"{worth} is stronger than {own}")
+    in_model = told.get("in_model") and own in ("proved", MODULO)
+    need(not in_model or worth not in ("proved", MODULO), f"an argument about the model is not worth {worth}")
+
+
 def check(told: Any) -> int:
-    """The number of certificates of a claim, when all hold.
+    """The number of certificates of a claim, when all hold and its verdicts agree.
 
     Raises
     ------
@@ -483,6 +509,7 @@ def check(told: Any) -> int:
     """
     need(isinstance(told, dict) and told.get("schema") == SCHEMA, f"only files of schema {SCHEMA!r} are checked here")
     need(told.get("digest") == digest_of(told), "the digest is not that of the content: the file was changed")
+    check_words(told)
     for n, certificate in enumerate(told["certificates"]):
         try:
             check_certificate(certificate)

@@ -82,7 +82,7 @@ def graph(svg: bool, as_json: bool, output: str | None) -> None:
 def _kinds() -> dict[str, str]:
     from singimpact.paper.claims import run, select
 
-    return {v.id: v.kind if v.corrected else v.effective for v in run(select(), kept=True)}
+    return {v.id: v.in_words if v.corrected else v.worth for v in run(select(), kept=True)}
 
 
 @command.command()

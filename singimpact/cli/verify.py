@@ -12,7 +12,14 @@ import click
 from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.progress import ProgressLine
 
-COLOURS = {"proved": "green", "certified": "green", "corrected": "yellow", "open": "cyan", "error": "red"}
+COLOURS = {
+    "proved": "green",
+    "proved modulo": "green",
+    "certified": "green",
+    "corrected": "yellow",
+    "open": "cyan",
+    "error": "red",
+}
 
 
 @click.command(short_help="check every claim of the paper and print its verdict")

@@ -56,8 +56,8 @@ class Mark:
 
     Attributes
     ----------
-    verdict : its kind. effective : the weakest verdict along all that it rests on; of what holds instead, where it is
-        corrected. printed : the paper's formula in LaTeX, where it is corrected.
+    verdict : its kind. effective : the weakest verdict along all that it rests on, in words; of what holds instead,
+        where it is corrected. printed : the paper's formula in LaTeX, where it is corrected.
     """
 
     verdict: str

@@ -9,9 +9,29 @@ from typing import Any
 
 from singimpact.notebook import table
 
-KINDS = ("proved", "certified", "supported", "cited", "corrected", "open", "error")
+PROVED = "proved"
+MODULO = "proved modulo"  # an exact argument that uses theorems, which are named and not proved here
 IN_MODEL = "proved in the model"  # an exact argument about x'' = 12 kappa (s^2 - 1) alone, which oscillators tend to
-STRENGTH = {"proved": 6, "certified": 5, IN_MODEL: 4, "supported": 3, "cited": 2, "open": 1, "error": 0}
+STRONGEST_FIRST = (PROVED, MODULO, IN_MODEL, "certified", "supported", "cited", "open", "error")
+STRENGTH = {word: len(STRONGEST_FIRST) - 1 - place for place, word in enumerate(STRONGEST_FIRST)}
+KINDS = ("corrected", *(word for word in STRONGEST_FIRST if word != IN_MODEL))  # in the model: found, never stated
+ARGUED = (PROVED, MODULO, IN_MODEL, "certified")  # kinds that a theorem can be missing from; numbers use none
+
+
+def told(kind: str, modulo: Sequence[str]) -> str:
+    """A kind with the theorems that its argument uses; of numbers and citations the kind alone.
+
+    Examples
+    --------
+    >>> told("proved modulo", ["the stable manifold theorem"]), told("proved", []), told("supported", ["Rolle's"])
+    ('proved modulo the stable manifold theorem', 'proved', 'supported')
+    >>> told("certified", ["Smale's theorem", "the shadowing lemma"])
+    "certified, modulo Smale's theorem and the shadowing lemma"
+    """
+    if not modulo or kind not in ARGUED:
+        return kind
+    names = " and ".join(part for part in (", ".join(modulo[:-1]), modulo[-1]) if part)
+    return f"{kind} {names}" if kind == MODULO else f"{kind}, modulo {names}"
 
 
 @dataclass(frozen=True)
@@ -31,12 +51,33 @@ class Check:
     holds : whether the statement passed.
     kind : what the argument is worth if it holds: proved, certified, supported or cited.
     evidence : one line for a person. witness : numbers at which a failing statement fails.
+    modulo : names of theorems that the argument uses; with any, "proved" becomes "proved modulo".
+
+    Raises
+    ------
+    ValueError : a kind that no argument has, a theorem without a name, or "proved modulo" without a theorem.
+
+    Examples
+    --------
+    >>> Check(True, "proved", "hyperbolic for all r", modulo=("the stable manifold theorem",)).kind
+    'proved modulo'
     """
 
     holds: bool
     kind: str
     evidence: str
     witness: Mapping[str, str] | None = None
+    modulo: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if isinstance(self.modulo, str) or not all(isinstance(name, str) and name.strip() for name in self.modulo):
+            raise ValueError(f"modulo has to be a tuple of theorems' names, not {self.modulo!r}")
+        if self.kind == PROVED and self.modulo:
+            object.__setattr__(self, "kind", MODULO)
+        if self.kind not in KINDS or self.kind == "corrected":
+            raise ValueError(f"no argument has the kind {self.kind!r}")
+        if self.kind == MODULO and not self.modulo:
+            raise ValueError('"proved modulo" needs the name of a theorem')
 
 
 @dataclass(frozen=True)
@@ -146,12 +187,13 @@ class Verdict:
 
     Attributes
     ----------
-    kind : one of `KINDS`. effective : the weakest kind along what it rests on, and what documents print.
+    kind : one of `KINDS`. effective : the weakest kind along what it rests on; `worth` is what documents print.
     in_model : whether its verifier used the universal model of section 6, so that a proof is one in that model.
     corrected, corrected_kind : the statement that holds instead, in LaTeX, and its own verdict.
     witness : numbers at which the printed statement fails. seconds : of CPU time.
     certificates : plain data on which the verdict rests where it is proved, each accepted by `algebra.checking`.
     trials : of the printed and the corrected statement, on two models or more.
+    modulo : theorems that its own argument uses. effective_modulo : those, and the ones along what it rests on.
     """
 
     id: str
@@ -169,6 +211,8 @@ class Verdict:
     trials: tuple[Trial, ...]
     seconds: float
     in_model: bool = False
+    modulo: tuple[str, ...] = ()
+    effective_modulo: tuple[str, ...] = ()
 
     @property
     def strength(self) -> str:
@@ -177,7 +221,7 @@ class Verdict:
 
     @property
     def in_words(self) -> str:
-        """The kind, with the effective verdict in brackets where that is another word.
+        """The kind, with the effective verdict in brackets where that is another word; with the theorems they use.
 
         Examples
         --------
@@ -185,24 +229,29 @@ class Verdict:
         >>> [verdict.in_words for verdict in run(select(["s6-a0-typo"]))]
         ['corrected (proved in the model)']
         """
-        if self.effective.startswith(self.kind):
-            return self.effective
-        return f"{self.kind} ({self.effective})"
+        own = told(self.kind, self.modulo)
+        both_proved = self.kind in (PROVED, MODULO) and self.effective in (PROVED, MODULO, IN_MODEL)
+        return self.worth if both_proved or self.effective == self.kind else f"{own} ({self.worth})"
+
+    @property
+    def worth(self) -> str:
+        """The effective verdict in words: with the theorems that it uses, and that is what documents print."""
+        return told(self.effective, self.effective_modulo)
 
     def _repr_html_(self) -> str:
         rows = [("verdict", self.in_words), ("printed", f"${self.printed}$")]
         if self.corrected is not None:
-            rows.append((f"corrected ({self.effective})", f"${self.corrected}$"))
+            rows.append((f"corrected ({self.worth})", f"${self.corrected}$"))
         return table([], [*rows, ("evidence", self.evidence)], f"{self.id}, section {self.section}: {self.title}")
 
     def as_dict(self) -> dict[str, Any]:
         """The verdict as plain data; the kind is called "verdict" there."""
         data = asdict(self)
-        data["verdict"] = data.pop("kind")
+        data |= {"verdict": data.pop("kind"), "worth": self.worth}
         data["witness"] = dict(self.witness) if self.witness is not None else None
-        data["rests_on"] = list(self.rests_on)
+        data |= {name: list(data[name]) for name in ("rests_on", "modulo", "effective_modulo")}
         data["certificates"] = list(self.certificates)
         data["trials"] = [asdict(trial) for trial in self.trials]
         data["seconds"] = round(self.seconds, 4)
-        first = ("id", "verdict", "effective", "title", "printed", "corrected", "corrected_kind", "witness")
+        first = ("id", "verdict", "effective", "worth", "title", "printed", "corrected", "corrected_kind", "witness")
         return {key: data[key] for key in first} | {key: value for key, value in data.items() if key not in first}

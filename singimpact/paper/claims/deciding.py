@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from singimpact.algebra.certificates import Certificate, collected
-from singimpact.paper.claims.claim import IN_MODEL, STRENGTH, Check, Claim, Trial, Verdict
+from singimpact.paper.claims.claim import IN_MODEL, MODULO, PROVED, STRENGTH, Check, Claim, Trial, Verdict
 from singimpact.paper.routes.equations import derived_from, watched
 from singimpact.paper.routes.unfolding import acceleration as model_acceleration
 
@@ -25,6 +25,7 @@ class _Found:
     certificates: tuple[Certificate, ...] = ()
     trials: tuple[Trial, ...] = ()
     in_model: bool = False
+    modulo: tuple[str, ...] = ()
 
 
 def decide(claim: Claim, known: Mapping[str, Verdict]) -> Verdict:
@@ -34,12 +35,14 @@ def decide(claim: Claim, known: Mapping[str, Verdict]) -> Verdict:
         found = _found(claim)
     except Exception as error:  # a verifier that raises is a verdict, not a crash of the run
         found = _Found("error", f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")
-    below = [known[name].effective for name in claim.rests_on if name in known]
+    below = [known[name] for name in claim.rests_on if name in known]
+    own = effective(found.corrected_kind or found.kind, found.in_model, [verdict.effective for verdict in below])
     return Verdict(
         id=claim.id,
         section=claim.section,
         title=claim.title,
-        effective=effective(found.corrected_kind or found.kind, found.in_model, below),
+        effective=own,
+        effective_modulo=united([found.modulo, *(verdict.effective_modulo for verdict in below)]),
         printed=claim.printed.latex,
         rests_on=claim.rests_on,
         seconds=time.process_time() - started,
@@ -59,15 +62,28 @@ def effective(kind: str, in_model: bool, below: Sequence[str]) -> str:
     --------
     >>> effective("proved", True, ["proved"]), effective("proved", False, ["supported"])
     ('proved in the model', 'supported')
+    >>> effective("proved", False, ["proved modulo", "proved"]), effective("certified", True, ["proved modulo"])
+    ('proved modulo', 'certified')
     """
-    own = IN_MODEL if in_model and kind == "proved" else kind
+    own = IN_MODEL if in_model and kind in (PROVED, MODULO) else kind
     return min([own, *below], key=lambda name: STRENGTH[name])
+
+
+def united(theorems: Iterable[Sequence[str]]) -> tuple[str, ...]:
+    """The theorems of several arguments, each once, in the order in which they come.
+
+    Examples
+    --------
+    >>> united([("Takens' theorem",), (), ("the stable manifold theorem", "Takens' theorem")])
+    ("Takens' theorem", 'the stable manifold theorem')
+    """
+    return tuple(dict.fromkeys(name for names in theorems for name in names))
 
 
 def _found(claim: Claim) -> _Found:
     check, certificates, in_model = _verified(claim, claim.printed.value)
     if check.holds:
-        return _Found(check.kind, check.evidence, certificates=certificates, in_model=in_model)
+        return _Found(check.kind, check.evidence, certificates=certificates, in_model=in_model, modulo=check.modulo)
     return _corrected(claim, check)
 
 
@@ -99,7 +115,8 @@ def _corrected(claim: Claim, failed: Check) -> _Found:
         raise ArithmeticError("the printed statement fails without a witness")
     evidence = f"printed: {failed.evidence}; corrected: {check.evidence}"
     trials = _tried(claim, statement.value)
-    return _Found("corrected", evidence, failed.witness, statement.latex, check.kind, certificates, trials, in_model)
+    shown = (failed.witness, statement.latex, check.kind, certificates, trials)
+    return _Found("corrected", evidence, *shown, in_model, check.modulo)
 
 
 def _tried(claim: Claim, corrected: Any) -> tuple[Trial, ...]:

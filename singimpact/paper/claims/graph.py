@@ -38,7 +38,12 @@ def as_text(claims: Mapping[str, Entry]) -> str:
 
 
 def as_svg(claims: Mapping[str, Entry], kinds: Mapping[str, str] | None = None) -> str:
-    """A picture: columns by depth, an arrow from each claim to what it rests on; colours by verdict where given."""
+    """A picture: columns by depth, an arrow from each claim to what it rests on; colours by verdict where given.
+
+    Parameters
+    ----------
+    kinds : id -> its effective verdict in words; a colour goes with the longest of the `COLOURS` that begins them.
+    """
     columns: dict[int, list[str]] = {}
     for name in claims:
         columns.setdefault(depth(claims, name), []).append(name)
@@ -60,7 +65,9 @@ def as_svg(claims: Mapping[str, Entry], kinds: Mapping[str, str] | None = None) 
 
 COLOURS = {
     "proved": "#d5e8d4",
+    "proved modulo": "#d0ece7",
     "proved in the model": "#e6f0d0",
+    "certified": "#fff2cc",
     "supported": "#dae8fc",
     "cited": "#eeeeee",
     "corrected": "#ffe6cc",
@@ -68,10 +75,21 @@ COLOURS = {
 }
 
 
+def colour_of(words: str) -> str:
+    """The colour of a verdict.
+
+    Examples
+    --------
+    >>> colour_of("proved modulo Takens' theorem") == COLOURS["proved modulo"], colour_of("open")
+    (True, 'white')
+    """
+    return COLOURS[max(found, key=len)] if (found := [word for word in COLOURS if words.startswith(word)]) else "white"
+
+
 def _box(claim: Entry, x: int, y: int, kind: str) -> str:
     told = f"{claim.title} [{kind}]" if kind else claim.title
     return (
         f'<g><title>{escape(told)}</title><rect x="{x}" y="{y}" width="155" height="17" rx="3" '
-        f'fill="{COLOURS.get(kind, "white")}" stroke="#444444" stroke-width="0.7"/>'
+        f'fill="{colour_of(kind)}" stroke="#444444" stroke-width="0.7"/>'
         f'<text x="{x + 6}" y="{y + 12}">{escape(claim.id)}</text></g>'
     )

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.certificates.claims_checker import SCHEMA, digest_of
 from singimpact.notebook import table
+from singimpact.paper.claims.claim import MODULO
 from singimpact.paper.claims.layout import Painter, Row, laid_out, unpainted, wrapped
 from singimpact.store import folder, write_text
 
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
 
 ERROR = "error"
 WRITTEN = (  # of a verdict, in the file of its certificates: no seconds, which differ from run to run
-    "id", "verdict", "effective", "section", "title", "printed", "corrected", "corrected_kind", "rests_on", "in_model",
-    "certificates",
+    "id", "verdict", "effective", "modulo", "effective_modulo", "section", "title", "printed", "corrected",
+    "corrected_kind", "rests_on", "in_model", "certificates",
 )  # fmt: skip
 CORRECTED = "corrected"
 
@@ -160,7 +161,8 @@ class VerdictTable(Sequence["Verdict"]):
     def _summary(self) -> str:
         counts = Counter(verdict.kind for verdict in self.verdicts)
         seconds = sum(verdict.seconds for verdict in self.verdicts)
-        told = ", ".join(f"{count} {kind}" for kind, count in counts.most_common())
+        named = {MODULO: f"{MODULO} a theorem"}
+        told = ", ".join(f"{count} {named.get(kind, kind)}" for kind, count in counts.most_common())
         return f"{len(self.verdicts)} claims: {told or 'none'}; {seconds:.1f} s"
 
     def _misprints(self, width: int | None) -> str:
@@ -174,7 +176,7 @@ def _misprint(verdict: Verdict, width: int | None) -> str:
     lines = [
         verdict.id,
         *wrapped("  printed    ", verdict.printed, width),
-        *wrapped("  corrected  ", f"{verdict.corrected}   [{verdict.effective}]", width),
+        *wrapped("  corrected  ", f"{verdict.corrected}   [{verdict.worth}]", width),
         *wrapped("  witness    ", _witness(verdict.witness), width),
     ]
     return "\n".join(lines)

@@ -110,7 +110,10 @@ def _short(value: Any) -> str:
 
 
 def every(
-    checks: Sequence[tuple[str, bool]], kind: str = "proved", witness: Callable[[], dict[str, str]] | None = None
+    checks: Sequence[tuple[str, bool]],
+    kind: str = "proved",
+    witness: Callable[[], dict[str, str]] | None = None,
+    modulo: tuple[str, ...] = (),
 ) -> Check:
     """One check from several named ones; all must pass.
 
@@ -118,8 +121,15 @@ def every(
     ----------
     checks : (what was tested, whether it passed).
     witness : numbers for a failure; without it the parts that failed are named.
+    modulo : names of theorems that take the checks for their hypotheses.
+
+    Examples
+    --------
+    >>> every([("0 < mu < 1", True)], modulo=("the stable manifold theorem",)).kind
+    'proved modulo'
     """
     failed = [name for name, passed in checks if not passed]
     if not failed:
-        return Check(True, kind, "; ".join(name for name, _ in checks))
-    return Check(False, kind, f"fails: {'; '.join(failed)}", witness() if witness else {"fails": "; ".join(failed)})
+        return Check(True, kind, "; ".join(name for name, _ in checks), modulo=modulo)
+    shown = witness() if witness else {"fails": "; ".join(failed)}
+    return Check(False, kind, f"fails: {'; '.join(failed)}", shown, modulo)

@@ -26,7 +26,8 @@ class Erratum:
     Attributes
     ----------
     verdict : of the claim.
-    dependants : id -> effective verdict of the claims that rest directly on it, that is on the corrected statement.
+    dependants : id -> effective verdict, in words, of the claims that rest directly on it, that is on the corrected
+        statement.
     """
 
     verdict: Verdict
@@ -63,7 +64,7 @@ class Erratum:
     def as_dict(self) -> dict[str, Any]:
         """The erratum as plain data."""
         verdict, place, remark = self.verdict, self.place, self.remark
-        names = ("id", "section", "title", "printed", "corrected", "corrected_kind", "effective", "evidence")
+        names = ("id", "section", "title", "printed", "corrected", "corrected_kind", "effective", "worth", "evidence")
         return {name: getattr(verdict, name) for name in names} | {
             "page": place.page,
             "equations": list(place.equations),
@@ -221,7 +222,7 @@ def _numbers(entry: Erratum) -> list[tuple[str, str]]:
 
 def _text_entry(entry: Erratum) -> str:
     v = entry.verdict
-    lines = [f"{v.id}: {v.title}", f"  printed    {v.printed}", f"  corrected  {v.corrected}   [{v.effective}]"]
+    lines = [f"{v.id}: {v.title}", f"  printed    {v.printed}", f"  corrected  {v.corrected}   [{v.worth}]"]
     lines += [f"  {name:11}{told}" for name, told in _numbers(entry)]
     return "\n".join(lines + [f"  used by    {entry.survives}"] * bool(entry.dependants))
 
@@ -237,7 +238,7 @@ def _markdown_entry(entry: Erratum) -> str:
     lines = [
         f"`{v.id}`: {_words_markdown(v.title)}.\n",
         f"- printed: {wrapping(v.printed)}",
-        f"- corrected ({v.effective}): {wrapping(v.corrected or '')}",
+        f"- corrected ({v.worth}): {wrapping(v.corrected or '')}",
         *(f"- {name}: {_words_markdown(told)}" for name, told in _numbers(entry)),
     ]
     return "\n".join(lines + [f"- used by: {escape.markdown(entry.survives)}"] * bool(entry.dependants)) + "\n"
@@ -274,7 +275,7 @@ def _latex_entry(entry: Erratum) -> str:
     v = entry.verdict
     rows = [
         ("printed", f"${v.printed}$"),
-        ("corrected", f"${v.corrected}$ ({escape.latex(v.effective)})"),
+        ("corrected", f"${v.corrected}$ ({escape.latex(v.worth)})"),
         *((name, escape.latex_words(in_letters(told))) for name, told in _numbers(entry)),
     ]
     rows += [("used by", escape.latex(entry.survives))] * bool(entry.dependants)
@@ -297,6 +298,6 @@ def errata(on_start: Callable[[Entry | Claim, int, int], None] | None = None) ->
     found = []
     for verdict in verdicts.values():
         if verdict.kind == "corrected":
-            above = {c.id: verdicts[c.id].effective for c in claims if verdict.id in c.rests_on}
+            above = {c.id: verdicts[c.id].worth for c in claims if verdict.id in c.rests_on}
             found.append(Erratum(verdict, above))
     return Errata(tuple(found))

@@ -29,9 +29,10 @@ NOTATION = Section(
         ),
         Step(
             "At the right of a formula stands its label and what its claims were found to be: proved in exact "
-            "arithmetic, certified with bounds, proved in the model $x'' = 12\\kappa(s^2 - 1)$ alone, supported by "
-            "numbers, or corrected, when the paper prints something else; what it prints is then quoted below. The "
-            "word is the weakest along all that the claim rests on. A formula without a verdict is a step on the way."
+            "arithmetic, proved modulo a theorem that is named, proved in the model $x'' = 12\\kappa(s^2 - 1)$ alone, "
+            "certified with bounds, supported by numbers, or corrected, when the paper prints something else; what it "
+            "prints is then quoted below. The word is the weakest along all that the claim rests on. A formula without "
+            "a verdict is a step on the way."
         ),
     ),
 )

@@ -1,0 +1,178 @@
+"""The words of verdicts: their order, what a dependant inherits, and the theorems that go with them."""
+
+from itertools import pairwise
+
+import pytest
+
+from singimpact.certificates import claims_checker
+from singimpact.documents.steps import Mark
+from singimpact.paper.claims import CLAIMS, run
+from singimpact.paper.claims.claim import (
+    IN_MODEL,
+    KINDS,
+    MODULO,
+    STRENGTH,
+    STRONGEST_FIRST,
+    Check,
+    Claim,
+    Statement,
+    Trial,
+    told,
+)
+from singimpact.paper.claims.deciding import effective
+from singimpact.paper.claims.graph import COLOURS, as_svg, colour_of
+from singimpact.paper.claims.verdicts import VerdictTable
+from singimpact.paper.claims.verifiers import every
+
+STABLE, TAKENS = "the stable manifold theorem", "Takens' theorem"
+
+
+def claim(name, kind="proved", rests_on=(), modulo=(), right=1):
+    """A claim about 1, or one that is corrected to 1."""
+    trials = [Trial(model, "x", "1", "2", "1", False, True) for model in ("one", "two")]
+    return Claim(
+        name, "0", f"claim {name}", Statement(f"x = {right}", right),
+        lambda value: Check(value == 1, kind, "compared", {"x": "1"}, modulo), (0,),
+        None if right == 1 else lambda: Statement("x = 1", 1), rests_on, lambda *_: trials,
+    )  # fmt: skip
+
+
+def verdicts(*claims):
+    return {verdict.id: verdict for verdict in run(claims)}
+
+
+def test_the_order():
+    words = ("proved", "proved modulo", "proved in the model", "certified", "supported", "cited", "open", "error")
+    assert words == STRONGEST_FIRST == claims_checker.STRONGEST_FIRST
+    assert all(STRENGTH[strong] > STRENGTH[weak] for strong, weak in pairwise(words))
+    assert set(KINDS) == {*words, "corrected"} - {IN_MODEL}
+
+
+@pytest.mark.parametrize("own", [word for word in STRONGEST_FIRST if word != IN_MODEL])
+@pytest.mark.parametrize("below", STRONGEST_FIRST)
+def test_a_claim_is_worth_the_weaker_word(own, below):
+    worth = effective(own, False, [below, "proved"])
+    assert worth in (own, below)
+    assert STRENGTH[worth] == min(STRENGTH[own], STRENGTH[below])
+
+
+@pytest.mark.parametrize(
+    ("own", "worth"), [("proved", IN_MODEL), (MODULO, IN_MODEL), ("certified", "certified"), ("supported", "supported")]
+)
+def test_only_proofs_are_proofs_in_the_model(own, worth):
+    assert effective(own, True, []) == worth
+
+
+def test_a_theorem_makes_a_proof_one_modulo_it_and_leaves_the_rest():
+    assert every([("hyperbolic", True)], modulo=(STABLE,)).kind == MODULO
+    for kind in ("certified", "supported", "cited"):
+        check = every([("hyperbolic", True)], kind, modulo=(STABLE,))
+        assert (check.kind, check.modulo) == (kind, (STABLE,))
+
+
+@pytest.mark.parametrize(
+    ("kind", "modulo"), [(MODULO, ()), ("proved", ("",)), ("proved", STABLE), (IN_MODEL, ()), ("corrected", ())]
+)
+def test_a_check_without_a_meaning_is_refused(kind, modulo):
+    with pytest.raises(ValueError, match=r"theorem|no argument"):
+        Check(True, kind, "", modulo=modulo)
+
+
+def test_dependants_inherit_theorems():
+    found = verdicts(
+        claim("manifold", modulo=(STABLE,)),
+        claim("foliation", rests_on=("manifold",)),
+        claim("both", rests_on=("foliation",), modulo=(TAKENS, STABLE)),
+        claim("apart"),
+    )
+    assert found["manifold"].in_words == f"proved modulo {STABLE}"
+    assert (found["foliation"].kind, found["foliation"].effective, found["foliation"].modulo) == ("proved", MODULO, ())
+    assert found["foliation"].effective_modulo == (STABLE,)
+    assert found["foliation"].in_words == f"proved modulo {STABLE}"
+    assert found["both"].in_words == f"proved modulo {TAKENS} and {STABLE}"
+    assert found["apart"].in_words == found["apart"].worth == "proved"
+    assert all(found[name].as_dict()["effective_modulo"] == list(found[name].effective_modulo) for name in found)
+
+
+def test_numbers_below_are_told_as_numbers():
+    found = verdicts(
+        claim("measured", "supported"),
+        claim("manifold", modulo=(STABLE,), rests_on=("measured",)),
+        claim("chain", modulo=(STABLE,)),
+        claim("above", "certified", rests_on=("chain",)),
+        claim("far", rests_on=("above",)),
+    )
+    assert found["manifold"].in_words == f"proved modulo {STABLE} (supported)"
+    assert found["manifold"].worth == "supported"
+    assert found["above"].in_words == f"certified, modulo {STABLE}"
+    assert found["far"].in_words == f"proved (certified, modulo {STABLE})"
+
+
+def test_a_correction_is_worth_what_its_argument_is():
+    found = verdicts(claim("fixed", modulo=(STABLE,), right=2), claim("above", rests_on=("fixed",)))
+    assert (found["fixed"].kind, found["fixed"].corrected_kind, found["fixed"].strength) == (
+        "corrected",
+        MODULO,
+        MODULO,
+    )
+    assert found["fixed"].in_words == f"corrected (proved modulo {STABLE})"
+    assert found["above"].worth == f"proved modulo {STABLE}"
+    mark = Mark(found["fixed"].kind, found["fixed"].worth, found["fixed"].printed)
+    assert mark.text == f"corrected, proved modulo {STABLE}"
+
+
+def test_the_table_tells_the_theorems():
+    claims = [claim("manifold", modulo=(STABLE,)), claim("fixed", modulo=(TAKENS,), right=2)]
+    text = VerdictTable(claims, run(claims)).text()
+    assert f"proved modulo {STABLE}" in text
+    assert "1 proved modulo a theorem, 1 corrected" in text
+    assert f"x = 1   [proved modulo {TAKENS}]" in text
+
+
+def test_colours_go_with_the_first_words():
+    assert len(set(COLOURS.values())) == len(COLOURS) >= 8
+    assert colour_of(f"proved modulo {STABLE}") == COLOURS[MODULO]
+    assert colour_of(f"proved in the model, modulo {STABLE}") == COLOURS[IN_MODEL]
+    assert colour_of(f"corrected (proved modulo {STABLE})") == COLOURS["corrected"]
+    assert set(STRONGEST_FIRST) - set(COLOURS) == {"open"}
+    assert f"[proved modulo {STABLE}]" in as_svg(CLAIMS, {"e:yeq": f"proved modulo {STABLE}"})
+
+
+def test_words():
+    assert told(IN_MODEL, (STABLE,)) == f"proved in the model, modulo {STABLE}"
+    assert told(MODULO, ("A", "B", "C")) == "proved modulo A, B and C"
+
+
+def written(**changes):
+    """A file of `verify --certificates` with some fields changed, and its digest made anew."""
+    content = {
+        "schema": claims_checker.SCHEMA, "verdict": MODULO, "effective": MODULO, "corrected_kind": None,
+        "modulo": [STABLE], "effective_modulo": [STABLE, TAKENS], "in_model": False, "certificates": [],
+    } | changes  # fmt: skip
+    return content | {"digest": claims_checker.digest_of(content)}
+
+
+def test_the_second_program_reads_the_words():
+    assert claims_checker.check(written()) == 0
+    assert claims_checker.check(written(verdict="corrected", corrected_kind="proved", modulo=[])) == 0
+    assert claims_checker.check(written(in_model=True, effective=IN_MODEL)) == 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"effective": "proved"}, "proved, but modulo"),
+        ({"verdict": "proved"}, "proved, but modulo"),
+        ({"verdict": "proved", "modulo": [], "effective_modulo": []}, "proved modulo no theorem"),
+        ({"effective_modulo": [TAKENS]}, "missing"),
+        ({"verdict": "supported", "modulo": []}, "stronger"),
+        ({"verdict": "certified", "effective": IN_MODEL}, "stronger"),
+        ({"verdict": "certain"}, "no verdict"),
+        ({"effective": "certain"}, "no effective verdict"),
+        ({"modulo": [""], "effective_modulo": [""]}, "no name"),
+        ({"in_model": True}, "about the model"),
+    ],
+)
+def test_the_second_program_refuses_words_that_disagree(changes, why):
+    with pytest.raises(claims_checker.Refused, match=why):
+        claims_checker.check(written(**changes))
