@@ -60,7 +60,8 @@ def imported_by(file: str) -> list[str]:
         name = todo.pop()
         if name not in found:
             found.add(name)
-            todo += [each.strip() for pair in IMPORTED.findall(source_of(name)) for each in "".join(pair).split(",")]
+            named = [each for pair in IMPORTED.findall(source_of(name)) for each in "".join(pair).split(",")]
+            todo += [each.split()[0] for each in named]  # "file as other" is the file
     return sorted(found)
 
 

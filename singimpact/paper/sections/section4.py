@@ -33,11 +33,12 @@ def _derivatives() -> tuple[Step, ...]:
     bend = sympy.expand(-second - 2 * mixed * slope)
     return (
         Step(
-            "The zeros of $a_c$ move with the clearance, so $a', a'', \\ldots$ at $\\tau_*$ depend on $c$. For $x'' + "
-            "x = \\cos \\omega t$ they are those of $a_c(\\tau) = \\cos \\omega\\tau - c$.",
+            "The zeros of $a_c$ move with the clearance, so $a', a'', \\ldots$ at $\\tau_*$ depend on $c$. For $x'' "
+            "+ x = \\cos \\omega t$ they are those of $a_c(\\tau) = \\cos \\omega\\tau - c$, and simple for all $c$ "
+            "but $\\pm 1$.",
             "",
             "",
-            ("s4-depends-on-c", "e:lin"),
+            ("s4-depends-on-c", "e:lin", "s4-zeros"),
         ),
         Step(
             "The expansion of $v_c$ follows from derivatives of $y_c$ at $t = 0$: those by $t$ are half the "

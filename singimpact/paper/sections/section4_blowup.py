@@ -11,6 +11,7 @@ from singimpact.documents.steps import Step
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import m
 from singimpact.paper.routes.implicit import a_symbol, r, sigma
+from singimpact.paper.sections import section4_orbits as orbits
 from singimpact.theory.homogeneous import DG_on_ray, P, Q, leading_coefficient, mu_of_lambda, r_of_lambda
 from singimpact.theory.notation import latex
 
@@ -124,7 +125,7 @@ def _multipliers() -> tuple[Step, ...]:
             "= m_3 \\sigma$:",
             rf"\gamma : \ v = {latex(fold.gamma_leading())}\, {latex(sigma**2)} + O(3)\,, \qquad m = m_3",
             "s4-gamma-leading",
-            ("t:t2-exists", "t:t2-unique", "s4-beta-tangent"),
+            ("t:t2-exists", "s4-beta-tangent"),
         ),
     )
 
@@ -178,7 +179,8 @@ def in_lambda() -> tuple[Step, ...]:
             "torn. At the tangency point itself the mass lifts off.",
             "",
             "",
-            ("t:t2-sides", "t:t2-fixed", "s4-P-star"),
+            ("t:t2-unique", "t:t2-fixed", "s4-P-star"),
             "figure5",
         ),
+        *orbits.beside_gamma(1),
     )

@@ -12,6 +12,7 @@ from singimpact.paper.claims.sections.section4b import M, ell, on_ray
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import k
 from singimpact.paper.routes.implicit import r, sigma, t
+from singimpact.paper.sections import section4_orbits as orbits
 from singimpact.theory.notation import latex
 
 share = sympy.Symbol("p")
@@ -115,7 +116,7 @@ def _bounds() -> tuple[Step, ...]:
                 rf"\tilde q &< {latex(landed)}\, \tfrac13 ({latex(above)})\, \sigma^2\,,",
             ),
             "s4b-bounds",
-            ("s4b-p-bound", "s4b-q-bound"),
+            ("s4b-p-bound", "s4b-q-bound", "s4b-conditions"),
         ),
         Step(
             "so that",
@@ -139,13 +140,10 @@ def _leaves() -> tuple[Step, ...]:
     return (
         Step(
             "So each arc is mapped below itself by a factor $N < 1$ that does not depend on the point: its images tend "
-            "to $\\Pi_0$ uniformly, and all states near $w_*$ chatter to rest at phases after $\\tau_*$. The stable "
-            "manifold of such a phase can be followed backwards to a phase before $\\tau_*$, and these arcs fill a "
-            "neighbourhood.",
-            "",
-            "",
-            ("s4b-contraction", "s4b-back", "t:foliate"),
+            "to $\\Pi_0$ uniformly, and all states near $w_*$ chatter to rest at phases after $\\tau_*$.",
         ),
+        orbits.shortening(1, -1),
+        orbits.leaves(),
         Step(
             "The launches at rest before $\\tau_*$, where the mass lifts off at once, show how: from $(\\sigma, 0)$ "
             "with $\\sigma < 0$ the flight ends at $t = -3 \\sigma$, that is at",

@@ -9,6 +9,7 @@ from singimpact.documents.steps import Section, Step
 from singimpact.paper.routes import swan
 from singimpact.paper.routes.implicit import a_symbol, r, sigma
 from singimpact.paper.routes.swan import ell, s
+from singimpact.paper.sections import section4_orbits as orbits
 from singimpact.theory.homogeneous import P, Q, leading_coefficient, mu_of_lambda, r_of_lambda
 from singimpact.theory.notation import latex
 
@@ -113,15 +114,17 @@ def _in_lambda() -> tuple[Step, ...]:
             "For $a'' < 0$ this is a saddle for every $r$ in $(0, 1)$, and the curve that it carries begins with",
             rf"\gamma : \ v = {latex(curve)}\, {latex(sigma**3)} + O(4)",
             "s5-gamma-leading",
-            ("t:t3", "t:t3-unique", "t:t3-eigenvalue-limit", "t:t3-repelling"),
+            ("t:t3", "t:t3-attracting", "t:t3-eigenvalue-limit", "t:t3-repelling"),
         ),
+        *orbits.beside_gamma(2),
+        orbits.shortening(2, 1),
         Step(
             "For $a'' < 0$ the sheet rises with $t$ everywhere near $w_*$, so $F$ is defined and continuous there, "
             "with a cube root at $w_*$; states off $\\gamma$ lie on stable manifolds of regular points. For $a'' > 0$ "
             "the sheet lies in $v < 0$, and no impact of low velocity follows.",
             "",
             "",
-            ("s5-vt-positive", "s5-F-smooth", "t:t3-others", "s5-positive"),
+            ("s5-vt-positive", "s5-F-smooth", "s5-positive"),
             "figure8",
         ),
     )

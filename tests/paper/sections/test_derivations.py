@@ -23,15 +23,16 @@ from singimpact.theory.homogeneous import lambda_, leading_coefficient, mu_of_la
 REFRESH = "python derivations/freeze.py writes it anew"
 LABELS = [
     "e:yeq", "e3", "e:imp", "e:acc", "e:proj", "e:phi", "s2-xdot", "s2-det-phi", "s3-Dp", "s3-Dphi", "s3-DG",
-    "s3-eigenvectors", "s3-slope", "s4-y-derivatives", "s4-chain-rule", "e:vtaylor", "e:degen", "e:swan",
-    "s4-saddle", "e:pnew", "e:phinew", "s4-horizon-line", "s4-fold-eta", "s4-fold-form", "s4-psi", "e:pdef",
-    "e:defq", "s4-next-sigma", "e:qdef", "e:hdef", "s4-Q1m", "s4-blowup", "e:fixm", "e:meq", "s4-r-of-m", "s4-Nr-1",
-    "s4-Nr-2", "s4-Nr-3", "s4-Dh-form", "s4-gamma-leading", "s4-lambda-P", "s4-lambda-r", "s4-lambda-mu",
-    "s4-lambda-gamma", "s4-lambda-DG", "s4b-continuous", "s4b-sector", "s4b-T2-bounds", "s4b-after", "s4b-rays",
-    "s4b-last-ray", "s4b-M", "s4b-bounds", "s4b-ratio", "s4b-below-one", "s4b-eps", "e:pdeg3", "s5-phi", "s5-hbar",
-    "s5-f", "s5-g", "s5-fixed", "s5-r-of-m", "s5-jacobian", "s5-mu", "s5-lambda-P", "s5-lambda-r",
-    "s5-gamma-leading", "s6-model", "s6-launch", "s6-impact", "s6-horizon", "s6-zero-set", "s6-E", "s6n-corr",
-    "s6n-cusp", "s6p-AB", "s6p-BE", "s6p-gamma", "s6-shadow", "s6n-maps", "s6-GA", "s6n-X",
+    "s3-eigenvectors", "s3-slope", "s4-y-derivatives", "s4-chain-rule", "e:vtaylor", "e:degen", "e:swan", "s4-saddle",
+    "e:pnew", "e:phinew", "s4-horizon-line", "s4-fold-eta", "s4-fold-form", "s4-psi", "e:pdef", "e:defq",
+    "s4-next-sigma", "e:qdef", "e:hdef", "s4-Q1m", "s4-blowup", "e:fixm", "e:meq", "s4-r-of-m", "s4-Nr-1", "s4-Nr-2",
+    "s4-Nr-3", "s4-Dh-form", "s4-gamma-leading", "s4-lambda-P", "s4-lambda-r", "s4-lambda-mu", "s4-lambda-gamma",
+    "s4-lambda-DG", "ratios-1", "ratios-rise-1", "s4b-continuous", "s4b-sector", "s4b-T2-bounds", "s4b-after",
+    "s4b-rays", "s4b-last-ray", "s4b-M", "s4b-bounds", "s4b-ratio", "s4b-below-one", "ratios-shorter-1", "s4b-eps",
+    "e:pdeg3", "s5-phi", "s5-hbar", "s5-f", "s5-g", "s5-fixed", "s5-r-of-m", "s5-jacobian", "s5-mu", "s5-lambda-P",
+    "s5-lambda-r", "s5-gamma-leading", "ratios-2", "ratios-rise-2", "ratios-shorter-2", "s6-model", "s6-launch",
+    "s6-impact", "s6-horizon", "s6-zero-set", "s6-E", "s6n-corr", "s6n-cusp", "s6p-AB", "s6p-BE", "s6p-gamma",
+    "s6-shadow", "s6n-maps", "s6-GA", "s6n-X",
 ]  # fmt: skip
 
 

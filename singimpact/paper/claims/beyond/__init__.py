@@ -1,7 +1,8 @@
-"""Claims that the paper does not have, apart from its 131: `BEYOND` is file -> its claims, imported when called.
+"""Claims that the paper does not have, apart from its own: `BEYOND` is file -> its claims, imported when called.
 
 Not here: claims of the paper (`claims.sections`). None is printed anywhere, so none is corrected; mutants stand beside.
-Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a certified homoclinic orbit).
+Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a certified homoclinic orbit), `repairs`
+(what corrected statements of the paper need).
 """
 
 from __future__ import annotations
@@ -23,4 +24,14 @@ def _horseshoe() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
-BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {"cascade": _cascade, "horseshoe": _horseshoe}
+def _repairs() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import repairs as section
+
+    return section.CLAIMS
+
+
+BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
+    "cascade": _cascade,
+    "horseshoe": _horseshoe,
+    "repairs": _repairs,
+}

@@ -2,9 +2,11 @@
 
 Not here: how they are run (`claims.engine`).  A statement is encoded as printed; mutants stand beside it.  Files in the
 paper's order: `section2`, `section2_maps`, `section3`, `section4`, `section4a_arc`, `section4a_fold`,
-`section4a_blowup`, `section4a_rays`, `section4a_multipliers`, `section4b`, `section5`, `section6`, `section6_negative`.
+`section4a_blowup`, `section4a_rays`, `section4a_multipliers`, `section4b`, `section4b_leaves`, `section5`, `section6`,
+`section6_negative`.
 Printed and corrected statements are tried on models by `section2_trials` (with section 3), `section4_trials`,
-`section4b_trials`, `section5_trials`, `section6_trials`.
+`section4b_trials`, `section5_trials`, `section6_trials`; `section4_orbits` is the argument about orbits that t:t2, t:t3
+and t:foliate share.
 """
 
 from __future__ import annotations
@@ -80,6 +82,12 @@ def _section4b() -> tuple[Claim, ...]:
     return _tried(section.CLAIMS, section.TRIALS)
 
 
+def _section4b_leaves() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.sections import section4b_leaves as section
+
+    return _tried(section.CLAIMS, section.TRIALS)
+
+
 def _section5() -> tuple[Claim, ...]:
     from singimpact.paper.claims.sections import section5 as section
 
@@ -109,6 +117,7 @@ SECTIONS: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "section4a_rays": _section4a_rays,
     "section4a_multipliers": _section4a_multipliers,
     "section4b": _section4b,
+    "section4b_leaves": _section4b_leaves,
     "section5": _section5,
     "section6": _section6,
     "section6_negative": _section6_negative,

@@ -14,10 +14,10 @@ from singimpact.algebra.rings import to_sympy
 from singimpact.contact.contact import rest_acceleration
 from singimpact.paper.claims.claim import Check, Claim, Statement
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
-from singimpact.paper.claims.verifiers import every, identity, is_zero
+from singimpact.paper.claims.verifiers import every, identity, is_zero, same
 from singimpact.paper.routes import fold
 from singimpact.paper.routes import implicit as route
-from singimpact.paper.routes.implicit import X, a_symbol, f_symbol, sigma, t, v
+from singimpact.paper.routes.implicit import X, Y, a_symbol, f_symbol, sigma, t, v
 from singimpact.paper.trials import crosscheck
 from singimpact.theory.notation import latex
 from singimpact.theory.sheet import generic_sheet
@@ -25,6 +25,7 @@ from singimpact.theory.sheet import generic_sheet
 a, a1, a2 = (a_symbol(n) for n in range(3))
 b = sympy.Symbol("b")  # the paper's b: d(x'')/dv at rest, so b = -f_01
 c, omega, tau = sympy.symbols("c omega tau")
+C, S = sympy.symbols("C S")  # cos(omega tau), sin(omega tau)
 HALF, THIRD = sympy.Rational(1, 2), sympy.Rational(1, 3)
 
 
@@ -71,6 +72,7 @@ def _linear_model(stated: tuple[Any, Any]) -> Check:
     """a_c and the period of x'' + x = cos(omega t), from its expressions, for every c and omega."""
     model = rest_acceleration(parse("x", ["x"]), parse("cos(omega*t)", ["omega", "t"]), Name("c"))
     derived = to_sympy(model).subs(sympy.Symbol("t"), tau)
+    substitution(At(Y - X, {X: c, Y: C}), derived.subs(sympy.cos(omega * tau), C))
     repeats = derived.subs(tau, tau + stated[1]) - derived
     halved = derived.subs(tau, tau + stated[1] / 2) - derived
     return every(
@@ -80,6 +82,35 @@ def _linear_model(stated: tuple[Any, Any]) -> Check:
             ("and not after T/2", not is_zero(sympy.expand_trig(sympy.expand(halved)))),
         ]
     )
+
+
+def _zeros(stated: Any) -> Check:
+    """A polynomial in c that vanishes for the c at which a zero of a_c of x'' + x = cos(omega t) is not simple.
+
+    a_c = C - c and a_c' = -omega S with C = cos(omega tau), S = sin(omega tau), C^2 + S^2 = 1.  In general a_c = a_c' = 0
+    says that f(c, 0) is a critical value of g, and critical values are few by Sard's theorem.
+    """
+    model = to_sympy(rest_acceleration(parse("x", ["x"]), parse("cos(omega*t)", ["omega", "t"]), Name("c")))
+    time = sympy.Symbol("t")
+    letters = {sympy.cos(omega * time): C, sympy.sin(omega * time): S}
+    value, rate = model.subs(letters), sympy.diff(model, time).subs(letters)
+    circle = C**2 + S**2 - 1
+    at_zero = {letter: _zero_of(part, letter) for letter, part in ((C, value), (S, rate))}
+    found = sympy.expand(circle.subs(at_zero))
+    substitution(At(circle, at_zero), found)
+    return every(
+        [
+            (f"a_c = {value} and a_c' = {rate} vanish together only where {found} = 0", same(found, stated)),
+            ("so at c = 1 and c = -1 alone", sympy.Poly(found, c).real_roots() == [-1, 1]),
+        ],
+        modulo=("Sard's theorem",),
+    )
+
+
+def _zero_of(line: Any, letter: Any) -> Any:
+    """The zero of an expression of degree 1 in a letter."""
+    slope, start = sympy.Poly(line, letter).all_coeffs()
+    return sympy.cancel(-start / slope)
 
 
 def _phi(time: Any) -> Check:
@@ -188,6 +219,18 @@ CLAIMS = (
             (-c + sympy.cos(omega * tau), sympy.pi / omega),
             (-c + sympy.cos(omega * tau), 4 * sympy.pi / omega),
         ),
+    ),
+    Claim(
+        id="s4-zeros",
+        section="4",
+        title="for all c but few the zeros of a_c are simple, so finitely many a period; for x'' + x = cos(omega t), c = +-1 are left out",
+        printed=Statement(
+            r"a_c=a_c'=0\ \text{for no}\ \tau,\ c\ \text{generic};\quad\ddot x+x=\cos\omega t:\ \text{only for}\ c^2=1",
+            c**2 - 1,
+        ),
+        verify=_zeros,
+        mutants=(c**2 - 4, c - 1, c**2 + 1),
+        rests_on=("e:lin",),
     ),
     Claim(
         id="e:phi",

@@ -8,13 +8,14 @@ import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_on, value_at
 from singimpact.paper.claims.claim import Check, Claim, Statement
+from singimpact.paper.claims.sections import section4_orbits as orbits
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
-from singimpact.paper.claims.verifiers import every, is_zero
+from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.paper.routes import fold
 from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.fold import m
-from singimpact.paper.routes.implicit import a_symbol, t
+from singimpact.paper.routes.implicit import a_symbol, t, v
 from singimpact.paper.trials import arcs, true_orbits
 from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
 from singimpact.theory.notation import latex
@@ -23,21 +24,34 @@ REACHED = 1e-3  # relative error to which DOP853 finds a leading coefficient of 
 
 
 def _discontinuity(stated: tuple[Any, int]) -> Check:
-    """Jumps of F on true flights: on v = coefficient a' sigma^2 on one side of tau_*, and nowhere else."""
+    """Where the low-velocity first hit jumps: v = coefficient a' sigma^2 on one side of tau_*, found and proved.
+
+    At each sigma < 0 v_c(sigma, .) rises from 0 to its value on the horizon and falls after it, so a launch below P_* hits
+    while v_c still rises, smoothly in the launch, and one above P_* has no low-velocity hit.  For sigma > 0 v_c < 0.
+    """
     coefficient, side = stated
+    launch, line = fold.p()[1], fold.horizon()[0]
+    slope = sympy.expand(sympy.diff(launch, t) / fold.k)
+    turned = sympy.cancel(slope / (line - t))  # > 0: v_c rises before the horizon and falls after it
+    at_horizon = sympy.cancel(fold.horizon()[1] / (6 * fold.k * route.sigma**2))
+    behind = all(value < 0 for value in sympy.Poly(sympy.expand(launch / fold.k), route.sigma, t).coeffs())
     found = arcs.jumps()
-    near = [case for case in found if case.side == side]
-    far = [case for case in found if case.side != side]
+    near = [case for case in found if case.side == -1]
+    far = [case for case in found if case.side == 1]
     good = [case for case in near if case.count == 1 and abs(case.coefficient - float(coefficient)) < 1e-3]
     return every(
         [
             (
-                f"one jump on each line sigma = const < 0, at v/(a' sigma^2) -> {near[0].coefficient:.6f} on {len(near)} models",
+                f"for sigma < 0 v_c rises up to t = {line} and falls after it, to first order, with v = {at_horizon} a' sigma^2 there",
+                turned.is_positive and is_zero(at_horizon - coefficient) and side == -1,
+            ),
+            ("for sigma >= 0 v_c < 0 for t > 0: no low-velocity hit there, and no jump", behind),
+            (
+                f"true flights: one jump on each line sigma = const < 0, at v/(a' sigma^2) -> {near[0].coefficient:.6f} on {len(near)} models",
                 bool(near) and len(good) == len(near),
             ),
-            ("no jump on the other side", all(case.count == 0 for case in far) and bool(far)),
+            ("and none on the other side", all(case.count == 0 for case in far) and bool(far)),
         ],
-        kind="supported",
         witness=lambda: {"model": found[0].name, "v/(a' sigma^2) at the jump": f"{found[0].coefficient:.9f}"},
     )
 
@@ -55,9 +69,11 @@ def _exists(stated: tuple[int, int, Any]) -> Check:
     return every(
         [
             (
-                "h' has a hyperbolic saddle on s = 0 for every r in (0, 1) (its stable manifold is gamma)",
+                "h' has a hyperbolic saddle on s = 0 for every r in (0, 1)",
                 _interval_map(rate) and negative_on(_transverse(), lambda_, 0, 1),
             ),
+            *orbits.relation(1),
+            *orbits.saddle(1),
             (
                 f"gamma lies between Pi_0 and P_*: 0 < coefficient < {jump}",
                 positive_on(coefficient, lambda_, 0, 1)
@@ -73,7 +89,7 @@ def _exists(stated: tuple[int, int, Any]) -> Check:
                 curved and side == -1 and worst < REACHED,
             ),
         ],
-        kind="supported",
+        modulo=(orbits.STABLE,),
     )
 
 
@@ -88,8 +104,8 @@ def _transverse() -> Any:
     return 1 - fold.N_r_at_fixed_points().subs(m, lambda_ + HALF)
 
 
-def _unique(stated: tuple[str, int]) -> Check:
-    """The number of invariant directions at w_* within a region: fixed rays m > 1/2 of h', |m| <= 3/2 or < 3/2."""
+def _unique(stated: tuple[Any, int]) -> Check:
+    """The number of invariant arcs that end at w_* in a region v > 0 or v >= 0: gamma, and Pi_0 where it is included."""
     region, count = stated
     cubic = fold.fixed_point_factors()[1]
     inside = [fold.r_of_m().subs(m, end) for end in (HALF, THREE_HALVES)]
@@ -98,26 +114,27 @@ def _unique(stated: tuple[str, int]) -> Check:
         and positive_on(sympy.diff(fold.r_of_m(), m), m, HALF, THREE_HALVES)
         and sympy.degree(cubic, m) == 3
     )
-    found = 1 + (1 if region == "v >= 0" and is_zero(fold.fixed_point_equation().subs(m, THREE_HALVES)) else 0)
+    with_axis = bool(region.subs(v, 0)) and is_zero(fold.fixed_point_equation().subs(m, THREE_HALVES))
+    found = int(bool(region.subs(v, 1))) + int(with_axis)
     leaving = arcs.leaves_gamma()
     return every(
         [
+            ("exactly one fixed ray m3 in (1/2, 3/2) for every r in (0, 1)", one),
+            *orbits.before(1),
             (
-                "exactly one fixed ray m3 in (1/2, 3/2) for every r in (0, 1), a hyperbolic saddle: one invariant arc",
-                one,
+                f"so a point off gamma with v > 0 comes to rest or loses contact, and lies on no invariant arc with v > 0; {orbits.after(1)[1][0]}",
+                orbits.after(1)[0] == "lost",
             ),
             (
-                "Pi_0 (the ray m = 3/2, points at rest) is invariant too and ends at w_*"
-                if region == "v >= 0"
-                else "Pi_0 is left out",
+                f"{found} such arcs: gamma{' and Pi_0 (the ray m = 3/2, points at rest)' if with_axis else ''}; stated: {count}",
                 found == count,
             ),
             (
-                f"orbits beside gamma leave it on both models (v/gamma off by 1e-3 grows {leaving:.3g}-fold)",
+                f"true orbits beside gamma leave it on both models (v/gamma off by 1e-3 grows {leaving:.3g}-fold)",
                 leaving > 10,
             ),
         ],
-        kind="supported",
+        modulo=(orbits.STABLE,),
         witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(found)},
     )
 
@@ -160,19 +177,15 @@ def _repelling(stated: int) -> Check:
     )
 
 
-def _at_rest(stated: str) -> Check:
-    """The motion from (tau_*, 0): x_c - c = t y_c with y_c ~ a' t^2/6 > 0, so the mass lifts off."""
-    leading = route.at_contact(route.y_c(2), 1).subs({route.sigma: 0, route.v: 0})
-    positive = is_zero(leading - a_symbol(1) * t**2 / 6)
+def _at_rest(stated: Any) -> Check:
+    """x_c - c on the motion from (tau_*, 0), to third order in t: 0 if w_* is fixed; a' t^3/6 lifts off."""
+    leading = sympy.expand(t * route.at_contact(route.y_c(2), 1).subs({route.sigma: 0, route.v: 0}))
     flights = arcs.lift_off()
     away = all(time > 0.5 for _, time in flights)
     return every(
         [
-            ("from w_* x_c - c = a' t^3/6 + ... > 0, so the flight lifts off", positive),
-            (
-                f"first hit from (tau_*, 0) after {flights[0][1]:.6f} ({flights[0][0]}): F(w_*) is not w_*",
-                away and stated == "flight",
-            ),
+            (f"from w_* x_c - c = {leading} + ..., above 0 for a' > 0; stated: {stated}", same(leading, stated)),
+            (f"first hit from (tau_*, 0) after {flights[0][1]:.6f} ({flights[0][0]}): F(w_*) is not w_*", away),
         ],
         witness=lambda: {"model": flights[0][0], "v": "0", "flight time from (tau_*, 0)": f"{flights[0][1]:.12g}"},
     )
@@ -180,13 +193,23 @@ def _at_rest(stated: str) -> Check:
 
 def _sides(stated: tuple[str, str]) -> Check:
     """(below, above) gamma: "chatter" to rest before tau_*, or "lost" contact after finitely many impacts."""
+    behind, reason = orbits.after(1)
+    proved = ("chatter", behind) if orbits.drift(1) == 1 else (behind, "chatter")
     found = arcs.sides()
     good = all((case.below, case.above) == stated for case in found)
     shown = "; ".join(f"{case.name}: {case.line()}" for case in found)
     return every(
-        [(f"on true orbits, {shown}", good)],
-        kind="supported",
+        [*orbits.before(1), (reason[0], reason[1] and proved == stated), (f"on true orbits, {shown}", good)],
+        modulo=(orbits.STABLE,),
         witness=lambda: {"model": found[0].name, "below": found[0].below, "above": found[0].above},
+    )
+
+
+def _smooth(stated: int) -> Check:
+    """The least order at which gamma may fail to be differentiable at w_*: none, for v = b S^2 (1-L)(P(L) + ...)."""
+    return every(
+        [*orbits.relation(1), *orbits.saddle(1), ("smooth of every order: no least order is left", stated == sympy.oo)],
+        modulo=(orbits.STABLE,),
     )
 
 
@@ -257,15 +280,24 @@ CLAIMS = (
         rests_on=("s4-saddle-m3", "s4-horizon-line"),
     ),
     Claim(
+        id="t:t2-smooth",
+        section="4.1(a)",
+        title="gamma is smooth up to its end w_*, for every r in (0, 1)",
+        printed=Statement(r"\gamma\in C^\infty\ \text{up to}\ w_*", sympy.oo),
+        verify=_smooth,
+        mutants=(sympy.Integer(2), sympy.Integer(3)),
+        rests_on=("t:t2-exists",),
+    ),
+    Claim(
         id="t:t2-unique",
         section="4.1(a)",
         title="gamma is the only invariant arc in v >= 0 ending at w_*; Pi_0 itself is another",
-        printed=Statement(r"\gamma\subset\Pi_0^+\ \text{is the only invariant arc ending at}\ w_*", ("v >= 0", 1)),
+        printed=Statement(r"\gamma\subset\Pi_0^+\ \text{is the only invariant arc ending at}\ w_*", (v >= 0, 1)),
         verify=_unique,
         corrected=lambda: Statement(
-            r"\gamma\ \text{is the only invariant arc ending at}\ w_*\ \text{with}\ v>0\ \text{off}\ w_*", ("v > 0", 1)
+            r"\gamma\ \text{is the only invariant arc ending at}\ w_*\ \text{with}\ v>0\ \text{off}\ w_*", (v > 0, 1)
         ),
-        mutants=(("v > 0", 2), ("v > 0", 0)),
+        mutants=((v > 0, 2), (v > 0, 0)),
         rests_on=("s4-m3", "s4-saddle-m3", "e:meq"),
     ),
     Claim(
@@ -290,13 +322,13 @@ CLAIMS = (
         id="t:t2-fixed",
         section="4.1(a)",
         title="w_* is a fixed point of G; with F as the paper defines it there, the mass lifts off instead",
-        printed=Statement(r"G(w_*)=w_*", "rest"),
+        printed=Statement(r"G(w_*)=w_*", sympy.Integer(0)),
         verify=_at_rest,
         corrected=lambda: Statement(
             r"F(w_*)\ne w_*:\ x_c-c=\tfrac16a't^3+\dots>0;\quad G(w)\to w_*\ \text{as}\ w\to w_*\ \text{along}\ \gamma",
-            "flight",
+            a_symbol(1) * t**3 / 6,
         ),
-        mutants=("penetrates",),
+        mutants=(-a_symbol(1) * t**3 / 6, a_symbol(1) * t**3 / 2),
         rests_on=("e:yeq", "t:t2-exists"),  # the second half of the corrected statement needs gamma
     ),
     Claim(

@@ -22,6 +22,8 @@ from singimpact.theory.sheet import generic_sheet
 HALF, THREE_HALVES = sympy.Rational(1, 2), sympy.Rational(3, 2)
 QUARTIC = m**2 * (m - HALF) ** 2
 ROOT = sympy.sqrt(r * (2 * m**2 - 3 * m) + sympy.Rational(9, 4) * (m - HALF) ** 2)  # of Q_r(1, m)
+Q = sympy.Symbol("Q")  # Q_r(1, m), in statements about its sign
+ENDS = tuple((12 * r + 9 + sign * 12 * sympy.sqrt(r * (r + 1))) / (16 * r + 18) for sign in (-1, 1))  # m_-, m_+
 CUBIC = (m - HALF) ** 2 * (m + THREE_HALVES)
 ROOT_SIGNS = ((-sympy.oo, -1), (-THREE_HALVES, 1), (0, 1), (HALF, -1), (sympy.oo, 1))
 
@@ -85,28 +87,27 @@ def _q_zeros(stated: tuple[Any, Any, Any]) -> Check:
     )
 
 
-def _q_positive(stated: str) -> Check:
-    """Q_r(1, m) has the stated sign (">" or ">=") on the closed set E_r; the closed ends are the zeros themselves."""
+def _q_positive(stated: Any) -> Check:
+    """Q_r(1, m) satisfies the stated relation to 0 on the closed set E_r; the closed ends are the zeros themselves."""
     polynomial = fold.Q_at_one()
     outside = sign_chain(polynomial, ((-sympy.oo, 1), (0, 1), (HALF, -1), (THREE_HALVES, 1), (sympy.oo, 1)))
     end = sympy.Poly(polynomial.subs(r, HALF), m).nroots(n=30)[1]
-    at_end = abs(polynomial.subs({r: HALF, m: end}))
-    strict_fails = at_end < sympy.Rational(1, 10**20)
+    zeros = all(is_zero(polynomial.subs(m, place)) for place in ENDS)
     return every(
         [
             ("positive outside [m_-, m_+] for every r in (0, 1)", outside),
-            ("the zeros m_-, m_+ belong to E_r, so the sign there is 0", stated == ">=" or not strict_fails),
-            ("and not negative anywhere on E_r", stated in (">", ">=")),
+            ("the relation holds there", bool(stated.subs(Q, 1))),
+            ("the ends m_-, m_+ of E_r are zeros, and it holds at 0", zeros and bool(stated.subs(Q, 0))),
         ],
         witness=lambda: {"r": "1/2", "m_+": str(end), "Q_r(1, m_+)": "0"},
     )
 
 
-def _domain(stated: tuple[str, str]) -> Check:
+def _domain(stated: tuple[Any, Any]) -> Check:
     """Near s = 0 the equation Q_r(1, m) + O(s) = 0 has smooth solutions through the zeros, which are simple."""
     discriminant = sympy.discriminant(fold.Q_at_one(), m)
     simple = sign_chain(fold.Q_at_one(), ((-sympy.oo, 1), (HALF, -1), (sympy.oo, 1)))
-    ends = ("m_-", "m_+")
+    below, above = stated
     return every(
         [
             (
@@ -114,7 +115,11 @@ def _domain(stated: tuple[str, str]) -> Check:
                 "and the implicit function theorem gives delta_-, delta_+",
                 simple and positive_on(discriminant, r, 0, 1),
             ),
-            ("delta_-(0), delta_+(0) are the zeros of Q_r(1, m), at which the root leaves the reals", stated == ends),
+            (
+                "delta_-(0) and delta_+(0) are zeros of Q_r(1, m), at which the root leaves the reals",
+                all(is_zero(fold.Q_at_one().subs(m, end)) for end in stated),
+            ),
+            ("and they are the smaller and the larger one", bool(below.subs(r, HALF) < above.subs(r, HALF))),
         ]
     )
 
@@ -183,8 +188,8 @@ def _root_places(stated: tuple[Any, Any, Any]) -> Check:
     )
 
 
-def _trivial_root(stated: str) -> Check:
-    """Where m = 3/2 solves e:fixm: "r = 1" or "every r"."""
+def _trivial_root(stated: Any) -> Check:
+    """m = 3/2 solves e:fixm for those r at which the stated polynomial vanishes: 0 for every r."""
     value = certificates.value_at(fold.fixed_point_equation(), m, THREE_HALVES)
     cubic = certificates.value_at(fold.fixed_point_factors()[1], m, THREE_HALVES)
     always = value == 0
@@ -192,7 +197,7 @@ def _trivial_root(stated: str) -> Check:
         [
             (
                 "m = 3/2 solves e:fixm for every r" if always else "m = 3/2 does not solve e:fixm for every r",
-                always == (stated == "every r"),
+                is_zero(value - stated) or (not always and is_zero(sympy.rem(value, stated, r))),
             ),
             (
                 "it is a root of the cubic e:meq only for r = 1",
@@ -239,18 +244,20 @@ CLAIMS = (
     claim_4a(
         "s4-Er-closed",
         "Q_r(1, m) > 0 on the closed set E_r; at its ends it is 0",
-        Statement(r"Q_r(1,m)>0\ \text{for}\ m\in E_r=(-\infty,m_-]\cup[m_+,\infty)", ">"),
+        Statement(r"Q_r(1,m)>0\ \text{for}\ m\in E_r=(-\infty,m_-]\cup[m_+,\infty)", Q > 0),
         _q_positive,
-        ("<", "<="),
+        (Q < 0, Q <= 0),
         ("s4-Qr-zeros",),
-        lambda: Statement(r"Q_r(1,m)\ge0\ \text{for}\ m\in E_r,\ \text{with}\ 0\ \text{at}\ m_\pm\ \text{only}", ">="),
+        lambda: Statement(
+            r"Q_r(1,m)\ge0\ \text{for}\ m\in E_r,\ \text{with}\ 0\ \text{at}\ m_\pm\ \text{only}", Q >= 0
+        ),
     ),
     claim_4a(
         "s4-domain",
         "near s = 0 the domain of h' is bounded by smooth curves through m_- and m_+",
-        Statement(r"m=\delta_\pm(s),\qquad\delta_\pm(0)=m_\pm", ("m_-", "m_+")),
+        Statement(r"m=\delta_\pm(s),\qquad\delta_\pm(0)=m_\pm", ENDS),
         _domain,
-        (("m_-", "m_-"), ("1/2", "3/2")),
+        (ENDS[::-1], (HALF, THREE_HALVES), (ENDS[0], ENDS[0])),
         ("s4-Qr-zeros", "s4-blowup"),
     ),
     claim_4a(
@@ -297,10 +304,12 @@ CLAIMS = (
     claim_4a(
         "s4-m32-r1",
         "m = 3/2 solves e:fixm only if r = 1; it solves it for every r",
-        Statement(r"m=\tfrac32\Rightarrow r=1", "r = 1"),
+        Statement(r"m=\tfrac32\Rightarrow r=1", r - 1),
         _trivial_root,
-        ("r = 0",),
+        (r, r - 2),
         ("e:fixm", "e:meq"),
-        lambda: Statement(r"m=\tfrac32\ \text{solves}\ Q_r(1,m)=m^2(m-\tfrac12)^2\ \text{for every}\ r", "every r"),
+        lambda: Statement(
+            r"m=\tfrac32\ \text{solves}\ Q_r(1,m)=m^2(m-\tfrac12)^2\ \text{for every}\ r", sympy.Integer(0)
+        ),
     ),
 )

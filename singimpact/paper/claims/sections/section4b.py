@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any
 
 import sympy
@@ -20,7 +19,7 @@ from singimpact.paper.trials import leaves
 from singimpact.theory.sheet import generic_sheet
 
 ell, slope, mu, nu = sympy.symbols("ell p mu nu")
-THIRD = sympy.Rational(1, 3)
+THIRD, HALF = sympy.Rational(1, 3), sympy.Rational(1, 2)
 
 
 def on_ray() -> tuple[Any, Any]:
@@ -65,7 +64,7 @@ def _on_rays(stated: tuple[Any, Any, Any, Any, Any]) -> Check:
     return every(
         [
             (check.evidence, check.holds),
-            ("y_c = v at t = 0, so v_c(sigma, 0) = 0 and both velocities have the factor t", _vanish_at_launch()),
+            ("y_c = v at t = 0, so v_c(sigma, 0) = 0 and both velocities have the factor t", vanish_at_launch()),
             (
                 f"to degree 4 what is left out has the factor {monomial} and no higher power",
                 divided and set(lowest) == {stated_powers},
@@ -75,7 +74,7 @@ def _on_rays(stated: tuple[Any, Any, Any, Any, Any]) -> Check:
     )
 
 
-def _vanish_at_launch() -> bool:
+def vanish_at_launch() -> bool:
     """Whether y_c(sigma, v; 0) = v, so that v_c(sigma, 0) = 0 whatever the higher terms are."""
     return is_zero(route.y_c(4).subs(t, 0) - route.v)
 
@@ -196,6 +195,33 @@ FOR_K, FOR_L = (sympy.factor(part * SLACK) for part in (-k * (3 + ell), -r * k *
 leave out on a ray (s4b-rays), |mu| <= K, |nu| <= L.  As l -> 0 they tend to -k (1 - r) and -r k (1 - r), not to 0."""
 
 
+def _conditions(stated: tuple[Any, Any]) -> Check:
+    """(K_0, L_0): with K delta < K_0 and L delta < L_0 the bounds of p~ and q~ hold on 0 < sigma <= delta, and no earlier."""
+    launch, landed = on_ray()
+    low = _P * (2 + r) * THIRD * sigma**2
+    high = _Q / (1 + ell) ** 2 * (4 - r) * THIRD * sigma**2
+    left = {
+        "p~ - bound = l sigma^2 (K_0 + mu sigma), mu >= -K": (
+            launch * sigma**2 + ell * sigma**3 * mu - low,
+            ell * sigma**2 * (stated[0] + mu * sigma),
+        ),
+        "bound - q~ = l sigma^2 (L_0 - nu sigma)/(1 + l)^3, nu <= L": (
+            high - landed * sigma**2 - ell * sigma**3 * nu / (1 + ell) ** 3,
+            ell * sigma**2 * (stated[1] - nu * sigma) / (1 + ell) ** 3,
+        ),
+    }
+    box = {ell: (0, sympy.oo), r: (0, 1), k: (-sympy.oo, 0)}
+    return every(
+        [
+            *((told, same(*sides)) for told, sides in left.items()),
+            (
+                "K_0 and L_0 are positive for every l > 0, so a delta exists",
+                all(positive_in(part, box) for part in stated),
+            ),
+        ]
+    )
+
+
 def _bound_p(stated: Any) -> Check:
     """p~ > stated for 0 <= sigma <= delta, k < 0: the leading part of p~ - stated at sigma = 0 and just after."""
     launch, _ = on_ray()
@@ -311,103 +337,29 @@ def _r_inequality(stated: tuple[Any, Any]) -> Check:
     )
 
 
-def _contracted(stated: int) -> Check:
-    """The limit of q~/p~ is r M with 0 < r M < 1, so a constant N between serves for small sigma."""
+def _contracted(stated: Any) -> Check:
+    """The least upper bound over l > 0 and r in (0, 1) of lim q~/p~ = r M; for one r and l a constant below it serves."""
     launch, landed = on_ray()
     limit = sympy.cancel(landed / launch)
     return every(
         [
             (
                 "0 < lim q~/p~ < 1 for l > 0, 0 < r < 1",
-                _positive_for_all(limit) and _positive_for_all(1 - limit) and stated == 1,
-            )
+                _positive_for_all(limit) and _positive_for_all(stated - limit),
+            ),
+            ("1 is reached as l -> 0, r -> 1, and no smaller bound serves all", limit.subs({ell: 0, r: 1}) == stated),
         ]
     )
 
 
-def _iterates(stated: int) -> Check:
-    found = leaves.iterates()
-    return every(
-        [
-            (
-                f"the largest v over arcs t = l sigma falls below {found.last:.0e} of its start after {found.count} impacts on two models, "
-                f"by a factor of at most {found.factor:.3f} an impact in the end",
-                found.last < 1e-6 and found.factor < 1 and stated == 0,
-            )
-        ],
-        kind="supported",
-    )
-
-
-def _backwards(stated: str) -> Check:
-    """Stable manifolds followed backwards from (tau_* + sigma, 0) end at tau' < tau_*; as sigma -> 0 tau' -> tau_*.
-
-    That tau' tends to tau_* is read from sigma'/sigma, which moves by less than 2 % while sigma falls fourfold.
-    """
-    found = leaves.ends()
-    shown = ", ".join(f"{case.foot:.3g} -> {case.end:.5g}" for case in found[:3])
-    proportional = all(case.end < 0 for case in found)
-    ratios = {name: [case.end / case.foot for case in found if case.name == name] for name in (c.name for c in found)}
-    shrinking = all(abs(one / two - 1) < 0.02 for row in ratios.values() for one, two in pairwise(row))
-    told = "; ".join(f"{name}: {', '.join(f'{ratio:.4f}' for ratio in row)}" for name, row in ratios.items())
-    return every(
-        [
-            (f"the leaf of sigma > 0 ends at sigma' < 0 (sigma -> sigma': {shown})", proportional),
-            (
-                f"sigma'/sigma of leaves nearer and nearer to tau_* is {told}, so no sigma' < 0 is left for sigma = 0",
-                shrinking and stated == "(0, delta]",
-            ),
-        ],
-        kind="supported",
-        witness=lambda: {
-            "sigma": "0",
-            "sigma'/sigma as sigma -> 0": ", ".join(
-                f"{case.end / case.foot:.4f} at {case.foot:.3g}" for case in found[:3]
-            ),
-        },
-    )
-
-
-def _foliated(stated: tuple[int, int]) -> Check:
-    found = leaves.ends()
-    sides = (1 if all(case.foot > 0 for case in found) else 0, -1 if all(case.end < 0 for case in found) else 0)
-    ordered = all(abs(one.end) > abs(two.end) for one, two in pairwise(found) if one.name == two.name)
-    return every(
-        [
-            (f"{len(found)} leaves on two models run from sigma > 0 to sigma' < 0 on Pi_0", sides == stated),
-            ("nested: a leaf with a smaller foot lies inside", ordered),
-        ],
-        kind="supported",
-    )
-
-
-def _epsilon(stated: tuple[int, Any]) -> Check:
-    """G of (tau_* + sigma, 0), sigma < 0: the flight lands where 3 sigma + t = 0."""
-    first, second = fold.phi()
-    landed = first.subs(t, -3 * sigma)
-    speed = sympy.cancel((-r * second).subs(t, -3 * sigma) / landed**2)
-    return every(
-        [
-            (
-                f"it lands at {landed} (sigma < 0, so on the other side) with v = {speed} sigma'^2",
-                is_zero(landed + 2 * sigma) and stated[0] == 1 and is_zero(speed - stated[1]),
-            ),
-            (
-                "v > 0 for k < 0 and every r in (0, 1), quadratically tangent to Pi_0",
-                positive_in(speed, {k: (-sympy.oo, 0), r: (0, 1)}),
-            ),
-        ]
-    )
-
-
-_claim = in_section("4.1(b)")
+claim_4b = in_section("4.1(b)")
 
 
 _P = -k * (3 * ell + ell**2)
 _Q = -r * k * (3 * ell + 2 * ell**2)
 
 CLAIMS = (
-    _claim(
+    claim_4b(
         "s4b-continuous",
         "for a' < 0 the horizon lies in v < 0, and F, G are continuous near w_* in v >= 0",
         Statement(r"v|_H<0\ (\sigma\ne0),\quad F,G\ \text{continuous}", -1),
@@ -415,7 +367,7 @@ CLAIMS = (
         (1,),
         ("s4-horizon-line",),
     ),
-    _claim(
+    claim_4b(
         "s4b-sector",
         "F maps a neighbourhood of w_* onto one of the origin in 3 sigma + t >= 0, t >= 0",
         Statement(r"3\sigma+t\ge0,\ t\ge0", (3, 0)),
@@ -423,7 +375,7 @@ CLAIMS = (
         ((2, 0), (3, 1)),
         ("e:pnew",),
     ),
-    _claim(
+    claim_4b(
         "s4b-T2-bounds",
         "phi maps that sector onto T'' = {(3/8) a' sigma^2 <= v <= 0, sigma >= 0}",
         Statement(r"\tfrac38a'\sigma^2\le v\le0,\ \sigma\ge0", sympy.Rational(3, 8)),
@@ -431,7 +383,7 @@ CLAIMS = (
         (sympy.Rational(1, 8), sympy.Rational(3, 4)),
         ("e:phinew", "s4b-sector"),
     ),
-    _claim(
+    claim_4b(
         "s4b-T2-place",
         "T'' lies in Pi_0^+; it lies in v <= 0",
         Statement(r"\mathcal T''\subset\Pi_0^+", 1),
@@ -440,7 +392,7 @@ CLAIMS = (
         ("s4b-T2-bounds",),
         lambda: Statement(r"\mathcal T''\subset\Pi_0^-", -1),
     ),
-    _claim(
+    claim_4b(
         "s4b-rays",
         "p and q on a ray t = l sigma",
         Statement(
@@ -457,7 +409,7 @@ CLAIMS = (
         ),
         ("e:pnew", "e:phinew", "e:yeq"),
     ),
-    _claim(
+    claim_4b(
         "s4b-l-range",
         "the rays 0 <= l <= -(9/4) k r cover R T'' under p for every k < 0; for small |k| they do not",
         Statement(
@@ -470,7 +422,7 @@ CLAIMS = (
             r"0\le\ell\le\tfrac34r\ \text{covers}\ 0\le v\le-\tfrac94rk\sigma^2", sympy.Rational(3, 4) * r
         ),
     ),
-    _claim(
+    claim_4b(
         "s4b-p-bound",
         "the lower bound on p~, printed without sigma^2",
         Statement(r"\tilde p(\sigma)>-k(3\ell+\ell^2)\tfrac13(2+r),\ 0\le\sigma\le\delta", _P * (2 + r) * THIRD),
@@ -482,7 +434,7 @@ CLAIMS = (
             _P * (2 + r) * THIRD * sigma**2,
         ),
     ),
-    _claim(
+    claim_4b(
         "s4b-q-bound",
         "the upper bound on q~; the factor (1+2r)/3 < 1 is on the wrong side, (4-r)/3 serves",
         Statement(
@@ -501,7 +453,15 @@ CLAIMS = (
             _Q / (1 + ell) ** 2 * (4 - r) * THIRD * sigma**2,
         ),
     ),
-    _claim(
+    claim_4b(
+        "s4b-conditions",
+        "conditions on delta for the bounds of p~ and q~ on every ray: K delta < K_0, L delta < L_0, both positive",
+        Statement(r"K\delta<-\tfrac13k(3+\ell)(1-r),\quad L\delta<-\tfrac13rk(3+2\ell)(1+\ell)(1-r)", (FOR_K, FOR_L)),
+        _conditions,
+        ((FOR_K / 2, FOR_L), (FOR_K, FOR_L * 2), (FOR_K, -FOR_L)),
+        ("s4b-rays", "s4b-p-bound", "s4b-q-bound"),
+    ),
+    claim_4b(
         "s4b-ratio",
         "the bound on q~/p~ that follows; with (1+2r) it fails, with (4-r) it holds",
         Statement(r"\tilde q/\tilde p<Mr(1+2r)(2+r)^{-1}", M * r * (1 + 2 * r) / (2 + r)),
@@ -510,59 +470,26 @@ CLAIMS = (
         ("s4b-p-bound", "s4b-q-bound", "s4b-M"),
         lambda: Statement(r"\tilde q/\tilde p<Mr(4-r)(2+r)^{-1}", M * r * (4 - r) / (2 + r)),
     ),
-    _claim(
+    claim_4b(
         "s4b-M",
         "M < 1 for l > 0",
         Statement(r"M=(3+2\ell)(3+\ell)^{-1}(1+\ell)^{-2}<1", M),
         _below_one,
         ((3 + 2 * ell) / (3 + ell), (9 + 2 * ell) / ((3 + ell) * (1 + ell) ** 2)),
     ),
-    _claim(
+    claim_4b(
         "s4b-r-ineq",
         "r (1 + 2r) < 2 + r for 0 < r < 1",
         Statement(r"r(1+2r)<2+r", (r * (1 + 2 * r), 2 + r)),
         _r_inequality,
         ((r * (2 + 2 * r), 2 + r), (2 + r, r * (1 + 2 * r))),
     ),
-    _claim(
+    claim_4b(
         "s4b-Np",
         "there is N < 1 with q~ < N p~ for small sigma",
-        Statement(r"\tilde q(\sigma)<N\tilde p(\sigma),\ 0<N<1", 1),
+        Statement(r"\tilde q(\sigma)<N\tilde p(\sigma),\ 0<N<1", sympy.Integer(1)),
         _contracted,
-        (0,),
+        (sympy.Integer(0), HALF, sympy.Integer(2)),
         ("s4b-rays", "s4b-M"),
-    ),
-    _claim(
-        "s4b-contraction",
-        "the iterates G^n(p(alpha)) tend uniformly to the tau-axis",
-        Statement(r"G^n(p(\alpha))\to\Pi_0\ \text{uniformly}", 0),
-        _iterates,
-        (1,),
-        ("s4b-Np",),
-    ),
-    _claim(
-        "s4b-back",
-        "for every sigma in [0, delta] the stable manifold extends backwards to tau' < tau_*; not for sigma = 0",
-        Statement(r"W^s_{\tau_*+\sigma}\ni(\tau',0),\ \tau'<\tau_*,\ \sigma\in[0,\delta]", "[0, delta]"),
-        _backwards,
-        ("[-delta, delta]",),
-        ("s4b-contraction", "t:t1"),
-        lambda: Statement(r"W^s_{\tau_*+\sigma}\ni(\tau',0),\ \tau'<\tau_*,\ \sigma\in(0,\delta]", "(0, delta]"),
-    ),
-    _claim(
-        "t:foliate",
-        "for a' < 0 a neighbourhood is foliated by arcs of stable manifolds with ends on both sides of tau_*",
-        Statement(r"W^s_\tau,\ \tau>\tau_*:\ \text{ends on}\ \Pi_0\ \text{on opposite sides of}\ \tau_*", (1, -1)),
-        _foliated,
-        ((1, 0), (0, -1)),
-        ("s4b-back",),
-    ),
-    _claim(
-        "s4b-eps",
-        "G takes [w_1, w_*], tau < tau_*, to an arc tangent to Pi_0 at w_* in sigma > 0, v > 0",
-        Statement(r"G([w_1,w_*]):\ v=-\tfrac94rk\sigma^2+O(3),\ \sigma>0", (1, -sympy.Rational(9, 4) * r * k)),
-        _epsilon,
-        ((-1, -sympy.Rational(9, 4) * r * k), (1, sympy.Rational(9, 4) * r * k)),
-        ("s4b-sector", "e:phinew"),
     ),
 )

@@ -8,13 +8,14 @@ import sympy
 
 from singimpact.algebra.certificates import definite, negative_on, positive_on, roots_inside, value_at
 from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.sections import section4_orbits as orbits
 from singimpact.paper.claims.sections.section4a_arc import limit_in_words
 from singimpact.paper.claims.sections.section5_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero
 from singimpact.paper.routes import swan
-from singimpact.paper.routes.implicit import r
+from singimpact.paper.routes.implicit import r, v
 from singimpact.paper.trials import swans, true_orbits
-from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient
+from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
 from singimpact.theory.sheet import generic_sheet
 
 m, s, ell, mbar = swan.m, swan.s, swan.ell, swan.mbar
@@ -74,19 +75,15 @@ def _h_bar(stated: Any) -> Check:
 
 
 def _intersections(count: int) -> Check:
-    """Common points of f and g on (-1, oo): m = 0, which is Pi_0, and one in (-1, 0)."""
-    polynomial = sympy.Poly(swan.fixed_point_polynomial(), m)
+    """Common points of f and g with m real: m = 0, which is Pi_0, and one in (-1, 0)."""
     zero = is_zero(swan.h_bar().subs({m: 0, mbar: 0}))
     rule = swan.r_of_m()
     one = value_at(rule, m, -1) == 0 and value_at(rule, m, 0) == 1 and positive_on(sympy.diff(rule, m), m, -1, 0)
-    beyond = positive_on(rule - 1, m, 0, sympy.oo)
+    beyond = positive_on(rule - 1, m, 0, sympy.oo) and negative_on(rule, m, -sympy.oo, -1)
     return every(
         [
-            (
-                "r(m) rises from 0 to 1 on (-1, 0): one common point there for every r in (0, 1)",
-                one and polynomial.degree() == 5,
-            ),
-            ("r(m) > 1 for m > 0: none there", beyond),
+            ("r(m) rises from 0 to 1 on (-1, 0): one common point there for every r in (0, 1)", one),
+            ("r(m) > 1 for m > 0 and r(m) < 0 for m < -1: none there", beyond),
             ("f(0) = g(0) = 0: m = 0, the axis Pi_0, is another" if zero else "f(0) != g(0)", count == 1 + int(zero)),
         ],
         witness=lambda: {"m": "0", "f": str(swan.f_map().subs(m, 0)), "g": str(swan.g_map().subs(m, 0))},
@@ -188,21 +185,27 @@ def _smoothness(stated: int) -> Check:
     )
 
 
-def _unique(stated: tuple[str, int]) -> Check:
-    """Invariant directions at a swan within v >= 0 or v > 0: fixed points m in (-1, 0] or (-1, 0)."""
+def _unique(stated: tuple[Any, int]) -> Check:
+    """The number of invariant arcs that end at a swan in a region v > 0 or v >= 0: gamma, and Pi_0 where it is included."""
     region, count = stated
     one = _place((sympy.Integer(-1), sympy.Integer(0))).holds and _saddle((1, 1)).holds
-    axis = is_zero(swan.h_bar().subs({m: 0, mbar: 0}))
-    found = 1 + int(region == "v >= 0" and axis)
+    with_axis = bool(region.subs(v, 0)) and is_zero(swan.h_bar().subs({m: 0, mbar: 0}))
+    found = int(bool(region.subs(v, 1))) + int(with_axis)
     return every(
         [
-            ("one fixed m_* in (-1, 0) for every r in (0, 1), a hyperbolic saddle: one invariant arc with v > 0", one),
+            ("one fixed m_* in (-1, 0) for every r in (0, 1), a hyperbolic saddle", one),
+            *orbits.before(2),
             (
-                "Pi_0 (m = 0) is invariant too and ends at w_*" if region == "v >= 0" else "Pi_0 is left out",
+                "so a point off gamma with v > 0 comes to rest on Pi_0, and lies on no invariant arc with v > 0; "
+                + orbits.after(2)[1][0],
+                orbits.after(2) == ("chatter", orbits.after(2)[1]) and orbits.after(2)[1][1],
+            ),
+            (
+                f"{found} such arcs: gamma{' and Pi_0 (m = 0)' if with_axis else ''}; stated: {count}",
                 found == count,
             ),
         ],
-        kind="supported",
+        modulo=(orbits.STABLE,),
         witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(found)},
     )
 
@@ -217,13 +220,43 @@ def _exists(stated: tuple[int, int]) -> Check:
     )  # v = (a''/2) coefficient sigma^3 > 0 for a'' < 0, sigma < 0
     return every(
         [
-            ("hyperbolic saddle for every r in (0, 1); its stable manifold is gamma", _saddle((1, 1)).holds),
+            ("h-bar has a hyperbolic saddle for every r in (0, 1)", _saddle((1, 1)).holds),
+            *orbits.relation(2),
+            *orbits.saddle(2),
             (
                 f"v ~ sigma^3 > 0 for sigma < 0 on true orbits: {cases[-1].line()}; worst relative error {worst:.0e}",
                 worst < REACHED and sign and (power, side) == (3, -1),
             ),
         ],
-        kind="supported",
+        modulo=(orbits.STABLE,),
+    )
+
+
+def _smooth(stated: Any) -> Check:
+    """The least order at which gamma may fail to be differentiable at the swan point: none."""
+    return every(
+        [*orbits.relation(2), *orbits.saddle(2), ("smooth of every order: no least order is left", stated == sympy.oo)],
+        modulo=(orbits.STABLE,),
+    )
+
+
+def _attracting(stated: tuple[int, int]) -> Check:
+    """On gamma sigma -> lambda sigma + ..., lambda = 1 + m_*, and it lies in the stated interval for every r in (0, 1)."""
+    low, high = stated
+    growth = swan.phi_blown_up()[0]
+    agree = is_zero(swan.r_of_m().subs(m, lambda_ - 1) - r_of_lambda(2))
+    ends = tuple(value_at(growth, m, end) for end in (-1, 0))
+    cases = true_orbits.gamma_cases(2)
+    worst = max(abs(case.ratio / case.multiplier - 1) for case in cases)
+    return every(
+        [
+            (
+                f"sigma' = {growth} sigma on gamma, from {ends[0]} to {ends[1]} as m_* runs through (-1, 0)",
+                ends == (low, high) and positive_on(sympy.diff(growth, m), m, -1, 0),
+            ),
+            ("lambda = 1 + m_* solves r = lambda^3 P_2/Q_2 of the homogeneous model", agree),
+            (f"sigma'/sigma on true orbits agrees to {worst:.0e}", worst < REACHED),
+        ]
     )
 
 
@@ -272,16 +305,21 @@ def _limit(stated: Any) -> Check:
 
 
 def _others(stated: str) -> Check:
+    """What launches near a swan with a'' < 0 and off gamma do, below and above it: "chatter", or contact is "lost"."""
+    behind, reason = orbits.after(2)
+    below = "chatter" if orbits.drift(2) == 1 else behind
     found = swans.fates()
     return every(
         [
+            *orbits.before(2),
+            (reason[0], reason[1] and {below, behind} == {stated}),
             (
-                f"{found.count} orbits from states near w_*, below and above gamma on two models, all come to rest at points with a < 0 "
+                f"{found.count} true orbits from states near w_*, below and above gamma on two models, all come to rest at points with a < 0 "
                 f"(largest a there {found.largest:.1e})",
-                found.largest < 0 and found.lost == 0 and stated == "chatter",
-            )
+                found.largest < 0 and found.lost == 0,
+            ),
         ],
-        kind="supported",
+        modulo=(orbits.STABLE,),
     )
 
 
@@ -350,7 +388,7 @@ CLAIMS = (
         _intersections,
         (0, 3),
         ("s5-hbar",),
-        lambda: Statement(r"\{m>-1:f(m)=g(m)\}=\{m_*,0\}", 2),
+        lambda: Statement(r"\{m\in\mathbb R:f(m)=g(m)\}=\{m_*,0\}", 2),
     ),
     _claim(
         "s5-mstar-place",
@@ -403,12 +441,12 @@ CLAIMS = (
     _claim(
         "t:t3-unique",
         "gamma is the only invariant arc in v >= 0 ending at the swan point; Pi_0 is another",
-        Statement(r"\gamma\subset\Pi_0^+\ \text{is the only invariant arc ending at}\ w_*", ("v >= 0", 1)),
+        Statement(r"\gamma\subset\Pi_0^+\ \text{is the only invariant arc ending at}\ w_*", (v >= 0, 1)),
         _unique,
-        (("v > 0", 2), ("v > 0", 0)),
+        ((v > 0, 2), (v > 0, 0)),
         ("s5-saddle", "s5-mstar-place", "s5-unique"),
         lambda: Statement(
-            r"\gamma\ \text{is the only invariant arc ending at}\ w_*\ \text{with}\ v>0\ \text{off}\ w_*", ("v > 0", 1)
+            r"\gamma\ \text{is the only invariant arc ending at}\ w_*\ \text{with}\ v>0\ \text{off}\ w_*", (v > 0, 1)
         ),
     ),
     _claim(
@@ -418,6 +456,22 @@ CLAIMS = (
         _exists,
         ((2, -1), (3, 1)),
         ("s5-saddle",),
+    ),
+    _claim(
+        "t:t3-smooth",
+        "gamma is smooth up to the swan point, for every r in (0, 1)",
+        Statement(r"\gamma\in C^\infty\ \text{up to}\ w_*", sympy.oo),
+        _smooth,
+        (sympy.Integer(2), sympy.Integer(3)),
+        ("t:t3",),
+    ),
+    _claim(
+        "t:t3-attracting",
+        "the swan point is exponentially attracting for G on gamma",
+        Statement(r"\sigma\mapsto\lambda\sigma+O(2)\ \text{on}\ \gamma,\quad0<\lambda<1", (0, 1)),
+        _attracting,
+        ((1, 2), (0, 2)),
+        ("t:t3", "s5-saddle"),
     ),
     _claim(
         "t:t3-repelling",
