@@ -43,6 +43,27 @@ LONGEST = ("test_faults.py", "test_claims.py", "test_steep_layers.py", "test_thr
 """Files that take a minute: handed out first, so that no worker is left with one at the end."""
 
 
+TOGETHER = (
+    "tests/paper/claims/",
+    "tests/paper/sections/",
+    "tests/cli/test_claims_and_errata.py",
+    "tests/certificates/test_claims",
+)
+"""Files that need the verdicts of all claims: one worker takes them, so that these are decided once and kept."""
+
+
+def pytest_xdist_make_scheduler(config, log):
+    if config.getoption("dist") != "loadfile":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    class ByFile(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            return "verdicts" if nodeid.startswith(TOGETHER) else super()._split_scope(nodeid)
+
+    return ByFile(config, log)
+
+
 def pytest_collection_modifyitems(config, items):
     items.sort(key=lambda item: item.path.name not in LONGEST)
     left_out = set() if config.getoption("--slow") else {"slow"}

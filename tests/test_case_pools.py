@@ -284,7 +284,7 @@ def squared(log, case):
     return np.array([case, case * case])
 
 
-@pytest.mark.parametrize("kind", ["client", "executor"])
+@pytest.mark.parametrize("kind", ["client", pytest.param("executor", marks=pytest.mark.slow)])
 def test_a_cluster_that_loses_a_worker(kind, cluster, tmp_path):
     """Four workers, one of them killed in the middle: every case is in the result, once."""
     log, output, killed = tmp_path / "log", tmp_path / "kept.npz", []
@@ -306,6 +306,7 @@ def test_a_cluster_that_loses_a_worker(kind, cluster, tmp_path):
     assert len(at_work) >= 4
 
 
+@pytest.mark.slow
 def test_the_width_of_a_cluster_is_its_cores_and_not_ours(cluster, monkeypatch):
     monkeypatch.setattr(os, "cpu_count", lambda: 64)
     place = place_of(cluster, abs, [1])

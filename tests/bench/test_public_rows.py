@@ -81,7 +81,11 @@ def _rows(group: str) -> list[tuple[Case, Method]]:
     return [(case, method) for case in GROUPS[group](SMALL) for method in case.methods]
 
 
-@pytest.mark.parametrize("group", [*IN_PROCESS, pytest.param("figures", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "group",
+    [each for each in IN_PROCESS if each != "orbit"]
+    + [pytest.param(each, marks=pytest.mark.slow) for each in ("figures", "orbit")],
+)
 def test_rows_named_for_the_package_call_public_names_only(group):
     rows = [(case, method) for case, method in _rows(group) if method.name.startswith("singimpact")]
     assert rows

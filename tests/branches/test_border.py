@@ -82,7 +82,9 @@ def test_more_digits_lie_in_the_ball():
     assert not certified("1/2").certified.contains(exact("c", found.parameter) + Fraction(1, 10**28))
 
 
-@pytest.mark.parametrize(("r", "narrow"), [("3/10", 1e-19), pytest.param("1/2", 1e-16, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("r", "narrow"), [pytest.param(*case, marks=pytest.mark.slow) for case in (("3/10", 1e-19), ("1/2", 1e-16))]
+)
 def test_edges_lead_to_the_same_number(r, narrow):
     """An edge is where an impact meets a zero of a_c: it knows nothing of gamma. Their limit is the border orbit."""
     with mpmath.workdps(40):
@@ -263,7 +265,7 @@ def test_analytic_flows_of_all_numbers_in_a_ball_contain_each():
 @pytest.mark.parametrize(
     ("over", "between"),
     [
-        ("clearance", (0.5404, 0.5405)),
+        pytest.param("clearance", (0.5404, 0.5405), marks=pytest.mark.slow),
         ("restitution", (0.5176, 0.5177)),
         pytest.param("damping", (-0.12, -0.119), marks=pytest.mark.slow),
     ],

@@ -153,6 +153,7 @@ def test_an_orbit_that_stays_at_the_saddle_is_no_homoclinic_one(saddle):
     assert isinstance(enclosed_crossing((saddle, saddle), staying, 6, 10), str)
 
 
+@pytest.mark.slow
 def test_a_forged_miss_does_not_pass(monkeypatch, found):
     honest, forgeries = room._Between.miss, []
 
@@ -205,6 +206,7 @@ def test_too_many_digits_are_refused(found):
         found[0].certified(0)
 
 
+@pytest.mark.slow
 def test_heteroclinic(saddle):
     other = next(orbit for orbit in OSC.periodic(2, 2) if not orbit.stable)
     crossing = si.homoclinic_points(saddle, other, length=3)[0].certified(8)

@@ -46,7 +46,13 @@ def duffing():
 # ---- closed forms
 
 
-@pytest.mark.parametrize(("w", "r", "k"), [("2.8", "0.8", 1), ("2.6", "0.5", 1), ("5.2", "0.7", 3)])
+@pytest.mark.parametrize(
+    ("w", "r", "k"),
+    [
+        ("2.8", "0.8", 1),
+        *(pytest.param(*case, marks=pytest.mark.slow) for case in (("2.6", "0.5", 1), ("5.2", "0.7", 3))),
+    ],
+)
 def test_events_of_one_impact_contain_their_closed_forms(w, r, k):
     osc = si.linear(w, "0.001", r, damping="0.1")
     truth = OneImpact("0.1", r, k)
@@ -132,7 +138,9 @@ def test_runge_kutta_sees_the_touch(duffing, kind):
     assert event.graze_time % (2 * np.pi / 1.7) == pytest.approx(tau[0] % (2 * np.pi / 1.7), abs=1e-7)
 
 
-@pytest.mark.parametrize(("kind", "multiplier"), [("fold", 1.0), ("period-doubling", -1.0)])
+@pytest.mark.parametrize(
+    ("kind", "multiplier"), [pytest.param("fold", 1.0, marks=pytest.mark.slow), ("period-doubling", -1.0)]
+)
 def test_doubles_see_the_multiplier(duffing, kind, multiplier):
     (event,) = [each for each in events(duffing, kind) if each.orbit.visible]
     ball = event.certified(20)
@@ -245,6 +253,7 @@ def test_virtual_events_are_refused_with_the_reason():
             event.certified(15)
 
 
+@pytest.mark.slow
 def test_a_graze_of_two_touches_is_refused(duffing):
     """The grazing (2, 1) orbit run through twice touches the wall twice: its three impacts are no graze of one."""
     (event,) = events(duffing, "graze")

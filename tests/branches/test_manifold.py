@@ -187,6 +187,7 @@ def beside(curves: list, found: si.basins) -> tuple[np.ndarray, np.ndarray]:
     return np.vstack(places), np.concatenate(unlike)
 
 
+@pytest.mark.slow
 def test_neither_gamma_nor_tears_bound_the_basins(found: si.basins, bounding: Manifold) -> None:
     """The flow is continuous there: both sides of gamma, of P and of the tears of G are one basin, but where W^s is."""
     (tangency,) = [t for t, kind in zip(*[si.tangency_points(TWO_BASINS).tau, si.tangency_points(TWO_BASINS).kind],

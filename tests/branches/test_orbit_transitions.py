@@ -93,6 +93,7 @@ def waves() -> OrbitTransitions:
     return found
 
 
+@pytest.mark.slow
 def test_changes_lie_between_the_transitions_that_are_named(waves: OrbitTransitions) -> None:
     """x'' + x = -cos 2.8t - h cos 5.6t: a_c(0) = -1 - h - 0.3 is a double zero at h = -1.3."""
     assert {each.value for each in waves} == {-1.3}

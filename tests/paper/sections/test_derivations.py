@@ -122,6 +122,7 @@ sys.stdout.write("".join(as_text(told, marks, form) for form in ("latex", "markd
 """
 
 
+@pytest.mark.slow
 def test_same_bytes_under_two_hash_seeds(clone):
     texts = [
         subprocess.run(
