@@ -1,4 +1,4 @@
-"""Claims that the paper does not have, apart from its 131: `BEYOND` is file -> its claims, imported when called.
+"""Claims that the paper does not have, apart from its 132: `BEYOND` is file -> its claims, imported when called.
 
 Not here: claims of the paper (`claims.sections`). None is printed anywhere, so none is corrected; mutants stand beside.
 Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a certified homoclinic orbit).

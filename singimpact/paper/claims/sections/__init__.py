@@ -4,7 +4,8 @@ Not here: how they are run (`claims.engine`).  A statement is encoded as printed
 paper's order: `section2`, `section2_maps`, `section3`, `section4`, `section4a_arc`, `section4a_fold`,
 `section4a_blowup`, `section4a_rays`, `section4a_multipliers`, `section4b`, `section5`, `section6`, `section6_negative`.
 Printed and corrected statements are tried on models by `section2_trials` (with section 3), `section4_trials`,
-`section4b_trials`, `section5_trials`, `section6_trials`.
+`section4b_trials`, `section5_trials`, `section6_trials`.  `section6_scaling` has what persists
+near a swan, `section6_exact` what polynomials decide there.
 """
 
 from __future__ import annotations
