@@ -52,6 +52,7 @@ class Check:
     kind : what the argument is worth if it holds: proved, certified, supported or cited.
     evidence : one line for a person. witness : numbers at which a failing statement fails.
     modulo : names of theorems that the argument uses; with any, "proved" becomes "proved modulo".
+    transverse : conditions, each found to hold, by which what holds in the universal model of section 6 holds near it.
 
     Raises
     ------
@@ -68,6 +69,7 @@ class Check:
     evidence: str
     witness: Mapping[str, str] | None = None
     modulo: tuple[str, ...] = ()
+    transverse: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if isinstance(self.modulo, str) or not all(isinstance(name, str) and name.strip() for name in self.modulo):
@@ -188,7 +190,8 @@ class Verdict:
     Attributes
     ----------
     kind : one of `KINDS`. effective : the weakest kind along what it rests on; `worth` is what documents print.
-    in_model : whether its verifier used the universal model of section 6, so that a proof is one in that model.
+    in_model : whether its verifier used the universal model of section 6 and found no condition by which the statement
+        persists for the oscillators that tend to it, so that a proof is one in that model.
     corrected, corrected_kind : the statement that holds instead, in LaTeX, and its own verdict.
     witness : numbers at which the printed statement fails. seconds : of CPU time.
     certificates : plain data on which the verdict rests where it is proved, each accepted by `algebra.checking`.

@@ -10,7 +10,11 @@ from typing import Any
 from singimpact.algebra.certificates import Certificate, collected
 from singimpact.paper.claims.claim import IN_MODEL, MODULO, PROVED, STRENGTH, Check, Claim, Trial, Verdict
 from singimpact.paper.routes.equations import derived_from, watched
+from singimpact.paper.routes.scaling import limit_acceleration
 from singimpact.paper.routes.unfolding import acceleration as model_acceleration
+
+SCALING = "s6-scaling"  # the claim that oscillators tend to the universal model
+MODEL = {model_acceleration.label, limit_acceleration.label}  # type: ignore[attr-defined]
 
 
 @dataclass(frozen=True)
@@ -88,19 +92,24 @@ def _found(claim: Claim) -> _Found:
 
 
 def _verified(claim: Claim, value: Any) -> tuple[Check, tuple[Certificate, ...], bool]:
-    """The verdict on a statement, the certificates on which it rests, and whether it used the model."""
+    """The verdict on a statement, the certificates on which it rests, and whether it is one about the model alone.
+
+    Where it used the model it is not when the verifier found the conditions by which the statement persists, and the
+    claim rests on the one that oscillators tend to the model.
+    """
     with collected() as gathered:
         check, labels = watched(lambda: claim.verify(value))
-    return check, tuple(gathered), _reaches(labels, model_acceleration.label)  # type: ignore[attr-defined]
+    persists = check.transverse and SCALING in (claim.id, *claim.rests_on)
+    return check, tuple(gathered), _reaches(labels, MODEL) and not persists
 
 
-def _reaches(labels: Iterable[str], goal: str) -> bool:
-    """Whether an equation is among some, or among those that they were derived from."""
+def _reaches(labels: Iterable[str], goals: set[str]) -> bool:
+    """Whether one of some equations is among others, or among those that they were derived from."""
     todo, seen = set(labels), set[str]()
     while todo - seen:
         seen |= todo
         todo = {below for label in todo for below in derived_from(label)}
-    return goal in seen
+    return bool(goals & seen)
 
 
 def _corrected(claim: Claim, failed: Check) -> _Found:

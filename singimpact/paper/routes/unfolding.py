@@ -15,6 +15,7 @@ from singimpact.algebra.derivations import At, motion, substitution
 from singimpact.paper.routes.equations import equation
 
 sigma, t, s, kappa, r = sympy.symbols("sigma t s kappa r")
+u = sympy.Symbol("u")  # time since the launch
 x, y, w, _velocity = sympy.symbols("x y w v")  # in certificates: distances from a point, a root, a launch velocity
 
 
@@ -31,15 +32,6 @@ def slope_of_acceleration(time: Any) -> Any:
     start = acceleration().subs(sigma, time)
     substitution(At(acceleration(), {sigma: time + x}), start + found * x, order=1, small=[x])
     return found
-
-
-@equation("s6-model-at-c0")
-def acceleration_at_swan() -> Any:
-    """a(sigma) when A and B meet: with their half distance e for unit of length, 12 kappa (sigma^2 - e^2) at e = 0."""
-    e = sympy.Symbol("e")
-    scaled = sympy.expand(e**2 * acceleration().subs(sigma, sigma / e))
-    substitution(At(e**2 * acceleration(), {sigma: sigma / e}), scaled)
-    return scaled.subs(e, 0)
 
 
 @equation("s6-launch")
@@ -134,12 +126,25 @@ def cusp_conditions(point: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
 @equation("s6-shadow")
 def shadow() -> Any:
     """t_1 of the next hit behind a graze (sigma, t_0): x - c has the roots 0, t_0, t_0, t_1, whose sum is known."""
-    u = sympy.Symbol("u")
     quartic = sympy.Poly(sympy.expand(height(u)), u)
     total = -sympy.cancel(quartic.nth(3) / quartic.nth(4))  # of the roots 0, t_0, t_0, t_1
     found = sympy.expand(total - 2 * t)
     factored = At(kappa * u * (u - t) ** 2 * (u - x), {x: found})
     substitution(factored, height(u), where=(horizon(), t))  # on the horizon, where x - c touches 0 at t_0
+    return found
+
+
+@equation("s6-cofactor")
+def cofactor() -> Any:
+    """q(u) with x - c = kappa u (u - t) q(u) on the flight (sigma, t): where q > 0 on (0, t) nothing is hit before t.
+
+    Examples
+    --------
+    >>> cofactor()
+    6*sigma**2 + 4*sigma*t + 4*sigma*u + t**2 + t*u + u**2 - 6
+    """
+    found = sympy.expand(sympy.cancel(height(u) / (kappa * u * (u - t))))
+    substitution(At(kappa * u * (u - t) * x, {x: found}), height(u))
     return found
 
 

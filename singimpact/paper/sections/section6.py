@@ -9,6 +9,7 @@ import sympy
 from singimpact.documents.arranging import factored, in_powers
 from singimpact.documents.steps import Section, Step
 from singimpact.paper.routes import unfolding as swan
+from singimpact.paper.routes.scaling import WEIGHTS, alpha, limit_launch, phi_1, phi_2, scaled, y
 from singimpact.paper.routes.unfolding import A, B, C, D, E, r, sigma, t
 from singimpact.theory.notation import latex, name_of
 
@@ -18,15 +19,39 @@ def told() -> Section:
     return Section("section6", "6. An unfolded swan", (*_model(), *_curves(), *_positive(), *_negative()))
 
 
+def _scaled() -> str:
+    """The equation of motion in scaled lengths: its limit, then what has the factor H."""
+    limit, rest = scaled(WEIGHTS)
+    names = {alpha: sympy.Symbol(r"\alpha"), phi_1: sympy.Symbol(r"\varphi_1"), phi_2: sympy.Symbol(r"\varphi_2")}
+    names |= {y: sympy.Symbol("x'")}
+    return rf"x'' = {latex(limit)} + H\left({latex(rest.subs(names))}\right)"
+
+
 def _model() -> tuple[Step, ...]:
     return (
         Step(
             "As $c$ passes the value $c_0$ of a swan point, where $a_c = a_c' = 0$ at $\\tau_*$, two zeros $A$, $B$ of "
-            "$a_c$ are born on one side. Measured from the middle between them, in units of half their distance and "
-            "of the lengths that go with it, every oscillator tends to one model as $c \\to c_0$:",
+            "$a_c$ are born on one side. For $c$ near $c_0$ the function $a_c$ has one extremum near $\\tau_*$. "
+            "$\\sigma$ is measured from there, $24\\kappa$ is $a_c''$ there and $12\\kappa e$ is $a_c$ there, so that "
+            "the zeros exist where $e < 0$. Hadamard's lemma writes the rest of the equation of motion with smooth "
+            "functions, $a_c = 12\\kappa(e + \\sigma^2) + \\sigma^3\\alpha$ and $f(c + x, x') - f(c, 0) = x\\varphi_1 "
+            "+ x'\\varphi_2$. With $\\sigma, t, e, x, x'$ multiplied by $H, H, H^2, H^4, H^3$ it becomes",
+            _scaled(),
+            "s6-scaled",
+            ("s6-d", "s6-c-side", "s6-a0-typo"),
+        ),
+        Step(
+            "The right side is smooth in $H$ at $H = 0$. So are the flights and, since the slope of $(x - c)/t$ by the "
+            "launch velocity is 1 at $H = 0$, this velocity. On bounded sets it is, with all its derivatives,",
+            rf"v_c(H\sigma, Ht) = H^3\left({factored(limit_launch())} + O(H)\right)",
+            "s6-scaling",
+            ("s6-scaling",),
+        ),
+        Step(
+            "What holds in the limit by simple zeros, transverse crossings and strict inequalities holds near the swan "
+            "for small $H$. With half the distance of the zeros for $H$ it is $e = -1$, and one model is left:",
             rf"a(\sigma) = {latex(swan.acceleration())}",
             "s6-model",
-            ("s6-d", "s6-c-side", "s6-a0-typo"),
         ),
         Step(
             "with $\\kappa > 0$ at a positive swan and $\\kappa < 0$ at a negative one. Two integrations give the "

@@ -1,4 +1,4 @@
-"""Orbits of the universal unfolded swan: what is visible, where gamma ends, the stable manifold through A."""
+"""Orbits of the universal unfolded swan: where gamma ends, the stable manifold through A."""
 
 from __future__ import annotations
 
@@ -16,58 +16,12 @@ from singimpact.algebra.solving import halved
 from singimpact.impact_oscillator import ImpactOscillator, universal
 from singimpact.paper.trials import true_orbits
 
-SEED = 20072
 NEAR = 0.01  # of the way to A or B: chatter that ends so soon ends before either
 
 
 def negative(r: str) -> ImpactOscillator:
     """x'' = -12 (t^2 - 1): kappa = -1."""
     return universal(-1, r)
-
-
-@dataclass(frozen=True)
-class Visibility:
-    """Points of V' with v >= 0 and t > 0: how many, and how many are on the wrong side of the loop ADCBA."""
-
-    count: int
-    inside: int
-    wrong: int
-
-
-@lru_cache(maxsize=1)
-def visibility() -> Visibility:
-    """Random points (sigma, t), visible when the first hit from (sigma, v) comes at t, against the loop."""
-    rng = np.random.default_rng(SEED)
-    sigma, t = rng.uniform(-4, 2, 3000), rng.uniform(0.01, 6, 3000)
-    v = t * (6 * (sigma**2 - 1) + 4 * sigma * t + t**2)
-    keep = v > 1e-6
-    sigma, t, v = sigma[keep], t[keep], v[keep]
-    times = np.asarray(negative("1/2").first_hit(sigma, v).flight_time)
-    seen = np.abs(times - t) < 1e-7 * (1 + t)
-    inside = _winds(_loop(), sigma, t)
-    return Visibility(len(t), int(inside.sum()), int(np.count_nonzero(seen == inside)))
-
-
-def _loop(points: int = 2000) -> Any:
-    """The closed polygon A-D (horizon), D-C (shadow), C-B (zero set), B-A, in (sigma, t)."""
-    on_horizon = np.linspace(0, 4, points)
-    sigma = (
-        -(4 * on_horizon + np.sqrt(36 - 2 * on_horizon**2)) / 6
-    )  # H: 6 sigma^2 + 8 sigma t + 3 t^2 = 6, through A and D
-    shadow = np.column_stack([sigma, -4 * sigma - 2 * on_horizon])[::-1]
-    launch = np.linspace(-1, 1, points)
-    zero_set = np.column_stack([launch, -2 * launch + np.sqrt(6 - 2 * launch**2)])
-    return np.vstack([np.column_stack([sigma, on_horizon]), shadow, zero_set])
-
-
-def _winds(loop: Any, x: Any, y: Any) -> Any:
-    """Whether points lie inside a polygon: crossings of a ray, counted."""
-    x0, y0 = loop.T
-    x1, y1 = np.roll(loop, -1, axis=0).T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        spans = (y0[:, None] > y) != (y1[:, None] > y)
-        at = (x1 - x0)[:, None] * (y - y0[:, None]) / (y1 - y0)[:, None] + x0[:, None]
-        return np.count_nonzero(spans & (x < at), axis=0) % 2 == 1
 
 
 @lru_cache(maxsize=8)
@@ -119,34 +73,6 @@ def completes(r: str, sigma: float, v: float = 0.0) -> bool:
         if v < NEAR * 6 * (1 - tau * tau) * (1 - abs(tau)) * (1 - rate):
             return True
     return False
-
-
-@dataclass(frozen=True)
-class Crossings:
-    """How often the arc R(phi(AE)) meets the outline p(BE) over A..B, and its slope at A; the worst over some r."""
-
-    counts: tuple[int, ...]
-    slope: float
-
-
-@lru_cache(maxsize=1)
-def epsilon() -> Crossings:
-    """For r = 0.1, 0.5, 0.9, kappa = 1: both curves as functions of time on (-1, 1)."""
-    # outline p(BE): H through B and E; phi(AE) is the other branch, launched backwards
-    t = np.linspace(0, 2 * np.sqrt(3), 40001)
-    sigma = (-4 * t + np.sqrt(36 - 2 * t**2)) / 6
-    outline = -t * (6 * (sigma**2 - 1) + 4 * sigma * t + t**2)
-    launch = np.linspace(-1, -np.sqrt(3), 40001)
-    flight = -2 * launch - np.sqrt(np.maximum(6 - 2 * launch**2, 0))
-    place, speed = launch + flight, flight * (6 * (launch**2 - 1) + 8 * launch * flight + 3 * flight**2)
-    order = np.argsort(sigma)
-    grid = np.linspace(-0.999, 0.999, 4001)
-    counts = []
-    for r in (0.1, 0.5, 0.9):
-        arc = np.interp(grid, place, -r * speed)
-        difference = arc - np.interp(grid, sigma[order], outline[order])
-        counts.append(int(np.count_nonzero(np.sign(difference[1:]) != np.sign(difference[:-1]))))
-    return Crossings(tuple(counts), float(-0.5 * speed[40] / (place[40] + 1)))
 
 
 @dataclass(frozen=True)

@@ -124,7 +124,7 @@ MUTANTS = {
         "paper/routes/implicit.py",
         "for degree in range(1, order + 1):",
         "for degree in range(1, order):",
-        "e:acc e:pnew e:yeq s3-Dp s3-Dphi s3-dvdt s4-Z-line s4-saddle s4b-Np s4b-T2-bounds s4b-T2-place "
+        "e:acc e:pnew e:yeq s6-a0-typo s3-Dp s3-Dphi s3-dvdt s4-Z-line s4-saddle s4b-Np s4b-T2-bounds s4b-T2-place "
         "s4b-continuous s4b-eps s4b-l-range s4b-p-bound s4b-q-bound s4b-ratio s4b-sector s4-P-star s4b-back "
         "s4b-conditions s4b-contraction t:foliate t:foliate-smooth t:t2-exists t:t2-sides t:t2-smooth "
         "t:t2-unique t:t3 t:t3-attracting t:t3-others t:t3-smooth t:t3-unique"),
@@ -142,7 +142,7 @@ MUTANTS = {
         "paper/routes/implicit.py",
         "x, y = -(matrix",
         "x, y = (matrix",
-        "s3-slope s3-slope-r"),
+        "s3-slope s3-slope-r t:t1"),
     "a horizon that is another line": (
         "paper/routes/fold.py",
         "line = sympy.cancel(-slope.nth(0) / slope.nth(1))",
@@ -198,7 +198,27 @@ MUTANTS = {
         "paper/routes/unfolding.py",
         "displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2))",
         "displaced = sum(value * s ** (n + 2) / (n + 2)",
-        "s6-lips s6-sections s6n-corr s6n-cusp s6n-maps s6p-none"),
+        "s6-lips s6-sections s6n-corr s6n-cusp s6n-maps s6n-AB"),
+    "a limit of launches without a term": (
+        "paper/routes/scaling.py",
+        "displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2))",
+        "displaced = sum(value * s ** (n + 2) / (n + 2)",
+        "s6-scaling s6p-none"),
+    "a force that is scaled otherwise": (
+        "paper/routes/scaling.py",
+        "sigma**3 * alpha - x * phi_1 - y * phi_2",
+        "sigma**2 * alpha - x * phi_1 - y * phi_2",
+        "s6-scaling"),
+    "a flight's other factor": (
+        "paper/routes/unfolding.py",
+        "height(u) / (kappa * u * (u - t))",
+        "height(u) / (kappa * (u - t))",
+        "s6n-visible s6n-X"),
+    "an arc of AE that is another": (
+        "paper/claims/sections/section6_exact.py",
+        "{sigma: -third * w * (1 + z),",
+        "{sigma: -third * w * (1 - z),",
+        "s6p-eps"),
     "a shadow that is another": (
         "paper/routes/unfolding.py",
         "found = sympy.expand(total - 2 * t)",
@@ -224,11 +244,6 @@ MUTANTS = {
         "found = sympy.diff(acceleration(), sigma).subs(sigma, time)",
         "found = -sympy.diff(acceleration(), sigma).subs(sigma, time)",
         "s6p-AB"),
-    "another unit of time": (
-        "paper/routes/unfolding.py",
-        "scaled = sympy.expand(e**2 * acceleration()",
-        "scaled = sympy.expand(e**3 * acceleration()",
-        "s6-a0-typo"),
     "a group law with another sign": (
         "paper/routes/variations.py",
         "difference = P - (u - v * q - A * b)",

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -11,9 +12,10 @@ from singimpact.algebra import gathering
 from singimpact.inputs import InputError
 from singimpact.paper.claims import CLAIMS, run, select
 from singimpact.paper.claims.claim import IN_MODEL, MODULO, Check, Claim, Statement, Trial, compared
-from singimpact.paper.claims.deciding import effective
+from singimpact.paper.claims.deciding import decide
 from singimpact.paper.claims.memory import recall
 from singimpact.paper.claims.sections import section6_negative
+from singimpact.paper.claims.sections.section6_scaling import near_the_swan
 from singimpact.paper.routes import unfolding
 from singimpact.paper.routes.equations import derived_from, watched
 from singimpact.paper.trials import unfolded
@@ -131,16 +133,43 @@ def test_effective_verdict_is_the_weakest_below(verdicts):
     assert verdicts["s3-slope"].effective == MODULO
 
 
-def test_exact_arguments_about_the_universal_model_are_proved_in_the_model(verdicts):
+NEAR_THE_SWAN = {
+    "s6-scaling", "s6-lips", "s6p-none", "s6p-AB", "s6p-BE", "s6p-AE", "s6p-eps", "s6n-corr", "s6n-maps",
+    "s6n-shadow-neg", "s6n-cusp", "s6n-AB", "s6n-X",
+}  # fmt: skip
+
+
+def test_exact_arguments_about_the_universal_model_are_proved_in_the_model_or_near_the_swan(verdicts):
     found = {name for name, verdict in verdicts.items() if verdict.effective == IN_MODEL}
-    assert found == {
-        "s6-lips", "s6-a0-typo", "s6p-none", "s6-sections", "s6p-AB", "s6p-BE", "s6p-AE",
-        "s6n-corr", "s6n-maps", "s6n-shadow-neg", "s6n-cusp",
-    }  # fmt: skip
-    assert verdicts["s6-lips"].kind == "proved"
-    assert verdicts["s6p-AB"].in_words == "corrected (proved in the model)"
+    assert found == {"s6-sections", "s6n-visible"}
+    assert verdicts["s6n-visible"].kind == "proved"
+    assert verdicts["s6n-visible"].in_words == "proved in the model"
+    assert {verdicts[name].worth for name in NEAR_THE_SWAN} == {"proved"}
+    assert all("persists near the swan" in verdicts[name].evidence for name in NEAR_THE_SWAN)
+    assert verdicts["s6p-AB"].in_words == "corrected (proved)"
     assert not verdicts["s5-phi"].in_model
-    assert effective("supported", True, []) == "supported"
+
+
+@pytest.mark.parametrize("name", sorted(NEAR_THE_SWAN - {"s6-scaling"}))
+def test_without_the_scaling_lemma_it_is_proved_in_the_model(name, verdicts):
+    claim = CLAIMS[name]
+    assert "s6-scaling" in claim.rests_on
+    alone = replace(claim, rests_on=tuple(below for below in claim.rests_on if below != "s6-scaling"))
+    assert decide(alone, verdicts).worth == IN_MODEL
+
+
+@pytest.mark.parametrize("value", [0, unfolding.kappa - unfolding.kappa, unfolding.kappa + 1, False])
+def test_what_does_not_persist_fails(value):
+    check = near_the_swan(Check(True, "proved", "in the model"), [("a number", value)])
+    assert not check.holds
+    assert "does not persist near the swan" in check.evidence
+    assert not near_the_swan(Check(True, "proved", "in the model"), []).holds
+
+
+def test_a_claim_about_the_model_that_fails_near_the_swan_is_an_error():
+    claim = CLAIMS["s6-lips"]
+    numbers = lambda value: near_the_swan(claim.verify(value), [("a number", 0)])  # noqa: E731
+    assert decide(replace(claim, verify=numbers), {}).kind == "error"
 
 
 def test_what_is_worth_less_than_its_own_argument(verdicts):

@@ -8,7 +8,8 @@ from singimpact.paper.claims import CLAIMS
 from singimpact.paper.routes.fold import s
 from singimpact.paper.routes.implicit import sigma
 
-UNITS = {"s4-blowup": s, "s4-beta-tangent": sigma, "s4b-eps": sigma**2}  # by which the value is divided
+H = sympy.Symbol("H")
+UNITS = {"s4-blowup": s, "s4-beta-tangent": sigma, "s4b-eps": sigma**2, "s6-scaling": H**3}  # of the value
 WORDS = {  # formulas of the value that the text gives in words: the reason
     ("p:phising-set", "v"): "Z_c is v_c = 0",
     ("s2-discontinuity", "xdot"): "H_c is x-dot = 0",
@@ -16,6 +17,7 @@ WORDS = {  # formulas of the value that the text gives in words: the reason
     ("s5-coordinates", "t"): "t follows from two equations",
     ("s6n-cusp", "C''"): "phi(C) is evaluated",
     ("t:t1", "direction"): "a span",
+    ("s6n-visible", "arcs"): "a closed curve, named by its corners",
 }
 
 

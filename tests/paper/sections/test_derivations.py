@@ -30,7 +30,8 @@ LABELS = [
     "s4-lambda-DG", "ratios-1", "ratios-rise-1", "s4b-continuous", "s4b-sector", "s4b-T2-bounds", "s4b-after",
     "s4b-rays", "s4b-last-ray", "s4b-M", "s4b-bounds", "s4b-ratio", "s4b-below-one", "ratios-shorter-1", "s4b-eps",
     "e:pdeg3", "s5-phi", "s5-hbar", "s5-f", "s5-g", "s5-fixed", "s5-r-of-m", "s5-jacobian", "s5-mu", "s5-lambda-P",
-    "s5-lambda-r", "s5-gamma-leading", "ratios-2", "ratios-rise-2", "ratios-shorter-2", "s6-model", "s6-launch",
+    "s5-lambda-r", "s5-gamma-leading", "ratios-2", "ratios-rise-2", "ratios-shorter-2", "s6-scaled", "s6-scaling",
+    "s6-model", "s6-launch",
     "s6-impact", "s6-horizon", "s6-zero-set", "s6-E", "s6n-corr", "s6n-cusp", "s6p-AB", "s6p-BE", "s6p-gamma",
     "s6-shadow", "s6n-maps", "s6-GA", "s6n-X",
 ]  # fmt: skip
@@ -87,8 +88,9 @@ def test_no_claim_ends_in_error(marks):
 
 def test_effective_verdicts_are_shown(told, marks):
     text = as_latex(told, marks)
-    assert r"\beside{s6p-AB}{corrected, proved in the model}" in text
-    assert marks["s3-slope"].text == "supported"
+    assert r"\beside{s6p-AB}{corrected, proved}" in text
+    assert r"\found{s6-sections}{proved in the model}" in text
+    assert marks["s3-slope"].text == "proved modulo the theorem of Hirsch, Pugh and Shub"
 
 
 def test_the_two_routes_show_one_theory():

@@ -6,7 +6,7 @@ paper's order: `section2`, `section2_maps`, `section3`, `section4`, `section4a_a
 `section6_negative`.
 Printed and corrected statements are tried on models by `section2_trials` (with section 3), `section4_trials`,
 `section4b_trials`, `section5_trials`, `section6_trials`; `section4_orbits` is the argument about orbits that t:t2, t:t3
-and t:foliate share.
+and t:foliate share, `section6_scaling` has what persists near a swan, `section6_exact` what polynomials decide there.
 """
 
 from __future__ import annotations
