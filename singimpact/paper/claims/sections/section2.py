@@ -20,7 +20,8 @@ def _divisible(power: int) -> Check:
     at_launch = quotient.subs(t, 0) if smooth else v**2
     return every(
         [
-            (f"(x_c - c)/t^{power} has no negative power of t", smooth),
+            ("x_c = c at t = 0, so (x_c - c)/t is smooth (Hadamard's lemma)", is_zero((t * route.y_c(4)).subs(t, 0))),
+            (f"the Taylor polynomial of (x_c - c)/t^{power} to order 4 has no negative power of t", smooth),
             ("it vanishes on Pi_0", is_zero(at_launch.subs(v, 0))),
             ("its v-derivative there is 1, so the implicit function theorem gives v_c", sympy.diff(at_launch, v) == 1),
             ("v_c put back solves y_c = 0 to order 4", is_zero(route.at_launch(quotient, 4))),

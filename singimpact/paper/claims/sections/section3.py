@@ -43,7 +43,9 @@ def _slope_limit(variable: Any, point: Any) -> Any:
     """A verifier: the slope of the contracting eigendirection has the stated limit as `variable` tends to `point`."""
 
     def limit() -> Any:
-        _, vector = route.eigenvectors()[1]
+        value, vector = route.eigenvectors()[1]
+        if not is_zero(value - r):
+            raise ArithmeticError(f"the direction of chatter belongs to the eigenvalue {value}, not r")
         return value_at(vector[1] / vector[0], variable, point)
 
     return identity(limit, "the limit of the slope of the eigenvector derived")

@@ -16,7 +16,7 @@ from singimpact.paper.claims.verifiers import is_zero, same
 from singimpact.paper.routes import ratios
 from singimpact.paper.routes.implicit import sigma, t
 from singimpact.paper.routes.ratios import l
-from singimpact.theory.homogeneous import P, Q, lambda_
+from singimpact.theory.homogeneous import DG_on_ray, P, Q, lambda_
 
 STABLE = "the stable manifold theorem"
 BEHIND = -sympy.Rational(1, 4)  # ratios down to it are used: next to gamma a landing may fall just behind tau_*
@@ -64,14 +64,36 @@ def saddle(j: int) -> list[Part]:
     factor = ratios.multiplier(j)
     return [
         (
-            "(S, l) -> (l S, l1) is smooth near (0, lambda), since d((1-l)P)/dl = -Q is not 0 there, and leaves S = 0 invariant",
+            "(S, l) -> (l S, l1) is smooth near (0, lambda), since d((1-l)P)/dl = -Q is not 0 there, and leaves S = "
+            "0 invariant",
             positive_up_to_the_ends(ratios.reduced(j).landing, BEHIND, 1),
         ),
         (
-            f"its multipliers are lambda in (0, 1) and {factor} > 1 at l = lambda: a saddle, whose stable manifold is a "
-            "smooth graph l = L(S), L(0) = lambda; gamma is v = b S^" + str(j + 1) + " (1-L)(P(L) + O(S)), smooth",
+            f"its multipliers are lambda in (0, 1) and {factor} > 1 at l = lambda: a saddle, whose stable manifold "
+            "is a smooth graph l = L(S), L(0) = lambda; gamma is v = b S^" + str(j + 1) + " (1-L)(P(L) + O(S)), "
+            "smooth",
             positive_on(factor - 1, l, 0, 1) and rises(j),
         ),
+    ]
+
+
+def limit_of_DG(j: int) -> list[Part]:
+    """That DG at points of gamma, its entries scaled by powers of S, tends to the matrix of the homogeneous model.
+
+    In (S, l) launch and landing are smooth, and G is the second after the inverse of the first.
+    """
+    place = {sigma: -1, t: 1 - l}
+    launch, landing = ratios.forms(j)
+    before = sympy.Matrix([sigma, launch]).jacobian([sigma, t]).subs(place)
+    after = sympy.Matrix([sigma + t, ratios.restitution_of_ratio(j) * landing]).jacobian([sigma, t]).subs(place)
+    found, stated = after * before.inv(), DG_on_ray(j).subs(lambda_, l)
+    agree = all(is_zero(one - other) for one, other in ((found.trace(), stated.trace()), (found.det(), stated.det())))
+    return [
+        (
+            "launch and landing are S^j times smooth functions of (S, l), d launch/d l = -Q is not 0, so DG scaled "
+            "by powers of S is the matrix of the homogeneous model plus O(S) on gamma",
+            agree and positive_up_to_the_ends(ratios.reduced(j).landing, BEHIND, 1),
+        )
     ]
 
 
@@ -94,12 +116,13 @@ def before(j: int) -> list[Part]:
             drift(j) == 1,
         ),
         (
-            "below, q -> q_oo: q_oo > 0 and S -> 0 would make l -> lambda, q_oo = 1; so l -> 1, 1 - l falls by r in the end "
-            "and S tends to a positive limit: complete chatter before tau_*, where a < 0",
+            "below, q -> q_oo: q_oo > 0 and S -> 0 would make l -> lambda, q_oo = 1; so l -> 1, 1 - l falls by r in "
+            "the end and S tends to a positive limit: complete chatter before tau_*, where a < 0",
             drift(j) == 1 and ratios.restitution_of_ratio(j).subs(l, 1) == 1,
         ),
         (
-            "above, infinitely many impacts would make l -> lambda or l -> 0, where r Q > 0 = l P: there are finitely many",
+            "above, infinitely many impacts would make l -> lambda or l -> 0, where r Q > 0 = l P: there are "
+            "finitely many",
             ratios.reduced(j).landing.subs(l, 0) > 0,
         ),
     ]
@@ -127,7 +150,8 @@ def shortening(j: int, side: int) -> list[Part]:
             definite,
         ),
         (
-            f"p(sigma + t, rho t) - rho q = {sympy.factor(again)} >= 0, and p = {launch} grows with t, so t1 <= rho t for r < rho < 1",
+            f"p(sigma + t, rho t) - rho q = {sympy.factor(again)} >= 0, and p = {launch} grows with t, so t1 <= rho "
+            "t for r < rho < 1",
             all(value > 0 for value in terms.coeffs()) and all(value > 0 for value in growing.coeffs()),
         ),
     ]
@@ -166,13 +190,14 @@ def monotone() -> list[Part]:
     at_zero = sympy.expand(landed_by_launch - by_launch)  # with t_2 <= r t, over r
     return [
         (
-            f"from one velocity to a larger one at the same sigma: dt1/de has the sign of r ({landed_by_time}) - 3 t1 >= r "
-            f"({first.subs(u, sigma + t / 3).expand()}) >= 0 on 3 sigma + t >= 0",
+            f"from one velocity to a larger one at the same sigma: dt1/de has the sign of r ({landed_by_time}) - 3 "
+            f"t1 >= r ({first.subs(u, sigma + t / 3).expand()}) >= 0 on 3 sigma + t >= 0",
             all(value > 0 for value in sympy.Poly(first, u, t).coeffs()),
         ),
         ("xi = 0 goes to xi' >= 0, since r q_e - p_e = 3 (r t - t_2) >= 0", is_zero(at_zero)),
         (
-            f"d xi'/d xi <= r/(1 + xi)^2, since p_t - (q_t - q_e) = {slope} >= 0: so xi >= -b goes to xi' >= -b r/(1-b)^2 > -b",
+            f"d xi'/d xi <= r/(1 + xi)^2, since p_t - (q_t - q_e) = {slope} >= 0: so xi >= -b goes to xi' >= -b "
+            "r/(1-b)^2 > -b",
             all(value > 0 for value in sympy.Poly(slope, sigma, t, t_2).coeffs()),
         ),
     ]

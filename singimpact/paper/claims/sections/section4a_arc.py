@@ -167,6 +167,7 @@ def _repelling(stated: int) -> Check:
     count = 1 if negative_on(at_one, lambda_, 0, 1) and positive_on(matrix.det(), lambda_, 0, 1) else 0
     return every(
         [
+            *orbits.limit_of_DG(1),
             (
                 "the characteristic polynomial is negative at 1 and positive at 0 and at infinity for every r in (0, 1)",
                 count == 1 and _interval_map(r_of_lambda(1)),

@@ -65,12 +65,21 @@ def _identity_order(order: int) -> Check:
 
 
 def _fold_form(stated: Any) -> Check:
-    """Source and target changes take psi o p to (sigma, stated) with nothing left to order 5."""
+    """Source and target changes take psi o p to (sigma, stated): to order 5 by series, to all orders by one quotient.
+
+    With the horizon moved to eta = 0 and its image to 0, psi o p has the factor eta^2 (Hadamard's lemma, twice).
+    """
     form = fold_form(5)
     check = identity(lambda: form.normal, "the normal form reached")(stated)
+    bend = sympy.diff(fold.psi_p()[1], eta, 2).subs({sigma: 0, eta: 0})
     return every(
         [
             (check.evidence, check.holds),
+            (
+                f"d^2/d eta^2 of psi o p is {bend}, not 0: so it is -k eta^2 u with u smooth, u = 1 at w_*, and eta sqrt(u) for eta "
+                "removes what is left to all orders",
+                is_zero(bend + 2 * k),
+            ),
             ("psi o p composed with the changes leaves no term up to order 5", form.residual_vanishes),
             (
                 "the changes are invertible: d(eta)/dt = 1 and the target change is the identity to first order",

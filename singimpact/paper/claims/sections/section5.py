@@ -270,6 +270,7 @@ def _repelling(stated: int) -> Check:
     count = int(negative_on(at_one, lambda_, 0, 1) and positive_on(matrix.det(), lambda_, 0, 1))
     return every(
         [
+            *orbits.limit_of_DG(2),
             (
                 "the characteristic polynomial is negative at 1, positive at 0 and infinity, for every r in (0, 1)",
                 count == stated,
