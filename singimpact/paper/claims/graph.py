@@ -15,7 +15,7 @@ def dependants(claims: Mapping[str, Entry], name: str) -> list[str]:
     --------
     >>> from singimpact.paper.claims import INDEX
     >>> dependants(INDEX, "s3-DG")
-    ['s3-eigenvectors', 's3-slope-r', 't:t1', 's3-takens', 's3-slope', 't:foliate-smooth']
+    ['s3-eigenvectors', 's3-slope-r', 't:t1', 't:t1-foliation', 's3-takens', 's3-slope', 't:foliate-smooth']
     """
     reached = {name}
     grown = True

@@ -54,7 +54,7 @@ def _directions() -> tuple[Step, ...]:
             "longer decides.",
             rf"\frac{{dv}}{{d\sigma}} = {factored(slope)}",
             "s3-slope",
-            ("t:t1", "s3-slope", "s3-slope-r", "s3-takens"),
+            ("t:t1", "t:t1-foliation", "s3-slope", "s3-slope-r", "s3-takens"),
         ),
     )
 

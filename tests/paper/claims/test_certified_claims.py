@@ -142,7 +142,7 @@ MUTANTS = {
         "paper/routes/implicit.py",
         "x, y = -(matrix",
         "x, y = (matrix",
-        "s3-slope s3-slope-r t:t1"),
+        "s3-slope s3-slope-r t:t1 t:t1-foliation"),
     "a horizon that is another line": (
         "paper/routes/fold.py",
         "line = sympy.cancel(-slope.nth(0) / slope.nth(1))",

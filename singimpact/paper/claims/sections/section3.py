@@ -16,6 +16,7 @@ from singimpact.paper.trials import true_orbits
 from singimpact.theory.notation import latex
 
 a = a_symbol(0)
+NORMALLY_HYPERBOLIC = "the theorem of Hirsch, Pugh and Shub"
 _MAP = r"(\sigma,t)\mapsto"
 
 
@@ -71,12 +72,35 @@ def _slope_sign(stated: Any) -> Check:
                 stated_worst < 1e-4,
             ),
         ],
-        modulo=("the theorem of Hirsch, Pugh and Shub",),
+        modulo=(NORMALLY_HYPERBOLIC,),
         witness=lambda: {
             "model": found[0].name,
             "found slope": f"{found[0].found:.10f}",
             "stated": f"{float((stated[1] / stated[0]).subs({a: found[0].a, r: found[0].r})):.10f}",
         },
+    )
+
+
+def _normally_hyperbolic(stated: tuple[Any, Any]) -> Check:
+    """(multiplier along Pi_0, multiplier across): 1, as G is the identity there, and a contraction for every r in (0, 1)."""
+    (along, tangent), (across, direction) = route.eigenvectors()
+    rest = [part.subs({route.sigma: 0, route.v: 0}) for part in (route.y_c(2).subs(t, 0),)]
+    return every(
+        [
+            (
+                "a launch with v = 0 is at rest where a < 0: Pi_0 consists of fixed points",
+                all(is_zero(part) for part in rest),
+            ),
+            (f"the multiplier along it is {along}", same(along, stated[0]) and is_zero(tangent[1])),
+            (
+                f"that across it is {across}, in (0, 1) for every r in (0, 1), and its direction is not along Pi_0",
+                same(across, stated[1])
+                and positive_on(across, r, 0, 1)
+                and positive_on(1 - across, r, 0, 1)
+                and not is_zero(direction[1]),
+            ),
+        ],
+        modulo=(NORMALLY_HYPERBOLIC,),
     )
 
 
@@ -160,6 +184,18 @@ CLAIMS = (
         verify=_slope_sign,
         mutants=((2, (1 + r) * a), (1, (1 - r) * a)),
         rests_on=("s3-eigenvectors",),
+    ),
+    Claim(
+        id="t:t1-foliation",
+        section="3.1",
+        title="W^s_tau consists of the states that converge to (tau, 0), and these curves foliate a neighbourhood continuously",
+        printed=Statement(
+            r"W^s_\tau=\{u:G^n(u)\to w_\tau\},\quad\text{multipliers}\ 1\ \text{along}\ \Pi_0,\ r\ \text{across}",
+            (sympy.Integer(1), r),
+        ),
+        verify=_normally_hyperbolic,
+        mutants=((sympy.Integer(1), 1 / r), (r, sympy.Integer(1)), (sympy.Integer(1), -r)),
+        rests_on=("s3-eigenvectors", "t:t1"),
     ),
     Claim(
         id="s3-takens",
