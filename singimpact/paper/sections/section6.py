@@ -128,7 +128,7 @@ def _positive() -> tuple[Step, ...]:
             "The restitution takes the image of the second under $\\phi$ into it: one arc, tangent to $\\Pi_0$ at $A$, "
             "that ends on the outline at one point $N$. The invariant curve $\\gamma$ of the tangency point $B$ comes "
             "back to $\\Pi_0$ between $E'$ and $A$; below it chatter is complete, above it orbits leave:",
-            r"\gamma \cap \Pi_0 = \{B,\ (\sigma_\gamma, 0)\},\quad -\sqrt{3} < \sigma_\gamma < -1",
+            r"B,\ (\sigma_\gamma, 0) \in \gamma,\quad -\sqrt{3} < \sigma_\gamma < -1",
             "s6p-gamma",
             ("s6p-gamma", "s6p-eps"),
             "figure12",
