@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from functools import cache
@@ -73,9 +74,15 @@ def display(step: Step, marks: Marks) -> str:
     body = lines[0] if len(lines) == 1 else _split(lines)
     if not step.label:
         return f"\\begin{{equation*}}\n{body}\n\\end{{equation*}}"
-    found = marks[step.label].text if step.label in step.claims else ""
+    found = _stacked(marks[step.label].text) if step.label in step.claims else ""
     tag = rf"\tag*{{\beside{{{escape.latex(step.label)}}}{{{found}}}}}\label{{{step.label}}}"
     return f"\\begin{{equation}}{tag}\n{body}\n\\end{{equation}}"
+
+
+def _stacked(words: str, width: int = 30) -> str:
+    """Words beside an equation, in lines one below the other where they are long, as the names of theorems are."""
+    lines = textwrap.wrap(words, width, break_long_words=False, break_on_hyphens=False)
+    return words if len(lines) < 2 else "\\shortstack[r]{" + "\\\\".join(lines) + "}"
 
 
 def notes(step: Step, marks: Marks) -> list[tuple[str, str, str]]:

@@ -54,6 +54,11 @@ def test_latex_has_words_labels_and_verdicts():
     assert r"\found{e:meq}" not in text
 
 
+def test_a_long_verdict_stands_in_lines():
+    marks = MARKS | {"e:meq": Mark("corrected", "proved modulo the stable manifold theorem", PRINTED)}
+    assert r"{\shortstack[r]{corrected, proved modulo the\\stable manifold theorem}}" in as_latex([DEMO], marks)
+
+
 def test_a_claim_without_a_verdict_is_an_error():
     with pytest.raises(KeyError):
         as_latex([DEMO], {})

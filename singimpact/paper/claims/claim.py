@@ -229,8 +229,8 @@ class Verdict:
         Examples
         --------
         >>> from singimpact.paper.claims import run, select
-        >>> run(select(["s3-dvdt"]))[-1].in_words
-        'corrected (proved)'
+        >>> [run(select([name]))[-1].in_words for name in ("s3-dvdt", "s6-sections")]
+        ['corrected (proved)', 'proved in the model']
         """
         own = told(self.kind, self.modulo)
         both_proved = self.kind in (PROVED, MODULO) and self.effective in (PROVED, MODULO, IN_MODEL)

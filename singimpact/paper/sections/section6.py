@@ -8,6 +8,7 @@ import sympy
 
 from singimpact.documents.arranging import factored, in_powers
 from singimpact.documents.steps import Section, Step
+from singimpact.paper.claims.sections.section6_exact import LANDING, OUTLINE, z
 from singimpact.paper.routes import unfolding as swan
 from singimpact.paper.routes.scaling import WEIGHTS, alpha, limit_launch, phi_1, phi_2, scaled, y
 from singimpact.paper.routes.unfolding import A, B, C, D, E, r, sigma, t
@@ -88,13 +89,13 @@ def _curves() -> tuple[Step, ...]:
             "at rest on one of them, $\\phi$ where it leaves there at rest. For $t > 0$ these are, with their images,",
             rf"D = {latex(D)},\quad p(D) = {latex(swan.project(D))},\quad \phi(D) = {latex(swan.reset(D))}",
             "s6n-corr",
-            ("s6n-corr",),
+            ("s6n-corr", "s6n-corr-A"),
         ),
         Step(
             "and",
             rf"C = {latex(C)},\quad p(C) = {latex(swan.project(C))},\quad \phi(C) = {latex(swan.reset(C))}",
             "s6n-cusp",
-            ("s6n-cusp",),
+            ("s6n-cusp", "s6n-C"),
         ),
     )
 
@@ -122,15 +123,23 @@ def _positive() -> tuple[Step, ...]:
             "image of the first under $p$ is tangent to $\\Pi_0$ at $B$ and leaves it at $E'$ with the slope",
             rf"\frac{{dv}}{{d\sigma}}(E') = {latex(_slope(E, swan.horizon(), outline))}",
             "s6p-BE",
-            ("s6p-BE", "s6p-AE"),
+            ("s6p-BE", "s6p-AE", "s6p-regions"),
         ),
         Step(
             "The restitution takes the image of the second under $\\phi$ into it: one arc, tangent to $\\Pi_0$ at $A$, "
-            "that ends on the outline at one point $N$. The invariant curve $\\gamma$ of the tangency point $B$ comes "
-            "back to $\\Pi_0$ between $E'$ and $A$; below it chatter is complete, above it orbits leave:",
-            r"\gamma \cap \Pi_0 = \{B,\ (\sigma_\gamma, 0)\},\quad -\sqrt{3} < \sigma_\gamma < -1",
+            "that ends on the outline at one point $N$. Both curves lie over $\\sigma = wz$ where $w^2(1 + 2z^2) = "
+            "18$, $A$ at $z = -\\tfrac14$ and $B$ at $\\tfrac14$; their heights are equal where",
+            rf"{in_powers(OUTLINE, z)} = {name_of(r)} \left({in_powers(LANDING, z)}\right),",
+            "s6p-eps",
+            ("s6p-eps",),
+        ),
+        Step(
+            "and the difference of the two sides falls from $A$ to $B$. The invariant curve $\\gamma$ of the tangency "
+            "point $B$ comes back to $\\Pi_0$ between $E'$ and $A$; below it chatter is complete, above it orbits "
+            "leave:",
+            r"B,\ (\sigma_\gamma, 0) \in \gamma,\quad -\sqrt{3} < \sigma_\gamma < -1",
             "s6p-gamma",
-            ("s6p-gamma", "s6p-eps"),
+            ("s6p-gamma",),
             "figure12",
         ),
     )
@@ -138,6 +147,12 @@ def _positive() -> tuple[Step, ...]:
 
 def _rate(point: tuple[Any, Any]) -> Any:
     return sympy.diff(swan.acceleration(), sigma).subs(sigma, point[0])
+
+
+def _excess() -> str:
+    """The velocity for a flight that is r times the last, less the one after the impact."""
+    longer = swan.launch_velocity().subs({sigma: sigma + t, t: r * t}, simultaneous=True)
+    return factored(sympy.expand(longer + r * swan.impact_velocity()))
 
 
 def _negative() -> tuple[Step, ...]:
@@ -167,7 +182,13 @@ def _negative() -> tuple[Step, ...]:
             "s6-GA",
         ),
         Step(
-            "and chatters from there into a regular point $X = (\\tau_3, 0)$ to the right of $B$. Its stable manifold "
+            "to the right of $B$, where $a < 0$ from there on. There a flight after one of length $t$ would need more "
+            f"velocity to last ${velocity} t$ than it has,",
+            rf"v(\sigma + t, {velocity} t) + {velocity} \dot x(\sigma, t) = {_excess()} > 0,",
+            "s6n-chatter",
+        ),
+        Step(
+            "so that chatter is complete, at a regular point $X = (\\tau_3, 0)$. Its stable manifold "
             "contains $A$ and is tangent to $\\Pi_0$ there; the inverse images of its arc from $A$ to $R(C'')$ are "
             "loops around the inverse images of $\\delta$, which accumulate on the invariant curve of $A$:",
             r"A \in W^s(X),\quad X = (\tau_3, 0),\quad \tau_3 > \tau_2",

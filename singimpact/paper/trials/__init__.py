@@ -3,5 +3,6 @@
 Not here: the statements and the verdicts (`paper.claims`), flights and orbits for a user (`flights`, `dynamics`).
 Files: `true_orbits` (flights by scipy, chatter, return times), `surfaces` (V_c' on a grid of flights), `arcs`
 (invariant arcs), `leaves` (of the stable foliation), `true_sheet` (v_c by differences at a point), `swans`,
-`unfolded` (the universal model), `crosscheck` (v_c of `theory` against flights in balls).
+`unfolded` (the universal model), `enclosed_swan` (that model in balls), `crosscheck` (v_c of `theory` against flights
+in balls).
 """

@@ -1,9 +1,8 @@
-"""Orbits of the universal unfolded swan: where gamma ends, the stable manifold through A."""
+"""Orbits of the universal unfolded swan: the stable manifold through A, its loops."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
@@ -15,8 +14,6 @@ from scipy.optimize import brentq
 from singimpact.algebra.solving import halved
 from singimpact.impact_oscillator import ImpactOscillator, universal
 from singimpact.paper.trials import true_orbits
-
-NEAR = 0.01  # of the way to A or B: chatter that ends so soon ends before either
 
 
 def negative(r: str) -> ImpactOscillator:
@@ -51,28 +48,6 @@ def tangency_at_A() -> tuple[float, float]:
             ratios.append(brentq(miss, 10.5, 13.5, xtol=1e-9))
         sides.append(2 * ratios[1] - ratios[0])
     return sides[0], sides[1]
-
-
-@lru_cache(maxsize=8)
-def gamma_end(r: str, v: float = 0.0, narrow: float = 1e-12) -> float:
-    """sigma in (E', A) from which, at velocity v, the positive swan's orbit runs along gamma into B: by bisection."""
-    low, high = halved(lambda sigma: not completes(r, sigma, v), -float(np.sqrt(3)) + 1e-9, -1 - 1e-9, narrow)
-    return (low + high) / 2
-
-
-def completes(r: str, sigma: float, v: float = 0.0) -> bool:
-    """Whether chatter from (sigma, v) in the positive swan is complete before B."""
-    osc, tau, rate = universal(1, r), sigma, float(Fraction(r))
-    for _ in range(400):
-        step = osc.impact_map(tau, v)
-        tau, v = float(step.tau), float(step.v)
-        if not np.isfinite(tau) or tau > 1:
-            return False
-        # with the acceleration that presses here chatter ends after 2v/(|a|(1 - r)); over a hundredth of the way to A
-        # or B that acceleration changes by 2 %, and each impact still takes the velocity down
-        if v < NEAR * 6 * (1 - tau * tau) * (1 - abs(tau)) * (1 - rate):
-            return True
-    return False
 
 
 @dataclass(frozen=True)

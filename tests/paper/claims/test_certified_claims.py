@@ -198,7 +198,7 @@ MUTANTS = {
         "paper/routes/unfolding.py",
         "displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2))",
         "displaced = sum(value * s ** (n + 2) / (n + 2)",
-        "s6-lips s6-sections s6n-corr s6n-cusp s6n-maps s6n-AB"),
+        "s6-lips s6-sections s6n-C s6n-corr s6n-corr-A s6n-cusp s6n-maps s6n-AB s6p-regions"),
     "a limit of launches without a term": (
         "paper/routes/scaling.py",
         "displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2))",

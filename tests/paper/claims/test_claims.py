@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 
@@ -14,11 +15,11 @@ from singimpact.paper.claims import CLAIMS, run, select
 from singimpact.paper.claims.claim import IN_MODEL, MODULO, Check, Claim, Statement, Trial, compared
 from singimpact.paper.claims.deciding import decide
 from singimpact.paper.claims.memory import recall
-from singimpact.paper.claims.sections import section6_negative
+from singimpact.paper.claims.sections import section6, section6_negative
 from singimpact.paper.claims.sections.section6_scaling import near_the_swan
 from singimpact.paper.routes import unfolding
 from singimpact.paper.routes.equations import derived_from, watched
-from singimpact.paper.trials import unfolded
+from singimpact.paper.trials import enclosed_swan
 
 MISPRINTED = {
     "e:phi",
@@ -135,7 +136,7 @@ def test_effective_verdict_is_the_weakest_below(verdicts):
 
 NEAR_THE_SWAN = {
     "s6-scaling", "s6-lips", "s6p-none", "s6p-AB", "s6p-BE", "s6p-AE", "s6p-eps", "s6n-corr", "s6n-maps",
-    "s6n-shadow-neg", "s6n-cusp", "s6n-AB", "s6n-X",
+    "s6n-shadow-neg", "s6n-cusp", "s6n-AB", "s6n-X", "s6p-regions", "s6n-corr-A", "s6n-C",
 }  # fmt: skip
 
 
@@ -185,11 +186,10 @@ def test_the_mirror_image_of_E_is_rejected(name, monkeypatch):
     assert not CLAIMS[name].verify(CLAIMS[name].printed.value).holds
 
 
-def test_an_end_of_gamma_with_one_side_is_rejected(monkeypatch):
-    monkeypatch.setattr(unfolded, "gamma_end", lambda _r, v=0.0, _n=40: -1.3 + v / 8.28)  # no end at any r
-    check = CLAIMS["s6p-gamma"].verify(CLAIMS["s6p-gamma"].printed.value)
-    assert "to the left it is not" in check.evidence
-    assert not check.holds
+@pytest.mark.parametrize("found", [None, enclosed_swan.Bracket(Fraction(7, 10), Fraction(4, 5), 9)])
+def test_an_end_of_gamma_that_is_not_enclosed_in_EA_is_rejected(monkeypatch, found):
+    monkeypatch.setattr(section6, "bracket", lambda _: found)  # no bracket, or one behind E'
+    assert not CLAIMS["s6p-gamma"].verify(CLAIMS["s6p-gamma"].printed.value).holds
 
 
 def test_a_map_of_DA_that_turns_is_rejected(monkeypatch):

@@ -17,6 +17,7 @@ WORDS = {  # formulas of the value that the text gives in words: the reason
     ("s5-coordinates", "t"): "t follows from two equations",
     ("s6n-cusp", "C''"): "phi(C) is evaluated",
     ("t:t1", "direction"): "a span",
+    ("s6p-gamma", "interval"): "a product of sets",
     ("s6n-visible", "arcs"): "a closed curve, named by its corners",
 }
 

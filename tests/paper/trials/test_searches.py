@@ -34,14 +34,6 @@ def test_crossings_are_counted_and_jumps_are_not(monkeypatch):
     assert unfolded._crossings(-2.0, 0.05, 1.0) == 3
 
 
-def test_early_ends_of_chatter_are_those_of_chatter_flown_to_rest(monkeypatch):
-    starts = [(r, sigma) for r in ("1/2", "9/10") for sigma in np.linspace(-1.7, -1.01, 9)]
-    early = [unfolded.completes(*start) for start in starts]
-    monkeypatch.setattr(unfolded, "NEAR", 1e-9)
-    assert early == [unfolded.completes(*start) for start in starts]
-    assert len(set(early)) == 2
-
-
 @pytest.mark.parametrize("text", ["x + 0.1*xdot + 0.3*x**3", "sin(x)/(1 + x**2) - xdot**(1/3)", "2**x*exp(-xdot)", "3"])
 def test_a_function_of_a_tree_gives_the_bits_of_its_evaluation(text):
     tree = parse(text, ["x", "xdot"])

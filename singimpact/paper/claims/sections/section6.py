@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import definite
+from singimpact.algebra.certificates import definite, positive_on
 from singimpact.algebra.derivations import At, substitution
 from singimpact.contact.points import tangency_points
 from singimpact.impact_oscillator import linear
@@ -21,10 +21,10 @@ from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.implicit import v_c_swan
 from singimpact.paper.routes.scaling import WEIGHTS, Weights
 from singimpact.paper.routes.unfolding import kappa, sigma, t
-from singimpact.paper.trials import unfolded
+from singimpact.paper.trials.enclosed_swan import LAST, bracket
 
 SQRT3 = sympy.sqrt(3)
-STEP, LIFT = 1e-6, 1e-4  # along sigma to either side of the end of gamma; in v, to measure its slope there
+RATES = ("1/10", "1/2", "7/10", "9/10")  # of restitution, at which the end of gamma is enclosed
 
 
 def _birth(stated: int) -> Check:
@@ -68,15 +68,25 @@ def zeros_by_clearance() -> tuple[Any, Any]:
 
 def _side(stated: int) -> Check:
     """For x'' + x = cos 2t, on which side of c_0 = 1 the two zeros of a_c near 0 exist."""
-    below, above = (len(tangency_points(linear(2, c, 1))) for c in ("0.99", "1.01"))
+    tau, c = sympy.symbols("tau c")
+    at_rest = sympy.cos(2 * tau) - c
+    jets = [sympy.diff(at_rest, tau, n).subs({tau: 0, c: 1}) for n in range(3)]
+    share = jets[2] * sympy.diff(at_rest, c)  # d
+    found = {clearance: tangency_points(linear(2, clearance, 1), 15) for clearance in ("0.99", "1.01")}
+    below, above = (len(points) for points in found.values())
+    shown = ", ".join(str(point) for point in found["0.99"].certified())
     return every(
         [
             (
-                f"{below} zeros of a_c at c = 0.99, {above} at c = 1.01 (isolated by balls); da/dc = -1, a'' = -4, so d > 0",
+                f"at c = 1, tau = 0 a = {jets[0]}, a' = {jets[1]}, d = a'' da/dc = {share}",
+                jets[:2] == [0, 0] and sympy.sign(-share) == stated,
+            ),
+            (
+                f"in one period all zeros of a_c lie in balls: {below} at c = 0.99, at {shown}; {above} at c = 1.01",
                 (below, above) == ((2, 0) if stated < 0 else (0, 2)),
-            )
+            ),
         ],
-        kind="supported",
+        kind="certified",
         witness=lambda: {"omega": "2", "c": "1.01", "zeros of a_c": str(above), "zeros at c = 0.99": str(below)},
     )
 
@@ -227,29 +237,44 @@ def _common_points() -> list[tuple[Any, Any]]:
     return sorted(found)
 
 
-def _gamma(stated: tuple[float, float]) -> Check:
-    found = {rate: unfolded.gamma_end(rate) for rate in ("1/10", "1/2", "9/10")}
-    sides = [(unfolded.completes(rate, at - STEP), unfolded.completes(rate, at + STEP)) for rate, at in found.items()]
-    expected = [float(model.acceleration().subs({kappa: 1, sigma: value})) for value in found.values()]
-    slopes = [LIFT / (unfolded.gamma_end(rate, LIFT, 1e-7) - value) for rate, value in found.items()]
-    shown = ", ".join(f"{value:.6f} at r = {rate}" for rate, value in found.items())
+def _gamma(stated: tuple[tuple[str, ...], tuple[Any, Any]]) -> Check:
+    """For the values of r: where gamma meets Pi_0 again, and at what slope.
+
+    Below gamma chatter is complete before B, above it orbits pass B.  Flights of the same orbit land alike: along
+    (1, -1) in (sigma, t) the landing stays where it is when v = 0, and v changes by a, which is the slope of gamma.
+    """
+    rates, (low, high) = stated
+    found = {rate: bracket(rate) for rate in rates}
+    places = {rate: (-1 - at.high, -1 - at.low) for rate, at in found.items() if at is not None}
+    inside = [sympy.Rational(left) > low and sympy.Rational(right) < high for left, right in places.values()]
+    shown = ", ".join(
+        f"({float(left):.5f}, {float(right):.5f}) at r = {rate}" for rate, (left, right) in places.items()
+    )
+    landing, launch = model.impact_velocity(), model.launch_velocity()
+    turns = [sympy.expand(sympy.diff(part, sigma) - sympy.diff(part, t)) for part in (landing, launch)]
+    conic = sympy.Poly(model.zero_set(), sigma)
+    left_over = [
+        sympy.rem(sympy.Poly(part, sigma), conic).as_expr() for part in (turns[0], turns[1] - model.acceleration())
+    ]
+    first = sympy.Poly(model.zero_set().subs(t, 1 - sigma), sigma).real_roots()  # from rest there a flight lands at B
     return every(
         [
             (
-                f"gamma of B meets Pi_0 again at sigma = {shown}",
-                all(stated[0] < value < stated[1] for value in found.values()),
+                f"proved in balls from rest: to the right of {shown} chatter is complete before B, to the left orbits pass B; "
+                "between, that gamma has one point there is not decided",
+                len(places) == len(rates) > 0 and all(inside),
             ),
-            (
-                f"from rest {STEP:g} to the right chatter is complete, to the left it is not",
-                all(side == (False, True) for side in sides),
-            ),
-            (
-                f"the slope of gamma there is {', '.join(f'{slope:.3f}' for slope in slopes)}, that is a(sigma) to 1 %: transverse",
-                all(abs(slope / a - 1) < 0.01 for slope, a in zip(slopes, expected, strict=True)),
-            ),
+            (f"from sigma <= {min(first)} the first flight lands at B or later", min(first) == -1 - LAST),
+            ("along (1, -1) x' at the landing is stationary on Z, and v has the slope a", all(map(is_zero, left_over))),
+            ("a > 0 for sigma < -1: transverse", _lifted_left_of_A()),
         ],
-        kind="supported",
+        kind="certified",
     )
+
+
+def _lifted_left_of_A() -> bool:
+    """Whether a/kappa > 0 to the left of A."""
+    return positive_on(sympy.cancel(model.acceleration() / kappa), sigma, -sympy.oo, -1)
 
 
 def _universal(middle: int) -> Any:
@@ -360,10 +385,19 @@ CLAIMS = (
     ),
     claim_6(
         "s6p-gamma",
-        "gamma is tangent to Pi_0 at B and transverse to it at its other end, in E'A",
-        Statement(r"\gamma\cap\Pi_0=\{B,(\sigma_\gamma,0)\},\ -\sqrt3<\sigma_\gamma<-1", (-float(SQRT3), -1.0)),
+        "gamma is tangent to Pi_0 at B and transverse to it at its other end, in E'A; in the model, four values of r",
+        Statement(
+            r"B\in\gamma,\quad\emptyset\ne(\gamma\cap\Pi_0)\setminus B\subset(-\sqrt3,-1)\times0\quad"
+            r"(r=\tfrac1{10},\tfrac12,\tfrac7{10},\tfrac9{10})",
+            (RATES, (-SQRT3, sympy.Integer(-1))),
+        ),
         _gamma,
-        ((-1.0, 1.0), (-3.0, -float(SQRT3))),
+        (
+            (RATES, (sympy.Integer(-1), sympy.Integer(1))),
+            (RATES, (sympy.Integer(-3), -SQRT3)),
+            (RATES, (-SQRT3, sympy.Rational(-13, 10))),
+            ((), (-SQRT3, sympy.Integer(-1))),
+        ),
         ("t:t2-exists", "s6p-BE"),
     ),
 )

@@ -22,6 +22,7 @@ from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u, w
 
 z = sympy.Symbol("z")
 NARROW = sympy.Rational(1, 1000)  # width of the intervals that isolate roots, between which samples are taken
+OUTLINE, LANDING = (1 - 4 * z) ** 2 * (1 + 2 * z), (1 + 4 * z) ** 2 * (1 - 2 * z)  # p(BE) and phi(AE) over w z
 MEET = (w**2 * (1 + 2 * z**2) - 18, w)  # sigma = w z, t = w (1 - 4 z)/3 runs through H with this w
 
 
@@ -216,23 +217,22 @@ def epsilon_check(stated: int) -> Check:
     """
     third = sympy.Rational(1, 3)
     on_be, on_ae = {sigma: w * z, t: third * w * (1 - 4 * z)}, {sigma: -third * w * (1 + z), t: third * w * (1 + 4 * z)}
-    outline, landing = (1 - 4 * z) ** 2 * (1 + 2 * z), (1 + 4 * z) ** 2 * (1 - 2 * z)
     unit = sympy.Rational(2, 27) * kappa * w**3
     held = [
         _on_conic(model.horizon(), on_be, 0),
         _on_conic(model.zero_set(), on_ae, 0),
-        _on_conic(model.launch_velocity(), on_be, unit * outline),
-        _on_conic(model.impact_velocity(), on_ae, -unit * landing),
+        _on_conic(model.launch_velocity(), on_be, unit * OUTLINE),
+        _on_conic(model.impact_velocity(), on_ae, -unit * LANDING),
         sympy.expand(on_ae[sigma] + on_ae[t] - w * z) == 0,
     ]
     quarter = sympy.Rational(1, 4)
-    difference = sympy.expand(outline - r * landing)
+    difference = sympy.expand(OUTLINE - r * LANDING)
     changes = sign_chain(difference, z, ((-quarter, 1), (quarter, -1)), {r: (0, 1)})
     falls = positive_in(-sympy.diff(difference, z), {z: (-quarter, quarter), r: (0, 1)})
-    bend = value_at(landing / (1 + 4 * z) ** 2, z, -quarter)
+    bend = value_at(LANDING / (1 + 4 * z) ** 2, z, -quarter)
     check = every(
         [
-            (f"v = {outline} on p(BE), r ({landing}) on R phi(AE), in units of {unit}, at sigma = w z", all(held)),
+            (f"v = {OUTLINE} on p(BE), r ({LANDING}) on R phi(AE), in units of {unit}, at sigma = w z", all(held)),
             (
                 f"their difference {difference} falls from z = -1/4, A, to z = 1/4, B, and changes its sign once, for 0 < r < 1",
                 changes and falls and stated == 1,

@@ -27,6 +27,11 @@ from singimpact.theory.homogeneous import lambda_, mu_of_lambda
 
 def _corresponds(point: tuple[Any, Any]) -> Check:
     """A cusp point of p that phi takes to B."""
+    return cusp_above(point, model.B, "B")
+
+
+def cusp_above(point: tuple[Any, Any], tangency: tuple[Any, Any], name: str) -> Check:
+    """Whether a point is a cusp point of p that phi takes to a tangency point."""
     conditions = model.cusp_conditions(point)
     image = model.reset(point)
     check = every(
@@ -35,12 +40,16 @@ def _corresponds(point: tuple[Any, Any]) -> Check:
                 f"v_t = {conditions[0]}, v_tt = {conditions[1]}, v_ttt = {conditions[2]}, v_(sigma t) = {conditions[3]}: a cusp of p",
                 conditions[0] == conditions[1] == 0 and 0 not in conditions[2:],
             ),
-            (f"phi takes it to {image}, B is (1, 0)", image == model.project(model.B)),
+            (f"phi takes it to {image}, {name} is {tangency}", image == model.project(tangency)),
             ("where v_t = v_tt = 0 a flight lands at rest at a zero of a", _lands_at_rest()),
         ]
     )
     return near_the_swan(
-        check, [("v_ttt v_(sigma t) at D", conditions[2] * conditions[3]), ("a'(B)", model.slope_of_acceleration(1))]
+        check,
+        [
+            ("v_ttt v_(sigma t) there", conditions[2] * conditions[3]),
+            (f"a'({name})", model.slope_of_acceleration(tangency[0])),
+        ],
     )
 
 

@@ -1,0 +1,118 @@
+"""Section 6: what the regions of an unfolded swan are bounded by, and where the two maps have cusps beside A and B."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.paper.claims.claim import Check, Statement
+from singimpact.paper.claims.sections.section6 import claim_6
+from singimpact.paper.claims.sections.section6_negative import cusp_above
+from singimpact.paper.claims.sections.section6_scaling import crossing, near_the_swan
+from singimpact.paper.claims.verifiers import every, is_zero
+from singimpact.paper.routes import unfolding as model
+from singimpact.paper.routes.unfolding import kappa, sigma, t
+
+TRIALS: dict[str, Any] = {}
+
+
+def _over(conic: Any, direction: Any, ends: tuple[tuple[Any, Any], tuple[Any, Any]]) -> bool:
+    """Whether an arc of a conic between two ends is a graph over `direction`, a linear form that no point of it turns at.
+
+    The arc is the one with times between those of its ends; the points of the conic where the form is stationary along
+    it have other times, or are an end.
+    """
+    weight = sympy.diff(direction, sigma), sympy.diff(direction, t)
+    along = sympy.expand(weight[0] * sympy.diff(conic, t) - weight[1] * sympy.diff(conic, sigma))
+    times = sympy.Poly(sympy.resultant(conic, along, sigma), t).real_roots()
+    low, high = sorted(end[1] for end in ends)
+    return bool(times) and all(time <= low or time >= high for time in times)
+
+
+def _graphs(stated: tuple[int, int]) -> Check:
+    """Signs of v on p(BE), over an interval of sigma, and on phi(AE), over one of sigma + t, for kappa > 0."""
+    middle = {sigma: sympy.Integer(0), t: sympy.sqrt(2)}  # of BE, on the horizon
+    inner = -sympy.Rational(7, 5)
+    other = {sigma: inner, t: -2 * inner - sympy.sqrt(6 - 2 * inner**2)}  # of AE, on the zero set
+    launch, landing = (part.subs(kappa, 1) for part in (model.launch_velocity(), model.impact_velocity()))
+    signs = (sympy.sign(sympy.expand(launch.subs(middle))), sympy.sign(sympy.expand(landing.subs(other))))
+    on_arcs = is_zero(model.horizon().subs(middle)) and is_zero(sympy.expand(model.zero_set().subs(other)))
+    check = every(
+        [
+            (
+                "p(BE) is a graph over sigma: H turns in no point between",
+                _over(model.horizon(), sigma, (model.B, model.E)),
+            ),
+            (
+                "phi(AE) is a graph over sigma + t: Z turns in no point between",
+                _over(model.zero_set(), sigma + t, (model.A, model.E)),
+            ),
+            (f"v has the signs {signs[0]}, {signs[1]} on them, at {middle} and {other}", on_arcs and signs == stated),
+            (
+                "and vanishes at their ends alone, where H meets Z or t = 0; so with its interval of Pi_0 each "
+                "bounds a simply connected region",
+                _ends_alone(),
+            ),
+        ]
+    )
+    conditions = [("the Jacobian of H and Z at E", crossing(model.E)), *_tangencies()]
+    return near_the_swan(check, conditions)
+
+
+def _ends_alone() -> bool:
+    """Whether H and Z have no common point with a time strictly between 0 and that of E."""
+    common = sympy.Poly(sympy.resultant(model.horizon(), model.zero_set(), sigma), t).real_roots()
+    return all(not 0 < time < model.E[1] for time in common)
+
+
+def _tangencies() -> list[tuple[str, Any]]:
+    return [(f"a'({name})", model.slope_of_acceleration(point[0])) for name, point in (("A", model.A), ("B", model.B))]
+
+
+def _counterpart(point: tuple[Any, Any]) -> Check:
+    """A cusp point of p with t < 0 that phi takes to A."""
+    return cusp_above(point, model.A, "A")
+
+
+def _cusp_of_phi(point: tuple[Any, Any]) -> Check:
+    """v = 0, a = 0, a' != 0 at the launch and x-dot != 0 at the landing: a cusp of phi (p:phising-cusp)."""
+    place = {sigma: point[0], t: point[1]}
+    launch, landing = model.launch_velocity().subs(place), sympy.expand(model.impact_velocity().subs(place))
+    pressed = model.acceleration().subs(sigma, point[0])
+    check = every(
+        [
+            (f"a flight from rest, v = {launch}, t = {point[1]} != 0", is_zero(launch) and point[1] != 0),
+            (f"at a zero of a: {pressed}", is_zero(pressed)),
+            (f"which lands with x-dot = {landing}", not is_zero(landing)),
+        ]
+    )
+    return near_the_swan(check, [("a' at the launch", model.slope_of_acceleration(point[0])), ("x-dot", landing)])
+
+
+CLAIMS = (
+    claim_6(
+        "s6p-regions",
+        "positive swan: S' and S'' are simply connected, each between a graph and an interval of Pi_0",
+        Statement(r"v>0\ \text{on}\ p(BE),\quad v<0\ \text{on}\ \phi(AE)", (1, -1)),
+        _graphs,
+        ((-1, 1), (1, 1)),
+        ("s6p-BE", "s6p-AE", "s6-scaling"),
+    ),
+    claim_6(
+        "s6n-corr-A",
+        "A corresponds to the counterpart of D with t < 0, another cusp point of p",
+        Statement(r"\phi(3,-4)=A,\ (3,-4)\ \text{a cusp point of}\ p", (sympy.Integer(3), -sympy.Integer(4))),
+        _counterpart,
+        (model.D, (sympy.Integer(3), sympy.Integer(4))),
+        ("s6n-corr", "s6-scaling"),
+    ),
+    claim_6(
+        "s6n-C",
+        "phi has a cusp at C, the flight from rest at A",
+        Statement(r"C=(-1,4)\ \text{is a cusp point of}\ \phi", (-sympy.Integer(1), sympy.Integer(4))),
+        _cusp_of_phi,
+        (model.D, (-sympy.Integer(1), sympy.Integer(3)), (sympy.Integer(0), sympy.sqrt(6))),
+        ("p:phising-cusp", "s6-scaling"),
+    ),
+)
