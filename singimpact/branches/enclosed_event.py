@@ -14,7 +14,7 @@ number times another that does not vanish on the box: p turns back.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil
 from typing import Any, NamedTuple
@@ -28,6 +28,7 @@ from singimpact.branches.ball_closing import BallClosing, TouchingClosing, retur
 from singimpact.branches.krawczyk import Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.oscillator.model import Oscillator
 from singimpact.words import in_words
 
 
@@ -80,7 +81,8 @@ class EnclosedEvent:
     curve_within : at a fold, period-doubling or torus, all orbits of so many impacts and periods that have their
         parameter and their states within this distance of these lie on one curve, on which the event is; None at a
         graze or hidden impact.
-    shown : what is proved, in a sentence.
+    shown : what is proved, in a sentence. oscillator, k : a model of the branch, and after how many periods the orbit
+        closes.
     """
 
     kind: str
@@ -91,6 +93,8 @@ class EnclosedEvent:
     unique_within: Fraction | None
     shown: str
     curve_within: Fraction | None = None
+    oscillator: Oscillator | None = field(default=None, repr=False)
+    k: int = field(default=1, repr=False)
 
     __repr__ = in_words
 
@@ -274,4 +278,4 @@ class _Curve:
         *states, parameter = _numbers(balls, near, offsets, self.digits)
         within = operator.unique_within(near, step, radius, Fraction(1, SETTINGS.reach)) / SETTINGS.reach
         return EnclosedEvent(self.kind, self.over, parameter, tuple(states[::2]), tuple(states[1::2]), None,
-                             SHOWN[self.kind], within)  # fmt: skip
+                             SHOWN[self.kind], within, self.orbit.oscillator, self.orbit.k)  # fmt: skip

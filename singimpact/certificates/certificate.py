@@ -13,10 +13,12 @@ from typing import Any
 
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.numbers import sign_of
+from singimpact.branches.enclosed_event import EnclosedEvent
 from singimpact.branches.enclosed_orbit import EnclosedOrbit
 from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.certificates.checker import SCHEMA, digest_of
+from singimpact.certificates.checker.event import KINDS
 from singimpact.certificates.checker.first_impact import PARTS
 from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.flights.results import CertifiedImpact, Flight
@@ -71,6 +73,9 @@ class Certificate:
             raise InputError(f"the certificate is refused: {reason}")
 
     def __repr__(self) -> str:
+        if "kind" in self.content:
+            over, value = self.content["over"], self.content["parameter"]["value"]
+            return f"<certificate of a {self.content['kind']}: {over} = {value}>"
         if "states" in self.content:
             states, k = self.content["states"], self.content["periods"]
             shown = ", ".join(f"({each['tau']['value']}, {each['v']['value']})" for each in states)
@@ -94,7 +99,7 @@ def certify(result: Any) -> Certificate:
     ----------
     result : of `osc.impact_map` or `osc.first_hit` for one state with `digits`; a periodic orbit with impacts, of
         `osc.periodic`; or the `.certified` of one of these. `osc.chatter_limit` of one state with v > 0 and with
-        `digits`; or `crossing.horseshoe()`.
+        `digits`; `crossing.horseshoe()`; or `event.certified()` of a period doubling or torus over a parameter.
 
     Returns
     -------
@@ -118,6 +123,8 @@ def certify(result: Any) -> Certificate:
         return _of_limit(result)
     if isinstance(result, Horseshoe):
         return _sealed("horseshoe", result.oscillator, _of_horseshoe(result))
+    if isinstance(result, EnclosedEvent):
+        return _of_event(result)
     orbit = result.certified() if isinstance(result, PeriodicOrbit) else result
     if isinstance(orbit, EnclosedOrbit) and orbit.oscillator is not None:
         return _sealed("periodic orbit", orbit.oscillator, _of_orbit(orbit))
@@ -165,6 +172,20 @@ def _of_limit(limit: ChatterLimit) -> Certificate:
     ends = "lift-off" if limit.status == Status.lifts_off else "accumulation"
     told = {"launch": launch, "ends": ends, "tau": limit.certified.as_dict()}
     return _sealed("chatter limit", limit.oscillator, told)
+
+
+def _of_event(event: EnclosedEvent) -> Certificate:
+    """The certificate of a period doubling or torus."""
+    if event.kind not in KINDS or event.oscillator is None:
+        raise InputError(f"a {event.kind} has no certificate as a file: only {' and '.join(KINDS)} have one")
+    if event.over not in event.oscillator.parameters:
+        raise InputError(
+            f"an event over the {event.over} has no certificate as a file: only those over a parameter have"
+        )
+    states = [{"tau": tau.as_dict(), "v": v.as_dict()} for tau, v in zip(event.tau, event.v, strict=True)]
+    told = {"kind": event.kind, "over": event.over, "period": str(event.oscillator.period), "periods": str(event.k),
+            "parameter": event.parameter.as_dict(), "states": states}  # fmt: skip
+    return _sealed("event", event.oscillator, told)
 
 
 def _of_horseshoe(found: Horseshoe) -> dict[str, Any]:

@@ -22,6 +22,10 @@ State = tuple[str, str] | None
 @click.option(
     "--orbit", type=(int, int), metavar="N K", help="An orbit of N impacts in K periods; --tau, --v: near it."
 )
+@click.option(
+    "--doubling", type=(str, float, float), metavar="OVER LOW HIGH",
+    help="With --orbit: the first period doubling of its branch over a parameter.",
+)  # fmt: skip
 @click.option("--chatter", is_flag=True, help="The chatter limit from --tau, --v.")
 @click.option(
     "--horseshoe",
@@ -32,8 +36,8 @@ State = tuple[str, str] | None
 @click.option("--digits", type=click.IntRange(1, 1000), default=30, show_default=True, help="Significant digits.")
 @click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
 def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
-    """Enclose the impact from (tau, v), its chatter limit, a periodic orbit or a horseshoe, and write a certificate;
-    or check FILE.json ...
+    """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, a doubling or a horseshoe, and write
+    a certificate; or check FILE.json ...
 
     A certificate is accepted by a second program, which imports python-flint alone, reads the model as text and
     encloses the motion again with its own code.
@@ -68,11 +72,23 @@ def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
     if kind == "chatter":
         return certify(model.chatter_limit(*(near or ()), digits=digits))
     if kind == "orbit":
-        return certify(_orbit(model, kind, options[kind], near).certified(digits))
+        orbit = _orbit(model, kind, options[kind], near)
+        return certify((_doubling(orbit, *options["doubling"]) if options["doubling"] else orbit).certified(digits))
     crossings = homoclinic_points(_orbit(model, kind, options[kind], near, saddle=True))
     if not len(crossings):
         raise InputError("no homoclinic orbit of the saddle is found")
     return certify(crossings[0].horseshoe())
+
+
+def _doubling(orbit: Any, over: str, low: float, high: float) -> Any:
+    """The first period doubling of visible orbits of a branch."""
+    from singimpact.branches.branch import branch
+
+    events = branch(orbit, over, (low, high)).events
+    found = [each for each in events if each.kind == "period-doubling" and each.orbit.visible]
+    if not found:
+        raise InputError(f"--doubling {over} {low:g} {high:g}: no period doubling of visible orbits is found there")
+    return found[0]
 
 
 def _orbit(model: Any, kind: str, counts: tuple[int, int], near: State, saddle: bool = False) -> Any:

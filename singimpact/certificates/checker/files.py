@@ -11,6 +11,7 @@ from typing import Any
 from flint import ctx
 
 from .chatter_limit import chatter_limit
+from .event import event
 from .first_impact import first_impact
 from .formulas import Refused, Wrong
 from .horseshoe import horseshoe
@@ -25,6 +26,7 @@ STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "periodic orbit": periodic_orbit,
     "chatter limit": chatter_limit,
     "horseshoe": horseshoe,
+    "event": event,
 }
 """What a certificate may say, and what shows it at so many bits."""
 

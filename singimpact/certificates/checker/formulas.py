@@ -158,7 +158,8 @@ class Formula:
             case ast.Name("pi"):
                 return arb.pi()
             case ast.Name(name) if name in self.parameters:
-                return Formula(self.parameters[name], {})()
+                given = self.parameters[name]
+                return given if isinstance(given, arb) else Formula(given, {})()
             case ast.UnaryOp(ast.USub(), part):
                 return self._at(part, values) * minus
             case ast.BinOp(left, ast.Add(), right):
