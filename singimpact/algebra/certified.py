@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from types import SimpleNamespace
 from typing import Any
 
 from singimpact.algebra.precision import bits_at, digits_at, for_user
@@ -87,8 +88,7 @@ def from_ball(ball: Any, digits: int) -> Certified:
     >>> from_ball(flint.arb("1.5", "0.25"), 3)
     Certified(1.50 +- 0.25)
     """
-    with bits_at(64) as mp:
-        return Certified(for_user(_exact(ball.mid(), mp)), for_user(_exact(ball.rad(), mp)), digits)
+    return Certified(_exact(ball.mid()), _exact(ball.rad()), digits)
 
 
 def from_ends(low: Fraction, high: Fraction, digits: int) -> Certified:
@@ -104,9 +104,9 @@ def from_ends(low: Fraction, high: Fraction, digits: int) -> Certified:
     return Certified(for_user(value), for_user(radius), digits)
 
 
-def _exact(number: Any, mp: Any) -> Any:
-    """The number of an mpmath context that an exact ball is, with all its bits."""
+def _exact(number: Any) -> Any:
+    """The mpmath number that an exact ball is, with all its bits, whatever the precision that is set."""
     from mpmath.libmp import from_man_exp
 
     mantissa, exponent = number.man_exp()
-    return mp.make_mpf(from_man_exp(int(mantissa), int(exponent)))
+    return for_user(SimpleNamespace(_mpf_=from_man_exp(int(mantissa), int(exponent))))

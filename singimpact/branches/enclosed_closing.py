@@ -21,9 +21,10 @@ from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
 from singimpact.algebra.isolated_zeros import IsolatedZeros, Place, zeros_of
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at, series_of_any_length
+from singimpact.flights.enclosures.clocked_motion import ClockedMotion
 from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
 from singimpact.flights.enclosures.first_root import narrowed
-from singimpact.flights.enclosures.free_motion import FreeMotion, Met
+from singimpact.flights.enclosures.free_motion import Met
 from singimpact.flights.enclosures.tube import Tube, centre, divided
 from singimpact.oscillator.model import Oscillator
 
@@ -73,7 +74,7 @@ class ClosingBoxes:
                 if len(over) != 1:
                     return None
                 ((first, end),) = over
-                if first is not None and not (first.speed < 0 and first.inside and first.time < self.span):
+                if first is not None and not (first.speed < 0 and first.inside and first.time - place[0] < self.span):
                     return None
                 rows = self._slopes(place, first, end)
                 at = [each for met, each in self._ends(*middle, visible=False)
@@ -92,7 +93,7 @@ class ClosingBoxes:
             if ways[0] is None:
                 return [float(tau.mid()), float(v.mid())]
             after = self._after(ways[0].speed)[0]
-            return [float(part.mid()) for part in (tau, tau + ways[0].time, v, after)]
+            return [float(part.mid()) for part in (tau, ways[0].time, v, after)]
 
     def _may_close(self, v: Any, end: Met) -> bool:
         return end.height.contains(0) and (self._after(end.speed)[0] - v).contains(0)  # type: ignore[no-any-return]
@@ -104,7 +105,7 @@ class ClosingBoxes:
     def _ends(self, tau: Any, v: Any, *, visible: bool) -> Iterator[tuple[Met | None, Met]]:
         """The first impact, of two, and the end, for each way in which the box may fly; visible ones alone, or all."""
         if self.n == 1:
-            end = self._end(tau, v, self.span, visible)
+            end = self._end((tau, v), tau + self.span, visible)
             if end is not None:
                 yield None, end
             return
@@ -112,50 +113,50 @@ class ClosingBoxes:
             after = self._after(first.speed)[0]
             if visible and (after < self.low or after > self.high or after > v):
                 continue
-            end = self._end(tau + first.time, after, self.span - first.time, visible)
+            end = self._end((first.time, after), tau + self.span, visible)
             if end is not None:
                 yield first, end
 
-    def _motion(self, tau: Any, v: Any) -> FreeMotion:
-        return FreeMotion((self.equation, self.equation), tau, v, BITS, BITS, {})
-
-    def _end(self, tau: Any, v: Any, duration: Any, visible: bool) -> Met | None:
-        """The box after a duration, which may be a ball; None where all of it is below the wall before."""
-        if not duration > 0:  # members whose first impact is later than the end are no orbits
-            duration = (duration * 0).union(duration.upper())
-        motion, first, last = self._motion(tau, v), duration.lower(), duration.upper()
+    def _end(self, launch: tuple[Any, Any], clock: Any, visible: bool) -> Met | None:
+        """The box at a time of the clock, which may be a ball; None where all of it is below the wall before."""
+        motion = ClockedMotion(self.equation, *launch, BITS)
+        left = clock - launch[0]
+        if not left > 0:  # members whose first impact is later than the end are no orbits
+            left = (left * 0).union(left.upper())
         while True:
             height, _, length = motion.tubes()
-            if length >= last - motion.time:
-                found = motion.met(duration - motion.time)
+            if left < length or left.upper() <= length:
+                found = motion.met(left)
                 return None if visible and found.speed > 0 else found
-            left = first - motion.time
-            stop = length if length <= left else left
+            first = left.lower()
+            stop = length if length <= first else first
             if not stop > 0:
                 raise Refused("the end of the last flight is not within a step")
             # all members are behind the wall here: none of them is an orbit
             if visible and height(stop) < 0:
                 return None
             motion.advance(centre(stop))
+            left = clock - motion.middle_tau - motion.time
 
     def _impacts(self, tau: Any, v: Any) -> Iterator[Met]:
         """Where the flight may meet the wall, until all of it is below."""
-        motion = self._motion(tau, v)
-        while motion.time < self.span:
+        motion, end = ClockedMotion(self.equation, tau, v, BITS), tau + self.span
+        while not motion.middle_tau + motion.time > end:
             height, speed, length = motion.tubes()
             value, rate = divided(height, speed, 1) if motion.launched else (height, speed)
             pieces, slow, below = _zeros(value, rate, length, partial(self._other_speed, speed))
-            stop = length
-            if pieces and not below and not pieces[-1] < length:
+            stop, margin = length, motion.margin if motion.launched else length * 0
+            if pieces and not below and not pieces[-1] < length - margin:
                 # a zero at the end of a step may leave it between members: a step that begins before holds it whole
                 before = centre(pieces[-1].lower() * BEFORE)
-                if before > length * LEAST:
+                if before > length * LEAST + margin:
                     stop = before
                     del pieces[-1]
             for s in pieces:
                 stays = s > 0 and s < length and not any(s.overlaps(other) for other in slow)
-                found = motion.met(s)._replace(inside=bool(stays))
-                if not found.speed > 0 and not found.time > self.span:
+                found = motion.hit(s, length)
+                found = found._replace(inside=bool(stays))
+                if not found.speed > 0 and not found.time > end:
                     yield found
             if below:
                 return
@@ -168,20 +169,20 @@ class ClosingBoxes:
 
     def _slopes(self, place: Place, first: Met | None, end: Met) -> list[list[Any]]:
         """Derivatives of x - c at the end, and of what v misses, by tau and v."""
-        rate = self._after(end.speed)[1]
-        if first is None:
-            by = end.columns
-        else:
-            tau, push = place[0] + first.time, self._after(first.speed)[1]
-            bend, last = self._force(tau, first), self._force(place[0] + self.span, end)
-            (a, b), (p, q) = end.columns
-            by = []
-            for k, (height, speed) in enumerate(first.columns):
-                # the first impact moves by this; the second flight then starts later and, with its end fixed, is
-                # shorter
-                late = -height / first.speed
-                start, fast = late + (1 - k), push * (speed + bend * late)
-                by.append((a * start + p * fast - end.speed * late, b * start + q * fast - last * late))
+        rate, last = self._after(end.speed)[1], self._force(place[0] + self.span, end)
+        by = []
+        for k in (0, 1):
+            if first is None:
+                height, speed = end.columns[k]
+            else:
+                push, bend = self._after(first.speed)[1], self._force(first.time, first)
+                # the first impact moves by this, and the second launch with it
+                (a, b), (p, q) = end.columns
+                late = -first.columns[k][0] / first.speed
+                fast = push * (first.columns[k][1] + bend * late)
+                height, speed = a * late + p * fast, b * late + q * fast
+            # the end is k periods after the launch
+            by.append((height + (1 - k) * end.speed, speed + (1 - k) * last))
         return [[part[0] for part in by], [rate * part[1] - k for k, part in enumerate(by)]]
 
     def _force(self, t: Any, at: Met) -> Any:

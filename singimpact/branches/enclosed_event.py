@@ -14,7 +14,7 @@ number times another that does not vanish on the box: p turns back.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil
 from typing import Any, NamedTuple
@@ -28,6 +28,7 @@ from singimpact.branches.ball_closing import BallClosing, TouchingClosing, retur
 from singimpact.branches.krawczyk import Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.oscillator.model import Oscillator
 from singimpact.words import in_words
 
 
@@ -76,8 +77,12 @@ class EnclosedEvent:
     tau, v : `Certified` states just after the impacts, all of which are first hits. Of a graze or hidden impact the
         first is the touching point, with v = 0.
     unique_within : no other event of this kind has its parameter and its states within this distance, in tau and in v,
-        of these; None at a fold, period-doubling or torus, where others next to it are not excluded.
-    shown : what is proved, in a sentence.
+        of these; None at a fold, period-doubling or torus, where others on the same curve are not excluded.
+    curve_within : at a fold, period-doubling or torus, all orbits of so many impacts and periods that have their
+        parameter and their states within this distance of these lie on one curve, on which the event is; None at a
+        graze or hidden impact.
+    shown : what is proved, in a sentence. oscillator, k : a model of the branch, and after how many periods the orbit
+        closes.
     """
 
     kind: str
@@ -87,6 +92,9 @@ class EnclosedEvent:
     v: tuple[Certified, ...]
     unique_within: Fraction | None
     shown: str
+    curve_within: Fraction | None = None
+    oscillator: Oscillator | None = field(default=None, repr=False)
+    k: int = field(default=1, repr=False)
 
     __repr__ = in_words
 
@@ -256,7 +264,8 @@ class _Curve:
         for end in ends:
             if any(abs(a - b) + end.own > radius for a, b in zip(end.point, near, strict=True)):
                 return "an orbit beside the event is not shown to lie on its curve"
-        curve = operator.image(near, operator.step(near), radius, half)
+        step = operator.step(near)
+        curve = operator.image(near, step, radius, half)
         if curve is None:
             return "Krawczyk's operator does not map the box of the curve of orbits into itself"
         if self.kind == "torus":
@@ -267,5 +276,6 @@ class _Curve:
         assert operator.held is not None
         offsets.insert(operator.held, balls.interval(-half, half))
         *states, parameter = _numbers(balls, near, offsets, self.digits)
+        within = operator.unique_within(near, step, radius, Fraction(1, SETTINGS.reach)) / SETTINGS.reach
         return EnclosedEvent(self.kind, self.over, parameter, tuple(states[::2]), tuple(states[1::2]), None,
-                             SHOWN[self.kind])  # fmt: skip
+                             SHOWN[self.kind], within, self.orbit.oscillator, self.orbit.k)  # fmt: skip

@@ -194,7 +194,8 @@ class _Route:
             if not width > 0:
                 raise Refused(f"the image of the set before impact {j + i} does not stretch")
             radii = width, seen.height(sets[-1].radii) / SETTINGS.margin
-            sets.append(CrossedSet(new.centre, frame, radii))
+            # doubles, which are short to write; the margins are far wider than their rounding
+            sets.append(CrossedSet(new.centre, frame, (Fraction(float(radii[0])), Fraction(float(radii[1])))))
             if i == 0 and not self._apart(sets[-1], home):
                 raise Refused("the first set of the long loop is not apart from that round the saddle")
         seen = self._image(sets[-1], home, 1)

@@ -166,8 +166,14 @@ class Krawczyk:
             raise Refused("Krawczyk's operator does not map the box into itself: the orbit may be double, or graze")
         return found
 
-    def unique_within(self, point: Point, step: list[Any], own: Fraction) -> Fraction:
-        """The widest radius tried within which the zero is the only one; what fails is tried seldom, for it is slow."""
+    def unique_within(self, point: Point, step: list[Any], own: Fraction, spread: Fraction = Fraction(0)) -> Fraction:
+        """The widest radius tried within which the zero is the only one; what fails is tried seldom, for it is slow.
+
+        Parameters
+        ----------
+        own : a radius for which it is shown. spread : part of the radius in which the held unknown varies: the zeros
+            within the radius are then those of one curve.
+        """
         radii = [KRAWCZYK.widest]
         while radii[-1] > max(KRAWCZYK.narrowest, own):
             radii.append(radii[-1] / KRAWCZYK.shrink)
@@ -175,7 +181,7 @@ class Krawczyk:
         low, high = 0, len(radii)  # the widest that is shown is one of these, or `own`
         at = low
         while low < high:
-            if self.image(point, step, self.radii(radii[at])) is not None:
+            if self.image(point, step, self.radii(radii[at]), radii[at] * spread) is not None:
                 high = at
             else:
                 low = at + 1

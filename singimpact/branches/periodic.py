@@ -62,7 +62,7 @@ def periodic(
     k : periods, a whole number >= 1.
     start : states to start from in place of a grid: (tau, v), or a sequence of n of them, or a `PeriodicOrbit`.
     v : (low, high), for models without a closed form and n = 1 or 2: `.complete` then tells by a proof whether there
-        are others with all velocities after impacts in this window; with n = 1 this takes seconds, with n = 2 minutes.
+        are others with all velocities after impacts in this window; with n = 1 this takes seconds, with n = 2 a minute.
     digits : decimal digits; the orbits then hold mpmath numbers.
 
     Returns

@@ -12,16 +12,23 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from singimpact.algebra.certified import Certified
+from singimpact.algebra.numbers import sign_of
+from singimpact.branches.enclosed_event import EnclosedEvent
 from singimpact.branches.enclosed_orbit import EnclosedOrbit
+from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.certificates.checker import PARTS, SCHEMA, digest_of
+from singimpact.certificates.checker import SCHEMA, digest_of
+from singimpact.certificates.checker.event import KINDS
+from singimpact.certificates.checker.first_impact import PARTS
+from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.flights.results import CertifiedImpact, Flight
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
 from singimpact.store import write_text
 
-CHECKER = Path(__file__).with_name("checker.py")
-"""The second program: `python checker.py FILE.json`."""
+CHECKER = Path(__file__).with_name("checker")
+"""The second program: `python checker FILE.json`."""
 UNIQUE = Fraction(1, 10**8)
 """Distance, at most, within which an orbit is certified to be alone: the second program has no frames for boxes."""
 LOST, LOOSE = 6, 1000
@@ -66,11 +73,21 @@ class Certificate:
             raise InputError(f"the certificate is refused: {reason}")
 
     def __repr__(self) -> str:
+        if "kind" in self.content:
+            over, value = self.content["over"], self.content["parameter"]["value"]
+            return f"<certificate of a {self.content['kind']}: {over} = {value}>"
         if "states" in self.content:
             states, k = self.content["states"], self.content["periods"]
             shown = ", ".join(f"({each['tau']['value']}, {each['v']['value']})" for each in states)
             return f"<certificate of the ({len(states)}, {k}) {self.content['statement']}: (tau, v) = {shown}>"
+        if "sets" in self.content:
+            short, long = self.content["loops"]
+            entropy = self.content["entropy"]["value"]
+            return f"<certificate of a horseshoe: loops of {short} and {long} impacts, entropy >= {entropy}>"
         launch = self.content["launch"]
+        if "ends" in self.content:
+            end = f"{self.content['ends']} at tau = {self.content['tau']['value']}"
+            return f"<certificate of the chatter limit from ({launch['tau']}, {launch['v']}): {end}>"
         shown = ", ".join(f"{name} = {self.content[name]['value']}" for name in PARTS[2:])
         return f"<certificate of the {self.content['statement']} from ({launch['tau']}, {launch['v']}): {shown}>"
 
@@ -81,7 +98,8 @@ def certify(result: Any) -> Certificate:
     Parameters
     ----------
     result : of `osc.impact_map` or `osc.first_hit` for one state with `digits`; a periodic orbit with impacts, of
-        `osc.periodic`; or the `.certified` of one of these.
+        `osc.periodic`; or the `.certified` of one of these. `osc.chatter_limit` of one state with v > 0 and with
+        `digits`; `crossing.horseshoe()`; or `event.certified()` of a period doubling or torus over a parameter.
 
     Returns
     -------
@@ -101,6 +119,12 @@ def certify(result: Any) -> Certificate:
     >>> certify(linear(4, 0, "0.5").periodic(1, 2)[0].certified(15))
     <certificate of the (1, 2) periodic orbit: (tau, v) = (1.1780972450961725, 0.53333333333333333)>
     """
+    if isinstance(result, ChatterLimit):
+        return _of_limit(result)
+    if isinstance(result, Horseshoe):
+        return _sealed("horseshoe", result.oscillator, _of_horseshoe(result))
+    if isinstance(result, EnclosedEvent):
+        return _of_event(result)
     orbit = result.certified() if isinstance(result, PeriodicOrbit) else result
     if isinstance(orbit, EnclosedOrbit) and orbit.oscillator is not None:
         return _sealed("periodic orbit", orbit.oscillator, _of_orbit(orbit))
@@ -110,7 +134,10 @@ def certify(result: Any) -> Certificate:
         raise InputError(f"the result is not certified: {why}")
     if not isinstance(impact, CertifiedImpact) or impact.oscillator is None:
         raise refuse(
-            "result", result, "what osc.impact_map(tau, v, digits=30) gives for one state, or a periodic orbit"
+            "result",
+            result,
+            "what osc.impact_map(tau, v, digits=30) or osc.chatter_limit(tau, v, digits=30) gives "
+            "for one state, a periodic orbit, or a horseshoe",
         )
     numbers = {name: getattr(impact, name).as_dict() for name in PARTS}
     launch = {name: str(part) for name, part in zip(("tau", "v"), impact.launch, strict=True)}
@@ -131,6 +158,42 @@ def _of_orbit(orbit: EnclosedOrbit) -> dict[str, Any]:
     ]
     return {"period": str(orbit.oscillator.period), "periods": str(orbit.k), "states": states,
             "unique_within": str(min(orbit.unique_within, UNIQUE)), "multipliers": multipliers}  # fmt: skip
+
+
+def _of_limit(limit: ChatterLimit) -> Certificate:
+    """The certificate of the end of a chatter."""
+    if limit.certified is None or limit.oscillator is None:
+        raise InputError(
+            "the chatter limit is not certified: it needs digits=, one state, and a number for restitution"
+        )
+    if not sign_of(limit.launch[1]):
+        raise InputError("a chatter that starts at rest has no certificate: launch with v > 0")
+    launch = {name: str(part) for name, part in zip(("tau", "v"), limit.launch, strict=True)}
+    ends = "lift-off" if limit.status == Status.lifts_off else "accumulation"
+    told = {"launch": launch, "ends": ends, "tau": limit.certified.as_dict()}
+    return _sealed("chatter limit", limit.oscillator, told)
+
+
+def _of_event(event: EnclosedEvent) -> Certificate:
+    """The certificate of a period doubling or torus."""
+    if event.kind not in KINDS or event.oscillator is None:
+        raise InputError(f"a {event.kind} has no certificate as a file: only {' and '.join(KINDS)} have one")
+    if event.over not in event.oscillator.parameters:
+        raise InputError(
+            f"an event over the {event.over} has no certificate as a file: only those over a parameter have"
+        )
+    states = [{"tau": tau.as_dict(), "v": v.as_dict()} for tau, v in zip(event.tau, event.v, strict=True)]
+    told = {"kind": event.kind, "over": event.over, "period": str(event.oscillator.period), "periods": str(event.k),
+            "parameter": event.parameter.as_dict(), "states": states}  # fmt: skip
+    return _sealed("event", event.oscillator, told)
+
+
+def _of_horseshoe(found: Horseshoe) -> dict[str, Any]:
+    """What is said of a horseshoe, as text."""
+    sets = [{"centre": [str(x) for x in each.centre], "frame": [[str(x) for x in row] for row in each.frame],
+             "radii": [str(x) for x in each.radii]} for each in found.sets]  # fmt: skip
+    return {"period": str(found.oscillator.period), "loops": [str(n) for n in found.loops], "sets": sets,
+            "entropy": found.entropy.as_dict()}  # fmt: skip
 
 
 def _wider(number: Certified) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""`singimpact certify`: an impact or a periodic orbit with its certificate, and certificates that are checked."""
+"""`singimpact certify`: results with their certificates, and certificates that are checked."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from singimpact.cli.output import emit
 from singimpact.inputs import InputError
 from singimpact.store import require_writable
 
+State = tuple[str, str] | None
 
-@click.command(short_help="an impact or a periodic orbit with a certificate that a second program checks")
+
+@click.command(short_help="a proved result with a certificate that a second program checks")
 @click.argument("files", metavar="[FILE.json]...", nargs=-1)
 @model_options
 @click.option("--tau", metavar="NUMBER", help="Launch time.")
@@ -20,36 +22,80 @@ from singimpact.store import require_writable
 @click.option(
     "--orbit", type=(int, int), metavar="N K", help="An orbit of N impacts in K periods; --tau, --v: near it."
 )
+@click.option(
+    "--doubling", type=(str, float, float), metavar="OVER LOW HIGH",
+    help="With --orbit: the first period doubling of its branch over a parameter.",
+)  # fmt: skip
+@click.option("--chatter", is_flag=True, help="The chatter limit from --tau, --v.")
+@click.option(
+    "--horseshoe",
+    type=(int, int),
+    metavar="N K",
+    help="Beside a saddle of N impacts in K periods; --tau, --v: near it.",
+)
 @click.option("--digits", type=click.IntRange(1, 1000), default=30, show_default=True, help="Significant digits.")
 @click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
-def command(
-    files: tuple[str, ...], tau: str | None, v: str | None, orbit: tuple[int, int] | None, digits: int,
-    output: str | None, **options: Any,
-) -> None:  # fmt: skip
-    """Enclose the impact from (tau, v), or a periodic orbit, and write its certificate; or check FILE.json ...
+def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
+    """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, a doubling or a horseshoe, and write
+    a certificate; or check FILE.json ...
 
     A certificate is accepted by a second program, which imports python-flint alone, reads the model as text and
     encloses the motion again with its own code.
     """
-    from singimpact.certificates.certificate import certify, read_certificate
+    from singimpact.certificates.certificate import read_certificate
 
     if files:
         for path in files:
             emit(f"{path}: {read_certificate(path)!r} holds", None)
         return
-    if orbit is None and (tau is None or v is None):
-        raise InputError("give --tau and --v, or --orbit N K, for a new certificate; or the files to check")
-    if output is not None:
-        require_writable(output)
-    model = take_model(options)
-    if orbit is None:
-        found = certify(model.impact_map(tau, v, digits=digits))
-    else:
-        orbits = model.periodic(*orbit, start=None if tau is None or v is None else (tau, v))
-        if len(orbits) != 1:
-            raise InputError(
-                f"--orbit {orbit[0]} {orbit[1]}: {len(orbits)} orbits are found; give --tau and --v near one"
-            )
-        found = certify(orbits[0].certified(digits))
+    near = None if tau is None or v is None else (tau, v)
+    kinds = [name for name in ("orbit", "chatter", "horseshoe") if options[name]]
+    if len(kinds) > 1:
+        raise InputError(f"give one of --{kinds[0]} and --{kinds[1]}")
+    if near is None and kinds in ([], ["chatter"]):
+        raise InputError("give --tau and --v, or --orbit N K, or --horseshoe N K, for a new certificate; or the files "
+                         "to check")  # fmt: skip
+    if options["output"] is not None:
+        require_writable(options["output"])
+    found = _made(take_model(options), kinds[0] if kinds else "", near, options)
     found.check()
-    emit(found.text.rstrip("\n"), output)
+    emit(found.text.rstrip("\n"), options["output"])
+
+
+def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
+    from singimpact.branches.homoclinic import homoclinic_points
+    from singimpact.certificates.certificate import certify
+
+    digits = options["digits"]
+    if kind == "":
+        return certify(model.impact_map(*(near or ()), digits=digits))
+    if kind == "chatter":
+        return certify(model.chatter_limit(*(near or ()), digits=digits))
+    if kind == "orbit":
+        orbit = _orbit(model, kind, options[kind], near)
+        return certify((_doubling(orbit, *options["doubling"]) if options["doubling"] else orbit).certified(digits))
+    crossings = homoclinic_points(_orbit(model, kind, options[kind], near, saddle=True))
+    if not len(crossings):
+        raise InputError("no homoclinic orbit of the saddle is found")
+    return certify(crossings[0].horseshoe())
+
+
+def _doubling(orbit: Any, over: str, low: float, high: float) -> Any:
+    """The first period doubling of visible orbits of a branch."""
+    from singimpact.branches.branch import branch
+
+    events = branch(orbit, over, (low, high)).events
+    found = [each for each in events if each.kind == "period-doubling" and each.orbit.visible]
+    if not found:
+        raise InputError(f"--doubling {over} {low:g} {high:g}: no period doubling of visible orbits is found there")
+    return found[0]
+
+
+def _orbit(model: Any, kind: str, counts: tuple[int, int], near: State, saddle: bool = False) -> Any:
+    orbits = [each for each in model.periodic(*counts, start=near) if not (saddle and each.stable)]
+    if len(orbits) != 1:
+        kinds = "saddles" if saddle else "orbits"
+        raise InputError(
+            f"--{kind} {counts[0]} {counts[1]}: {len(orbits)} {kinds} are found; give --tau and --v near one"
+        )
+    return orbits[0]

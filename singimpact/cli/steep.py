@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from singimpact.bench.steep_balls import Enclosures, Estimate
     from singimpact.bench.steep_cost import Cost
+    from singimpact.bench.steep_digits import Pairs
     from singimpact.bench.steep_states import Row
 
 LISTED = 5  # states of each kind that are written out, each of another family
@@ -30,16 +31,16 @@ class SteepStates:
 
 
 def steep_states(
-    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int], costs: bool
+    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int], costs: bool
 ) -> SteepStates:
     """Fly random steep states and some of them in balls; time each family.
 
     Parameters
     ----------
-    balls : states in balls, and how many of these with `digits=20`.
+    balls : states in balls, how many of these with `digits=20`, and how many states with 20 and with 40 digits.
     costs : whether families are timed.
     """
-    from singimpact.bench import steep_balls, steep_states
+    from singimpact.bench import steep_balls, steep_digits, steep_states
     from singimpact.bench.steep_cost import cost
     from singimpact.bench.steep_families import FAMILIES
     from singimpact.case_pools import WorkerPool
@@ -47,14 +48,23 @@ def steep_states(
     beside = None if keep is None else Path(keep).with_name(f"{Path(keep).stem}-balls.npz")
     with WorkerPool(workers) as pool:
         found = steep_states.check(states, seed, pool, keep)
-        enclosures = steep_balls.check(found, balls, seed, pool, beside)
+        enclosures = steep_balls.check(found, balls[:2], seed, pool, beside)
+        pairs = steep_digits.check(balls[2], seed, pool)
     rows = steep_states.rows(found)
     timed = {family.name: cost(family) for family in FAMILIES} if costs else {}
     listed = _listed(found, seed)
-    data = {"families": [asdict(row) for row in rows], "balls": asdict(enclosures),
+    data = {"families": [asdict(row) for row in rows], "balls": asdict(enclosures), "pairs": asdict(pairs),
             "cost": {name: asdict(figure) for name, figure in timed.items()}, "listed": listed}  # fmt: skip
-    parts = [_table(rows), _balls(enclosures), _cost(timed), *(_lines(name, part) for name, part in listed.items())]
-    return SteepStates(data, "\n\n".join(part for part in parts if part), _is_wrong(rows, enclosures))
+    parts = [
+        _table(rows),
+        _balls(enclosures),
+        _pairs(pairs),
+        _cost(timed),
+        *(_lines(name, part) for name, part in listed.items()),
+    ]
+    return SteepStates(
+        data, "\n\n".join(part for part in parts if part), _is_wrong(rows, enclosures) or bool(pairs.apart)
+    )
 
 
 def _is_wrong(rows: Sequence[Row], balls: Enclosures) -> bool:
@@ -114,6 +124,20 @@ def _balls(balls: Enclosures) -> str:
             f"{balls.digits_seconds:.3f} s a state"
         )
     return "\n".join(lines)
+
+
+def _pairs(pairs: Pairs) -> str:
+    """The summary of the states with 20 and with 40 digits."""
+    if not pairs.states:
+        return ""
+    costs = "; ".join(
+        f"digits={digits}: {1e3 * median:.0f} ms of CPU a unit of flight time, at most {1e3 * most:.0f}"
+        for digits, (median, most) in ((20, pairs.seconds), (40, pairs.more_seconds))
+    )
+    return (
+        f"digits=20 and digits=40: {pairs.states} states, {pairs.enclosed} enclosed by both, {pairs.misses} proved not "
+        f"to hit, {pairs.refused} refused, {pairs.apart} with the truth outside a radius\n{costs}"
+    )
 
 
 def _estimate(name: str, given: Estimate | None) -> str:

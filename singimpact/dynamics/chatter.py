@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import ceil, log
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.certified import Certified
-from singimpact.algebra.expressions import names_in
+from singimpact.algebra.expressions import Expression, names_in
 from singimpact.algebra.numbers import as_float, as_mpf, compare
 from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
@@ -70,6 +70,7 @@ class ChatterLimit:
     certified : tau with a proved radius, when digits were asked for and the restitution is a number; else
         None.
     cause : int8, see `singimpact.status.Cause`: why the status is `unresolved`.
+    oscillator, launch : beside `certified`, the model and the exact launch time and velocity.
     """
 
     tau: Any
@@ -78,6 +79,8 @@ class ChatterLimit:
     status: Any
     certified: Any = None
     cause: Any = 0
+    oscillator: Oscillator | None = field(default=None, repr=False)
+    launch: tuple[Expression, ...] = field(default=(), repr=False)
 
     __repr__ = in_words
 
@@ -156,7 +159,8 @@ def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
     if not states.shape:
         return ChatterLimit(tau[0], int(impacts[0]), error[0], status[0], cause=cause[0])
     parts = tau, impacts.astype(np.int64), error, status_array(status), np.full(count, None), cause
-    return ChatterLimit(*(part.reshape(states.shape) for part in parts))
+    shaped = [part.reshape(states.shape) for part in parts]
+    return ChatterLimit(shaped[0], shaped[1], shaped[2], shaped[3], shaped[4], shaped[5])
 
 
 def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | None:
@@ -167,7 +171,9 @@ def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | No
     if found is None:
         return None
     status = Status.lifts_off if found.lost else Status.complete
-    return replace(_rounded(found.tau.value, found.impacts, _covering(found.tau), status, digits), certified=found.tau)
+    rounded = _rounded(found.tau.value, found.impacts, _covering(found.tau), status, digits)
+    launch = states.exact_tau(0), states.exact_v(0)
+    return replace(rounded, certified=found.tau, oscillator=osc, launch=launch)
 
 
 def _covering(found: Certified) -> Any:

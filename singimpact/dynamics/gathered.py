@@ -11,9 +11,12 @@ from singimpact.status import status_array
 
 
 def gathered(kind: Any, results: list[Any], shape: tuple[int, ...]) -> Any:
-    """One result whose fields are arrays of a shape; statuses and causes are int8."""
+    """One result whose fields are arrays of a shape; statuses and causes are int8.
+
+    Fields that are not printed say where one result comes from, and are left out.
+    """
     found = {}
-    for each in fields(kind):
+    for each in (part for part in fields(kind) if part.repr):
         values = [getattr(one, each.name) for one in results]
         if each.name in ("status", "cause"):
             found[each.name] = np.array(values, dtype=np.int8).reshape(shape)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import BITS_A_DIGIT
 from singimpact.algebra.certified import from_ball
-from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.numbers import sign_of
 from singimpact.algebra.precision import balls_at
 from singimpact.flights.balls import linear_flow
@@ -53,30 +53,29 @@ def proof(
     >>> print(proof(osc, States.of(osc, "1.4", "0.6"), 0, 20, 60.0, None).impact.tau)
     2.2817511466168335788
     """
-    rest = states.rest.get(index)
-    standing = rest is not None and sign_of(states.exact_v(index)) == 0
+    rest, launch = states.rest.get(index), (states.exact_tau(index), states.exact_v(index))
+    standing = rest is not None and sign_of(launch[1]) == 0
     if standing and rest is not None and rest.sign <= 0:
         return Proof(None, None, None, "the mass is at rest and does not leave the wall")
     removed = rest.order + 2 if standing and rest is not None else 1
-    if linear_form(osc) is not None and (found := _closed_form(osc, states, index, digits, horizon)) is not None:
-        return _named(found, osc, states, index)
+    if linear_form(osc) is not None and (found := _closed_form(osc, launch, rest, digits, horizon)) is not None:
+        return _named(found, osc, launch)
     try:
         hit = certified_hit(
-            osc, Launch(states.exact_tau(index), states.exact_v(index), removed), digits, Fraction(horizon),
+            osc, Launch(*launch, removed), digits, Fraction(horizon),
             steps=ENCLOSURE.idle_steps if rough is None else ENCLOSURE.steps, expected=_expected(rough),
         )  # fmt: skip
     except NoHit as none:
         return Proof(None, None, None, f"proved: {none}", missed=True)
     except (Refused, ArithmeticError, ValueError, TypeError) as reason:  # a ball that left the domain of a function
         return Proof(None, None, None, str(reason) or type(reason).__name__)
-    return _named(_with_numbers((hit.flight_time, hit.velocity, hit.tau, hit.v), digits), osc, states, index)
+    return _named(_with_numbers((hit.flight_time, hit.velocity, hit.tau, hit.v), digits), osc, launch)
 
 
-def _named(found: Proof, osc: Oscillator, states: States, index: int) -> Proof:
+def _named(found: Proof, osc: Oscillator, launch: tuple[Expression, Expression]) -> Proof:
     """With the model and the launch, which a certificate names."""
     if found.impact is None:
         return found
-    launch = (states.exact_tau(index), states.exact_v(index))
     return found._replace(impact=replace(found.impact, oscillator=osc, launch=launch))
 
 
@@ -96,10 +95,12 @@ def _with_numbers(balls: tuple[Any, Any, Any, Any], digits: int) -> Proof:
     return Proof(time, velocity, CertifiedImpact(flight_time, speed, tau, after))
 
 
-def _closed_form(osc: Oscillator, states: States, index: int, digits: int, horizon: float) -> Proof | None:
+def _closed_form(
+    osc: Oscillator, launch: tuple[Expression, Expression], rest: Zero | None, digits: int, horizon: float
+) -> Proof | None:
     """The first hit of a linear model, unless the flight is too long for one expansion or near a graze."""
-    tau, v = states.exact_tau(index), states.exact_v(index)
-    rest = states.rest.get(index, Zero(tau, -1, 1))
+    tau, v = launch
+    rest = rest or Zero(tau, -1, 1)
     for bits in (ceil(digits * BITS_A_DIGIT) + spare for spare in SPARE_BITS):
         flow = linear_flow(osc, bits)
         if flow is None or rest.sign <= 0:

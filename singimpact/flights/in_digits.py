@@ -30,17 +30,22 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     All are flown in doubles before: a flight that does not come back there does not here, and the number of its Taylor
     steps is known.
     """
+    first = _plain_hit(osc, states, digits, allowance) if states.v.size == 1 else None
+    if isinstance(first, Flight):
+        return first
     size = states.v.size
-    known, budgets, roughs = _known_in_doubles(osc, states, allowance)
+    known, budgets, roughs, kappas = _known_in_doubles(osc, states, allowance)
     codes, rows = np.zeros(size, dtype=np.int8), np.full((10, size), np.nan)
     fields = [np.empty(size, dtype=object) for _ in range(4)]
     certified, reasons = np.full(size, None, dtype=object), {}
     at_hand = np.array([index not in known for index in range(size)], dtype=bool)
     in_doubles = at_hand & (states.v > 0) & (roughs[0] > 0) & (roughs[1] < 0)  # from rest the rows are not filled
     roughs = np.where(in_doubles, roughs[:2], np.nan)
-    kappas = undecided.conditions(osc, states, in_doubles, roughs[0], roughs[1])
+    open_ones = in_doubles & np.isnan(kappas).any(axis=0)
+    if open_ones.any():
+        kappas = np.where(open_ones, undecided.conditions(osc, states, open_ones, roughs[0], roughs[1])[:2], kappas)
     for index in range(size):
-        proved = _proof(osc, states, index, digits, allowance.horizon, known, (*roughs[:2], kappas[1]))
+        proved = first or _proof(osc, states, index, digits, allowance.horizon, known, (*roughs[:2], kappas[1]))
         certified[index] = proved.impact
         if proved.reason:
             reasons[index] = proved.reason
@@ -70,13 +75,38 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
         notes[index] = f"{notes[index]}; not certified: {reason}" if index in notes else f"not certified: {reason}"
     new = (fates.status == Status.hit) & ~in_doubles
     if new.any():
-        kappas = np.where(new, undecided.conditions(osc, states, new, rows[0], rows[1]), kappas)
+        kappas = np.where(new, undecided.conditions(osc, states, new, rows[0], rows[1])[:2], kappas)
     kappas = np.where(fates.status == Status.hit, kappas, np.nan)
     error = np.where(fates.status == Status.hit, 10.0 ** -min(digits, 300), np.nan)
     time, velocity, depth, bound = fields
     return Flight.made(flight_time=time, velocity=velocity, status=fates.status, depth=depth, bound=bound,
                        condition=kappas[0], velocity_condition=kappas[1], time_error=error, velocity_error=error.copy(),
                        cause=fates.cause, notes=notes, certified=certified)  # fmt: skip
+
+
+def _plain_hit(osc: Oscillator, states: States, digits: int, allowance: Allowance) -> Flight | Proof | None:
+    """One state of a Taylor flow that doubles bring back and balls prove; what balls prove else, None for nothing.
+
+    Most calls are of this kind, and arrays of one number would take as long as the proof of a weak impact.
+    """
+    model, v = allowed(osc, allowance), float(states.v[0])
+    if model.linear or model.sometimes_kept or not 0 < v < inf or not abs(states.tau[0]) < model.nearest:
+        return None
+    code, hit = model.quick()(float(states.tau[0]), v)
+    if code != 0:
+        return None
+    kappas = model.judged(states.tau, states.v, np.ones(1))[2:4, 0]
+    proved = proof(osc, states, 0, digits, allowance.horizon, (hit[0], float(kappas[1])))
+    if proved.impact is None:
+        return proved
+    with digits_at(digits) as mp:
+        numbers = [for_user(+mp.convert(part.value)) for part in (proved.impact.flight_time, proved.impact.velocity)]
+    time, velocity, certified = np.array([[*numbers, proved.impact]], dtype=object).T
+    nothing, error = np.array([np.nan]), np.array([10.0 ** -min(digits, 300)])
+    return Flight.made(flight_time=time, velocity=velocity, status=np.zeros(1, np.int8), depth=nothing,
+                       bound=nothing.copy(), condition=kappas[:1], velocity_condition=kappas[1:], time_error=error,
+                       velocity_error=error.copy(), cause=np.zeros(1, np.int8), notes={},
+                       certified=certified)  # fmt: skip
 
 
 def _proof(
@@ -97,8 +127,10 @@ def _proof(
 
 def _known_in_doubles(
     osc: Oscillator, states: States, allowance: Allowance
-) -> tuple[dict[int, tuple[int, Array, int]], Array, Array]:
-    """Code, numbers and cause of flights that do not come back; the Taylor steps allowed to the others; all numbers."""
+) -> tuple[dict[int, tuple[int, Array, int]], Array, Array, Array]:
+    """Code, numbers and cause of flights that do not come back; the Taylor steps allowed to the others; all numbers;
+    both condition numbers, nan where they are not known.
+    """
     budgets = np.full(states.v.size, allowance.steps)
     model = allowed(osc, allowance)
     if model.linear:
@@ -106,7 +138,7 @@ def _known_in_doubles(
         fates = undecided.Fates(*decoded(codes), rows)
         undecided.escapes(osc, model, states, fates)
         gone = (states.v > 0) & ((fates.status == Status.no_return) | (fates.status == Status.escaped))
-        return {int(i): (int(fates.status[i]), rows[:4, i], 0) for i in np.flatnonzero(gone)}, budgets, rows
+        return {int(i): (int(fates.status[i]), rows[:4, i], 0) for i in np.flatnonzero(gone)}, budgets, rows, rows[2:4]
     tiny = [i for i in np.flatnonzero(states.v == 0).tolist() if sign_of(states.exact_v(i)) > 0]
     fates, judge = undecided.flown(osc, model, states)
     undecided.escapes(osc, model, states, fates)
@@ -114,8 +146,9 @@ def _known_in_doubles(
     over[tiny] = False
     known = {int(i): (int(fates.status[i]), fates.rows[:4, i], int(fates.cause[i])) for i in np.flatnonzero(over)}
     judge.hits[tiny] = False
-    steps = judge.steps()
-    return known, np.where(np.isnan(steps), allowance.steps, 2 * np.nan_to_num(steps) + 100).astype(int), fates.rows
+    steps, kappas = judge.steps()
+    budgets = np.where(np.isnan(steps), allowance.steps, 2 * np.nan_to_num(steps) + 100).astype(int)
+    return known, budgets, fates.rows, kappas
 
 
 def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, Any, Any]:
@@ -135,11 +168,16 @@ def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, A
 def step(osc: Oscillator, states: States, hit: Flight, digits: int) -> Step:
     """The hit with the state after it."""
     times, speeds = np.asarray(hit.flight_time, dtype=object), np.asarray(hit.velocity, dtype=object)
-    status = np.array(hit.status, dtype=np.int8).ravel()
+    status, certified = np.array(hit.status, dtype=np.int8).ravel(), np.asarray(hit.certified, dtype=object).ravel()
     tau, v = np.empty(times.size, dtype=object), np.empty(times.size, dtype=object)
     with digits_at(digits) as mp:
         for index, (time, speed) in enumerate(zip(times.ravel(), speeds.ravel(), strict=True)):
-            landed, bounce = as_mpf(states.exact_tau(index), mp) + time, rebound_in_digits(osc, mp.convert(speed), mp)
+            impact = certified[index]
+            if impact is not None:
+                landed, bounce = +mp.convert(impact.tau.value), +mp.convert(impact.v.value)
+            else:
+                landed = as_mpf(states.exact_tau(index), mp) + time
+                bounce = rebound_in_digits(osc, mp.convert(speed), mp)
             if status[index] == Status.hit and not bounce > 0:
                 status[index], bounce = Status.no_rebound, mp.nan
             tau[index], v[index] = for_user(landed), for_user(bounce)

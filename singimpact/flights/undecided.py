@@ -78,11 +78,12 @@ class Judge:
             return values
         return {name: value.reshape(self.shape)[()] for name, value in values.items()}
 
-    def steps(self) -> Array:
-        """Taylor steps of each hit, nan elsewhere."""
-        found, chosen = np.full(self.tau.size, np.nan), np.flatnonzero(self.hits)
-        found[chosen] = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])[10]
-        return found
+    def steps(self) -> tuple[Array, Array]:
+        """Taylor steps of each hit, and both condition numbers, shape (2, n); nan elsewhere."""
+        found, chosen = np.full((3, self.tau.size), np.nan), np.flatnonzero(self.hits)
+        judged = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])
+        found[:, chosen] = judged[10], judged[2], judged[3]
+        return found[0], found[1:]
 
 
 class Shaped:

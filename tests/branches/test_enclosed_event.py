@@ -151,6 +151,32 @@ def test_doubles_see_the_multiplier(duffing, kind, multiplier):
     assert np.abs(np.linalg.eigvals(total) - multiplier).min() < 1e-7
     assert ball.unique_within is None
     assert ball.over == "A"
+    assert 1e-8 < ball.curve_within < 1e-3
+
+
+@pytest.mark.slow
+def test_orbits_beside_a_fold_lie_on_the_one_curve(duffing, monkeypatch):
+    """Both orbits beyond the fold are within the box, with different values of one unknown; a smaller box is said
+    where the operator refuses the wide ones.
+    """
+    (event,) = [each for each in events(duffing, "fold") if each.orbit.visible]
+    ball = event.certified(12)
+    at = float(ball.parameter.value)
+    near = 0
+    for shift in (-1, 1):
+        model = DUFFING.replace(A=at + shift * float(ball.curve_within) ** 2)
+        for orbit in model.periodic(event.orbit.n, event.orbit.k):
+            away = [abs(float(one) - float(other.value)) for one, other in zip(orbit.v, ball.v, strict=True)]
+            near += max(away) < float(ball.curve_within)
+    assert near in (0, 2)
+    honest = Krawczyk.image
+
+    def narrow(operator, point, step, radius, spread=Fraction(0)):
+        wide = spread and radius > Fraction(1, 10**6)
+        return None if wide else honest(operator, point, step, radius, spread)
+
+    monkeypatch.setattr(Krawczyk, "image", narrow)
+    assert event.certified(12).curve_within <= Fraction(1, 10**6)
 
 
 @pytest.mark.slow

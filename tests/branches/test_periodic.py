@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 
 import singimpact as si
+from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.branches import resting, solutions
 from singimpact.branches.closing import Closing
-from singimpact.branches.periodic import _doubts_in_window, _doubts_of_two, periodic
+from singimpact.branches.enclosed_closing import SEARCH, ClosingBoxes, closed_boxes
+from singimpact.branches.periodic import _doubts_in_window, _doubts_of_two, _lacking, periodic
 from singimpact.branches.starts import conditions
 from singimpact.flights.family import family
 from singimpact.impact_oscillator import ImpactOscillator, linear
@@ -254,3 +256,48 @@ def test_orbits_of_nonlinear_models_are_all_found(osc, n: int, k: int, v) -> Non
     found = osc.periodic(n, k, v=v)
     assert len(found) == (n == 1)
     assert found.complete
+
+
+@pytest.mark.slow
+def test_an_orbit_of_two_impacts_is_isolated_in_its_window() -> None:
+    """The window holds one orbit, a saddle: the boxes find it, and say so where a list lacks it."""
+    osc = ImpactOscillator("x + x**3/10", "cos(2.8*t)", 0, "0.8")
+    points, boxes = closed_boxes(osc, 2, 2, (Fraction(32, 100), Fraction(38, 100)))
+    assert (boxes.complete, len(points)) == (True, 1)
+    (orbit,) = osc.periodic(2, 2)
+    assert _lacking(osc, (2, 2), points, [orbit]) == ()
+    (doubt,) = _lacking(osc, (2, 2), points, [])
+    assert "the list lacks <(2, 2) orbit, unstable: (tau, v) = (0.198629, 0.344181), (1.95592, 0.354193)>" in doubt
+
+
+@pytest.mark.parametrize("n", [1, 2])
+def test_derivatives_of_the_closing_conditions_over_a_box_contain_differences(n: int) -> None:
+    """Next to an orbit: the miss at the middles of small boxes, against the derivatives over a large one."""
+    osc, k = (DUFFING, 2) if n == 1 else (ImpactOscillator("x + x**3/10", "cos(2.8*t)", 0, "0.8"), 2)
+    (orbit,) = osc.periodic(n, k)
+    first = int(np.argmax(orbit.v))
+    centre, width = (float(orbit.tau[first]), float(orbit.v[first])), (2e-3, 5e-4)
+    with balls_at(SEARCH.bits):
+        system = ClosingBoxes(osc, n, k, (Fraction(1, 10), Fraction(1)))
+
+        def place(state, spread):
+            return tuple(system.balls.interval(Fraction(x - r), Fraction(x + r))
+                         for x, r in zip(state, spread, strict=True))  # fmt: skip
+
+        def missed(state):
+            tau, v = place(state, (1e-9, 1e-9))
+            with series_of_any_length():
+                (end,) = [end for met, end in system._ends(tau, v, visible=False)
+                          if met is None or met.time.overlaps(system.balls.interval(*hit))]  # fmt: skip
+            return [float(end.height.mid()), float((system._after(end.speed)[0] - v).mid())]
+
+        hit = [Fraction(float(orbit.tau[1 - first]) + (0 if first == 0 else 2 * np.pi / 2.8 * k) + s / 20)
+               for s in (-1, 1)] if n == 2 else []  # fmt: skip
+        _, over = system.linearised(box := place(centre, width), tuple(part.mid() for part in box))
+        for j in (0, 1):
+            ends = [missed([x + s * w * (i == j) for i, (x, w) in enumerate(zip(centre, width, strict=True))])
+                    for s in (-1, 1)]  # fmt: skip
+            for row in (0, 1):
+                quotient = (ends[1][row] - ends[0][row]) / (2 * width[j])
+                assert abs(float(over[row][j].mid()) - quotient) <= float(over[row][j].rad()) + 1e-5
+        assert max(float(part.rad()) for row in over for part in row) < 0.5

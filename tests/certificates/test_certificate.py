@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import json
-import re
 import shutil
 import subprocess
 import sys
@@ -14,10 +13,13 @@ import flint
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from second_program import changed, places_of, renewed, weakened
 
 import singimpact as si
 from singimpact.certificates import checker
 from singimpact.certificates.certificate import CHECKER, Certificate
+from singimpact.certificates.checker import files, formulas, motion, periods
+from singimpact.certificates.checker.told import read
 from singimpact.inputs import InputError
 
 MODELS = {
@@ -46,11 +48,6 @@ def certificates():
     return Made()
 
 
-def renewed(content):
-    """With the digest of what it now says."""
-    return {**content, "digest": checker.digest_of(content)}
-
-
 @pytest.mark.parametrize("name", EACH)
 def test_a_certificate_is_accepted_from_its_file(name, certificates, tmp_path):
     path = tmp_path / "certificate.json"
@@ -58,32 +55,10 @@ def test_a_certificate_is_accepted_from_its_file(name, certificates, tmp_path):
     assert si.read_certificate(path) == certificates[name]
 
 
-def numbers_of(content, path=()):
-    """The places of all texts that hold a digit."""
-    for key, part in content.items():
-        if isinstance(part, dict):
-            yield from numbers_of(part, (*path, key))
-        elif key not in ("schema", "statement", "digest") and re.search(r"\d", part):
-            yield (*path, key)
-
-
-def changed(content, place):
-    """A copy in which the last digit that counts is another one."""
-    made = json.loads(json.dumps(content))
-    inner = made
-    for key in place[:-1]:
-        inner = inner[key]
-    mantissa, e, exponent = inner[place[-1]].partition("e-")
-    at = max(found.start() for found in re.finditer(r"\d", mantissa))
-    digit = str((int(mantissa[at]) + 3) % 10)
-    inner[place[-1]] = mantissa[:at] + digit + mantissa[at + 1 :] + e + exponent
-    return made
-
-
 @pytest.mark.parametrize("name", ["linear", "duffing"])
 def test_any_changed_number_is_refused(name, certificates):
     content = certificates[name].content
-    places = list(numbers_of(content))
+    places = list(places_of(content))
     assert len(places) > 12
     for place in places:
         with pytest.raises(checker.Refused, match="digest"):
@@ -130,16 +105,17 @@ def test_a_later_root_is_no_first_impact(certificates):
 
 def test_the_program_stands_alone(certificates, tmp_path):
     """Copied to an empty folder and run without the package; its imports are the standard library and flint."""
-    tree = ast.parse(CHECKER.read_text(encoding="utf-8"))
-    imported = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
-    imported |= {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    nodes = [node for path in CHECKER.glob("*.py") for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    imported = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    imported |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and not node.level}
     assert {name.partition(".")[0] for name in imported} - set(sys.stdlib_module_names) == {"flint"}
-    alone = tmp_path / "checker.py"
-    shutil.copyfile(CHECKER, alone)
+    assert all(node.level < 2 for node in nodes if isinstance(node, ast.ImportFrom))
+    alone = tmp_path / "checker"
+    shutil.copytree(CHECKER, alone, ignore=shutil.ignore_patterns("__pycache__"))
     good, bad = tmp_path / "good.json", tmp_path / "bad.json"
     certificates["pendulum"].save(good)
     bad.write_text(good.read_text(encoding="utf-8").replace("sin(x)", "sin(x)*1.0001"), encoding="utf-8")
-    text = f"import runpy, sys; sys.argv = ['checker.py', {str(good)!r}, {str(bad)!r}]\n" \
+    text = f"import runpy, sys; sys.argv = ['checker', {str(good)!r}, {str(bad)!r}]\n" \
            f"try:\n    runpy.run_path({str(alone)!r}, run_name='__main__')\nfinally:\n    " \
            "assert not any(name.startswith(('singimpact', 'numpy')) for name in sys.modules)"  # fmt: skip
     done = subprocess.run([sys.executable, "-I", "-c", text], cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -154,19 +130,17 @@ def test_the_program_stands_alone(certificates, tmp_path):
 def test_both_programs_enclose_the_same_impacts(name):
     """At random states, weak and strong: each within the other's radius."""
     osc, rng = MODELS[name], np.random.default_rng(4)
-    model = checker.Model(osc.to_dict())
+    model = motion.Model(osc.to_dict())
     for tau, v in zip(rng.uniform(0, 3, 4), 10.0 ** rng.uniform(-6, 0.3, 4), strict=True):
         found = osc.impact_map(tau, v, digits=20).certified
         if found is None:
             continue
-        flint.ctx.prec, flint.ctx.cap = 160, checker.TERMS
+        flint.ctx.prec, flint.ctx.cap = 160, files.TERMS
         try:
-            exact = (checker.ball(Fraction(part)) for part in (tau, v))
-            time, velocity, _ = checker.flight(model, *exact, 100)
+            exact = (formulas.ball(Fraction(part)) for part in (tau, v))
+            time, velocity, _ = motion.flight(model, *exact, 100)
             for ball, told in ((time, found.flight_time), (velocity, found.velocity)):
-                text = told.as_dict()
-                claimed = checker.ball(Fraction(text["value"])) + checker.within(checker.ball(Fraction(text["radius"])))
-                assert ball.overlaps(claimed)
+                assert ball.overlaps(read(told.as_dict()))
                 assert ball.rad() < 1e-15
         finally:
             flint.ctx.prec, flint.ctx.cap = 53, 10
@@ -177,21 +151,21 @@ def test_three_traps_of_balls():
     beside = flint.acb(-1, flint.arb(0, 1))
     assert beside.log().is_finite()
     assert beside.sqrt().is_finite()
-    assert not checker.applied("log", beside).is_finite()
-    assert not checker.applied("sqrt", beside).is_finite()
-    assert not checker.applied("atan", flint.acb(0, flint.arb(1, 0.1))).is_finite()
-    flint.ctx.prec, flint.ctx.cap = 100, checker.TERMS
+    assert not formulas.applied("log", beside).is_finite()
+    assert not formulas.applied("sqrt", beside).is_finite()
+    assert not formulas.applied("atan", flint.acb(0, flint.arb(1, 0.1))).is_finite()
+    flint.ctx.prec, flint.ctx.cap = 100, files.TERMS
     try:
-        model = checker.Model({"f": "sin(x)", "g": "0", "clearance": "0", "restitution": "1"})
-        (X,) = checker.taylor(model, flint.arb(0), [flint.arb(1)], [flint.arb(1)], 40)
+        model = motion.Model({"f": "sin(x)", "g": "0", "clearance": "0", "restitution": "1"})
+        (X,) = motion.taylor(model, flint.arb(0), [flint.arb(1)], [flint.arb(1)], 40)
         assert len(X) == 41
         assert all(a.mid() != 0 for a in X[11:])
-        kink = checker.Model({"f": "sqrt(x)", "g": "0", "clearance": "0", "restitution": "1"})
+        kink = motion.Model({"f": "sqrt(x)", "g": "0", "clearance": "0", "restitution": "1"})
         assert (
-            checker.defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(4)) is None
+            motion.defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(4)) is None
         )
         assert (
-            checker.defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(0.1))
+            motion.defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(0.1))
             is not None
         )
     finally:
@@ -283,15 +257,6 @@ def test_a_periodic_orbit_is_accepted_from_its_file(name, orbits, tmp_path):
     assert f"certificate of the ({n}, {k}) periodic orbit" in repr(orbits[name])
 
 
-def places_of(content, path=()):
-    """The places of all numbers of a certificate, in lists too."""
-    for key, part in content.items() if isinstance(content, dict) else enumerate(content):
-        if isinstance(part, dict | list):
-            yield from places_of(part, (*path, key))
-        elif key not in ("schema", "statement", "digest") and re.search(r"\d", part):
-            yield (*path, key)
-
-
 def test_any_changed_number_of_an_orbit_is_refused(orbits):
     content = orbits["saddle"].content
     places = list(places_of(content))
@@ -364,21 +329,21 @@ def test_states_of_a_virtual_orbit_are_refused():
     ],
 )
 def test_a_period_is_shown_exactly(g, period, holds):
-    formula = checker.Formula(g, {"w": "1.7"})
+    formula = formulas.Formula(g, {"w": "1.7"})
     if holds:
-        checker.require_period(formula, period)
+        periods.require_period(formula, period)
         return
     with pytest.raises(checker.Refused, match="not shown to have the period"):
-        checker.require_period(formula, period)
+        periods.require_period(formula, period)
 
 
 @pytest.mark.parametrize("name", ["duffing", "layer", "law"])
 def test_derivatives_of_the_impact_map_contain_differences(name):
     """D G of the second program over a ball of states, against difference quotients of first impacts in doubles."""
     osc, tau, v, h = MODELS[name], 1.4, 0.6, 1e-5
-    flint.ctx.prec, flint.ctx.cap = 130, checker.TERMS
+    flint.ctx.prec, flint.ctx.cap = 130, files.TERMS
     try:
-        rows = checker.impact(checker.Model(osc.to_dict()), flint.arb(tau, 1e-9), flint.arb(v, 1e-9), 96)
+        rows = motion.impact(motion.Model(osc.to_dict()), flint.arb(tau, 1e-9), flint.arb(v, 1e-9), 96)
         known = [[(float(part.mid()), float(part.rad())) for part in row] for row in rows]
     finally:
         flint.ctx.prec, flint.ctx.cap = 53, 10
@@ -391,22 +356,17 @@ def test_derivatives_of_the_impact_map_contain_differences(name):
 
 
 @pytest.mark.parametrize("condition", ["abs(part) < radius", "span if i == n - 1 else 0"])
-def test_a_checker_without_a_condition_accepts_what_is_false(condition, orbits):
+def test_a_checker_without_a_condition_accepts_what_is_false(condition, orbits, monkeypatch):
     """Krawczyk's condition, and the period that is taken off, are what refuses: without them it is otherwise."""
-    text = CHECKER.read_text(encoding="utf-8")
-    assert text.count(condition) == 1
-    weak = {"__name__": "weak"}
-    exec(compile(text.replace(condition, "True" if "abs" in condition else "0"), "weak", "exec"), weak)
+    monkeypatch.setitem(files.STATEMENTS, "periodic orbit", weakened("periodic_orbit", condition))
     content = json.loads(json.dumps(orbits["saddle"].content))
     if "abs" in condition:
         content["states"][0]["v"]["value"] = "0.66"
         content["multipliers"] = []
-        with pytest.raises(checker.Refused):
-            checker.check(renewed(content))
-        weak["check"](renewed(content))
-    else:
-        with pytest.raises(weak["Refused"]):
-            weak["check"](content)
+        checker.check(renewed(content))
+        monkeypatch.undo()
+    with pytest.raises(checker.Refused):
+        checker.check(renewed(content))
 
 
 def test_orbits_that_are_not_certified_are_refused():

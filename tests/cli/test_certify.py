@@ -48,3 +48,29 @@ def test_a_periodic_orbit_is_written_and_checked(singimpact, tmp_path):
     none = singimpact("certify", *model, "--orbit", "2", "1")
     assert none.exit_code == 2
     assert "--orbit 2 1: 0 orbits are found" in none.output
+
+
+def test_a_chatter_limit_and_a_horseshoe(singimpact, tmp_path):
+    limit, shoe = str(tmp_path / "limit.json"), str(tmp_path / "horseshoe.json")
+    singimpact("certify", *MODEL, "--chatter", "--tau", "0.9", "--v", "0.005", "--digits", "15", "-o", limit)
+    assert "certificate of the chatter limit from (0.9, 0.005)" in singimpact("certify", limit).output
+    both = singimpact("certify", *MODEL, "--chatter", "--orbit", "1", "1")
+    assert "give one of --orbit and --chatter" in both.output
+    assert "--tau and --v" in singimpact("certify", *MODEL, "--chatter").output
+    singimpact("certify", *MODEL[:3], "0", *MODEL[4:], "--horseshoe", "1", "1", "-o", shoe)
+    assert "certificate of a horseshoe: loops of 1 and 17 impacts" in singimpact("certify", shoe).output
+    assert "0 saddles are found" in singimpact("certify", "--omega", "4", "--clearance", "0", "--restitution", "1/2",
+                                               "--horseshoe", "1", "2").output  # fmt: skip
+
+
+def test_a_period_doubling(singimpact, tmp_path):
+    path, model = tmp_path / "model.toml", tmp_path / "doubling.json"
+    path.write_text(
+        'f = "x + 0.05*xdot"\ng = "A*cos(2.8*t)"\nclearance = "0.1"\nrestitution = "0.8"\n[parameters]\nA = "1"\n'
+    )
+    given = ["--model", str(path), "--orbit", "1", "1", "--digits", "10"]
+    made = singimpact("certify", *given, "--doubling", "A", "0.5", "2", "-o", str(model))
+    assert (made.exit_code, made.output) == (0, "")
+    assert "certificate of a period-doubling: A = 1.502" in singimpact("certify", str(model)).output
+    none = singimpact("certify", *given, "--doubling", "A", "0.9", "1.1")
+    assert "no period doubling of visible orbits is found" in none.output

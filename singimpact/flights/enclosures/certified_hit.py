@@ -13,7 +13,15 @@ from singimpact.algebra.balls import BITS_A_DIGIT, Balls
 from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.ball_flight import BallHit, first_hit
-from singimpact.flights.enclosures.equation import Equation, NoHit, NotAnalytic, Refused, TooLong, programs_of
+from singimpact.flights.enclosures.equation import (
+    Equation,
+    NoHit,
+    NotAnalytic,
+    Refused,
+    TooLong,
+    equation_of,
+    programs_of,
+)
 from singimpact.flights.enclosures.framed_motion import FramedMotion
 from singimpact.flights.enclosures.plain_motion import PlainMotion
 from singimpact.oscillator.model import Oscillator
@@ -184,8 +192,8 @@ def motion_from(
     names = launch.names
     programs = programs_of(osc, names)
     tau, v = _phase(osc, launch.tau, bits, names), _ball(launch.v, bits)
-    if not framed:
-        return PlainMotion(Equation(programs, {}), tau, v, bits, launch.removed, derivative, time)
+    if not framed and not names:
+        return PlainMotion(equation_of(osc), tau, v, bits, launch.removed, derivative, time)
     numbers = {name: _ball(_number(osc, name), bits) for name in names}
     deviations = {name: _radius(launch.radii[name]) for name in names}
     own = Equation(programs, numbers)

@@ -79,6 +79,12 @@ def programs_of(osc: Oscillator, names: tuple[str, ...]) -> Programs:
     )
 
 
+@lru_cache(maxsize=32)
+def equation_of(osc: Oscillator) -> Equation:
+    """The equation of a model none of whose numbers is a ball; kept, with what is prepared for each precision."""
+    return Equation(programs_of(osc, ()), {})
+
+
 class Equation:
     """The programs with the numbers of the model put in, prepared once for each precision."""
 

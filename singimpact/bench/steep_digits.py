@@ -1,0 +1,112 @@
+"""Steep states enclosed twice: 20 digits against 40, which choose another degree, other steps and other precision."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.certified import Certified
+from singimpact.algebra.numbers import exact
+from singimpact.bench.steep_states import DRAW, drawn, family_of
+from singimpact.cases import sweep
+from singimpact.status import Status
+
+Array = np.ndarray[Any, Any]
+FEWER, MORE = 20, 40
+BOTH, ONE, NEITHER = 2, 1, 0
+COLUMNS = ("status", "enclosed", "apart", "time", "seconds", "more_seconds")
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Some states at both numbers of digits.
+
+    Parameters
+    ----------
+    states : flown. misses : proved not to hit before the horizon. enclosed : hits that both enclose.
+    refused : states that one of them does not decide. apart : the truth is outside a radius, since two balls of one
+        number do not meet, or one ends otherwise than the other.
+    seconds, more_seconds : CPU time of a unit of flight time of the hits, median and largest, at 20 and at 40 digits.
+    """
+
+    states: int
+    misses: int
+    enclosed: int
+    refused: int
+    apart: int
+    seconds: tuple[float, float]
+    more_seconds: tuple[float, float]
+
+
+def cases_of(count: int) -> list[int]:
+    """The first cases of steep families, one state of each."""
+    found, number = list[int](), 0
+    while len(found) < count:
+        if family_of(number).steep:
+            found.append(number)
+        number += 1
+    return found
+
+
+def check(count: int, seed: int, executor: Executor | None = None, output: str | Path | None = None) -> Pairs:
+    """Fly so many steep states twice; `executor` and `output` as in `singimpact.cases.sweep`."""
+    cases = cases_of(count)
+    table = sweep(partial(flown, seed), cases, executor, output) if cases else np.empty(0)
+    return summary(dict(zip(COLUMNS, table.reshape(-1, len(COLUMNS)).T, strict=True)))
+
+
+def flown(seed: int, number: int) -> Array:
+    """The first launch of a case, in the order of COLUMNS."""
+    case = drawn(seed, number, 1)
+    osc, at = case.oscillator(), (float(case.tau[0]), float(case.v[0]))
+    found, spent = [], []
+    for digits in (FEWER, MORE):
+        begin = process_time()
+        found.append(osc.first_hit(*at, digits=digits, horizon=DRAW.horizon))
+        spent.append(process_time() - begin)
+    impacts = [each.certified for each in found]
+    shown = sum(each is not None for each in impacts)
+    apart = found[0].status != found[1].status
+    if shown == BOTH:
+        apart |= any(disjoint(getattr(impacts[0], name), getattr(impacts[1], name)) for name in impacts[0].NUMBERS)
+    time = float(found[1].flight_time)
+    return np.array([float(found[1].status), shown, apart, time, *spent])
+
+
+def disjoint(one: Certified, other: Certified) -> bool:
+    """Whether no number lies within both radii.
+
+    Examples
+    --------
+    >>> import mpmath
+    >>> near, far = (Certified(mpmath.mpf(x), mpmath.mpf("0.01"), 3) for x in ("1.01", "1.05"))
+    >>> disjoint(near, near), disjoint(near, far)
+    (False, True)
+    """
+    value = [exact("value", each.value) for each in (one, other)]
+    radii: Fraction = sum((exact("radius", each.radius) for each in (one, other)), Fraction(0))
+    return abs(value[0] - value[1]) > radii
+
+
+def summary(found: dict[str, Array]) -> Pairs:
+    """The counts, from columns."""
+    miss = found["status"] == Status.no_return
+    both = found["enclosed"] == BOTH
+    rates = [found[name][both] / np.maximum(found["time"][both], 1.0) for name in ("seconds", "more_seconds")]
+    costs = [(float(np.median(rate)), float(rate.max())) if len(rate) else (np.nan, np.nan) for rate in rates]
+    return Pairs(
+        states=len(miss),
+        misses=int(miss.sum()),
+        enclosed=int(both.sum()),
+        refused=int((~miss & ~both).sum()),
+        apart=int(found["apart"].sum()),
+        seconds=costs[0],
+        more_seconds=costs[1],
+    )

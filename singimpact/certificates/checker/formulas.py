@@ -1,0 +1,183 @@
+"""Texts as functions of balls, of complex balls, of series of balls, and of numbers with derivatives."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+from flint import acb, arb, fmpq
+
+
+class Refused(Exception):
+    """A certificate that is not accepted, and why."""
+
+
+class Wrong(Refused):
+    """One that more digits do not help."""
+
+
+def ball(value: Fraction) -> Any:
+    """A rational at the working precision."""
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+class Dual:
+    """A number and its derivatives by some others, which may be such numbers themselves."""
+
+    def __init__(self, value: Any, slopes: Sequence[Any]) -> None:
+        self.value, self.slopes = value, list(slopes)
+
+    def __add__(self, other: Any) -> Dual:
+        if isinstance(other, Dual):
+            return Dual(self.value + other.value, map(sum, zip(self.slopes, other.slopes, strict=True)))  # type: ignore[arg-type]
+        return Dual(self.value + other, self.slopes)
+
+    def __mul__(self, other: Any) -> Dual:
+        if not isinstance(other, Dual):
+            return Dual(self.value * other, [each * other for each in self.slopes])
+        pairs = zip(self.slopes, other.slopes, strict=True)
+        return Dual(self.value * other.value, [a * other.value + b * self.value for a, b in pairs])
+
+    __radd__, __rmul__ = __add__, __mul__
+
+
+def reciprocal(number: Any) -> Any:
+    if isinstance(number, Dual):
+        value = reciprocal(number.value)
+        return Dual(value, [each * (value * value * -1) for each in number.slopes])
+    return 1 / number
+
+
+def applied(name: str, x: Any) -> Any:
+    """A function of a number."""
+    if isinstance(x, Dual):
+        y, at = applied(name, x.value), x.value
+        slope = {
+            "sin": lambda: applied("cos", at), "cos": lambda: applied("sin", at) * -1, "exp": lambda: y,
+            "log": lambda: reciprocal(at), "sqrt": lambda: reciprocal(y * 2), "atan": lambda: reciprocal(at * at + 1),
+        }[name]()  # fmt: skip
+        return Dual(y, [slope * each for each in x.slopes])
+    if isinstance(x, acb) and (
+        (name in ("log", "sqrt") and not x.real > 0) or (name == "atan" and not abs(x.imag) < 1)
+    ):
+        return acb(arb.nan())  # flint's value is finite on a ball that meets the cut, where nothing is analytic
+    return getattr(x, name)()
+
+
+def power(x: Any, exponent: Fraction) -> Any:
+    """A power; of a whole exponent by squaring."""
+    if exponent < 0:
+        return reciprocal(power(x, -exponent))
+    if exponent.denominator > 1:
+        return applied("exp", applied("log", x) * ball(exponent))
+    found: Any = ball(Fraction(1))
+    for bit in f"{int(exponent):b}" if exponent else "":
+        found = found * found * x if bit == "1" else found * found
+    return found
+
+
+class Formula:
+    """A text of numbers, names, + - * / **, and functions."""
+
+    FUNCTIONS = ("sin", "cos", "tan", "tanh", "exp", "log", "sqrt", "atan")
+
+    def __init__(self, text: Any, parameters: dict[str, Any]) -> None:
+        self.text, self.parameters = str(text), parameters
+        self.tree = ast.parse(self.text, mode="eval").body
+
+    def __call__(self, **values: Any) -> Any:
+        return self._at(self.tree, values)
+
+    def _exact(self, node: ast.expr) -> Fraction | None:
+        """The rational that a part is, if it is one: decimals are exact."""
+        match node:
+            case ast.Constant(int() | float()):
+                return Fraction(ast.get_source_segment(self.text, node) or "")
+            case ast.UnaryOp(ast.USub(), part) if (value := self._exact(part)) is not None:
+                return -value
+            case ast.BinOp(left, op, right):
+                one, other = self._exact(left), self._exact(right)
+                if one is not None and other is not None and not (isinstance(op, ast.Div) and not other):
+                    made = {ast.Add: Fraction.__add__, ast.Sub: Fraction.__sub__, ast.Mult: Fraction.__mul__,
+                            ast.Div: Fraction.__truediv__}.get(type(op))  # fmt: skip
+                    return None if made is None else made(one, other)
+        return None
+
+    def monomial(self, node: ast.expr) -> tuple[Fraction, int] | None:
+        """(q, k) of a part that is q pi^k, q rational."""
+        if (known := self._exact(node)) is not None:
+            return known, 0
+        match node:
+            case ast.Name("pi"):
+                return Fraction(1), 1
+            case ast.Name(name) if name in self.parameters:
+                inner = Formula(self.parameters[name], {})
+                return inner.monomial(inner.tree)
+            case ast.UnaryOp(ast.USub(), part) if (found := self.monomial(part)) is not None:
+                return -found[0], found[1]
+            case ast.BinOp(left, ast.Mult() | ast.Div() as op, right):
+                one, other = self.monomial(left), self.monomial(right)
+                if one is not None and other is not None and other[0]:
+                    sign = 1 if isinstance(op, ast.Mult) else -1
+                    return one[0] * other[0] ** sign, one[1] + sign * other[1]
+        return None
+
+    def rate(self, node: ast.expr) -> tuple[Fraction, int] | None:
+        """(q, k) of a part that is q pi^k t + a constant; q = 0 where it is constant."""
+        if not any(isinstance(part, ast.Name) and part.id == "t" for part in ast.walk(node)):
+            return Fraction(0), 0
+        match node:
+            case ast.Name():
+                return Fraction(1), 0
+            case ast.UnaryOp(ast.USub(), part) if (found := self.rate(part)) is not None:
+                return -found[0], found[1]
+            case ast.BinOp(left, ast.Add() | ast.Sub() as op, right):
+                one, other = self.rate(left), self.rate(right)
+                if one is None or other is None or (one[0] and other[0]):
+                    return None
+                return one if one[0] else (other[0] * (1 if isinstance(op, ast.Add) else -1), other[1])
+            case ast.BinOp(left, ast.Mult() | ast.Div() as op, right):
+                inner, factor = self.rate(left), self.monomial(right)
+                if isinstance(op, ast.Mult) and factor is None:
+                    inner, factor = self.rate(right), self.monomial(left)
+                if inner is not None and factor is not None and factor[0]:
+                    sign = 1 if isinstance(op, ast.Mult) else -1
+                    return inner[0] * factor[0] ** sign, inner[1] + sign * factor[1]
+        return None
+
+    def _at(self, node: ast.expr, values: dict[str, Any]) -> Any:
+        known = self._exact(node)
+        if known is not None:
+            return ball(known)
+        minus = ball(Fraction(-1))
+        match node:
+            case ast.Name(name) if name in values:
+                return values[name]
+            case ast.Name("pi"):
+                return arb.pi()
+            case ast.Name(name) if name in self.parameters:
+                given = self.parameters[name]
+                return given if isinstance(given, arb) else Formula(given, {})()
+            case ast.UnaryOp(ast.USub(), part):
+                return self._at(part, values) * minus
+            case ast.BinOp(left, ast.Add(), right):
+                return self._at(left, values) + self._at(right, values)
+            case ast.BinOp(left, ast.Sub(), right):
+                return self._at(left, values) + self._at(right, values) * minus
+            case ast.BinOp(left, ast.Mult(), right):
+                return self._at(left, values) * self._at(right, values)
+            case ast.BinOp(left, ast.Div(), right):
+                return self._at(left, values) * reciprocal(self._at(right, values))
+            case ast.BinOp(base, ast.Pow(), exponent) if (value := self._exact(exponent)) is not None:
+                return power(self._at(base, values), value)
+            case ast.Call(ast.Name(name), [part], []) if name in self.FUNCTIONS:
+                x = self._at(part, values)
+                if name == "tan":
+                    return applied("sin", x) * reciprocal(applied("cos", x))
+                if name == "tanh":
+                    grown = applied("exp", x + x)
+                    return (grown + minus) * reciprocal(grown + 1)
+                return applied(name, x)
+        raise Refused(f"{ast.unparse(node)!r} in {self.text!r} is not understood")

@@ -1,0 +1,117 @@
+"""Certificates of period doublings and tori: accepted as they were made; other numbers and kinds are refused."""
+
+from __future__ import annotations
+
+import pytest
+from second_program import changed, copied, places_of, renewed, weakened
+
+import singimpact as si
+from singimpact.certificates import checker
+from singimpact.certificates.checker import files
+from singimpact.inputs import InputError
+
+LINEAR = si.linear("2.8", 0, "0.8")
+
+
+@pytest.fixture(scope="module")
+def branch():
+    model = si.ImpactOscillator("x + 0.05*xdot", "A*cos(2.8*t)", "0.1", "0.8", {"A": "1"})
+    orbit = next(each for each in model.periodic(1, 1) if each.visible)
+    return si.branch(orbit, "A", (0.2, 3.0))
+
+
+@pytest.fixture(scope="module")
+def made(branch):
+    (event,) = [each for each in branch.events if each.kind == "period-doubling" and each.orbit.visible]
+    return si.certify(event.certified(10))
+
+
+def refuses(content, why=None):
+    with pytest.raises(checker.Refused, match=why):
+        checker.check(renewed(content))
+
+
+def test_it_is_accepted_from_its_file(made, tmp_path):
+    made.save(tmp_path / "event.json")
+    assert si.read_certificate(tmp_path / "event.json") == made
+    assert repr(made).startswith("<certificate of a period-doubling: A = ")
+
+
+def test_any_changed_number_is_refused(made):
+    places = list(places_of(made.content))
+    assert len(places) > 10
+    for place in places:
+        with pytest.raises(checker.Refused, match="digest"):
+            checker.check(changed(made.content, place))
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"kind": "torus"}, None),
+        ({"kind": "fold"}, "period-doubling or torus"),
+        ({"over": "omega"}, "no parameter"),
+        ({"period": "pi"}, "is not shown to have the period"),
+        ({"periods": "0"}, "closes after periods"),
+        ({"states": []}, "closes after periods"),
+    ],
+)
+def test_another_statement_is_refused(change, why, made):
+    refuses({**copied(made.content), **change}, why)
+
+
+@pytest.mark.parametrize("part", ["parameter", "tau", "v"])
+def test_a_number_off_by_many_radii_is_refused(part, made):
+    content = copied(made.content)
+    number = content["parameter"] if part == "parameter" else content["states"][0][part]
+    number["value"] = repr(float(number["value"]) + 1e4 * float(number["radius"]))
+    refuses(content)
+
+
+def test_a_model_with_another_number_is_refused(made):
+    content = copied(made.content)
+    content["model"]["restitution"] = "0.81"
+    refuses(content)
+
+
+def test_a_number_that_moves_the_period_is_refused(made):
+    content = copied(made.content)
+    content["model"] |= {"g": "A*cos(w*t)", "parameters": {**content["model"]["parameters"], "w": "2.8"}}
+    content["over"] = "w"
+    refuses(content, "is not shown to have the period")
+
+
+def test_without_the_change_of_sign_an_orbit_beside_the_event_passes(made, monkeypatch):
+    """At another number of the same curve: its orbit is there, and its test does not vanish."""
+    model = si.ImpactOscillator(**{**made.content["model"], "parameters": {"A": "0.9"}})
+    orbit = si.certify(model.periodic(1, 1)[0].certified(10)).content
+    content = {**copied(made.content), "states": orbit["states"], "parameter": {"value": "0.9", "radius": "1e-11"}}
+    refuses(content)
+    condition = "sorted(signs) != [-1, 1]"
+    weak = weakened("event", condition, "False")
+    monkeypatch.setitem(
+        weak.__globals__, "crossing", lambda family, value, point, _: (value, family.solved(value, point)[0])
+    )
+    monkeypatch.setitem(files.STATEMENTS, "event", weak)
+    checker.check(renewed(content))
+
+
+def test_others_have_no_file(branch):
+    from dataclasses import replace
+
+    (event,) = [each for each in branch.events if each.kind == "period-doubling" and each.orbit.visible]
+    ball = event.certified(10)
+    with pytest.raises(InputError, match="a fold has no certificate as a file"):
+        si.certify(replace(ball, kind="fold"))
+    with pytest.raises(InputError, match="only those over a parameter"):
+        si.certify(replace(ball, over="clearance"))
+
+
+@pytest.mark.slow
+def test_a_torus_is_accepted():
+    osc = si.ImpactOscillator("x - mu*(1 - x**2)*xdot", "A*cos(w*t)", 0, "0.9", {"mu": "0.2", "A": "1.5", "w": "2.2"})
+    (orbit,) = osc.periodic(1, 1, start=(2.64089, 2.19428))
+    (torus,) = [each for each in si.branch(orbit, "A", (0.5, 1.6), step=0.1).events if each.kind == "torus"]
+    certificate = si.certify(torus.certified(12))
+    certificate.check()
+    refuses({**copied(certificate.content), "kind": "period-doubling"})

@@ -1,0 +1,50 @@
+"""The second program with a condition taken out, and certificates with a number changed."""
+
+import json
+import re
+from pathlib import Path
+
+from singimpact.certificates import checker
+
+FOLDER = Path(checker.__file__).parent
+
+
+def weakened(name, condition, instead=None):
+    """The function of a statement, from the source of its file without a condition."""
+    text = (FOLDER / f"{name}.py").read_text(encoding="utf-8")
+    assert text.count(condition) == 1
+    weak = {"__name__": "weak", "__package__": checker.__name__}
+    instead = ("True" if "<" in condition else "0") if instead is None else instead
+    exec(compile(text.replace(condition, instead), "weak", "exec"), weak)
+    return weak[name]
+
+
+def copied(content):
+    return json.loads(json.dumps(content))
+
+
+def renewed(content):
+    """With the digest of what it now says."""
+    return {**content, "digest": checker.digest_of(content)}
+
+
+def places_of(content, path=()):
+    """The places of all numbers of a certificate, in lists too."""
+    for key, part in content.items() if isinstance(content, dict) else enumerate(content):
+        if isinstance(part, dict | list):
+            yield from places_of(part, (*path, key))
+        elif key not in ("schema", "statement", "digest") and re.search(r"\d", part):
+            yield (*path, key)
+
+
+def changed(content, place):
+    """A copy in which the last digit that counts is another one."""
+    made = copied(content)
+    inner = made
+    for key in place[:-1]:
+        inner = inner[key]
+    mantissa, e, exponent = inner[place[-1]].partition("e-")
+    at = max(found.start() for found in re.finditer(r"\d", mantissa))
+    digit = str((int(mantissa[at]) + 3) % 10)
+    inner[place[-1]] = mantissa[:at] + digit + mantissa[at + 1 :] + e + exponent
+    return made
