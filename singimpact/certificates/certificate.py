@@ -99,7 +99,7 @@ def certify(result: Any) -> Certificate:
     ----------
     result : of `osc.impact_map` or `osc.first_hit` for one state with `digits`; a periodic orbit with impacts, of
         `osc.periodic`; or the `.certified` of one of these. `osc.chatter_limit` of one state with v > 0 and with
-        `digits`; `crossing.horseshoe()`; or `event.certified()` of a period doubling or torus over a parameter.
+        `digits`; `crossing.horseshoe()`; or `event.certified()` of a period doubling over a parameter.
 
     Returns
     -------
@@ -175,9 +175,9 @@ def _of_limit(limit: ChatterLimit) -> Certificate:
 
 
 def _of_event(event: EnclosedEvent) -> Certificate:
-    """The certificate of a period doubling or torus."""
+    """The certificate of a period doubling."""
     if event.kind not in KINDS or event.oscillator is None:
-        raise InputError(f"a {event.kind} has no certificate as a file: only {' and '.join(KINDS)} have one")
+        raise InputError(f"a {event.kind} has no certificate as a file: only a {' or a '.join(KINDS)} has one")
     if event.over not in event.oscillator.parameters:
         raise InputError(
             f"an event over the {event.over} has no certificate as a file: only those over a parameter have"

@@ -1,11 +1,9 @@
-"""A period doubling or torus of periodic orbits over a number of the model, by a change of sign on a curve of orbits.
+"""A period doubling of periodic orbits over a number of the model, by a change of sign on a curve of orbits.
 
 With the number anywhere in a short interval, Krawczyk's operator shows one orbit in a box for each of its values: they
-form a curve.  With M the derivative of the return map, t its trace and d its determinant, the test
-
-    period-doubling   1 + t + d,        torus   1 - d, where t^2 < 4 d,
-
-is continuous on the curve.  It has opposite signs at the ends of the interval, so it vanishes between them.
+form a curve.  With M the derivative of the return map, t its trace and d its determinant, the test 1 + t + d, which is
+0 where -1 is a multiplier, is continuous on the curve.  It has opposite signs at the ends of the interval, so it
+vanishes between them.
 """
 
 from __future__ import annotations
@@ -21,7 +19,7 @@ from .periodic_orbit import krawczyk
 from .periods import require_period
 from .told import compared
 
-KINDS = ("period-doubling", "torus")
+KINDS = ("period-doubling",)
 PART = 512  # of the radii: half of the interval of the number
 ROUNDS = 40  # of Newton's method and of secants
 
@@ -30,7 +28,7 @@ class Family:
     """The orbits of a model over a number, between which and an orbit of so many periods there is nothing to choose."""
 
     def __init__(self, told: dict[str, Any], bits: int) -> None:
-        self.told, self.bits, self.over, self.kind = told["model"], bits, told["over"], told["kind"]
+        self.told, self.bits, self.over = told["model"], bits, told["over"]
         model = Model(self.told)
         if self.over not in model.g.parameters:
             raise Wrong(f"{self.over} is no parameter of the model")
@@ -53,7 +51,7 @@ class Family:
     def test(self, total: Any) -> Any:
         """What vanishes at the event."""
         trace, determinant = total[0, 0] + total[1, 1], total.det()
-        return 1 + trace + determinant if self.kind == "period-doubling" else 1 - determinant
+        return 1 + trace + determinant
 
     def solved(self, value: Any, point: list[Any]) -> tuple[list[Any], Any]:
         """About the orbit, by Newton's method, and the middle of its test: nothing is shown."""
@@ -85,9 +83,7 @@ def event(model: Model, told: dict[str, Any], bits: int) -> None:  # noqa: ARG00
         raise Refused("too few bits")
     value, point = crossing(family, arb(value.mid()), [ball(Fraction(each["value"])) for each in numbers], half)
     narrow = arb(narrow.mid())
-    total, image = family.require_inside(value + within(half), point, narrow)
-    if told["kind"] == "torus" and not (total[0, 0] + total[1, 1]) ** 2 < 4 * total.det():
-        raise Refused("the multipliers are not shown to be complex")
+    _, image = family.require_inside(value + within(half), point, narrow)
     signs = []
     for side in (-1, 1):
         at = value + side * half
