@@ -1,7 +1,8 @@
-"""Steep states enclosed twice: 20 digits against 40, which choose another degree, other steps and other precision."""
+"""Random states enclosed twice: 20 digits against 40, which choose another degree, other steps and other precision."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from fractions import Fraction
@@ -31,35 +32,38 @@ class Pairs:
     Parameters
     ----------
     states : flown. misses : proved not to hit before the horizon. enclosed : hits that both enclose.
-    refused : states that one of them does not decide. apart : the truth is outside a radius, since two balls of one
-        number do not meet, or one ends otherwise than the other.
+    refused : numbers of the cases that one of them does not decide.
+    apart : the truth is outside a radius, since two balls of one number do not meet, or one ends otherwise than the
+        other.
     seconds, more_seconds : CPU time of a unit of flight time of the hits, median and largest, at 20 and at 40 digits.
     """
 
     states: int
     misses: int
     enclosed: int
-    refused: int
+    refused: tuple[int, ...]
     apart: int
     seconds: tuple[float, float]
     more_seconds: tuple[float, float]
 
 
-def cases_of(count: int) -> list[int]:
-    """The first cases of steep families, one state of each."""
+def cases_of(count: int, steep: bool = True) -> list[int]:
+    """The first cases of steep families, or of smooth ones; one state of each."""
     found, number = list[int](), 0
     while len(found) < count:
-        if family_of(number).steep:
+        if family_of(number).steep == steep:
             found.append(number)
         number += 1
     return found
 
 
-def check(count: int, seed: int, executor: Executor | None = None, output: str | Path | None = None) -> Pairs:
-    """Fly so many steep states twice; `executor` and `output` as in `singimpact.cases.sweep`."""
-    cases = cases_of(count)
+def check(
+    count: int, seed: int, executor: Executor | None = None, output: str | Path | None = None, *, steep: bool = True
+) -> Pairs:
+    """Fly so many states of steep or of smooth families twice; `executor`, `output` as in `singimpact.cases.sweep`."""
+    cases = cases_of(count, steep)
     table = sweep(partial(flown, seed), cases, executor, output) if cases else np.empty(0)
-    return summary(dict(zip(COLUMNS, table.reshape(-1, len(COLUMNS)).T, strict=True)))
+    return summary(dict(zip(COLUMNS, table.reshape(-1, len(COLUMNS)).T, strict=True)), cases)
 
 
 def flown(seed: int, number: int) -> Array:
@@ -95,8 +99,8 @@ def disjoint(one: Certified, other: Certified) -> bool:
     return abs(value[0] - value[1]) > radii
 
 
-def summary(found: dict[str, Array]) -> Pairs:
-    """The counts, from columns."""
+def summary(found: dict[str, Array], cases: Sequence[int]) -> Pairs:
+    """The counts, from columns, and the cases that are not decided."""
     miss = found["status"] == Status.no_return
     both = found["enclosed"] == BOTH
     rates = [found[name][both] / np.maximum(found["time"][both], 1.0) for name in ("seconds", "more_seconds")]
@@ -105,7 +109,7 @@ def summary(found: dict[str, Array]) -> Pairs:
         states=len(miss),
         misses=int(miss.sum()),
         enclosed=int(both.sum()),
-        refused=int((~miss & ~both).sum()),
+        refused=tuple(int(cases[int(at)]) for at in np.flatnonzero(~miss & ~both)),
         apart=int(found["apart"].sum()),
         seconds=costs[0],
         more_seconds=costs[1],

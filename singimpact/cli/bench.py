@@ -39,20 +39,22 @@ if TYPE_CHECKING:
               help="States in balls that are also flown with digits=20.")  # fmt: skip
 @click.option("--digit-pairs", type=click.IntRange(0), default=200, show_default=True,
               help="Steep states enclosed twice, with digits=20 and digits=40.")  # fmt: skip
+@click.option("--smooth-pairs", type=click.IntRange(0), default=0, show_default=True,
+              help="Smooth states enclosed twice, as well.")  # fmt: skip
 @output_options
 def command(
     groups: tuple[str, ...], quick: bool, plots: str | None, picture: str, form: str, states: int, seed: int,
     workers: int | None, keep: str | None, family: str, balls: int, digits_checks: int, digit_pairs: int,
-    as_json: bool, output: str | None,
+    smooth_pairs: int, as_json: bool, output: str | None,
 ) -> None:  # fmt: skip
     """Measure CPU times and compare them with other tools. The groups are map, orbit, regimes, chatter, threshold,
     series, fixed-points, emitted, figures, growth, commands, sweep, scale, branches, start. The default is all of
     them (with --quick all but the last).
 
-    The group `states` compares random states with a slow solver of 60 digits; --states, --seed, --workers and --keep
-    belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed steps,
-    and --balls of the states with ball arithmetic; --digit-pairs states are enclosed twice. --quick omits the run
-    times. The exit code is 1 if an impact is wrong.
+    The group `states` compares random states with a slow solver of 60 digits; --states, --seed, --workers and
+    --keep belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed
+    steps, and --balls of the states with ball arithmetic; --digit-pairs and --smooth-pairs states are enclosed
+    twice. --quick omits the run times. The exit code is 1 if an impact is wrong.
     """
     from singimpact.bench.groups import GROUPS, usual
     from singimpact.bench.measuring import FULL, QUICK
@@ -68,7 +70,7 @@ def command(
     texts = _page(found, place, picture, output) if form == "page" else [_text(each, form) for each in found]
     wrong = False
     if "states" in chosen and family == "steep":
-        steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs), not quick)
+        steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs, smooth_pairs), not quick)
         told["states"], wrong = steep.data, steep.wrong
         texts.append(steep.text)
     elif "states" in chosen:

@@ -31,13 +31,14 @@ class SteepStates:
 
 
 def steep_states(
-    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int], costs: bool
+    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int, int], costs: bool
 ) -> SteepStates:
     """Fly random steep states and some of them in balls; time each family.
 
     Parameters
     ----------
-    balls : states in balls, how many of these with `digits=20`, and how many states with 20 and with 40 digits.
+    balls : states in balls, how many of these with `digits=20`, and how many steep and how many smooth states with
+        20 and with 40 digits.
     costs : whether families are timed.
     """
     from singimpact.bench import steep_balls, steep_digits, steep_states
@@ -49,21 +50,25 @@ def steep_states(
     with WorkerPool(workers) as pool:
         found = steep_states.check(states, seed, pool, keep)
         enclosures = steep_balls.check(found, balls[:2], seed, pool, beside)
-        pairs = steep_digits.check(balls[2], seed, pool)
+        pairs = {name: steep_digits.check(count, seed, pool, steep=name == "steep")
+                 for name, count in zip(("steep", "smooth"), balls[2:], strict=True)}  # fmt: skip
     rows = steep_states.rows(found)
     timed = {family.name: cost(family) for family in FAMILIES} if costs else {}
     listed = _listed(found, seed)
-    data = {"families": [asdict(row) for row in rows], "balls": asdict(enclosures), "pairs": asdict(pairs),
+    data = {"families": [asdict(row) for row in rows], "balls": asdict(enclosures),
+            "pairs": {name: asdict(each) for name, each in pairs.items()},
             "cost": {name: asdict(figure) for name, figure in timed.items()}, "listed": listed}  # fmt: skip
     parts = [
         _table(rows),
         _balls(enclosures),
-        _pairs(pairs),
+        *(_pairs(name, each) for name, each in pairs.items()),
         _cost(timed),
         *(_lines(name, part) for name, part in listed.items()),
     ]
     return SteepStates(
-        data, "\n\n".join(part for part in parts if part), _is_wrong(rows, enclosures) or bool(pairs.apart)
+        data,
+        "\n\n".join(part for part in parts if part),
+        _is_wrong(rows, enclosures) or any(each.apart for each in pairs.values()),
     )
 
 
@@ -126,8 +131,8 @@ def _balls(balls: Enclosures) -> str:
     return "\n".join(lines)
 
 
-def _pairs(pairs: Pairs) -> str:
-    """The summary of the states with 20 and with 40 digits."""
+def _pairs(name: str, pairs: Pairs) -> str:
+    """The summary of the states of steep or smooth families with 20 and with 40 digits."""
     if not pairs.states:
         return ""
     costs = "; ".join(
@@ -135,9 +140,14 @@ def _pairs(pairs: Pairs) -> str:
         for digits, (median, most) in ((20, pairs.seconds), (40, pairs.more_seconds))
     )
     return (
-        f"digits=20 and digits=40: {pairs.states} states, {pairs.enclosed} enclosed by both, {pairs.misses} proved not "
-        f"to hit, {pairs.refused} refused, {pairs.apart} with the truth outside a radius\n{costs}"
+        f"digits=20 and digits=40: {pairs.states} {name} states, {pairs.enclosed} enclosed by both, "
+        f"{pairs.misses} proved not to hit, {len(pairs.refused)} refused{_cases(pairs.refused)}, "
+        f"{pairs.apart} with the truth outside a radius\n{costs}"
     )
+
+
+def _cases(numbers: Sequence[int]) -> str:
+    return f" (cases {', '.join(map(str, numbers[:9]))})" if numbers else ""
 
 
 def _estimate(name: str, given: Estimate | None) -> str:

@@ -18,10 +18,16 @@ KINDS = {
     "b:homoclinic": "certified",
     "b:horseshoe": "certified",
     "b:ratio-bound": "proved",
+    "b:order-ray": "proved",
+    "b:order-saddle": "proved",
+    "b:order-expansion": "proved",
+    "b:order-exponents": "proved",
+    "b:order-parity": "proved",
+    "b:order-sides": "proved",
 }
 
 
-SECONDS = ("b:cascade", "b:homoclinic", "b:horseshoe")  # those of enclosures and of true orbits
+SECONDS = ("b:cascade", "b:homoclinic", "b:horseshoe", "b:order-expansion")  # those of enclosures and of true orbits
 EACH = [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name for name in BEYOND]
 
 

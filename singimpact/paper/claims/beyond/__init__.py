@@ -2,7 +2,7 @@
 
 Not here: claims of the paper (`claims.sections`). None is printed anywhere, so none is corrected; mutants stand beside.
 Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a certified homoclinic orbit), `repairs`
-(what corrected statements of the paper need).
+(what corrected statements of the paper need), `every_order` (contact points of every order).
 """
 
 from __future__ import annotations
@@ -30,8 +30,15 @@ def _repairs() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
+def _every_order() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import every_order as section
+
+    return section.CLAIMS
+
+
 BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "cascade": _cascade,
     "horseshoe": _horseshoe,
     "repairs": _repairs,
+    "every_order": _every_order,
 }

@@ -1,0 +1,228 @@
+"""Contact points of every order j: one ray that carries gamma, a saddle for every r, and on which side it lies.
+
+The model is x'' = s^j; l is the ratio of landing and launch time, and L stands for l^j, so that an identity in l, L and
+j holds for every j.  P and Q are the polynomials of `theory.homogeneous`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.certificates import positive_on
+from singimpact.algebra.derivations import At, substitution
+from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.verifiers import every, is_zero, same
+from singimpact.theory.homogeneous import DG_on_ray, P, Q, lambda_, mu_of_lambda, r_of_lambda
+
+claim = in_section("beyond")
+ell, L, j, i, V, W = sympy.symbols("l L j i V W")
+CLOSED_P = (j + 1) - (j + 2) * ell + ell**2 * L  # (1 - l)^2 P
+CLOSED_Q = 1 - (j + 2) * ell * L + (j + 1) * ell**2 * L  # (1 - l)^2 Q
+SHOWN = 12  # orders up to which a sign is decided one by one
+TURNED = 15  # orders up to which negative ratios are counted
+
+
+def _closed_forms() -> list[tuple[str, bool]]:
+    """(1 - l)^2 P and (1 - l)^2 Q for every j.
+
+    They follow from the motion x = v (s - 1) + (s^(j+2) - 1 - (j+2)(s - 1))/((j+1)(j+2)).
+    """
+    height = V * (ell - 1) + (ell**2 * L - 1 - (j + 2) * (ell - 1)) / ((j + 1) * (j + 2))
+    launch = CLOSED_P / ((1 - ell) * (j + 1) * (j + 2))  # v = (1 - l) P/((j+1)(j+2))
+    speed = -(V + (ell * L - 1) / (j + 1))  # -x' at the landing
+    landing = CLOSED_Q / ((1 - ell) * (j + 1) * (j + 2))
+    substitution(At(height, {V: launch}), sympy.Integer(0))
+    substitution(At(speed, {V: launch}), landing)
+    tried = all(
+        is_zero(sympy.expand(closed.subs(j, order).subs({L: ell**order}) - (1 - ell) ** 2 * found.subs(lambda_, ell)))
+        for order in range(1, SHOWN + 1)
+        for closed, found in ((CLOSED_P, P(order)), (CLOSED_Q, Q(order)))
+    )
+    coefficient = j + 1 - i  # of l^i in P: second differences vanish, which leaves the ends of (1 - l)^2 P
+    second = sympy.expand(coefficient - 2 * coefficient.subs(i, i - 1) + coefficient.subs(i, i - 2))
+    return [
+        (
+            "(1-l)^2 P = j+1 - (j+2) l + l^(j+2), (1-l)^2 Q = 1 - (j+2) l^(j+1) + (j+1) l^(j+2) for every j, from "
+            "x'' = s^j",
+            is_zero(height.subs(V, launch)) and same(speed.subs(V, launch), landing),
+        ),
+        (
+            f"so P = sum (j+1-i) l^i and Q = sum (i+1) l^i, i <= j; those of j = 1..{SHOWN} agree",
+            is_zero(second) and tried,
+        ),
+    ]
+
+
+def _ray(count: int) -> Check:
+    """How many rays l > 0 of flights with one ratio there are for each r in (0, 1) and every j."""
+    spare = sympy.factor(j * (i + 1) - i * (i + 1))  # coefficient of l^i in j Q - l Q'
+    rising = same(spare, (j - i) * (i + 1))
+    ends = all(
+        rate == 1 for rate in (sympy.cancel(r_of_lambda(order)).subs(lambda_, 1) for order in range(1, SHOWN + 1))
+    )
+    return every(
+        [
+            *_closed_forms(),
+            (
+                f"j Q - l Q' has the coefficients {spare} >= 0, P and Q positive ones: so l d/dl log(l^(j+1) P/Q) "
+                ">= 1 for l > 0",
+                rising,
+            ),
+            ("l^(j+1) P/Q rises from 0 at 0 to 1 at 1: one ray for each r, and it has l < 1", ends and count == 1),
+        ]
+    )
+
+
+def _saddle(power: int) -> Check:
+    """mu > l^(-power) for every j and l in (0, 1); the other multiplier is l < 1."""
+    difference = sympy.expand((j + 1 - i) - (i + 1))  # coefficient of l^i in P - Q
+    odd = same(difference.subs(i, j - i), -difference)
+    low = [order for order in (1, 2, 3) if not _positive((mu_of_lambda(order) - lambda_**-power) * lambda_**3)]
+    return every(
+        [
+            *_closed_forms(),
+            (
+                f"P - Q has the coefficients {difference}, odd under i -> j - i: it is sum (j - 2i)(l^i - l^(j-i)) "
+                "> 0, 2i < j",
+                odd,
+            ),
+            (f"mu = (P/Q)^2/l, so mu > 1/l; stated: l^-{power}, which fails at j in {low}", power <= 1 and not low),
+        ],
+        witness=lambda: {"j": str(low[:1]), "mu": f"not above l^-{power} for all l"},
+    )
+
+
+def _positive(expression: Any) -> bool:
+    return positive_on(sympy.cancel(expression), lambda_, 0, 1)
+
+
+def _smaller(power: int) -> Check:
+    """mu < r^(-1): l^(j power) P^3 < Q^3 on (0, 1) with power 1, for j up to SHOWN."""
+    failing = [
+        order
+        for order in range(1, SHOWN + 1)
+        if not _positive(Q(order) ** 3 - lambda_ ** (order * power) * P(order) ** 3)
+    ]
+    both = all(is_zero(r_of_lambda(n) * mu_of_lambda(n) - lambda_**n * (P(n) / Q(n)) ** 3) for n in (1, 2, 3))
+    return every(
+        [
+            ("r mu = l^j (P/Q)^3", both and power == 1),
+            (f"l^j P^3 < Q^3 on (0, 1) for j = 1..{SHOWN}", not failing),
+        ],
+        witness=lambda: {"fails at j": str(failing[:3])},
+    )
+
+
+def _exponents(power: int) -> Check:
+    """In (tau, v) DG multiplies by l^j (P/Q)^power < 1 across gamma: both exponents are negative, for j up to SHOWN."""
+    failing = [
+        order for order in range(1, SHOWN + 1) if not _positive(Q(order) ** power - lambda_**order * P(order) ** power)
+    ]
+    scaled = all(is_zero(DG_on_ray(n).det() - lambda_ ** (n + 1) * (P(n) / Q(n)) ** power) for n in (1, 2, 3))
+    return every(
+        [
+            (f"det DG = l^(j+1) (P/Q)^{power} on gamma, and along it the multiplier is l", scaled),
+            (f"l^j (P/Q)^{power} < 1 on (0, 1) for j = 1..{SHOWN}", not failing),
+        ],
+        witness=lambda: {"fails at j": str(failing[:3])},
+    )
+
+
+def _parity(stated: tuple[int, int]) -> Check:
+    """How many negative ratios solve l^(j+1) P = r Q for every r: (for odd j, for even j), for j up to TURNED."""
+    found: dict[int, set[int]] = {0: set(), 1: set()}
+    monotone = True
+    for order in range(1, TURNED + 1):
+        top, below = sympy.Poly(P(order), lambda_), sympy.Poly(Q(order), lambda_)
+        slope = (order + 1) * top * below + sympy.Poly(lambda_, lambda_) * (top.diff() * below - top * below.diff())
+        monotone &= slope.count_roots(None, 0) == 0
+        # for odd j P has a zero z < -1 and Q = l^j P(1/l) has 1/z: r takes each value > 0 once on (1/z, 0), once on
+        # (-oo, z), and is negative between; for even j neither has a zero, and r < 0 for l < 0
+        found[order % 2].add(2 * top.count_roots(None, -1))
+        monotone &= top.count_roots(-1, 0) == 0
+    return every(
+        [
+            (f"r(l) has no critical point for l < 0, j = 1..{TURNED} (Sturm)", monotone),
+            (
+                f"negative roots: {found[1]} for odd j, {found[0]} for even j",
+                (found[1], found[0]) == tuple({n} for n in stated),
+            ),
+        ]
+    )
+
+
+def _sides(stated: tuple[int, int]) -> Check:
+    """(sign of sigma on gamma, sign of the wall acceleration there)."""
+    sigma, a = sympy.symbols("sigma a_j")
+    before = -1  # time increases from sigma to l sigma, 0 < l < 1, for sigma < 0 alone
+    shrinks = all(bool((value * (sympy.Rational(1, 2) - 1) > 0) == (value < 0)) for value in (-1, 1))
+    speed = a * sigma ** (j + 1)  # v of gamma over (1 - l) P/((j+1)(j+2)) > 0
+    pressed = a * sigma**j  # the wall acceleration
+    return every(
+        [
+            (
+                "the factor (1 - l) P of the velocity is positive, as the coefficients of P are for every j",
+                all(_positive((1 - lambda_) * P(order)) for order in (1, 2, 3)),
+            ),
+            ("a landing at l sigma is later than the launch for sigma < 0 alone", shrinks and stated[0] == before),
+            (
+                "v = sigma a_j sigma^j times a positive factor, so v > 0 where the wall acceleration a_j sigma^j is "
+                "negative",
+                sympy.powsimp(pressed * sigma) == speed and stated[0] * stated[1] == 1,
+            ),
+        ]
+    )
+
+
+CLAIMS = (
+    claim(
+        "b:order-ray",
+        "at a contact point of every order j >= 1 and for every r in (0, 1) exactly one ray is invariant, with l in "
+        "(0, 1)",
+        Statement(r"\#\{l>0:l^{j+1}P_j(l)=r\,Q_j(l)\}=1,\ j\ge1,\ 0<r<1", 1),
+        _ray,
+        (0, 2),
+    ),
+    claim(
+        "b:order-saddle",
+        "and it is a saddle: its multipliers are l < 1 and mu > 1/l",
+        Statement(r"\mu_j=\frac{1}{l}\Bigl(\frac{P_j}{Q_j}\Bigr)^2>l^{-1},\ j\ge1", 1),
+        _saddle,
+        (2, 3),
+        ("b:order-ray",),
+    ),
+    claim(
+        "b:order-expansion",
+        f"mu < 1/r, for j = 1..{SHOWN}",
+        Statement(rf"r\mu_j=l^j(P_j/Q_j)^3<1,\ 1\le j\le{SHOWN}", 1),
+        _smaller,
+        (0, -1),
+        ("b:order-ray",),
+    ),
+    claim(
+        "b:order-exponents",
+        f"in (tau, v) both exponents of G along gamma are negative, j = 1..{SHOWN}: only v/|sigma|^(j+1) is repelled",
+        Statement(rf"l^j(P_j/Q_j)^2<1,\ 1\le j\le{SHOWN}", 2),
+        _exponents,
+        (3, 1),
+        ("b:order-ray",),
+    ),
+    claim(
+        "b:order-parity",
+        f"the other real rays: two with l < 0 for odd j, none for even j, for j = 1..{TURNED}",
+        Statement(rf"\#\{{l<0\}}=2\ (j\ \text{{odd}}),\ 0\ (j\ \text{{even}}),\ 1\le j\le{TURNED}", (2, 0)),
+        _parity,
+        ((0, 2), (1, 1)),
+        ("b:order-ray",),
+    ),
+    claim(
+        "b:order-sides",
+        "gamma lies on sigma < 0 alone, and only where the wall acceleration is negative there",
+        Statement(r"\gamma\subset\{\sigma<0\},\ a_j\sigma^j<0", (-1, -1)),
+        _sides,
+        ((1, -1), (-1, 1)),
+        ("b:order-ray",),
+    ),
+)
