@@ -24,6 +24,8 @@ KINDS = {
     "b:order-exponents": "proved",
     "b:order-parity": "proved",
     "b:order-sides": "proved",
+    "b:gauge": "proved",
+    "b:gauge-nonlinear": "proved",
 }
 
 
@@ -92,3 +94,13 @@ def test_from_the_command_line(singimpact):
     assert json.loads(singimpact("claims", "show", "b:cascade-contraction", "--json").stdout)["falls_with_it"] == [
         "b:cascade"
     ]
+
+
+def test_the_two_routes_to_a_linear_sheet_differ_for_another_stiffness():
+    from fractions import Fraction
+
+    from singimpact.paper.claims.beyond import gauge
+
+    jet = {1: Fraction(3, 2), 2: Fraction(-1, 3)}
+    right, wrong = (gauge._of_the_ball(jet, Fraction(1, 5), square) for square in (Fraction(3, 2), Fraction(8, 5)))
+    assert any(value != 0 for value in (right - wrong).terms.values())

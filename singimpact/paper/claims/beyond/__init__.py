@@ -2,7 +2,8 @@
 
 Not here: claims of the paper (`claims.sections`). None is printed anywhere, so none is corrected; mutants stand beside.
 Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a certified homoclinic orbit), `repairs`
-(what corrected statements of the paper need), `every_order` (contact points of every order).
+(what corrected statements of the paper need), `every_order` (contact points of every order), `gauge`
+(linear oscillators as balls under gravity that varies).
 """
 
 from __future__ import annotations
@@ -36,9 +37,16 @@ def _every_order() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
+def _gauge() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import gauge as section
+
+    return section.CLAIMS
+
+
 BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "cascade": _cascade,
     "horseshoe": _horseshoe,
     "repairs": _repairs,
     "every_order": _every_order,
+    "gauge": _gauge,
 }
