@@ -39,7 +39,7 @@ COMMANDS = {
     "selftest": "compare random states of your model with independent computations",
     "errata": "misprints of the paper, their corrections, and the reasons",
     "claims": "the claims: list, show, graph, impact",
-    "certify": "an impact or a periodic orbit with a certificate that a second program checks",
+    "certify": "a proved result with a certificate that a second program checks",
     "fixed-points": "fixed points and multipliers, certified, to any digits",
     "cite": "references to cite",
 }

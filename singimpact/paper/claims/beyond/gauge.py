@@ -79,7 +79,7 @@ def _routes_agree(damping: Fraction, square: Fraction) -> bool:
 def _of_the_ball(jet: dict[int, Fraction], damping: Fraction, square: Fraction) -> Jet:
     """v_c = y'/(E C) with y' = sum A_k ((k+2) s^(k+1) - h_(k+1)(s, e))/((k+1)(k+2)), h_n the sum of s^i e^(n-i)."""
     line = JetSpace(("u",), ORDER, RATIONALS)
-    made = {
+    made: dict[str, dict[tuple[int, ...], Fraction]] = {
         "C": {(2 * n,): (-square) ** n / factorial(2 * n) for n in range(ORDER // 2 + 1)},
         "S": {(2 * n + 1,): (-square) ** n / factorial(2 * n + 1) for n in range((ORDER + 1) // 2)},
         "E": {(n,): damping**n / factorial(n) for n in range(ORDER + 1)},
