@@ -90,13 +90,11 @@ def precision_is_put_back():
 
 @pytest.fixture(scope="session", autouse=True)
 def few_compilers():
-    """Models are compiled where a test asks for it alone: of hundreds each is flown a little, and compiling one takes
-    10 to 40 s of CPU of another process.
-    """
+    """Models are compiled after seconds of flights, not after a quarter: of hundreds each is flown a little."""
     from dataclasses import replace
 
     from singimpact.flights import machine
 
-    usual, machine.SETTINGS = machine.SETTINGS, replace(machine.SETTINGS, wait=1e9)
+    usual, machine.SETTINGS = machine.SETTINGS, replace(machine.SETTINGS, wait=4.0)
     yield
     machine.SETTINGS = usual
