@@ -20,6 +20,9 @@ SIGNS = {
 }  # fmt: skip
 
 
+SYMMETRIC = ("plus", "times", "zip", "max", "min", "same")  # pairs that `zip` makes are added, or compared
+
+
 @dataclass(frozen=True)
 class Mutant:
     """One change: characters start to end of a file become `text`.
@@ -80,15 +83,19 @@ def _changes(tree: ast.AST, source: str, place) -> Iterator[tuple[int, int, int,
         elif isinstance(node, ast.Constant) and type(node.value) in (int, bool):
             text = str(not node.value) if isinstance(node.value, bool) else str(node.value + 1)
             yield (node.lineno, place(node.lineno, node.col_offset), place(node.end_lineno, node.end_col_offset), text)
-        elif isinstance(node, ast.Call) and len(node.args) == 2 and not any(
-            isinstance(each, ast.Starred) for each in node.args
-        ):  # fmt: skip
+        elif isinstance(node, ast.Call) and len(node.args) == 2 and not _symmetric(node):
             first, second = (
                 (place(each.lineno, each.col_offset), place(each.end_lineno, each.end_col_offset)) for each in node.args
             )
             one, between, other = source[slice(*first)], source[first[1] : second[0]], source[slice(*second)]
             if one != other:
                 yield node.lineno, first[0], second[1], other + between + one
+
+
+def _symmetric(call: ast.Call) -> bool:
+    """Whether exchanging two arguments is no change: of a symmetric function, or of arguments that are unpacked."""
+    name = call.func.id if isinstance(call.func, ast.Name) else ""
+    return name in SYMMETRIC or any(isinstance(each, ast.Starred) for each in call.args)
 
 
 def _operators(node, source: str, place) -> Iterator[tuple[int, int, int, str]]:
