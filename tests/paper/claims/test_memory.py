@@ -69,7 +69,7 @@ def test_edited_trials_run_the_claims_of_the_files_that_take_them(decided, edite
     claims = select(["e:meq", "s5-phi", "s6p-AB"])
     run(claims, kept=True)
     decided.clear()
-    edited("section6_trials", "section6_scaling")
+    edited("section6_trials")
     run(claims, kept=True)
     assert decided == [claim.id for claim in claims if claim.file.startswith("section6")]
 
