@@ -6,7 +6,7 @@ import os
 import stat
 import sys
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -36,6 +36,7 @@ def written(path: str | Path) -> Iterator[Path]:
     target, special = _target(path)
     draft = _draft(target, special)
     try:
+        _create(draft, target)  # its name is known before it exists: an interruption at any later time removes it
         yield draft
         _take_place(draft, target, special)
     except OSError as error:
@@ -78,7 +79,8 @@ def require_writable(path: str | Path) -> None:
     ------
     InputError : nothing can be written there.
     """
-    _draft(*_target(path)).unlink()
+    with suppress(_Writable), written(path):
+        raise _Writable
 
 
 def folder(path: str | Path) -> Path:
@@ -179,17 +181,26 @@ def _followed(path: str | Path) -> Path:
 
 
 def _draft(target: Path, special: bool) -> Path:
-    import tempfile  # 4 ms, and most processes write nothing
+    """A name that no file has, in the folder of the target or the one for temporary files."""
+    if special:
+        import tempfile  # 4 ms, and most processes write no such file
 
+        folder_of_draft = Path(tempfile.gettempdir())
+    else:
+        folder_of_draft = target.parent
     # the suffix is kept, because matplotlib reads the format from it
+    return folder_of_draft / f"{DRAFT}{os.urandom(8).hex()}{target.suffix}"
+
+
+def _create(draft: Path, target: Path) -> None:
     try:
-        place = tempfile.gettempdir() if special else target.parent
-        handle, name = tempfile.mkstemp(prefix=DRAFT, suffix=target.suffix, dir=place)
+        os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     except (OSError, ValueError) as error:
         raise _unwritable(target, error) from None
-    os.close(handle)
-    os.chmod(name, 0o666 & ~_umask())
-    return Path(name)
+
+
+class _Writable(Exception):
+    """Leaves a draft unfinished, once it could be created."""
 
 
 def _take_place(draft: Path, target: Path, special: bool) -> None:
@@ -197,12 +208,6 @@ def _take_place(draft: Path, target: Path, special: bool) -> None:
         target.write_bytes(draft.read_bytes())
     else:
         os.replace(draft, target)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def _unwritable(path: str | Path, error: Exception) -> InputError:
