@@ -4,6 +4,9 @@ import json
 import re
 from pathlib import Path
 
+import pytest
+
+import singimpact as si
 from singimpact.certificates import checker
 
 FOLDER = Path(checker.__file__).parent
@@ -48,3 +51,24 @@ def changed(content, place):
     digit = str((int(mantissa[at]) + 3) % 10)
     inner[place[-1]] = mantissa[:at] + digit + mantissa[at + 1 :] + e + exponent
     return made
+
+
+def refuses(content, why=None):
+    """Refused for this reason, though its digest is that of what it says."""
+    with pytest.raises(checker.Refused, match=why):
+        checker.check(renewed(content))
+
+
+def is_read_back(made, file):
+    """Accepted from a file, as it was made."""
+    made.save(file)
+    assert si.read_certificate(file) == made
+
+
+def no_number_may_change(made, least):
+    """Each of its numbers, at least so many, changes the digest."""
+    places = list(places_of(made.content))
+    assert len(places) >= least
+    for place in places:
+        with pytest.raises(checker.Refused, match="digest"):
+            checker.check(changed(made.content, place))
