@@ -1,8 +1,9 @@
 """Change one place of the program at a time and see whether a test fails: `python tests/mutation/mutate.py`.
 
 Mutants are drawn by a seed over the files below, and the survivors of earlier runs, in `known.json`, are tried again.
-Each is applied in a copy of the checkout; doctests of its file run first, then the tests that guard it, and the first
-failure ends the trial.  A mutant that no test notices is printed with its line.  Results are kept in a file, so that
+Each is applied in a copy of the checkout.  The tests that run its line are tried first, the quickest before the others
+(`--lines` keeps which they are), then the doctests of its file and all tests that guard it; the first failure ends the
+trial.  A mutant that no test notices is printed with its line.  Results are kept in a file, so that
 an interrupted run goes on.  The exit code is 1 when more than 5 % survive.
 """
 
@@ -50,6 +51,8 @@ GUARDS = {
     "singimpact/flights/no_return/barrier.py": ["tests/flights"],
 }
 SECONDS = 600.0  # a mutant may make a loop endless: a trial that takes longer counts as noticed
+NEAR = 40.0  # seconds of tests that run the line of a mutant, before all tests that guard its file
+Lines = dict[str, dict[str, list[tuple[str, float]]]]  # file, line: tests with their seconds
 
 
 def drawn(count: int, seed: int) -> list[Mutant]:
@@ -78,31 +81,62 @@ def known() -> list[Mutant]:
     return found
 
 
-def noticed(mutant: Mutant, copy: Path) -> str:
+def lines_run(copy: Path, files: list[str]) -> Lines:
+    """Which tests of the guards run which lines of the files; the tests must pass as they are."""
+    with tempfile.TemporaryDirectory() as place:
+        kept = Path(place) / "lines.json"
+        told = {"MUTATION_FILES": json.dumps(files), "MUTATION_LINES": str(kept)}
+        targets = sorted({each for file in files for each in [file, *GUARDS[file]] if (copy / each).exists()})
+        done = _tests(copy, ["-p", "lines_run", *targets], told)
+        if done.returncode:
+            raise SystemExit("\n".join(["the tests fail before anything is changed", *done.stdout.splitlines()[-20:]]))
+        found: Lines = json.loads(kept.read_text())
+        return found
+
+
+def nearest(mutant: Mutant, lines: Lines) -> list[str]:
+    """The quickest tests that run the line of a mutant, as many as fit into some seconds."""
+    chosen, spent = list[str](), 0.0
+    for test, seconds in sorted(lines.get(mutant.file, {}).get(str(mutant.line), []), key=lambda each: each[1]):
+        spent += seconds
+        if spent > NEAR and chosen:
+            break
+        chosen.append(test)
+    return chosen
+
+
+def noticed(mutant: Mutant, copy: Path, lines: Lines) -> str:
     """The test that fails with a mutant, or "" when none does."""
     path = copy / mutant.file
     whole = path.read_text()
     path.write_text(mutant.applied(whole))
-    # not those of a run of tests that this one may be a part of, nor of what counts its lines
-    environment = {name: value for name, value in os.environ.items() if not name.startswith(("SLIPCOVER", "PYTEST"))}
-    environment |= {"PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
+    near = nearest(mutant, lines)
+    guards = [[each] for each in (mutant.file, *GUARDS[mutant.file]) if (copy / each).exists()]
     try:
-        for target in [mutant.file, *GUARDS[mutant.file]]:
-            if not (copy / target).exists():
-                continue
-            command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", target]
+        for targets in [near, *guards] if near else guards:
             try:
-                done = subprocess.run(
-                    command, cwd=copy, env=environment, capture_output=True, text=True, timeout=SECONDS, check=False
-                )
+                done = _tests(copy, ["-x", *targets])
             except subprocess.TimeoutExpired:
-                return f"{target} (no end within {SECONDS:.0f} s)"
+                return f"{targets[0]} (no end within {SECONDS:.0f} s)"
             if done.returncode not in (0, 5):  # 5: no tests there
                 failed = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
-                return failed[0].split(" - ")[0] if failed else target
+                return failed[0].split(" - ")[0] if failed else targets[0]
         return ""
     finally:
         path.write_text(whole)
+
+
+def _tests(copy: Path, given: list[str], told: dict[str, str] | None = None) -> subprocess.CompletedProcess[str]:
+    """A run of tests in the copy."""
+    # not those of a run of tests that this one may be a part of, nor of what counts its lines
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("SLIPCOVER", "PYTEST"))}
+    places = os.pathsep.join([str(copy), str(Path(__file__).parent)])
+    environment |= {"PYTHONPATH": places, "PYTHONDONTWRITEBYTECODE": "1"} | (told or {})
+    command = [sys.executable, "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", *given]
+    seconds = None if told else SECONDS
+    return subprocess.run(
+        command, cwd=copy, env=environment, capture_output=True, text=True, timeout=seconds, check=False
+    )
 
 
 def main() -> int:
@@ -110,22 +144,30 @@ def main() -> int:
     options.add_argument("--count", type=int, default=150, help="how many mutants are drawn")
     options.add_argument("--seed", type=int, default=20261121)
     options.add_argument("--only", default="", help="a part of the names of files")
-    options.add_argument("--results", type=Path, default=ROOT / "mutants.json", help="results, to go on from")
+    options.add_argument("--results", type=Path, default=ROOT / "build" / "mutants.json", help="results, to go on from")
+    options.add_argument(
+        "--lines", type=Path, default=ROOT / "build" / "lines.json", help="the tests that run each line"
+    )
     options.add_argument("--list", action="store_true", help="print the mutants and try none")
     asked = options.parse_args()
     chosen = [each for each in [*known(), *drawn(asked.count, asked.seed)] if asked.only in each.file]
     if asked.list:
         print(*chosen, sep="\n")
         return 0
+    for kept in (asked.results, asked.lines):
+        kept.parent.mkdir(parents=True, exist_ok=True)
     results = json.loads(asked.results.read_text()) if asked.results.exists() else {}
     with tempfile.TemporaryDirectory() as place:
         copy = Path(place) / "checkout"
         shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".git", "__pycache__", "build", "*.egg-info"))
+        if not asked.lines.exists():
+            asked.lines.write_text(json.dumps(lines_run(copy, sorted({each.file for each in chosen}))))
+        lines = json.loads(asked.lines.read_text())
         for number, mutant in enumerate(chosen, 1):
             if str(mutant) in results:
                 continue
             began = time.monotonic()
-            results[str(mutant)] = noticed(mutant, copy)
+            results[str(mutant)] = noticed(mutant, copy, lines)
             asked.results.write_text(json.dumps(results, indent=1) + "\n")
             told = results[str(mutant)] or "SURVIVES"
             print(f"{number}/{len(chosen)} {mutant}: {told} ({time.monotonic() - began:.0f} s)", flush=True)

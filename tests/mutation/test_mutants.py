@@ -52,6 +52,10 @@ def test_a_wrong_formula_is_noticed_and_one_that_no_test_reads_is_not(tmp_path, 
     monkeypatch.setattr(mutate, "GUARDS", {"demo.py": ["test_demo.py"]})
     source = (tmp_path / "demo.py").read_text()
     first, second = (each for each in mutants_of("demo.py", source) if each.was == "/")
-    assert mutate.noticed(first, tmp_path) == "FAILED test_demo.py::test_half"
-    assert mutate.noticed(second, tmp_path) == ""
+    lines = mutate.lines_run(tmp_path, ["demo.py"])
+    assert mutate.nearest(first, lines) == ["test_demo.py::test_half"]
+    assert mutate.nearest(second, lines) == []
+    for known in (lines, {}):
+        assert mutate.noticed(first, tmp_path, known) == "FAILED test_demo.py::test_half"
+        assert mutate.noticed(second, tmp_path, known) == ""
     assert (tmp_path / "demo.py").read_text() == source
