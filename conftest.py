@@ -26,6 +26,7 @@ def pytest_configure(config):
     if not hasattr(config, "workerinput"):  # workers of one run share the cache of the first
         config.singimpact_cache = tempfile.mkdtemp(prefix="singimpact-suite-")
         os.environ["SINGIMPACT_CACHE"] = config.singimpact_cache
+        os.environ["NUMBA_OPT"] = "0"  # as in the process that compiles models
         os.environ["NUMBA_CACHE_DIR"] = str(Path(config.singimpact_cache) / "numba")
 
 

@@ -86,7 +86,7 @@ class Machine:
             self._asked = name if self._compile_elsewhere(name) else ""
 
     def compile_here(self, name: str) -> Entry:
-        """An entry that is waited for: until the process that compiles has it, or else it is compiled in this one."""
+        """An entry that is waited for: from the process that compiles for this cache, or compiled in this one."""
         from singimpact.codegen import object_code
 
         found = self.entry(name) or self._awaited(name)
@@ -97,17 +97,22 @@ class Machine:
         return found
 
     def _awaited(self, name: str) -> Entry | None:
-        """An entry from a process that this one has started; None when there is none, or it has ended without it."""
-        request, waited = self._request, False
-        while request.exists() and any(process.poll() is None for process in _STARTED):
-            waited = True
+        """An entry from that process, started unless it runs; None when it is busy with another text, or fails."""
+        self._compile_elsewhere(name)
+        while self._is_compiled_now() and not self.place(name).is_file():
             time.sleep(SETTINGS.look / 10)
-            if self.place(name).is_file():
-                break
-        if not waited:  # a damaged file has just been reported
-            return None
         self._looked.pop(name, None)
         return self.entry(name)
+
+    def _is_compiled_now(self) -> bool:
+        """Whether a process compiles this text: one that this process has started, or another's that is not dead."""
+        try:
+            asked = self._request.stat().st_mtime
+        except OSError:
+            return False
+        return any(process.poll() is None for process in _STARTED) or (
+            not _STARTED and time.time() - asked < SETTINGS.dead
+        )
 
     def _load(self, name: str, code: bytes) -> Entry:
         from singimpact.codegen import object_code
