@@ -16,7 +16,7 @@ from singimpact.paper.sections.remarks import GRADES, REMARKS
 
 def test_list_and_show(singimpact):
     listed = json.loads(singimpact("claims", "list", "--json").stdout)["claims"]
-    assert len(listed) == len(si.claims) == 142
+    assert len(listed) == len(si.claims) == 147
     shown = json.loads(singimpact("claims", "show", "s3-dvdt", "--json").stdout)
     assert (shown["verdict"], shown["corrected_kind"]) == ("corrected", "proved")
     assert shown["mutants"] == 2
@@ -33,7 +33,7 @@ def test_impact_is_what_rests_on_it(singimpact):
 def test_graph_as_text_and_svg(singimpact):
     told = json.loads(singimpact("claims", "graph", "--json").stdout)
     assert told["s3-DG"] == ["s3-Dp", "s3-Dphi"]
-    assert len(singimpact("claims", "graph").stdout.splitlines()) == 142
+    assert len(singimpact("claims", "graph").stdout.splitlines()) == 147
     from singimpact.paper.claims import CLAIMS
     from singimpact.paper.claims.graph import as_svg
 

@@ -101,7 +101,7 @@ class ClaimTable(Mapping[str, Claim]):
     --------
     >>> claim = CLAIMS["e:meq"]
     >>> len(CLAIMS), claim.section, claim.printed.latex[:4]
-    (142, '4.1(a)', '2rm=')
+    (147, '4.1(a)', '2rm=')
     """
 
     def __getitem__(self, name: str) -> Claim:

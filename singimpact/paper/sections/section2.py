@@ -119,4 +119,12 @@ def _singular() -> tuple[Step, ...]:
             "",
             ("s2-corr-sets", "p:corresp", "s2-G-semiconj"),
         ),
+        Step(
+            "Flights of any length may rest at infinitely many phases that are not alike. In the undamped model with "
+            "an irrational frequency their outline is dense in a region; where all is periodic in $t$, or $t$ is "
+            "bounded, it is not.",
+            "",
+            "",
+            ("s2-dense",),
+        ),
     )

@@ -10,7 +10,7 @@ from singimpact.documents.arranging import factored, in_powers
 from singimpact.documents.steps import Section, Step
 from singimpact.paper.claims.sections.section6_exact import LANDING, OUTLINE, z
 from singimpact.paper.routes import unfolding as swan
-from singimpact.paper.routes.scaling import WEIGHTS, alpha, limit_launch, phi_1, phi_2, scaled, y
+from singimpact.paper.routes.scaling import WEIGHTS, alpha, limit_acceleration, limit_launch, phi_1, phi_2, scaled, y
 from singimpact.paper.routes.unfolding import A, B, C, D, E, r, sigma, t
 from singimpact.theory.notation import latex, name_of
 
@@ -26,6 +26,11 @@ def _scaled() -> str:
     names = {alpha: sympy.Symbol(r"\alpha"), phi_1: sympy.Symbol(r"\varphi_1"), phi_2: sympy.Symbol(r"\varphi_2")}
     names |= {y: sympy.Symbol("x'")}
     return rf"x'' = {latex(limit)} + H\left({latex(rest.subs(names))}\right)"
+
+
+def _from_rest() -> Any:
+    """-a at s, in the limit."""
+    return -limit_acceleration().subs(sigma, sympy.Symbol("s"))
 
 
 def _model() -> tuple[Step, ...]:
@@ -47,6 +52,14 @@ def _model() -> tuple[Step, ...]:
             rf"v_c(H\sigma, Ht) = H^3\left({factored(limit_launch())} + O(H)\right)",
             "s6-scaling",
             ("s6-scaling",),
+        ),
+        Step(
+            "In the plane of all flights those from rest, $R(\\cdot; s)$, form a curve. It has the direction of "
+            "$T - s$ everywhere, and stops at the zeros of $a_c$: they are its cusps. Two are born with one crossing, "
+            "at $s^2 = -3e$, in a swallowtail, which $P$ shows wherever such a flight was launched with $v > 0$:",
+            rf"\frac{{\partial R}}{{\partial s}}(T; s) = {factored(_from_rest())}\,(T - s)",
+            "s6-front",
+            ("s6-swallowtail",),
         ),
         Step(
             "What holds in the limit by simple zeros, transverse crossings and strict inequalities holds near the swan "
@@ -139,7 +152,7 @@ def _positive() -> tuple[Step, ...]:
             "leave:",
             r"B,\ (\sigma_\gamma, 0) \in \gamma,\quad -\sqrt{3} < \sigma_\gamma < -1",
             "s6p-gamma",
-            ("s6p-gamma",),
+            ("s6p-gamma", "s6p-separates"),
             "figure12",
         ),
     )
@@ -193,6 +206,6 @@ def _negative() -> tuple[Step, ...]:
             "loops around the inverse images of $\\delta$, which accumulate on the invariant curve of $A$:",
             r"A \in W^s(X),\quad X = (\tau_3, 0),\quad \tau_3 > \tau_2",
             "s6n-X",
-            ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate", "s7-loops"),
+            ("s6n-X", "s6n-tangent", "s6n-transverse", "s6n-loops", "s6n-accumulate", "s7-loops", "s6n-Y"),
         ),
     )

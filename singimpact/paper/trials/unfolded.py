@@ -1,4 +1,4 @@
-"""Orbits of the universal unfolded swan: the stable manifold through A, its loops."""
+"""Orbits of the universal unfolded swan: stable manifolds, their loops, and what gamma separates."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from scipy.optimize import brentq
 from singimpact.algebra.solving import halved
 from singimpact.impact_oscillator import ImpactOscillator, universal
 from singimpact.paper.trials import true_orbits
+from singimpact.status import Status
+
+TEAR = 1e-6  # relative distance from a discontinuity at which its sides are looked at
 
 
 def negative(r: str) -> ImpactOscillator:
@@ -135,17 +138,75 @@ def _outline(sigma: float) -> float:
     return flight * (6 * (sigma**2 - 1) + 4 * sigma * flight + flight**2)
 
 
-def _crossings(sigma: float, low: float, high: float, coarse: int = 76, fine: int = 20) -> int:
-    """How often foot - X changes sign, without a jump, for v between two multiples of the outline's.
+@dataclass(frozen=True)
+class Beyond:
+    """Stable manifolds of points Y to the right of X on the line sigma = -1.02, r = 1/2.
+
+    Attributes
+    ----------
+    excess : Y - X. crossings : of each manifold, above the fifth inverse image of delta.
+    tears : foot - X just below and just above delta and its first inverse images.
+    """
+
+    excess: tuple[float, ...]
+    crossings: tuple[int, ...]
+    tears: tuple[tuple[float, float], ...]
+
+
+@lru_cache(maxsize=1)
+def beyond() -> Beyond:
+    """Where feet exceed X between the inverse images of delta, and what they are next to these."""
+    place, unit, goal = -1.02, 0.02**2 / _outline(-1.02), foot("1/2")
+    edges = [height * unit for height in preimages().heights[:6]]
+    excess = (1e-4, 5e-5, 1e-5, 5e-6, 1.5e-6)
+    counts = tuple(sum(_crossings(place, low, high, more=y) for high, low in pairwise(edges)) for y in excess)
+    jumps = [_edge(place, count) for count in range(1, 6)]
+    sides = [np.array([low * (1 - TEAR), high * (1 + TEAR)]) for low, high in jumps]
+    tears = [tuple(_feet(negative("1/2"), np.full(2, place), pair) - goal) for pair in sides]
+    return Beyond(excess, counts, tuple((float(low), float(high)) for low, high in tears))
+
+
+def _edge(sigma: float, count: int) -> tuple[float, float]:
+    """Neighbouring velocities above which fewer than `count` impacts precede the flight over A."""
+    return halved(lambda v: _impacts_before_leaving(sigma, v) >= count, 0.0, _outline(sigma) * 1.5, 1e-15)
+
+
+@lru_cache(maxsize=4)
+def feet_on_the_landing_arc(r: str) -> tuple[float, ...]:
+    """dK/ds along R(D''C''), s its length and K the foot: from C'' to B, at 59 places, the last 1e-4 from B in t."""
+    osc, rate = negative(r), float(sympy.Rational(r))
+    grazing = 4 - np.geomspace(4, 1e-4, 60)
+    sigma = -(4 * grazing + np.sqrt(36 - 2 * grazing**2)) / 6
+    flight = -4 * sigma - 2 * grazing
+    tau, v = sigma + flight, rate * flight * (flight - grazing) ** 2
+    ends = osc.chatter_limit(tau, v).tau
+    return tuple(np.diff(ends) / np.hypot(np.diff(tau), np.diff(v)))
+
+
+@lru_cache(maxsize=4)
+def fates(r: str) -> dict[float, tuple[bool, ...]]:
+    """In the positive swan, over lines sigma = const in S': whether chatter is complete before B, v rising to p(BE)."""
+    osc, found = universal(1, r), {}
+    for sigma in (-1.3, -1.1, -0.9, -0.4, 0.2, 0.7, 0.98):
+        flight = (-8 * sigma + np.sqrt(72 - 8 * sigma**2)) / 6
+        top = -flight * (6 * (sigma**2 - 1) + 4 * sigma * flight + flight**2)
+        v = top * np.arange(1, 80) / 80
+        ends = osc.chatter_limit(np.full_like(v, sigma), v)
+        found[sigma] = tuple(((ends.status == Status.complete) & (ends.tau < 1)).tolist())
+    return found
+
+
+def _crossings(sigma: float, low: float, high: float, coarse: int = 76, fine: int = 20, more: float = 0.0) -> int:
+    """How often foot - X - more changes sign, without a jump, for v between two multiples of the outline's.
 
     Looked for between neighbours of a coarse grid whose signs differ: a jump may stand beside a crossing.
     """
     count, unit = 0, _outline(sigma)
     v = unit * np.linspace(low, high, coarse * fine)[1:-1]
     places = [*range(0, len(v) - 1, fine), len(v) - 1]
-    off = _off(sigma, v[places])
+    off = _off(sigma, v[places]) - more
     for at in np.flatnonzero(np.sign(off[1:]) != np.sign(off[:-1])):
-        near = _off(sigma, v[places[at] : places[at + 1] + 1])
+        near = _off(sigma, v[places[at] : places[at + 1] + 1]) - more
         count += int(np.count_nonzero((np.sign(near[1:]) != np.sign(near[:-1])) & (np.abs(np.diff(near)) < 0.5)))
     return count
 

@@ -199,6 +199,16 @@ MUTANTS = {
         "displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2))",
         "displaced = sum(value * s ** (n + 2) / (n + 2)",
         "s6-lips s6-sections s6n-C s6n-corr s6n-corr-A s6n-cusp s6n-maps s6n-AB s6p-regions"),
+    "flights from rest without their factor": (
+        "paper/claims/sections/section6_regions.py",
+        "value * s ** (n + 1) / (n + 1) for",
+        "value * s ** (n + 2) / (n + 2) for",
+        "s6-swallowtail"),
+    "flights that pass the wall elsewhere": (
+        "paper/claims/sections/section2.py",
+        "height = k + (level",
+        "height = 2 * k + (level",
+        "s2-dense"),
     "a limit of launches without a term": (
         "paper/routes/scaling.py",
         "displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2))",

@@ -136,7 +136,7 @@ def test_effective_verdict_is_the_weakest_below(verdicts):
 
 NEAR_THE_SWAN = {
     "s6-scaling", "s6-lips", "s6p-none", "s6p-AB", "s6p-BE", "s6p-AE", "s6p-eps", "s6n-corr", "s6n-maps",
-    "s6n-shadow-neg", "s6n-cusp", "s6n-AB", "s6n-X", "s6p-regions", "s6n-corr-A", "s6n-C",
+    "s6n-shadow-neg", "s6n-cusp", "s6n-AB", "s6n-X", "s6p-regions", "s6n-corr-A", "s6n-C", "s6-swallowtail",
 }  # fmt: skip
 
 

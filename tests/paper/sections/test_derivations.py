@@ -31,7 +31,7 @@ LABELS = [
     "s4b-rays", "s4b-last-ray", "s4b-M", "s4b-bounds", "s4b-ratio", "s4b-below-one", "ratios-shorter-1", "s4b-eps",
     "e:pdeg3", "s5-phi", "s5-hbar", "s5-f", "s5-g", "s5-fixed", "s5-r-of-m", "s5-jacobian", "s5-mu", "s5-lambda-P",
     "s5-lambda-r", "s5-gamma-leading", "ratios-2", "ratios-rise-2", "ratios-shorter-2", "s6-scaled", "s6-scaling",
-    "s6-model", "s6-launch",
+    "s6-front", "s6-model", "s6-launch",
     "s6-impact", "s6-horizon", "s6-zero-set", "s6-E", "s6n-corr", "s6n-cusp", "s6p-AB", "s6p-BE", "s6p-eps",
     "s6p-gamma", "s6-shadow", "s6n-maps", "s6-GA", "s6n-chatter", "s6n-X",
 ]  # fmt: skip

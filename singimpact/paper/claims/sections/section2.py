@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import sympy
 
+from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Claim, Statement
 from singimpact.paper.claims.sections.section2_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero
@@ -31,7 +34,55 @@ def _divisible(power: int) -> Check:
     )
 
 
+def _signed(number: Any) -> bool:
+    """Whether the sign of a number is known."""
+    return number.is_positive is True or number.is_negative is True
+
+
+def _dense(omega: Any) -> Check:
+    """x'' + x = cos(omega t), a clearance of its own: P near a launch at tau = 0, with flights of any length.
+
+    q = k cos(omega t) is the periodic solution.  The flight from rest at s is at time 0, with alpha = -s and
+    beta = omega s, at k + (c - k cos beta) cos alpha + k omega sin beta sin alpha, with the velocity
+    -(c - k cos beta) sin alpha + k omega sin beta cos alpha.
+    """
+    alpha, beta = sympy.symbols("alpha beta")
+    Ca, Sa, Cb, Sb, w = sympy.symbols("Ca Sa Cb Sb w")
+    k = 1 / (1 - w**2)
+    place = {alpha: sympy.pi / 2, beta: sympy.pi / 6}
+    level = k * (1 + w / 2)
+    height = k + (level - k * Cb) * Ca + k * w * Sb * Sa - level
+    velocity = -(level - k * Cb) * Sa + k * w * Sb * Ca
+    substitution(At(height, {Ca: 0, Sa: 1, Sb: sympy.Rational(1, 2)}), sympy.Integer(0))
+    circles = {Ca: sympy.cos(alpha), Sa: sympy.sin(alpha), Cb: sympy.cos(beta), Sb: sympy.sin(beta), w: omega}
+    met, speed = (part.subs(circles) for part in (height, velocity))
+    start, rate = (sympy.nsimplify(part.subs(place)) for part in (met, speed))
+    along = sympy.diff(met, beta) * omega - sympy.diff(met, alpha)
+    turn = sympy.Matrix([met, speed]).jacobian([alpha, beta]).det()
+    return every(
+        [
+            (f"omega = {omega} is irrational, so (-s, omega s) modulo 2 pi is dense", omega.is_irrational is True),
+            ("one flight from rest passes the wall at time 0, upwards", is_zero(start) and rate.is_positive is True),
+            ("nearby such (alpha, beta) lie on an arc that the dense line crosses", _signed(along.subs(place))),
+            ("along which the velocity changes: a dense set of an interval", _signed(turn.subs(place))),
+        ],
+        modulo=("Kronecker's theorem",),
+    )
+
+
 CLAIMS = (
+    Claim(
+        id="s2-dense",
+        section="2.2",
+        title="with flights of any length P may be dense in a region of Pi: in x'' + x = cos(omega t), omega irrational",
+        printed=Statement(
+            r"\ddot x+x=\cos\omega t,\ \omega=\sqrt2,\ c=-1-\tfrac\omega2:\quad\overline{P_c}\ \text{has interior points}",
+            sympy.sqrt(2),
+        ),
+        verify=_dense,
+        mutants=(sympy.Rational(3, 2), sympy.Integer(2)),
+        rests_on=("s2-horizon",),
+    ),
     Claim(
         id="e:yeq",
         section="2.1",

@@ -6,11 +6,13 @@ from typing import Any
 
 import sympy
 
+from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Statement
 from singimpact.paper.claims.sections.section6 import claim_6
 from singimpact.paper.claims.sections.section6_negative import cusp_above
 from singimpact.paper.claims.sections.section6_scaling import crossing, near_the_swan
-from singimpact.paper.claims.verifiers import every, is_zero
+from singimpact.paper.claims.verifiers import every, is_zero, same
+from singimpact.paper.routes import scaling
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t
 
@@ -90,7 +92,58 @@ def _cusp_of_phi(point: tuple[Any, Any]) -> Check:
     return near_the_swan(check, [("a' at the launch", model.slope_of_acceleration(point[0])), ("x-dot", landing)])
 
 
+def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
+    """How many cusps and crossings the curve of flights from rest has before and after a swan, for the signs of e.
+
+    The flight from rest at s of x'' = a is R(T; s) = F(T) - F(s) - F'(s)(T - s), F'' = a, so dR/ds = -a(s)(T - s).  In
+    the plane of flights the curve has the direction of T - s everywhere, and stops where a(s) = 0.
+    """
+    s, other = sympy.symbols("s s_2")
+    pressed = scaling.limit_acceleration().subs(sigma, s)
+    falling = sympy.Poly(pressed * (t - s), s).terms()
+    rest = -sympy.Add(*(value * s ** (n + 1) / (n + 1) for (n,), value in falling))
+    flat, steep = (sympy.Poly(rest, t).nth(power) for power in (0, 1))
+    chords = [sympy.cancel((part - part.subs(s, other)) / (s - other)) for part in (flat, steep)]
+    meeting = sympy.factor_list(sympy.resultant(*chords, other), s)[1]
+    found = {}
+    for sign in (1, -1):
+        cusps = sympy.Poly(pressed.subs({kappa: 1, scaling.e: sign}), s).real_roots()
+        apart = [root for factor, _ in meeting
+                 for root in sympy.Poly(factor.subs({kappa: 1, scaling.e: sign}), s).real_roots() if root not in cusps]  # fmt: skip
+        found[sign] = (len(cusps), len(apart) // 2)
+    doubled = -3 * scaling.e  # s^2 at the crossing, whose other flight is that from -s
+    substitution(At(steep, {s: -s}), -steep)
+    square = sympy.Symbol("s_s")
+    substitution(At(sympy.cancel(steep / s).subs(s**2, square), {square: doubled}), 0)
+    substitution(At(flat, {s: -s}), flat)
+    check = every(
+        [
+            (
+                f"dR/ds = {sympy.factor(sympy.diff(rest, s))}: it vanishes at the zeros of a alone",
+                same(sympy.diff(rest, s), -pressed * (t - s)),
+            ),
+            (f"cusps and crossings for e = 1 and e = -1: {found}", found == stated),
+            (
+                "the flights from rest at -s and s are one where s^2 = -3e",
+                is_zero(sympy.rem(steep, s**2 - doubled, s)) and is_zero(flat - flat.subs(s, -s)),
+            ),
+        ]
+    )
+    at_crossing = [(f"a at s^2 = {doubled}", sympy.expand(pressed.subs({s: sympy.sqrt(3), scaling.e: -1})))]
+    return near_the_swan(check, [*_tangencies(), *at_crossing])
+
+
 CLAIMS = (
+    claim_6(
+        "s6-swallowtail",
+        "the two tangency points born at a swan are two cusps of the curve of flights from rest, born in a swallowtail",
+        Statement(
+            r"\#\{\text{cusps}\},\ \#\{\text{crossings}\}:\ (0,0)\ (e>0),\quad(2,1)\ (e<0)", {1: (0, 0), -1: (2, 1)}
+        ),
+        _swallowtail,
+        ({1: (0, 0), -1: (2, 0)}, {1: (2, 1), -1: (0, 0)}, {1: (0, 0), -1: (3, 1)}),
+        ("s6-d", "p:corresp", "s6-scaling"),
+    ),
     claim_6(
         "s6p-regions",
         "positive swan: S' and S'' are simply connected, each between a graph and an interval of Pi_0",
