@@ -7,6 +7,7 @@ import os
 import shutil
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import pytest
@@ -26,8 +27,19 @@ def pytest_configure(config):
     if not hasattr(config, "workerinput"):  # workers of one run share the cache of the first
         config.singimpact_cache = tempfile.mkdtemp(prefix="singimpact-suite-")
         os.environ["SINGIMPACT_CACHE"] = config.singimpact_cache
+        Path(config.singimpact_cache, "kernels").symlink_to(_kept_kernels(config.rootpath), target_is_directory=True)
         os.environ["NUMBA_OPT"] = "0"  # as in the process that compiles models
         os.environ["NUMBA_CACHE_DIR"] = str(Path(config.singimpact_cache) / "numba")
+
+
+def _kept_kernels(root):
+    """Compiled models, which the next run finds: a name says which source and model they are of; for two days."""
+    kept = root / ".pytest_cache" / "kernels"
+    kept.mkdir(parents=True, exist_ok=True)
+    for file in kept.iterdir():
+        if time.time() - file.stat().st_mtime > 2 * 86400:
+            file.unlink(missing_ok=True)
+    return kept
 
 
 def pytest_unconfigure(config):
