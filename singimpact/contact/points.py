@@ -194,8 +194,8 @@ def _decided(function: Expression, zero: Zero) -> list[TangencyPoint]:
 def _beside(function: Expression, zero: Zero, turn: Fraction, slope: int) -> list[TangencyPoint]:
     """The zeros of a piece on the two sides of an extremum, by signs; `slope` is that of the derivative after it."""
     low, middle, high = (sign_at(function, "t", end, 0) for end in (zero.low, turn, zero.high))
-    left = [Zero(zero.low, turn, -slope)] if low * -slope <= 0 < middle * -slope else []
-    right = [Zero(turn, zero.high, slope)] if middle * slope <= 0 < high * slope else []
+    left = [Zero(zero.low, turn, -slope)] if low != -slope == middle else []
+    right = [Zero(turn, zero.high, slope)] if middle != slope == high else []
     return [TangencyPoint(function, piece, KINDS[piece.slope]) for piece in left + right]
 
 

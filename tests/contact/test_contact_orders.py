@@ -1,11 +1,19 @@
 """Names and numbers of contact orders, and the digits that tangency points are asked for."""
 
+from fractions import Fraction
+
+import flint
+import mpmath
 import pytest
 
 import singimpact as si
-from singimpact.contact.contact import contact_order
-from singimpact.contact.points import MOST_DIGITS
+from singimpact.algebra.balls import Zero
+from singimpact.algebra.parsing import parse
+from singimpact.algebra.precision import balls_at
+from singimpact.contact.contact import Contact, contact_order
+from singimpact.contact.points import MOST_DIGITS, _beside, enclosed
 from singimpact.inputs import InputError
+from singimpact.theory.sheet import generic_sheet
 
 
 @pytest.mark.parametrize(
@@ -33,3 +41,41 @@ def test_one_digit_and_many_are_reached():
     few, many = point.certified(1), point.certified(300)
     assert abs(few.value - many.value) <= few.radius + many.radius
     assert many.radius < 1e-299
+
+
+def test_bits_are_enough_at_the_first_attempt():
+    asked = []
+
+    def ball(bits):
+        asked.append(bits)
+        with balls_at(bits):
+            return flint.arb.pi()
+
+    for digits in (1, 20, 300):
+        asked.clear()
+        assert abs(enclosed(ball, digits).value - mpmath.pi) < 10.0 ** (1 - digits) + 1e-15
+        assert len(asked) == 1
+        assert asked[0] < 4 * digits + 40
+
+
+@pytest.mark.parametrize("j", range(4))
+def test_generic_jets_are_those_that_the_sheet_contains(j):
+    for order in range(j + 1, 7):
+        v = generic_sheet(j, order)
+        used = {str(name) for name in v.to_sympy(v.v).free_symbols} - {"sigma", "t"}
+        assert set(Contact.generic(j, order).ring.names) == used
+
+
+@pytest.mark.parametrize(
+    ("text", "turn", "slope", "kinds"),
+    [
+        ("t*(2 - t)", 1, -1, ["gamma"]),  # the left end is a zero, and belongs to the piece; the right one does not
+        ("t*(t - 2)", 1, 1, ["foliation"]),
+        ("(2*t - 1)*(3 - 2*t)", 1, -1, ["gamma", "foliation"]),
+        ("t**2 + 1", 1, 1, []),
+    ],
+)
+def test_zeros_beside_an_extremum(text, turn, slope, kinds):
+    function = parse(text, ["t"])
+    found = _beside(function, Zero(Fraction(0), Fraction(2), 0), Fraction(turn), slope)
+    assert [point.kind for point in found] == kinds

@@ -57,10 +57,9 @@ Lines = dict[str, dict[str, list[tuple[str, float]]]]  # file, line: tests with 
 
 def drawn(count: int, seed: int) -> list[Mutant]:
     """So many mutants over the files that are there, each file alike, none twice."""
-    rng = random.Random(seed)
     pools = {file: mutants_of(file, (ROOT / file).read_text()) for file in GUARDS if (ROOT / file).exists()}
-    for pool in pools.values():
-        rng.shuffle(pool)
+    for file, pool in pools.items():
+        random.Random(f"{seed} {file}").shuffle(pool)  # a file that is edited changes its own mutants alone
     chosen: list[Mutant] = []
     while len(chosen) < count and any(pools.values()):
         chosen += [pool.pop() for pool in pools.values() if pool]
