@@ -4,6 +4,8 @@ import ast
 import sys
 from pathlib import Path
 
+import pytest
+
 sys.path.insert(0, str(Path(__file__).parent))
 
 import mutate
@@ -46,6 +48,14 @@ def test_the_seed_draws_the_same_mutants_and_every_file_is_there(clone):
         assert all((clone / guard).exists() for guard in guards), guards
 
 
+def test_the_quickest_tests_that_run_the_line_come_first():
+    mutant = next(each for each in mutants_of("demo.py", "def half(x):\n    return x / 2\n") if each.was == "/")
+    lines = {"demo.py": {"1": [("never", 0.1)], "2": [("slow", 50.0), ("quick", 1.0), ("middle", 30.0)]}}
+    assert mutate.nearest(mutant, lines) == ["quick", "middle"]
+    assert mutate.nearest(mutant, {}) == []
+
+
+@pytest.mark.slow
 def test_a_wrong_formula_is_noticed_and_one_that_no_test_reads_is_not(tmp_path, monkeypatch):
     (tmp_path / "demo.py").write_text("def half(x):\n    return x / 2\n\n\ndef unread(x):\n    return x / 2\n")
     (tmp_path / "test_demo.py").write_text("import demo\n\n\ndef test_half():\n    assert demo.half(4) == 2\n")
