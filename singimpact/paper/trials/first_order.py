@@ -80,11 +80,11 @@ def _swan(model: Model) -> tuple[float, float, float, float]:
 
 
 @cache
-def measured(model: Model, rate: str) -> Feet:
+def measured(model: Model, rate: str, tried: tuple[float, ...] = SIZES) -> Feet:
     """X_H - X at each H; times are taken from the middle of A and B, in units of H."""
     c, tau, bend, chi = _swan(model)
     sizes, offsets, limit = [], [], limit_of(rate)
-    for size in SIZES:
+    for size in tried:
         osc = Oscillator(model.f, model.g, repr(c - bend * size**2 / 2), rate)
         A, B = _ends(osc, tau)
         half = (B - A) / 2

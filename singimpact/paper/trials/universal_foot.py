@@ -32,8 +32,8 @@ class Effort:
     """
 
     bits: int = 192
-    near: float = 1 / 64
-    growth: Fraction = Fraction(101, 100)
+    near: float = 1 / 256
+    growth: Fraction = Fraction(201, 200)
     grain: int = 10**5
     impacts: int = 1000
     elastic_bits: int = 384

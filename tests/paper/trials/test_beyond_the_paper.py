@@ -55,7 +55,6 @@ def test_the_holder_exponent_at_j_1():
     assert abs(found.slope - 0.603031) < 1e-5
 
 
-@pytest.mark.slow
 def test_the_holder_exponent_in_many_digits():
     """In balls, 1e-9 to 3e-11 from gamma, by the public functions."""
     osc = si.linear(2, "0.3", "0.5")
