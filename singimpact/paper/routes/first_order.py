@@ -105,10 +105,10 @@ def _solved(tried: Change, motion: Any, goal: Any) -> Change:
     """
     outer = transformed(tried, motion)
     rest = sympy.Poly(sympy.expand(sympy.cancel(truncated(outer - goal) * s / h)), s, L, x, y)
-    found = sympy.solve(rest.coeffs(), [alpha, beta], dict=True)
-    if len(found) != 1:
+    found = list(sympy.linsolve(rest.coeffs(), [alpha, beta]))
+    if len(found) != 1 or {alpha, beta} & set().union(*(value.free_symbols for value in found[0])):
         raise ArithmeticError("no alpha and beta remove the term of first order")
-    images = {name: sympy.factor(value) for name, value in found[0].items()}
+    images = {name: sympy.factor(value) for name, value in zip((alpha, beta), found[0], strict=True)}
     substitution(At(outer, images), At(goal, images), order=1, small=[h])
     return Change(*(sympy.factor(part.subs(images)) for part in tried))
 
@@ -122,5 +122,5 @@ def shift() -> Any:
     -chi*(X - 1)*(X + 1)/10
     """
     foot, chi = sympy.symbols("X chi")
-    slope = sympy.solve(damping + 2 * A3 / (3 * A2) - chi, A3)[0]
-    return sympy.factor(-swan_removal().time.subs(A3, slope).subs(s, foot))
+    third = sympy.Rational(3, 2) * A2 * (chi - damping)  # chi = f_v + 2 a'''/(3 a'')
+    return sympy.factor(-swan_removal().time.subs(A3, third).subs(s, foot))

@@ -129,9 +129,8 @@ def _used_up() -> Any:
     >>> round(float(_used_up().subs(w, 1)), 5)
     0.95144
     """
-    place = sympy.Symbol("X", positive=True)
-    lost = sympy.integrate((12 * place**2) ** sympy.Rational(2, 3), place) / 2  # over 1 - r: a number times X^(7/3)
-    return (w / sympy.simplify(lost / place ** sympy.Rational(7, 3))) ** sympy.Rational(3, 7)
+    root, power = 12 ** sympy.Rational(2, 3), sympy.Rational(4, 3)  # |a|^(2/3) is root sigma^power
+    return (2 * (power + 1) * w / root) ** (1 / (power + 1))
 
 
 def _limit(stated: tuple[Any, str, str]) -> Check:
@@ -141,7 +140,7 @@ def _limit(stated: tuple[Any, str, str]) -> Check:
     derived, found = _used_up(), elastic()
     u_low, u_high = found.invariant
     ends = [_decimal(derived.subs(w, sympy.Rational(each.numerator, each.denominator))) for each in (u_low, u_high)]
-    equal = sympy.simplify((formula / derived) ** 7) == 1
+    equal = sympy.expand(formula**7 - derived**7) == 0
     above = [[scaled(each, rate, SEVENTHS) for each in foot(rate, CLOSE)] for rate in NEAR_ONE]
     nearer = all(low > high for (low, _), (_, high) in itertools.pairwise(above))
     return every(

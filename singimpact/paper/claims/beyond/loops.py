@@ -62,11 +62,19 @@ def preimage() -> Any:
     return sympy.expand(6 * (r * landing - w * ell**2))
 
 
+def _root(expression: Any, variable: Any) -> Any:
+    """The root of a linear polynomial."""
+    line = sympy.Poly(expression, variable)
+    if line.degree() != 1:
+        raise ArithmeticError(f"{expression} is not linear in {variable}")
+    return -line.nth(0) / line.nth(1)
+
+
 def _map(stated: tuple[Any, Any, Any]) -> Check:
     """(height on W^s(X) above the tear, height of the tear, polynomial in (l, r) of the height below it)."""
     outer, tear, polynomial = stated
-    above = sympy.solve(excess(sympy.Integer(-1), w), w)
-    (turn,) = sympy.solve(sympy.diff(height(ell), ell), ell)
+    above = _root(excess(sympy.Integer(-1), w), w)
+    turn = _root(sympy.diff(height(ell), ell), ell)
     graze = height(ell).subs(ell, turn)
     passed, landed = excess(sympy.Integer(-1), graze), excess(-turn, sympy.Integer(0))
     substitution(At(-6 * height(ell) + w, {ell: lambda_, w: (1 - lambda_) * P(1)}), sympy.Integer(0))
@@ -77,7 +85,7 @@ def _map(stated: tuple[Any, Any, Any]) -> Check:
     fixed = sympy.cancel(step.subs(w, height(ell)) / (1 - ell))
     return every(
         [
-            (f"an orbit that passes A has the excess 0 there at w = {above}: stated {outer}", above == [outer]),
+            (f"an orbit that passes A has the excess 0 there at w = {above}: stated {outer}", above == outer),
             (f"the tear is at w = {graze}, where l = {turn}: stated {tear}", same(graze, tear)),
             (
                 f"flights that pass the graze and those that hit have the same excess {passed} at A",
