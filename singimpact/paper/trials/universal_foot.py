@@ -82,7 +82,7 @@ def foot(rate: Fraction, near: float = EFFORT.near) -> tuple[Fraction, Fraction]
     Examples
     --------
     >>> low, high = foot(Fraction(1, 2), 1e-5)
-    >>> float(low) < 4.04765628 < float(high), float(high - low) < 1e-8
+    >>> float(low) < 4.0476562833 < float(high), float(high - low) < 1e-8
     (True, True)
     """
     with balls_at(EFFORT.bits):
