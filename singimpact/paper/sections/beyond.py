@@ -231,7 +231,7 @@ def _onset() -> tuple[Step, ...]:
 def _repairs() -> tuple[Step, ...]:
     return (
         Step(
-            "Two more inequalities: the corrected bounds of section 4.1(b) suffice, as $r(4 - r) < 2 + r$; and beside a "
+            "Two more inequalities: the corrected bounds of section 4.1(b) suffice, as $r(4 - r) < 2 + r$; beside a "
             "border orbit what a window of parameters returns is small beside its width, as",
             r"\lambda^2\mu = 1 - \frac{1 - \lambda^3}{(1 + 2\lambda)^2} < 1",
             "b:cascade-contraction",
