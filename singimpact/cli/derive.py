@@ -140,5 +140,6 @@ def _picture(name: str) -> bytes:
     from singimpact.paper.figures.rendering import drawn
 
     with TemporaryDirectory() as place:
-        save(drawn(kept_picture(int(name.removeprefix("figure")))), f"{place}/{name}.pdf")
+        number = name.removeprefix("figure")
+        save(drawn(kept_picture(int(number) if number.isdigit() else number)), f"{place}/{name}.pdf")
         return Path(place, f"{name}.pdf").read_bytes()

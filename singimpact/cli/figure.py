@@ -1,4 +1,4 @@
-"""`singimpact figure`: the paper's figures from computed data."""
+"""`singimpact figure`: the paper's figures from computed data, and those beyond it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ import click
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import PICTURES, save_once
 from singimpact.inputs import refuse
-from singimpact.paper.figures import FIGURES
+from singimpact.paper.figures import BEYOND, FIGURES
+from singimpact.paper.figures.registry import ACCEPTED
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, require_writable, write_text
 
@@ -20,7 +21,7 @@ DPI = 200  # of a PNG: figures are as small as they are printed
 
 
 @click.command(short_help="the paper's figures, from computed data")
-@click.argument("which", metavar="N|all")
+@click.argument("which", metavar="N|all|beyond")
 @click.option("-o", "--output", metavar="DIR", default=".", show_default=True,
               help="A folder for the pictures, or for one figure a file ending in .png, .pdf or .svg.")  # fmt: skip
 @click.option("--format", "kind", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
@@ -31,11 +32,13 @@ DPI = 200  # of a PNG: figures are as small as they are printed
 def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: bool, as_json: bool) -> None:
     """Draw figure N of the paper, 1 to 17, or all, each computed from an oscillator, and list the claims that it shows.
 
+    B1 to B6 are figures of what is beyond the paper; `beyond` draws them all.
+
     Letters are 8 points high at the size of the file, which is at most 6.9 inches wide.
 
     What a figure shows is kept in the cache as numbers: a run that was cut off goes on where it was.
     """
-    numbers = _numbers(which, list(FIGURES))
+    numbers = _numbers(which)
     targets, written = _targets(output, numbers, kind), []
     with ProgressLine() as line:
         for done, number in enumerate(numbers):
@@ -53,7 +56,7 @@ def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: b
             click.echo(f"{file}  {title} ({', '.join(claims)})")
 
 
-def _made(number: int, serif: bool, dark: bool) -> tuple[Any, Any]:
+def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
     from singimpact.paper.figures.cached import kept_picture
     from singimpact.paper.figures.rendering import Look, drawn
 
@@ -61,25 +64,27 @@ def _made(number: int, serif: bool, dark: bool) -> tuple[Any, Any]:
     return drawn(picture, Look(serif, dark)), [picture.title, list(picture.claims)]
 
 
-def _data(number: int) -> Any:
+def _data(number: int | str) -> Any:
     from singimpact.paper.figures.cached import kept_picture
 
     return kept_picture(number).to_dict()
 
 
-def _targets(output: str, numbers: list[int], kind: str) -> list[Path]:
+def _targets(output: str, numbers: list[int | str], kind: str) -> list[Path]:
     """Where each figure goes; the folder is there."""
     if Path(output).suffix.lower() not in PICTURES:
-        return [folder(output) / f"figure{number:02d}.{kind}" for number in numbers]
+        return [folder(output) / f"figure{str(number).zfill(2)}.{kind}" for number in numbers]
     if len(numbers) > 1:
         raise refuse("output", output, "a folder: these are several figures")
     require_writable(output)
     return [Path(output)]
 
 
-def _numbers(which: str, known: list[int]) -> list[int]:
-    if which == "all":
-        return known
-    if not which.isdigit() or int(which) not in known:
-        raise refuse("figure", which, f"a number from {min(known)} to {max(known)}, or all")
+def _numbers(which: str) -> list[int | str]:
+    if which in ("all", "beyond"):
+        return [*FIGURES] if which == "all" else [*BEYOND]
+    if which in BEYOND:
+        return [which]
+    if not which.isdigit() or int(which) not in FIGURES:
+        raise refuse("figure", which, f"{ACCEPTED}, or all, or beyond")
     return [int(which)]

@@ -77,12 +77,12 @@ class Picture:
 
     Attributes
     ----------
-    number : in the paper. title : what it shows. claims : ids of what it illustrates. model : text of the oscillator.
-    panels : with their rows and columns. facts : numbers that the figure shows, for tests. caption : what is seen
-    where, in sentences with formulas between dollars.
+    number : in the paper, or B1, B2, ... beyond it. title : what it shows. claims : ids of what it illustrates.
+    model : text of the oscillator. panels : with their rows and columns. facts : numbers that the figure shows, for
+    tests. caption : what is seen where, in sentences with formulas between dollars.
     """
 
-    number: int
+    number: int | str
     title: str
     claims: tuple[str, ...]
     model: str

@@ -9,10 +9,17 @@ from singimpact.inputs import refuse
 from singimpact.paper.figures.panel import Picture
 
 FIGURES = tuple(range(1, 18))
-"""The numbers of the figures."""
+"""The numbers of the paper's figures."""
+BEYOND = ("B1", "B2", "B3", "B4", "B5", "B6")
+"""The names of figures of what the paper does not have."""
 
 
-def _function(number: int) -> Callable[[], Picture]:
+ACCEPTED = f"a number from {min(FIGURES)} to {max(FIGURES)}, or {BEYOND[0]} to {BEYOND[-1]} for those beyond the paper"
+
+
+def _function(number: int | str) -> Callable[[], Picture]:
+    if isinstance(number, str):
+        return _beyond(number)
     from singimpact.paper.figures import contact, outlines, sections, swans, unfolded  # they load what computes
 
     functions: dict[int, Callable[[], Picture]] = {
@@ -37,24 +44,39 @@ def _function(number: int) -> Callable[[], Picture]:
     return functions[number]
 
 
+def _beyond(name: str) -> Callable[[], Picture]:
+    from singimpact.paper.figures import corrections, loops
+
+    functions: dict[str, Callable[[], Picture]] = {
+        "B1": corrections.figure_B1,
+        "B2": corrections.figure_B2,
+        "B3": corrections.figure_B3,
+        "B4": loops.figure_B4,
+        "B5": loops.figure_B5,
+        "B6": loops.figure_B6,
+    }
+    return functions[name]
+
+
 def picture(number: Any) -> Picture:
-    """The data of one of the paper's figures.
+    """The data of one of the paper's figures, or of one beyond it.
 
     Raises
     ------
-    InputError : not a number from 1 to 17.
+    InputError : neither a number from 1 to 17 nor a name of `BEYOND`.
     """
-    if isinstance(number, bool) or not isinstance(number, int) or number not in FIGURES:
-        raise refuse("figure", number, f"a number from {min(FIGURES)} to {max(FIGURES)}")
+    if isinstance(number, bool) or not isinstance(number, int | str) or number not in (*FIGURES, *BEYOND):
+        raise refuse("figure", number, ACCEPTED)
     return _function(number)()
 
 
 def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
-    """One of the paper's figures as a matplotlib figure, at the size of a printed page.
+    """One of the paper's figures as a matplotlib figure, at the size of a printed page; "B1" to "B6" are beyond it.
 
     Parameters
     ----------
-    number : from 1 to 17. serif : letters as in a journal (STIX). dark : light lines on a dark ground.
+    number : from 1 to 17, or the name of a figure beyond the paper.
+    serif : letters as in a journal (STIX). dark : light lines on a dark ground.
 
     Examples
     --------

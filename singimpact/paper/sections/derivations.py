@@ -1,6 +1,7 @@
 """The derivations by name.
 
-`SECTIONS` names them in the paper's order, `OTHER_NAMES` by number and by subject; `NOTATION` goes before them.
+`SECTIONS` names them in the paper's order, then what is beyond it, `OTHER_NAMES` by number and by subject; `NOTATION`
+goes before them.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 from singimpact.documents.steps import Section
 from singimpact.inputs import unknown
-from singimpact.paper.sections import section2, section3, section4, section5, section6
+from singimpact.paper.sections import beyond, section2, section3, section4, section5, section6
 from singimpact.paper.sections.notation import NOTATION
 
 SECTIONS: dict[str, Callable[[], Section]] = {
@@ -18,6 +19,7 @@ SECTIONS: dict[str, Callable[[], Section]] = {
     "section4": section4.told,
     "section5": section5.told,
     "section6": section6.told,
+    "beyond": beyond.told,
 }
 OTHER_NAMES = {
     "2": "section2", "3": "section3", "4": "section4", "5": "section5", "6": "section6",

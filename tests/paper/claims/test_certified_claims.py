@@ -279,6 +279,26 @@ MUTANTS = {
         "/ ((n + 1) * (n + 2)) for n, jet in enumerate(jets)",
         "/ (n + 1) for n, jet in enumerate(jets)",
         "p:corresp s2-G-semiconj s2-corr-sets"),
+    "a new time that runs at another rate": (
+        "paper/routes/first_order.py",
+        "tempo = 1 + h * sympy.diff(change.time, s)",
+        "tempo = 1 + h * change.time",
+        "b:first-order b:first-order-foot"),
+    "a closed form for every order with another factor": (
+        "paper/claims/beyond/every_order.py",
+        "CLOSED_Q = 1 - (j + 2) * ell * L",
+        "CLOSED_Q = 1 - (j + 1) * ell * L",
+        "b:order-ray b:order-saddle b:order-expansion b:order-exponents b:holder-bounds"),
+    "an image of a height by another power": (
+        "paper/claims/beyond/loops.py",
+        "(r * landing - w * ell**2)",
+        "(r * landing - w * ell)",
+        "b:loops-map"),
+    "a flight of the swan with another factor": (
+        "paper/routes/unfolding.py",
+        "found = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))",
+        "found = sympy.expand(sympy.cancel(-2 * displaced.subs(s, t) / t))",
+        "b:foot-monotone b:foot-limit b:onset-hop"),
 }  # fmt: skip
 
 PROGRAM = """

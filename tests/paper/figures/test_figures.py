@@ -10,8 +10,9 @@ from click.testing import CliRunner
 
 import singimpact as si
 from singimpact.inputs import InputError
+from singimpact.paper.claims import BEYOND as CLAIMS_BEYOND
 from singimpact.paper.claims import CLAIMS
-from singimpact.paper.figures import FIGURES, picture
+from singimpact.paper.figures import BEYOND, FIGURES, picture
 
 made = lru_cache(maxsize=None)(picture)
 LETTERS = {
@@ -249,3 +250,72 @@ def test_the_command_takes_serif_and_dark(tmp_path):
     assert "STIX" in written[1]
     assert len(set(written)) == 3
     assert "#14181c" in written[2]
+
+
+SECONDS = ("B2", "B3", "B4")  # many true orbits
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name for name in BEYOND]
+)
+def test_figures_beyond_the_paper_have_claims_and_data(name):
+    found = made(name)
+    assert found.number == name
+    assert found.claims
+    assert set(found.claims) <= set(CLAIMS_BEYOND)
+    assert found.caption.endswith(".")
+    json.dumps(found.to_dict(), allow_nan=False)
+    for panel in found.panels:
+        (left, right), (low, high) = panel.box
+        assert all(left <= dot.place[0] <= right and low <= dot.place[1] <= high for dot in panel.dots)
+
+
+def test_the_paper_has_none_of_them():
+    assert not set(BEYOND) & set(FIGURES)
+    with pytest.raises(InputError, match="B1 to B6"):
+        picture("B9")
+
+
+def test_b1_the_ball_falls_freely():
+    """y'' by differences of the drawn orbit is A(s)."""
+    assert made("B1").facts["bends"] < 1e-3
+
+
+@pytest.mark.slow
+def test_b2_orders():
+    facts = made("B2").facts
+    assert all(abs(order - 1) < 0.1 for name, order in facts.items() if name.startswith("order"))
+    assert all(abs(order - 2) < 0.1 for name, order in facts.items() if name.startswith("without"))
+
+
+@pytest.mark.slow
+def test_b3_ends_of_the_exponents():
+    facts = made("B3").facts
+    assert all(abs(facts[f"alpha at r = 1, j = {j}"] - 3 / (3 + 2 * j)) < 1e-3 for j in range(6))
+    assert all(abs(off) < 1e-4 for name, off in facts.items() if "r = " in name and "alpha" not in name)
+
+
+@pytest.mark.slow
+def test_b4_true_points_lie_on_the_curves():
+    assert made("B4").facts["farthest"] < 1e-4
+
+
+def test_b5_bounds():
+    facts = made("B5").facts
+    assert 2.94 < facts["least"] < facts["most"] < 3.06
+    assert abs(facts["limit"] - 2.9410294) < 1e-7
+
+
+def test_b6_height_of_the_hop():
+    facts = made("B6").facts
+    assert abs(facts["height at c = 0.999"] - 9 / 8) < 2e-3
+    assert facts["height at c = 0.9"] < facts["height at c = 0.97"] < facts["height at c = 0.999"]
+
+
+def test_figure_b5_from_the_command_line(tmp_path):
+    from singimpact.cli import main
+
+    done = CliRunner().invoke(main, ["figure", "B5", "-o", str(tmp_path), "--data"])
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "figureB5.png").stat().st_size > 10000
+    assert json.loads((tmp_path / "figureB5.json").read_text())["figure"] == "B5"

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from singimpact.documents.compiling import compiled
 from singimpact.documents.formats import as_files, as_text
 from singimpact.documents.rendering import as_data, as_latex
 from singimpact.documents.steps import claims_of, equations_of
-from singimpact.paper.claims import CLAIMS
+from singimpact.paper.claims import BEYOND, CLAIMS
 from singimpact.paper.claims.claim import STRENGTH
 from singimpact.paper.routes import fold, swan
 from singimpact.paper.routes.implicit import a_symbol
@@ -33,7 +34,9 @@ LABELS = [
     "s5-lambda-r", "s5-gamma-leading", "ratios-2", "ratios-rise-2", "ratios-shorter-2", "s6-scaled", "s6-scaling",
     "s6-front", "s6-model", "s6-launch",
     "s6-impact", "s6-horizon", "s6-zero-set", "s6-E", "s6n-corr", "s6n-cusp", "s6p-AB", "s6p-BE", "s6p-eps",
-    "s6p-gamma", "s6-shadow", "s6n-maps", "s6-GA", "s6n-chatter", "s6n-X",
+    "s6p-gamma", "s6-shadow", "s6n-maps", "s6-GA", "s6n-chatter", "s6n-X", "b:gauge", "b:order-ray",
+    "b:order-expansion", "b-rising", "b:first-order", "b-chi", "b:first-order-foot", "b:holder-bounds", "b:loops-map",
+    "b-loops-preimage", "b:foot", "b:foot-limit", "b:onset-hop", "b:cascade-contraction",
 ]  # fmt: skip
 
 
@@ -42,7 +45,20 @@ def test_every_step_is_there_in_order(told):
 
 
 def test_every_claim_of_the_paper_occurs(told):
-    assert set(claims_of(told)) == set(CLAIMS)
+    shown = set(claims_of(told))
+    assert shown & set(CLAIMS) == set(CLAIMS)
+    assert shown - set(CLAIMS) <= set(BEYOND)
+
+
+def test_what_is_beyond_the_paper_stands_by_itself(told):
+    """In a section of its own; claims that orbits support are named in words."""
+    (section,) = [each for each in told if each.name == "beyond"]
+    assert all(claim in BEYOND for claim in claims_of([section]))
+    assert not [claim for other in told if other is not section for claim in claims_of([other]) if claim in BEYOND]
+    words = " ".join(step.text for step in section.steps)
+    named = {f"b:{name}" for name in re.findall(r"b:([a-z-]+)", words)}
+    assert named == {"b:first-order-measured", "b:holder", "b:holder-count", "b:loops", "b:loops-law", "b:onset"}
+    assert named <= set(BEYOND)
 
 
 def test_every_equation_has_a_label_of_its_own(told):

@@ -3,7 +3,9 @@
 Not here: claims of the paper (`claims.sections`). None is printed anywhere, so none is corrected; mutants stand beside.
 Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a certified homoclinic orbit), `repairs`
 (what corrected statements of the paper need), `every_order` (contact points of every order), `gauge`
-(linear oscillators as balls under gravity that varies).
+(linear oscillators as balls under gravity that varies), `first_order` (the first correction to the limits at contact
+points), `holder` (how the foot of a chatter leaves the end of gamma), `loops` (heights of the loops of W^s(X)), `foot`
+(X for every r, in balls), `onset` (what is born at a negative swan).
 """
 
 from __future__ import annotations
@@ -43,10 +45,45 @@ def _gauge() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
+def _first_order() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import first_order as section
+
+    return section.CLAIMS
+
+
+def _holder() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import holder as section
+
+    return section.CLAIMS
+
+
+def _loops() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import loops as section
+
+    return section.CLAIMS
+
+
+def _foot() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import foot as section
+
+    return section.CLAIMS
+
+
+def _onset() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import onset as section
+
+    return section.CLAIMS
+
+
 BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "cascade": _cascade,
     "horseshoe": _horseshoe,
     "repairs": _repairs,
     "every_order": _every_order,
     "gauge": _gauge,
+    "first_order": _first_order,
+    "holder": _holder,
+    "foot": _foot,
+    "loops": _loops,
+    "onset": _onset,
 }

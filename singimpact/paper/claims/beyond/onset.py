@@ -1,0 +1,141 @@
+"""What is born at a negative swan: nothing that recurs within it, and one chattering orbit that starts at A."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+import sympy
+
+from singimpact.algebra.certificates import positive_in
+from singimpact.algebra.derivations import At, substitution
+from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.sections.section6_scaling import near_the_swan
+from singimpact.paper.claims.verifiers import every, same
+from singimpact.paper.routes import unfolding as model
+from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u
+from singimpact.paper.trials.first_order import limit_of
+from singimpact.paper.trials.onset import DEPTHS, LIFTS, RATES, hop
+
+claim = in_section("beyond")
+v, s, bend, drop, rate = sympy.symbols("v s A2 dc a_c")  # A2 = |a''|, a_c = |da/dc|
+WINDOW = {sigma: (-5, 5), t: (0, 12), r: (0, 1)}  # of the universal model, in half distances
+NEAR = 0.01  # of a ratio to its law at the smaller c_0 - c
+FALLS = 2.5  # at least, of what a ratio lacks of 1, over a factor 10 in c_0 - c; sqrt(10) at first order in H
+ROUNDING = 1e-8  # of a ratio
+MERGED = 1e-12  # of a period
+
+
+def _rises(stated: Any) -> Check:
+    """Whether a function of (sigma, v) rises along every flight, from (sigma, v) to (sigma + t, -r x')."""
+    images, before = {sigma: sigma + t}, stated
+    if stated.has(v):  # only then does the motion matter: that of the universal model
+        images[v] = -r * model.impact_velocity().subs(kappa, -1)
+        before = stated.subs(v, model.launch_velocity().subs(kappa, -1))
+    change = sympy.expand(stated.subs(images, simultaneous=True) - before)
+    substitution(At(stated, images), sympy.expand(before + change))
+    return every(
+        [
+            (f"from an impact to the next {stated} changes by {change}", True),
+            ("which is positive for t > 0", positive_in(change, WINDOW)),
+            (
+                "in every model, as the next launch is at tau + t: no state comes back, and none near it",
+                same(change, t),
+            ),
+        ],
+        witness=lambda: {"function": str(stated), "change": str(change)},
+    )  # fmt: skip
+
+
+def _hop(stated: tuple[Any, Any, Any, Any]) -> Check:
+    """(flight, time of its hit, its speed, its height): a polynomial in s; units of H, |a''| H^3, |a''| H^4."""
+    flight, time, speed, top = stated
+    derived = sympy.expand(model.height(u).subs({sigma: model.A[0], t: model.C[1], kappa: -1}).subs(u, s + 1))
+    substitution(At(model.height(u), {sigma: model.A[0], t: model.C[1], kappa: -1, u: s + 1}), sympy.factor(derived))
+    unit = sympy.Rational(1, 24)  # |a''| = 24 |kappa| in lengths scaled by H
+    (summit,) = [root for root in sympy.Poly(sympy.diff(derived, s), s).real_roots() if -1 < root < 3]
+    landing = sympy.diff(derived, s).subs(s, 3)
+    found = (sympy.Integer(4), -unit * landing, unit * derived.subs(s, summit))
+    square = 2 * rate * drop / bend  # H^2, as a_c rises by |a''| H^2/2 from A to the middle of A and B
+    check = every(
+        [
+            (f"the flight from rest at A is {sympy.factor(derived)}", same(derived, flight)),
+            (f"it hits after 4, the speed is {found[1]} and the height {found[2]}", found == (time, speed, top)),
+            (
+                "in c_0 - c the height is (9/2) a_c^2 (c_0 - c)^2/|a''|",
+                same(LAWS[2] * bend * square**2, sympy.Rational(9, 2) * rate**2 * drop**2 / bend),
+            ),
+        ],
+        witness=lambda: {"flight": str(sympy.factor(derived)), "hit, speed, height": str(found)},
+    )
+    curve = sympy.diff(derived, s, 2).subs(s, summit)
+    return near_the_swan(check, [("x' at the hit", landing * kappa), ("x'' at the summit", curve * kappa)])
+
+
+def _orbit(stated: tuple[float, float, float, float]) -> Check:
+    """Laws of the first hit, its speed, the height and the rest (a number of X beside 1) at c_0 - 10^-k."""
+    checks, worst = [], dict[str, str]()
+    for lift in LIFTS:
+        for rate_ in RATES:
+            laws = (*stated[:3], stated[3] + limit_of(rate_))
+            found = [hop(lift, rate_, depth) for depth in DEPTHS]
+            parts = [(each.first, each.speed, each.top, each.rest) for each in found]
+            lacks = [[abs(part / law - 1) for part, law in zip(row, laws, strict=True)] for row in parts]
+            near = all(
+                two < max(ROUNDING, NEAR) and two < max(ROUNDING, one / FALLS) for one, two in zip(*lacks, strict=True)
+            )
+            again = all(each.period < MERGED and each.merged for each in found)
+            ratios = ", ".join(f"{part / law:.5f}" for part, law in zip(parts[-1], laws, strict=True))
+            checks.append(
+                (
+                    f"{lift.name}, r = {rate_}, c_0 - c = 1e-{DEPTHS[-1]}: ratios {ratios}, released each "
+                    "period, the same from other starts",
+                    near and again,
+                )
+            )  # fmt: skip
+            if not (near and again):
+                worst = {"model": lift.name, "r": rate_, "ratios": ratios}
+    return every(checks, "supported", witness=lambda: worst)
+
+
+FLIGHT = (s + 1) ** 3 * (3 - s)
+LAWS = sympy.Integer(4), sympy.Rational(8, 3), sympy.Rational(9, 8)
+
+CLAIMS = (
+    claim(
+        "b:onset-none",
+        "tau rises along every flight, so nothing recurrent is born within an unfolded swan",
+        Statement(r"G(\tau,v)=(\tau+t,\cdot),\ t>0", sigma),
+        _rises,
+        (-sigma, v, sigma - v, sigma + v),
+        ("e:acc",),
+    ),
+    claim(
+        "b:onset-hop",
+        "from A a negative swan throws the mass: it hits 4H later with (8/3)|a''| H^3 and rises by (9/8)|a''| H^4",
+        Statement(
+            r"x-c=\tfrac{|a''|}{24}(s+1)^3(3-s):\quad t=4H,\ |\dot x|=\tfrac83|a''|H^3,\ \max(x-c)=\tfrac98|a''|H^4",
+            (FLIGHT, *LAWS),
+        ),
+        _hop,
+        (
+            (FLIGHT, LAWS[0], sympy.Rational(4, 3), LAWS[2]),
+            (FLIGHT, LAWS[0], LAWS[1], sympy.Rational(27, 8)),
+            ((s + 1) ** 2 * (3 - s), *LAWS),
+            (FLIGHT, sympy.Integer(3), *LAWS[1:]),
+        ),
+        ("s6-scaling", "s6n-AB"),
+    ),
+    claim(
+        "b:onset",
+        "where a_c < 0 elsewhere one orbit is born, superstable: a hop at A, chatter to A + (1 + X)H, rest",
+        Statement(
+            r"\frac{t_1}{H}\to4,\ \frac{|\dot x_1|}{|a''|H^3}\to\tfrac83,\ \frac{\max(x-c)}{|a''|H^4}\to\tfrac98,\ "
+            r"\frac{\tau_\infty-A}{H}\to1+X(r)",
+            (4.0, 8 / 3, 9 / 8, 1.0),
+        ),
+        _orbit,
+        ((3.9, 8 / 3, 9 / 8, 1.0), (4.0, 4 / 3, 9 / 8, 1.0), (4.0, 8 / 3, sqrt(9 / 8), 1.0), (4.0, 8 / 3, 9 / 8, 0.0)),
+        ("b:onset-hop", "b:onset-none", "s6n-X"),
+    ),
+)

@@ -1,0 +1,103 @@
+"""The foot X of an unfolded negative swan of five oscillators, at two half distances H of its tangency points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from math import log
+from typing import NamedTuple
+
+import numpy as np
+import sympy
+
+from singimpact.algebra.numbers import as_float
+from singimpact.contact.points import tangency_points
+from singimpact.contact.swans import swan_points_over_clearance
+from singimpact.dynamics.chatter import chatter_limit
+from singimpact.impact_oscillator import universal
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
+
+RATES = ("3/10", "1/2", "4/5")
+SIZES = (0.004, 0.002)  # half distances H tried, to leading order in c_0 - c
+REST = 1e-7  # in H: an orbit from rest so far behind A has the same foot to its square, and A itself is rounded
+
+
+class Model(NamedTuple):
+    """An oscillator without its clearance and restitution."""
+
+    name: str
+    f: str
+    g: str
+
+
+MODELS = (
+    Model("x'' + x = cos 2t + sin(3t)/5", "x", "cos(2*t) + 0.2*sin(3*t)"),
+    Model("x'' + x'/2 + x = cos 2t", "x + 0.5*xdot", "cos(2*t)"),
+    Model("x'' + 3x'/10 + x + 2x^3/5 = cos 2t", "x + 0.3*xdot + 0.4*x**3", "cos(2*t)"),
+    Model("x'' - 2(1 - x^2)x'/5 + x = (13/10) cos 2.8t", "x - 0.4*(1 - x**2)*xdot", "1.3*cos(2.8*t)"),
+    Model("x'' + x'/5 + x^3 = cos 2t + cos(4t + 1)/5", "x**3 + 0.2*xdot", "cos(2*t) + 0.2*cos(4*t + 1)"),
+)
+
+
+@dataclass(frozen=True)
+class Feet:
+    """What was found of one model and r.
+
+    Attributes
+    ----------
+    chi : f_v + 2 a'''/(3 a'') at the swan point. limit : X of the universal model. sizes : H. offsets : X_H - X.
+    """
+
+    chi: float
+    limit: float
+    sizes: tuple[float, ...]
+    offsets: tuple[float, ...]
+
+    def order(self, errors: Sequence[float]) -> float:
+        """The order of errors in H."""
+        return log(abs(errors[0] / errors[1])) / log(self.sizes[0] / self.sizes[1])
+
+
+@cache
+def limit_of(rate: str) -> float:
+    """X of the universal negative swan."""
+    return float(chatter_limit(universal(-1, rate), -1, 0).tau)
+
+
+@cache
+def _swan(model: Model) -> tuple[float, float, float, float]:
+    """(c_0, tau_*, |a''|, chi) of its first negative swan point."""
+    osc = Oscillator(model.f, model.g, 0, "1/2")
+    point = next(each for each in swan_points_over_clearance(osc) if each.kind == "negative")
+    c, tau = float(point.clearance), float(point.tau)
+    at = Oscillator(model.f, model.g, repr(c), "1/2")
+    second, third = (float(acceleration(at, np.array([tau]), order=n)[0]) for n in (2, 3))
+    x, xdot = sympy.symbols("x xdot")
+    damping = float(sympy.diff(sympy.sympify(model.f), xdot).subs({x: c, xdot: 0}))
+    return c, tau, abs(second), damping + 2 * third / (3 * second)
+
+
+@cache
+def measured(model: Model, rate: str, tried: tuple[float, ...] = SIZES) -> Feet:
+    """X_H - X at each H; times are taken from the middle of A and B, in units of H."""
+    c, tau, bend, chi = _swan(model)
+    sizes, offsets, limit = [], [], limit_of(rate)
+    for size in tried:
+        osc = Oscillator(model.f, model.g, repr(c - bend * size**2 / 2), rate)
+        A, B = _ends(osc, tau)
+        half = (B - A) / 2
+        foot = float(chatter_limit(osc, A + REST * half, 0).tau)
+        sizes.append(half)
+        offsets.append((foot - (A + B) / 2) / half - limit)
+    return Feet(chi, limit, tuple(sizes), tuple(offsets))
+
+
+def _ends(osc: Oscillator, tau: float) -> tuple[float, float]:
+    """The tangency points before and after a swan point."""
+    assert osc.period is not None
+    period = as_float(osc.period)
+    places = [float(point.tau) for point in tangency_points(osc)]
+    near = [place - period * round((place - tau) / period) for place in places]
+    return max(place for place in near if place < tau), min(place for place in near if place > tau)

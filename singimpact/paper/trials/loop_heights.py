@@ -1,0 +1,179 @@
+"""The stable manifold of X at an unfolded negative swan: heights over lines before A, and feet of orbits above gamma.
+
+A line lies h half distances of A and B before A, and heights are v/(a'(A) (A - tau)^2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from singimpact.dynamics.chatter import chatter_limit
+from singimpact.dynamics.swan_configuration import swan_configuration
+from singimpact.dynamics.threshold import threshold
+from singimpact.flights.impact_map import impact_map
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
+from singimpact.theory.fixed_points import multipliers
+
+Array = np.ndarray[Any, Any]
+RATES = ("3/10", "1/2", "4/5")
+GENERATIONS = 4
+LINES = (1e-3, 5e-4)  # h
+REST = 1e-8  # half distances behind A from which an orbit at rest is followed: its foot is X to 1e-16
+STEPS = 8  # of the secant method; 5 reach rounding
+FLIGHTS = 400  # before B
+GAMMA_LINE = 0.05  # h at which feet beside gamma are measured
+PHASES = (0.0, 0.25, 0.5, 0.75)  # of ln delta/ln mu
+DEEP = 1e-3  # the distance from gamma there
+
+
+class Swan(NamedTuple):
+    """An oscillator with an unfolded negative swan near t = 0, but for r."""
+
+    name: str
+    f: str
+    g: str
+    clearance: str
+
+
+SWANS = (
+    Swan("x'' = 12(1 - t^2), c = 0", "0", "-12*(t**2 - 1)", "0"),
+    Swan("x'' + x = cos 2t, c = 19/20", "x", "cos(2*t)", "0.95"),
+    Swan(
+        "x'' + x'/10 + x + 3x^3/10 = (13/10) cos 2t, c = 19/20",
+        "x + 0.1*xdot + 0.3*x**3",
+        "1.3*cos(2*t)",
+        "0.95",
+    ),
+)
+
+
+def preimage(w: float, r: float) -> float:
+    """The height whose image under the one-dimensional map is w: (2r + 6w) l^2 = r(1 + l), w' = (1-l)(2+l)/6.
+
+    Examples
+    --------
+    >>> round(preimage(0.5, 0.5), 6)
+    0.233462
+    """
+    lead = 2 * r + 6 * w
+    ratio = (r + sqrt(r * r + 4 * r * lead)) / (2 * lead)
+    return (1 - ratio) * (2 + ratio) / 6
+
+
+def generations(w: float, r: float, count: int = GENERATIONS) -> list[float]:
+    """A height and its inverse images.
+
+    Examples
+    --------
+    >>> [round(each, 4) for each in generations(0.375, 0.5, 3)]
+    [0.375, 0.216, 0.1777]
+    """
+    found = [w]
+    while len(found) < count:
+        found.append(preimage(found[-1], r))
+    return found
+
+
+def inner_start(r: float) -> float:
+    """The height below the tear whose flight lands behind A on W^s(X): r(1 + l - 2 l^2) = 3 l^2, -1/2 < l < 0."""
+    ratio = (r - sqrt(r * r + 4 * r * (3 + 2 * r))) / (2 * (3 + 2 * r))
+    return (1 - ratio) * (2 + ratio) / 6
+
+
+@dataclass(frozen=True)
+class Heights:
+    """Crossings of W^s(X) with two lines before A: GENERATIONS outer ones, then as many inner ones.
+
+    Attributes
+    ----------
+    lines : h. found : a row of heights for each line. left : |foot - X| at them.
+    """
+
+    lines: tuple[float, ...]
+    found: tuple[tuple[float, ...], ...]
+    left: float
+
+
+class _Setting(NamedTuple):
+    osc: Oscillator
+    A: float
+    B: float
+    slope: float  # a'(A)
+    X: float
+
+
+@cache
+def _setting(swan: Swan, rate: str) -> _Setting:
+    osc = Oscillator(swan.f, swan.g, swan.clearance, rate)
+    near = swan_configuration(osc, near=0)
+    slope = float(acceleration(osc, np.array([near.A]), order=1)[0])
+    foot = float(chatter_limit(osc, near.A + REST * (near.B - near.A) / 2, 0).tau)
+    return _Setting(osc, near.A, near.B, slope, foot)
+
+
+def _feet(at: _Setting, tau: Array, v: Array) -> Array:
+    """Where orbits come to rest behind B."""
+    tau, v = np.array(tau, dtype=float), np.array(v, dtype=float)
+    for _ in range(FLIGHTS):
+        flying = np.flatnonzero(tau < at.B)
+        if not flying.size:
+            break
+        step = impact_map(at.osc, tau[flying], v[flying])
+        tau[flying], v[flying] = step.tau, step.v
+    return np.asarray(chatter_limit(at.osc, tau, v).tau)
+
+
+@cache
+def heights(swan: Swan, rate: str) -> Heights:
+    """The crossings nearest to the heights of the limit, by the secant method."""
+    at, r = _setting(swan, rate), float(Fraction(rate))
+    starts = np.array([*generations(0.5, r), *generations(inner_start(r), r)])
+    line, place = np.repeat(LINES, starts.size), np.tile(starts, len(LINES))
+    reach = line * (at.B - at.A) / 2
+
+    def miss(w: Array) -> Array:
+        return _feet(at, at.A - reach, w * at.slope * reach**2) - at.X
+
+    last, now = place, place + 0.1 * line
+    before, off = miss(last), miss(now)
+    for _ in range(STEPS):
+        change = np.where(off == before, 0.0, off * (now - last) / np.where(off == before, 1.0, off - before))
+        last, before, now = now, off, now - change
+        off = miss(now)
+    rows = now.reshape(len(LINES), -1)
+    return Heights(LINES, tuple(tuple(row.tolist()) for row in rows), float(np.abs(off).max()))
+
+
+@dataclass(frozen=True)
+class Feet:
+    """Feet minus X over one line, above gamma at relative distances delta of five phases and three periods.
+
+    Attributes
+    ----------
+    lambda_, mu : at A. offsets : a row for each period, delta is divided by mu from one to the next.
+    """
+
+    lambda_: float
+    mu: float
+    offsets: tuple[tuple[float, ...], ...]
+
+
+@cache
+def feet_beside_gamma(swan: Swan, rate: str) -> Feet:
+    """Foot - X where ln delta/ln mu takes the same phases in three successive periods."""
+    at, both = _setting(swan, rate), multipliers(1, rate, 20)
+    mu = float(both.mu.value)
+    tau = at.A - GAMMA_LINE * (at.B - at.A) / 2
+    edge = float(threshold(at.osc, tau).v)
+    rows = []
+    for period in range(3):
+        delta = DEEP * mu ** -(period + np.array(PHASES))
+        rows.append(tuple((_feet(at, np.full(delta.size, tau), edge * (1 + delta)) - at.X).tolist()))
+    return Feet(float(both.lambda_.value), mu, tuple(rows))
