@@ -279,7 +279,11 @@ class _Search:
     def found(self) -> OrbitTransitions:
         """The transitions with intervals and branches."""
         low, high = self.ends
-        edges = [low, *sorted({each.value for each in self.transitions if low < each.value < high and _parts(each)}), high]
+        edges = [
+            low,
+            *sorted({each.value for each in self.transitions if low < each.value < high and _parts(each)}),
+            high,
+        ]
         middles = [(one + other) / 2 for one, other in pairwise(edges)]
         extra = np.linspace(low, high, SETTINGS.samples + 2)[1:-1].tolist()
         at_middles = {}

@@ -116,8 +116,8 @@ class FollowedRests:
         step = GRID_OF.fine * min(turn, GRID_OF.rate)
         s, d = self.share * turn, np.arange(self.gaps[0], self.gaps[1] + step, step)
         model, zero = self.family.at(value), np.zeros(len(s))
-        rows = (np.stack(many_paths(model, s, zero + v, [d] * len(s))) for v in (0.0, GRID_OF.push))
-        return s, d, *rows
+        rows, faster = (np.stack(many_paths(model, s, zero + v, [d] * len(s))) for v in (0.0, GRID_OF.push))
+        return s, d, rows, faster
 
     def _tacnodes(self) -> Iterator[Rests]:
         """Zeros of (x - c, x') at the times at which dx/dv vanishes for the n-th time, over s and the number."""
@@ -156,7 +156,7 @@ class FollowedRests:
             return np.empty((0, 3))
         s, d = places.T
         values = flights.acceleration(s), flights.acceleration(s + d), flights.by_speed(s, d)[:, 0]
-        return np.sign(np.stack(values, axis=1))
+        return np.asarray(np.sign(np.stack(values, axis=1)))
 
     def _triples(self, before: Level, after: Level) -> Iterator[Rests]:
         """Three rests: two branches whose times s pass one another between two values."""

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import tangency_points
@@ -187,9 +188,10 @@ def _with_more_rests(
             flights = RestFlights(family.at(each.value))
             back = flights.by_speed(np.array([each.first]), np.array([gap]))[0, 1]
             kind = "tacnode, opposite" if back < 0 else "tacnode, same"
-        rests = (each.first, *(each.first + part for part in each.gaps))
+        first = _reduced(each.first, family.at(each.value))
+        rests = (first, *(first + part for part in each.gaps))
         if any(low <= sign * gap <= high for sign in (1, -1) for low, high in [_widened(times)]):
-            made.append(Transition(kind, each.value, each.first, gap, rests))
+            made.append(Transition(kind, each.value, first, gap, rests))
     return _each_once(made, ends)
 
 
@@ -208,7 +210,7 @@ def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> li
             s, d = each.first, each.gaps[0]
             tau, t = (s + d, -d) if each.kind == "tangency last" else (s, d)
             if each not in both and times[0] <= t <= times[1]:
-                place = np.array([_reduced(tau, linear.turn), t, each.value])
+                place = np.array([_reduced(tau, family.model), t, each.value])
                 kind = _lips_or_beaks(RestFlights(family.at(each.value)), place)
                 found.append(Transition(kind, each.value, float(place[0]), t, _two(tau, t)))
     else:
@@ -217,7 +219,8 @@ def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> li
         near = [(each.value, *_first_and_gap(each)) for each in found if each.kind == "undecided"]
         both = [made for made in (followed.both_ends(*place) for place in near) if made is not None]
     kept = [each for each in found if not any(_is_that(each, other) for other in both)]
-    kept += [Transition(each.kind, each.value, each.first, each.gaps[0], (each.first, each.first + each.gaps[0]))
+    kept += [Transition(each.kind, each.value, s := _reduced(each.first, family.at(each.value)),
+                        each.gaps[0], (s, s + each.gaps[0]))
              for each in both if any(times[0] <= sign * each.gaps[0] <= times[1] for sign in (1, -1))]  # fmt: skip
     return _each_once(kept, ends)
 
@@ -235,21 +238,35 @@ def _is_that(found: Transition, both: Rests) -> bool:
     return abs(found.value - both.value) < 1e-6 and abs(abs(found.t) - both.gaps[0]) < SETTINGS.double
 
 
-def _reduced(tau: float, period: float) -> float:
-    return float(tau - np.floor(tau / period + SETTINGS.same) * period)
+def _reduced(tau: float, model: Oscillator) -> float:
+    """A time in the first period of a model, where it has one."""
+    if model.period is None:
+        return tau
+    period = as_float(model.period)
+    moved = float(tau - np.floor(tau / period + SETTINGS.same) * period)
+    return moved if abs(moved) > SETTINGS.settled * period else 0.0
 
 
 def _each_once(found: Iterable[Transition], ends: tuple[float, float]) -> list[Transition]:
     """The distinct ones between the ends: Newton's method may leave the interval, or find one point twice."""
     kept: list[Transition] = []
     for each in found:
-        twice = any(
-            max(abs(each.value - old.value), abs(each.tau - old.tau), abs(each.t - old.t)) < SETTINGS.same
-            for old in kept
-        )  # fmt: skip
+        twice = any(_same(each, old) for old in kept)
         if ends[0] <= each.value <= ends[1] and not twice:
             kept.append(each)
     return kept
+
+
+def _same(one: Transition, other: Transition) -> bool:
+    """Whether two flights are one; triple points may differ in the rest between the first and the last alone."""
+    if len(one.rests) != len(other.rests):
+        return False
+    pairs = zip((one.value, one.tau, one.t, *_gaps(one)), (other.value, other.tau, other.t, *_gaps(other)), strict=True)
+    return all(abs(a - b) < SETTINGS.same for a, b in pairs)
+
+
+def _gaps(found: Transition) -> list[float]:
+    return [rest - found.rests[0] for rest in found.rests[1:]]
 
 
 def _swallowtails(family: Family, swans: list[Transition], times: tuple[float, float]) -> Iterator[Transition]:

@@ -171,7 +171,7 @@ class LinearRests:
                 continue
             at = float(refined(tree, "t", zero, 128).mid())
             if -1e-12 * self.turn <= at < self.turn * (1 - 1e-12):
-                yield np.float64(at + 0.0)
+                yield np.array(at + 0.0)
 
     def tangencies(self, shortest: float, longest: float) -> list[Rests]:
         """Two rests of which one or both are tangency points; from a grid."""

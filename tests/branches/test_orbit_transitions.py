@@ -25,7 +25,9 @@ def test_swans_over_numbers_that_the_model_does_not_name(over: str, between, val
     found = si.transitions(si.linear(2, "0.5", "0.5"), over, between, t=(-1, 1))
     assert [(each.kind, pytest.approx(each.value, abs=1e-12)) for each in found] == [("swan, negative", value)]
     assert found.swans_complete
-    some = si.transitions(si.linear(2, "0.5", "0.5"), over, between, t=(-1, 1), kinds=("swan", "swallowtail", "tangency"))
+    some = si.transitions(
+        si.linear(2, "0.5", "0.5"), over, between, t=(-1, 1), kinds=("swan", "swallowtail", "tangency")
+    )
     assert some == found
     assert some.complete == (over != "stiffness")  # lips and beaks are proved to be all where stiffness stays
     assert found.complete == (over == "clearance")  # the others where a theorem says so
