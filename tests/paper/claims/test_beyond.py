@@ -26,10 +26,19 @@ KINDS = {
     "b:order-sides": "proved",
     "b:gauge": "proved",
     "b:gauge-nonlinear": "proved",
+    "b:events-front": "proved",
+    "b:events-critical": "proved",
+    "b:events-eliminated": "proved",
+    "b:events-families": "proved",
+    "b:events-values": "proved",
+    "b:events-two": "proved",
+    "b:events-first": "proved",
+    "b:events-met": "supported",
 }
 
 
-SECONDS = ("b:cascade", "b:homoclinic", "b:horseshoe", "b:order-expansion")  # those of enclosures and of true orbits
+SECONDS = ("b:cascade", "b:homoclinic", "b:horseshoe", "b:order-expansion", "b:events-first", "b:events-met")
+"""Those of enclosures, of true orbits and of searches."""
 EACH = [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name for name in BEYOND]
 
 

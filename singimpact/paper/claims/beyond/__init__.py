@@ -3,7 +3,8 @@
 Not here: claims of the paper (`claims.sections`). None is printed anywhere, so none is corrected; mutants stand beside.
 Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a certified homoclinic orbit), `repairs`
 (what corrected statements of the paper need), `every_order` (contact points of every order), `gauge`
-(linear oscillators as balls under gravity that varies).
+(linear oscillators as balls under gravity that varies), `events` (what a swan meets: P as the preimage of a front),
+`events_harmonic` (all of it for one cosine), `events_met` (what is met first).
 """
 
 from __future__ import annotations
@@ -43,10 +44,31 @@ def _gauge() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
+def _events() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import events as section
+
+    return section.CLAIMS
+
+
+def _events_harmonic() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import events_harmonic as section
+
+    return section.CLAIMS
+
+
+def _events_met() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import events_met as section
+
+    return section.CLAIMS
+
+
 BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "cascade": _cascade,
     "horseshoe": _horseshoe,
     "repairs": _repairs,
     "every_order": _every_order,
     "gauge": _gauge,
+    "events": _events,
+    "events_harmonic": _events_harmonic,
+    "events_met": _events_met,
 }
