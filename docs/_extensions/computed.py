@@ -82,11 +82,11 @@ def commands() -> str:
 
 def figures(place: Path) -> str:
     """The paper's figures with what they show, and the claims that they illustrate; the pictures go beside the page."""
-    from singimpact.paper.figures import FIGURES, picture
+    from singimpact.paper.figures import BEYOND_FIGURES, FIGURES, picture
     from singimpact.paper.figures.rendering import drawn
 
     parts = ["# The figures", "", "Drawn from computed data by `singimpact figure all -o FOLDER`.", ""]
-    for number in FIGURES:
+    for number in (*FIGURES, *BEYOND_FIGURES):
         shown = picture(number)
         drawn(shown).savefig(place / f"figure{number}.png", dpi=200)
         told = ", ".join(f"`{claim}`" for claim in shown.claims)

@@ -12,7 +12,7 @@ import click
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import PICTURES, save_once
 from singimpact.inputs import refuse
-from singimpact.paper.figures import FIGURES
+from singimpact.paper.figures import BEYOND_FIGURES, FIGURES
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, require_writable, write_text
 
@@ -30,6 +30,8 @@ DPI = 200  # of a PNG: figures are as small as they are printed
 @click.option("--json", "as_json", is_flag=True, help="Print the written files and the CPU time in s as JSON.")
 def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: bool, as_json: bool) -> None:
     """Draw figure N of the paper, 1 to 17, or all, each computed from an oscillator, and list the claims that it shows.
+
+    B7 and B8 show theorems that the paper does not have; "all" leaves them out.
 
     Letters are 8 points high at the size of the file, which is at most 6.9 inches wide.
 
@@ -53,7 +55,7 @@ def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: b
             click.echo(f"{file}  {title} ({', '.join(claims)})")
 
 
-def _made(number: int, serif: bool, dark: bool) -> tuple[Any, Any]:
+def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
     from singimpact.paper.figures.cached import kept_picture
     from singimpact.paper.figures.rendering import Look, drawn
 
@@ -61,25 +63,29 @@ def _made(number: int, serif: bool, dark: bool) -> tuple[Any, Any]:
     return drawn(picture, Look(serif, dark)), [picture.title, list(picture.claims)]
 
 
-def _data(number: int) -> Any:
+def _data(number: int | str) -> Any:
     from singimpact.paper.figures.cached import kept_picture
 
     return kept_picture(number).to_dict()
 
 
-def _targets(output: str, numbers: list[int], kind: str) -> list[Path]:
+def _targets(output: str, numbers: list[int | str], kind: str) -> list[Path]:
     """Where each figure goes; the folder is there."""
     if Path(output).suffix.lower() not in PICTURES:
-        return [folder(output) / f"figure{number:02d}.{kind}" for number in numbers]
+        return [folder(output) / f"figure{number:0>2}.{kind}" for number in numbers]
     if len(numbers) > 1:
         raise refuse("output", output, "a folder: these are several figures")
     require_writable(output)
     return [Path(output)]
 
 
-def _numbers(which: str, known: list[int]) -> list[int]:
+def _numbers(which: str, known: list[int]) -> list[int | str]:
     if which == "all":
-        return known
+        return list(known)
+    if which in BEYOND_FIGURES:
+        return [which]
     if not which.isdigit() or int(which) not in known:
-        raise refuse("figure", which, f"a number from {min(known)} to {max(known)}, or all")
+        raise refuse(
+            "figure", which, f"a number from {min(known)} to {max(known)}, {', '.join(BEYOND_FIGURES)}, or all"
+        )
     return [int(which)]

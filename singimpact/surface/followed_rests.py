@@ -8,7 +8,7 @@ s + T: likewise.  Three rests: at a value of the number the flights with rests a
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -32,6 +32,7 @@ class FollowSettings:
     rests are looked for, to be followed. fine, rate : step of d, in parts of the period or of `rate` where that is
     less, for flights turn by their own rate too. reach : distance in (s, d) between neighbouring levels below which two
     points may be one branch. push : velocity by which dx/dv is met. loose : Newton's last step for two rests.
+    small : x - c on the first and the last row from which Newton's method starts. moved : columns from row to row.
     flat : a_c at both rests of a flight that may go from tangency to tangency.
     """
 
@@ -43,6 +44,8 @@ class FollowSettings:
     reach: float = 0.5
     push: float = 1e-4
     loose: float = 1e-5
+    small: float = 1e-3
+    moved: float = 2.0
     flat: float = 1e-2
 
 
@@ -74,15 +77,16 @@ class FollowedRests:
         self.longest, self.values = max(periods.values(), default=0.0), np.array(sorted(periods))
         self.share = np.linspace(-1 / GRID_OF.columns, 1 + 1 / GRID_OF.columns, GRID_OF.columns + 3)
 
-    def all(self) -> list[Rests]:
-        """The events that are met, but for tangencies."""
-        if len(self.values) < 2:
-            return []
+    def met(self, wanted: Collection[str]) -> list[Rests]:
+        """Those of "tacnode", "triple point" and "periodic graze" that are asked for."""
         found = list[Rests]()
-        if self.longest <= self.gaps[1] * (1 + GRID.whole):
+        if len(self.values) < 2:
+            return found
+        if "periodic graze" in wanted and self.longest <= self.gaps[1] * (1 + GRID.whole):
             found += self._grazes()
-        if self.gaps[1] > self.gaps[0]:
+        if "tacnode" in wanted and self.gaps[1] > self.gaps[0]:
             found += self._tacnodes()
+        if "triple point" in wanted and self.gaps[1] > 2 * GRID.least:
             levels = [self._level(value) for value in self.values[:: GRID_OF.rows // GRID_OF.levels].tolist()]
             for before, after in pairwise(levels):
                 found += self._triples(before, after)
@@ -124,9 +128,10 @@ class FollowedRests:
         rows = [_at_conjugates(*self._grid(value)[1:]) for value in self.values.tolist()]
         for n in range(min(row.shape[1] for row in rows)):
             d, height, speed = (np.stack([row[axis, n] for row in rows]) for axis in range(3))
-            i, j = np.nonzero(_may_vanish(height, speed))
-            starts = [[self.share[j[k]] * self._turn(self.values[i[k]]), d[i[k], j[k]],
-                       (self.values[i[k]] + self.values[i[k] + 1]) / 2] for k in range(len(i))]  # fmt: skip
+            starts = []
+            for i, at in _crossings(height, speed):
+                turn, gap = self._turn(self.values[i]), float(np.interp(at, np.arange(d.shape[1]), d[i]))
+                starts.append([np.interp(at, np.arange(len(self.share)), self.share) * turn, gap, self.values[i]])
             met = newton(lambda z: np.array([self._touching(place) for place in z]), np.array(starts).reshape(-1, 3))
             for s, gap, value in distinct(met):
                 if self._inside(value, gap) and not is_whole(gap / self._turn(value)):
@@ -189,9 +194,9 @@ class FollowedRests:
     def _grazes(self) -> Iterator[Rests]:
         """Motions with the period T that touch the wall: x = c, x' = 0 at s and at s + T."""
         rows = [self._after_a_period(value, self.share) for value in self.values.tolist()]
-        i, j = np.nonzero(_may_vanish(np.stack([row[0] for row in rows]), np.stack([row[1] for row in rows])))
-        step = self.values[1:] - self.values[:-1]
-        starts = np.stack([self.values[i] + step[i] / 2, self.share[j] + 0.5 / GRID_OF.columns], axis=1)
+        places = _crossings(np.stack([row[0] for row in rows]), np.stack([row[1] for row in rows]))
+        columns = np.arange(len(self.share))
+        starts = np.array([[self.values[i], np.interp(at, columns, self.share)] for i, at in places]).reshape(-1, 2)
         for value, part in distinct(newton(self._missed_after_a_period, starts)):
             if self._inside(value, self.longest) and abs(part - 0.5) < 0.53:
                 yield Rests("periodic graze", float(value), float(part * self._turn(value)), (self._turn(value),))
@@ -215,6 +220,35 @@ def _at_conjugates(d: Array, rows: Array, faster: Array) -> Array:
         found.append(np.stack(values))
     least = min(each.shape[1] for each in found)
     return np.stack([each[:, :least] for each in found], axis=2)
+
+
+def _crossings(height: Array, speed: Array) -> list[tuple[int, float]]:
+    """Where two functions of (row, column) vanish together: a row, and the column to a fraction.
+
+    On each row the zeros of the second one are taken, and the first one there; its sign changes from row to row.  So
+    rows may be as near as one likes; on the outermost ones a small value is enough.
+    """
+    zeros = [_heights_at_zeros(*pair) for pair in zip(height, speed, strict=True)]
+    found = [(i, at) for i in (0, len(zeros) - 1) for at, value in zeros[i] if abs(value) < GRID_OF.small]
+    for i, (before, after) in enumerate(pairwise(zeros)):
+        for at, value in before:
+            following = min(after, key=lambda each, at=at: abs(each[0] - at), default=None)  # type: ignore[misc]
+            if following is not None and abs(following[0] - at) < GRID_OF.moved and value * following[1] <= 0:
+                found.append((i, at if abs(value) < abs(following[1]) else following[0]))
+    return found
+
+
+def _heights_at_zeros(height: Array, speed: Array) -> list[tuple[float, float]]:
+    """The zeros of the second function on a row, in columns, and the first one there; cubics through four columns."""
+    found = []
+    for j in np.flatnonzero(speed[:-1] * speed[1:] <= 0).tolist():
+        first = min(max(j - 1, 0), len(speed) - 4)
+        nodes = np.arange(first, first + 4) - j
+        rise, slip = (np.polyfit(nodes, row[first : first + 4], 3) for row in (height, speed))
+        roots = np.roots(slip)
+        inside = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > -0.1) & (roots.real < 1.1)]
+        found += [(j + float(at), float(np.polyval(rise, at))) for at in inside[:1]]
+    return found
 
 
 def _may_vanish(height: Array, speed: Array) -> Array:

@@ -33,7 +33,7 @@ def met_rests(
         return []
     gaps, linear = gaps_of(times), linear_rests(family)
     if linear is None:
-        return [each for each in FollowedRests(family, ends, gaps).all() if each.kind in wanted]
+        return FollowedRests(family, ends, gaps).met(wanted)
     found = linear.grazes() if "periodic graze" in wanted and gaps[1] >= linear.turn * (1 - GRID.whole) else []
     found += linear.tacnodes(gaps[1]) if "tacnode" in wanted else []
     return found + (linear.triples(gaps[1]) if "triple point" in wanted and not no_triples(linear) else [])

@@ -271,6 +271,7 @@ def newton(missed: Callable[[Array], Array], starts: Array) -> Array:
         moves = -np.einsum("ijk,ik->ij", np.linalg.pinv(matrices), values)
         places = places + np.clip(moves, -GRID.longest, GRID.longest)
         done = np.abs(moves).max(axis=1, initial=0) < GRID.settled * (1 + np.abs(places).max(axis=1, initial=0))
+        done &= np.abs(values).max(axis=1, initial=0) < GRID.wide  # no move is made where the derivative vanishes
         settled.append(places[done])
         places = places[~done]
     return np.vstack([np.empty((0, size)), *settled])

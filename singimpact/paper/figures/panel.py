@@ -82,7 +82,7 @@ class Picture:
     where, in sentences with formulas between dollars.
     """
 
-    number: int
+    number: int | str
     title: str
     claims: tuple[str, ...]
     model: str

@@ -9,13 +9,15 @@ from singimpact.inputs import refuse
 from singimpact.paper.figures.panel import Picture
 
 FIGURES = tuple(range(1, 18))
-"""The numbers of the figures."""
+"""The numbers of the paper's figures."""
+BEYOND_FIGURES = ("B7", "B8")
+"""Those of theorems that the paper does not have."""
 
 
-def _function(number: int) -> Callable[[], Picture]:
-    from singimpact.paper.figures import contact, outlines, sections, swans, unfolded  # they load what computes
+def _function(number: int | str) -> Callable[[], Picture]:
+    from singimpact.paper.figures import contact, met, outlines, sections, swans, unfolded  # they load what computes
 
-    functions: dict[int, Callable[[], Picture]] = {
+    functions: dict[int | str, Callable[[], Picture]] = {
         1: outlines.figure_1,
         2: outlines.figure_2,
         3: contact.figure_3,
@@ -33,19 +35,23 @@ def _function(number: int) -> Callable[[], Picture]:
         15: swans.figure_15,
         16: unfolded.figure_16,
         17: unfolded.figure_17,
+        "B7": met.figure_b7,
+        "B8": met.figure_b8,
     }
     return functions[number]
 
 
 def picture(number: Any) -> Picture:
-    """The data of one of the paper's figures.
+    """The data of one of the paper's figures, or of one beyond it.
 
     Raises
     ------
-    InputError : not a number from 1 to 17.
+    InputError : neither a number from 1 to 17 nor one of `BEYOND_FIGURES`.
     """
-    if isinstance(number, bool) or not isinstance(number, int) or number not in FIGURES:
-        raise refuse("figure", number, f"a number from {min(FIGURES)} to {max(FIGURES)}")
+    whole = isinstance(number, int) and not isinstance(number, bool) and number in FIGURES
+    if not whole and not (isinstance(number, str) and number in BEYOND_FIGURES):
+        beyond = ", ".join(BEYOND_FIGURES)
+        raise refuse("figure", number, f"a number from {min(FIGURES)} to {max(FIGURES)}, or one of {beyond}")
     return _function(number)()
 
 
@@ -54,7 +60,8 @@ def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
 
     Parameters
     ----------
-    number : from 1 to 17. serif : letters as in a journal (STIX). dark : light lines on a dark ground.
+    number : from 1 to 17, or one of `BEYOND_FIGURES`. serif : letters as in a journal (STIX). dark : light lines on
+        a dark ground.
 
     Examples
     --------
