@@ -42,8 +42,9 @@ def command(
     """The points of V_c' where p or phi is singular: tangencies, swans, cusps, and the fold lines between them.
 
     Swan points are listed over the clearance. With --over and --between: the transitions of P met on the way (swans,
-    swallowtails, lips, beaks, tacnodes, triple points, periodic grazes), which of them are visible, and with --orbits the periodic orbits between them, and where these graze, fold or double. Numbers may
-    be expressions such as pi/2.8.
+    swallowtails, lips, beaks, tacnodes, triple points, periodic grazes) and which of them are visible, and with
+    --orbits the periodic orbits between them, and where these graze, fold or double. Numbers may be expressions such
+    as pi/2.8.
     """
     oscillator = take_model(options)
     if over is not None and between is None:

@@ -49,9 +49,9 @@ B7 = (
     Row("tangency to tangency", -0.0461684, "tangency", 4.0, (0.0004, -0.0004), (-0.16, 0.16), (-0.006, 0.022), 4.2),
 )
 B8 = (
-    Row("triple point", -1.12855, "triple point", 7.0, (0.01, -0.01), (-0.12, 0.1), (1.12, 1.32), 11.8, 0, 1200),
+    Row("triple point", -0.922413, "triple point", 12.0, (0.03, -0.03), (-0.23, 0.17), (0.95, 1.2), 18.0, 0, 700),
     Row("tangency last", -0.0552099, "tangency", 4.0, (0.0014, -0.0014), (-0.1, 0.06), (0, 0), 4.7, 3),
-    Row("tangency first", -1.19219, "tangency", 6.0, (0.02, -0.02), (-0.5, 0.5), (-0.05, 0.16), 9.0, 0, 1500),
+    Row("tangency first", -1.19219, "tangency", 6.0, (0.02, -0.02), (-0.5, 0.5), (-0.05, 0.16), 9.0, 0, 700),
 )
 
 
@@ -61,10 +61,11 @@ def figure_b7() -> Picture:
     panels, facts = _rows(model, B7)
     caption = (
         "What the swan of $c = 1$ meets first as the clearance falls: $x'' + x = \\cos 2.8t$. Above: at the tacnode "
-        f"$c_1$ = {facts['tacnode']:.7f} (dot: the launch of its flight) an arc of the visible outline, bold, touches "
-        "its copy of the period before; beyond it a lens of launches that miss both is open, cut out of both arcs. "
-        r"Shown is $v - q(\tau)$, $q$ a polynomial of degree 3. Below: the flight from tangency to tangency, "
-        f"released at A (dot), at $c$ = {facts['tangency to tangency']:.7f}: the other arc passes over A then."
+        f"$c_0$ = {facts['tacnode']:.7f} (dot: the launch of its flight) an arc of the visible outline, bold, touches "
+        "its copy of the period before; beyond it a lens of launches that miss both is open between the two arcs. Shown "
+        r"is $v - q(\tau)$, $q$ a polynomial of degree 3. Below: the flight from tangency to tangency, released at A "
+        f"(dot), at $c_0$ = {facts['tangency to tangency']:.7f}; beyond it the piece of the copy to the right of A is "
+        "gone, and its tip lies above the arc that ends at A."
     )
     claims = ("b:events-first", "b:events-values", "b:events-met")
     return Picture("B7", "A swan meets its copy", claims, str(model), panels, 3, facts, caption)
