@@ -62,7 +62,7 @@ def figure_b7() -> Picture:
     caption = (
         "What the swan of $c = 1$ meets first as the clearance falls: $x'' + x = \\cos 2.8t$. Above: at the tacnode "
         f"$c_0$ = {facts['tacnode']:.7f} (dot: the launch of its flight) an arc of the visible outline, bold, touches "
-        "its copy of the period before; beyond it a lens of launches that miss both is open between the two arcs. Shown "
+        "its copy of the period before; beyond it a lens of launches that miss both is open between them. Shown "
         r"is $v - q(\tau)$, $q$ a polynomial of degree 3. Below: the flight from tangency to tangency, released at A "
         f"(dot), at $c_0$ = {facts['tangency to tangency']:.7f}; beyond it the piece of the copy to the right of A is "
         "gone, and its tip lies above the arc that ends at A."

@@ -9,13 +9,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-import mpmath
 import sympy
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.certificates import positive_on
 from singimpact.algebra.parsing import parse
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra.precision import balls_at, digits_at
 from singimpact.impact_oscillator import linear
 from singimpact.paper.claims.beyond.events import composed
 from singimpact.paper.claims.claim import Check, Statement, in_section
@@ -93,7 +92,7 @@ def _exactly_two(stated: tuple[Any, Any, Any, dict[int, Any]]) -> Check:
     pushed = composed(p_ - q_, {p_: g * (2 * u**2 - 1), q_: clearance}, push)
     skew = composed(B, two, 2 * Sh * (1 - u**2))
     slope = sympy.factor(sympy.diff(clearance, u))
-    critical = sympy.solve(slope, u)
+    critical = list(sympy.roots(sympy.Poly(slope, u)))
     found = {sign: clearance.subs({u: 0, g: sign}) for sign in (1, -1)}
     upwards = [sign for sign in (1, -1) if positive_on(push.subs(g, sign), u, -1, 1)]
     return every(
@@ -255,17 +254,17 @@ def _value(rate: str, below: Any, above: Any, border: int) -> float | None:
     if float(rate) < border:
         w = sympy.Float(rate, 30)
         return float(below.subs({K: sympy.cos(w * sympy.pi / 2), omega: w}))
-    with mpmath.workdps(30):
-        at = mpmath.mpf(rate)
+    with digits_at(30) as mp:
+        at = mp.mpf(rate)
 
         def gap(h: Any) -> Any:
-            return mpmath.sin(at * h) * mpmath.cos(h) - at * mpmath.cos(at * h) * mpmath.sin(h)
+            return mp.sin(at * h) * mp.cos(h) - at * mp.cos(at * h) * mp.sin(h)
 
-        low, high = mpmath.pi / at, min(3 * mpmath.pi / (2 * at), mpmath.pi / 2)
+        low, high = mp.pi / at, min(3 * mp.pi / (2 * at), mp.pi / 2)
         if gap(low) * gap(high) > 0:
             return None
-        root = mpmath.findroot(gap, (low, high), "anderson")
-        return float(above.subs({Cw: sympy.Float(str(mpmath.cos(at * root)), 30)}))
+        root = mp.findroot(gap, (low, high), "anderson")
+        return float(above.subs({Cw: sympy.Float(str(mp.cos(at * root)), 30)}))
 
 
 TWO = (
