@@ -44,14 +44,15 @@ def two_waves() -> ImpactOscillator:
     return ImpactOscillator("x + 0.04*xdot", "cos(2.8*t) + 0.5*cos(5.6*t + 2)", 0, "0.8")
 
 
+ASIDE = 0.01  # of the clearance before a transition: at it lines that cross are traced this far apart
 B7 = (
     Row("tacnode", -0.0451779, "tacnode", 4.0, (0.0004, -0.0004), (-0.25, 0.2), (0, 0), 4.2, 3),
     Row("tangency to tangency", -0.0461684, "tangency", 4.0, (0.0004, -0.0004), (-0.16, 0.16), (-0.006, 0.022), 4.2),
 )
 B8 = (
-    Row("triple point", -0.922413, "triple point", 12.0, (0.03, -0.03), (-0.23, 0.17), (0.95, 1.2), 18.0, 0, 700),
-    Row("tangency last", -0.0552099, "tangency", 4.0, (0.0014, -0.0014), (-0.1, 0.06), (0, 0), 4.7, 3),
-    Row("tangency first", -1.19219, "tangency", 6.0, (0.02, -0.02), (-0.5, 0.5), (-0.05, 0.16), 9.0, 0, 700),
+    Row("triple point", -0.922413, "triple point", 12.0, (0.03, -0.03), (-0.23, 0.17), (0.95, 1.2), 18.0, 0, 1500),
+    Row("tangency last", -0.0552099, "tangency", 4.0, (0.0014, -0.0014), (-0.1, 0.06), (0, 0), 4.7, 3, 1500),
+    Row("tangency first", -1.19219, "tangency", 6.0, (0.02, -0.02), (-0.5, 0.5), (-0.05, 0.16), 9.0, 0, 2000),
 )
 
 
@@ -93,7 +94,8 @@ def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[s
         facts[row.title] = found.value
         place = found.launch or (found.rests[0], 0.0)
         tau = place[0] + row.tau[0], place[0] + row.tau[1]
-        sides = [(found.value + row.apart[0], ">"), (found.value, "="), (found.value + row.apart[1], "<")]
+        shifts = (row.apart[0], ASIDE * row.apart[0], row.apart[1])
+        sides = [(found.value + shift, sign) for shift, sign in zip(shifts, ">=<", strict=True)]
         made = [(_surface(model, c, tau, row), c, sign) for c, sign in sides]
         facts |= {f"{row.title} {sign}": float(_ends(surface, tau)) for surface, _, sign in made}
         panels += _drawn(row, place, tau, made)
