@@ -66,7 +66,7 @@ def figure_b7() -> Picture:
         "its copy of the period before; beyond it a lens of launches that miss both is open between them. Shown "
         r"is $v - q(\tau)$, $q$ a polynomial of degree 3. Below: the flight from tangency to tangency, released at A "
         f"(dot), at $c_0$ = {facts['tangency to tangency']:.7f}; beyond it the piece of the copy to the right of A is "
-        "gone, and its tip lies above the arc that ends at A."
+        "gone, and its tip lies above the arc that ends at A. The middle panels are a hair before the transition."
     )
     claims = ("b:events-first", "b:events-values", "b:events-met")
     return Picture("B7", "A swan meets its copy", claims, str(model), panels, 3, facts, caption)

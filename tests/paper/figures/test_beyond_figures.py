@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from singimpact.inputs import InputError
-from singimpact.paper.claims import CLAIMS
+from singimpact.paper.claims import BEYOND
 from singimpact.paper.figures import BEYOND_FIGURES, FIGURES, picture
 from singimpact.paper.figures.met import B7, B8, two_waves
 from singimpact.paper.figures.rendering import drawn, legend_words
@@ -29,7 +29,7 @@ def test_they_stand_apart():
 @pytest.mark.parametrize("number", BEYOND_FIGURES)
 def test_data_and_words(number):
     found = made(number)
-    assert set(found.claims) <= set(CLAIMS)
+    assert set(found.claims) <= set(BEYOND)
     assert found.caption.endswith(".")
     assert found.caption.count("$") % 2 == 0
     assert legend_words(found) == ["apparent outline $P$", "discontinuities of $G$: visible part of $P$"]
