@@ -31,6 +31,8 @@ from singimpact.surface.transitions import Transitions
 from singimpact.surface.transitions import transitions as transitions_of_outline
 
 Array = np.ndarray[Any, Any]
+SEEN_ALONE = ("tacnode", "triple point")
+"""Transitions that part intervals only where they are visible."""
 WORDS = ("stable", "neutral", "unstable", "virtual")
 
 
@@ -190,23 +192,29 @@ class BothSides:
 
 
 def transitions(
-    osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None, *, orbits: Any = None
-) -> Transitions:
+    osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None, *, orbits: Any = None,
+    kinds: Any = None,
+) -> Transitions:  # fmt: skip
     """Where P changes its kind as a number of the model moves, and what happens to periodic orbits on the way.
 
     Parameters
     ----------
     osc : the model. over : clearance, restitution, a parameter; "amplitude" and "damping" of any model, "stiffness" and
         "phase" of `si.linear`, need not be parameters of it. between : its ends.
-    t : ends of the flight times; as for `classify` when they are not given.
+    t : ends of the flight times; as for `classify` when they are not given, one period to both sides. Flights with two
+        rests or more are listed where the time from the first rest to the last, or its negative, lies between them.
+    kinds : some of "swan", "swallowtail", "tangency" (lips, beaks, and flights from tangency to tangency), "tacnode",
+        "triple point", "periodic graze"; all without it.
     orbits : a whole number m, for the orbits of n impacts in k periods, n, k <= m, the one without impact and those
         with complete chatter; or pairs (n, k). Without it P alone is looked at.
 
     Returns
     -------
-    Transitions : a tuple in order of the number, each with `.kind`, `.value`, `.tau`, `.t`; `.complete` says whether it
-        is proved that none is missing, `.doubts` why one may be. With `orbits` an `OrbitTransitions`: `.intervals`
-        between transitions, with the orbits in the middle of each and `.changes`: grazes, hidden impacts, folds, period
+    Transitions : a tuple in order of the number, each with `.kind`, `.value`, `.tau`, `.t`, the `.rests` of its flight,
+        `.visible`, `.launch` and `.effect` in words; its `.visible` are those at which first hits change. `.complete`
+        says whether it is proved that none is missing, `.doubts` why one may be. With `orbits` an `OrbitTransitions`:
+        `.intervals` between transitions (of tacnodes and triple points the visible ones; at a periodic graze an orbit
+        changes), with the orbits in the middle of each and `.changes`: grazes, hidden impacts, folds, period
         doublings and tori at their own values. Its `.both_sides(index)` is drawn by `si.plot`.
 
     Raises
@@ -216,7 +224,8 @@ def transitions(
     Notes
     -----
     An orbit grazes where one of its flights begins at rest, a point of P for its end; that happens at a value of its
-    own, at a transition only by coincidence (codimension two). At the graze its multipliers jump: with the impact one
+    own, at a transition only by coincidence (codimension two), but for the orbit without impact, whose graze is one. At
+    the graze its multipliers jump: with the impact one
     tends to infinity, without it both are finite.
 
     Examples
@@ -233,7 +242,7 @@ def transitions(
     pairs = None if orbits is None else _pairs(orbits)
     if pairs is not None and osc.period is None:
         raise InputError("the forcing has no period: periodic orbits need one")
-    found = transitions_of_outline(osc, over, between, default_window(osc)[1] if t is None else t)
+    found = transitions_of_outline(osc, over, between, default_window(osc)[1] if t is None else t, kinds)
     if pairs is None:
         return found
     return _Search(found, osc, over, window_ends(over, between), pairs).found()
@@ -270,7 +279,11 @@ class _Search:
     def found(self) -> OrbitTransitions:
         """The transitions with intervals and branches."""
         low, high = self.ends
-        edges = [low, *sorted({each.value for each in self.transitions if low < each.value < high}), high]
+        edges = [
+            low,
+            *sorted({each.value for each in self.transitions if low < each.value < high and _parts(each)}),
+            high,
+        ]
         middles = [(one + other) / 2 for one, other in pairwise(edges)]
         extra = np.linspace(low, high, SETTINGS.samples + 2)[1:-1].tolist()
         at_middles = {}
@@ -324,6 +337,11 @@ class _Search:
                 if not any(_same(change, other) for other in seen):
                     seen.append(change)
         return seen
+
+
+def _parts(found: Transition) -> bool:
+    """Whether orbits are listed on both sides of a transition."""
+    return found.event != "periodic graze" and (found.event not in SEEN_ALONE or bool(found.visible))
 
 
 def _same(one: OrbitChange, other: OrbitChange) -> bool:

@@ -41,9 +41,10 @@ def command(
 ) -> None:  # fmt: skip
     """The points of V_c' where p or phi is singular: tangencies, swans, cusps, and the fold lines between them.
 
-    Swan points are listed over the clearance. With --over and --between: the swans, swallowtails, lips and beaks met
-    on the way, and with --orbits the periodic orbits between them, and where these graze, fold or double. Numbers may
-    be expressions such as pi/2.8.
+    Swan points are listed over the clearance. With --over and --between: the transitions of P met on the way (swans,
+    swallowtails, lips, beaks, tacnodes, triple points, periodic grazes) and which of them are visible, and with
+    --orbits the periodic orbits between them, and where these graze, fold or double. Numbers may be expressions such
+    as pi/2.8.
     """
     oscillator = take_model(options)
     if over is not None and between is None:
@@ -98,7 +99,8 @@ def _told(found: Classification, over: str | None, changes: Transitions | None) 
         "flights": found.flights,
     }  # fmt: skip
     if changes is not None:
-        listed = [{"kind": c.kind, "value": c.value, "tau": c.tau, "t": c.t} for c in changes]
+        listed = [{"kind": c.kind, "event": c.event, "value": c.value, "tau": c.tau, "t": c.t, "rests": c.rests,
+                   "visible": c.visible, "launch": c.launch, "effect": c.effect} for c in changes]  # fmt: skip
         told["transitions"] = {"over": over, "found": listed, "swans_complete": changes.swans_complete,
                                "notes": changes.notes}  # fmt: skip
         if _with_orbits(changes):
@@ -117,14 +119,19 @@ def _text(found: Classification, over: str | None, changes: Transitions | None) 
                [[*_numbers(s.clearance, s.tau), s.kind] for s in found.swans], found.notes),
     ]  # fmt: skip
     if changes is not None:
-        rows = [[c.kind, *_numbers(c.value, c.tau, c.t)] for c in changes]
-        tables.append(_table(f"where P changes as {over} moves", ["kind", str(over), "tau", "t"], rows, changes.notes))
+        rows = [[c.kind, *_numbers(c.value, c.tau, c.t), _seen(c.visible)] for c in changes]
+        header = ["kind", str(over), "tau", "t", "visible"]
+        tables.append(_table(f"where P changes as {over} moves", header, rows, changes.notes))
         if _with_orbits(changes):
             tables.append(f"periodic orbits:\n{changes!r}")
         if changes.swans_complete:
             tables.append("no swan between these ends is missing (by interval bounds)")
     low, high = _numbers(*found.tau), _numbers(*found.t)
     return "\n\n".join([f"window: tau from {' to '.join(low)}, t from {' to '.join(high)}", *tables])
+
+
+def _seen(visible: bool | None) -> str:
+    return "not decided" if visible is None else "yes" if visible else "no"
 
 
 def _table(title: str, header: list[str], rows: list[list[str]], notes: tuple[str, ...] = ()) -> str:

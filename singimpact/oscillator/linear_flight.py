@@ -59,24 +59,34 @@ def linear_flight(form: LinearForm, clearance: Expression) -> LinearFlight | Non
     return LinearFlight(*formulas, add(push, form.constant, negate(multiply(form.stiffness, clearance))))
 
 
+def steady_motion(form: LinearForm, at: Expression) -> Expression | None:
+    """The motion with the period of the forcing, as a formula in a time; None at resonance or at stiffness 0.
+
+    Examples
+    --------
+    >>> from singimpact.oscillator.linear import linear_form
+    >>> from singimpact.oscillator.model import Oscillator
+    >>> print(steady_motion(linear_form(Oscillator("x", "cos(2*t)", 0, "1/2")), Name("t")))
+    -3/9*cos(2*t)
+    """
+    sizes = [part for part in (_response(form, wave) for wave in form.harmonics) if part is not None]
+    if sign_of(form.stiffness) == 0 or len(sizes) < len(form.harmonics):
+        return None
+    return add(multiply(form.constant, Power(form.stiffness, number(-1))), waves(form, at, sizes))
+
+
 def _formulas(form: LinearForm, clearance: Expression) -> Pair | None:
     k, d = form.stiffness, form.damping
-    responses = [_response(form, wave) for wave in form.harmonics]
-    sizes = [part for part in responses if part is not None]
-    if sign_of(k) == 0 or len(sizes) < len(responses):
+    here, there = (steady_motion(form, at) for at in (TAU, add(TAU, T)))
+    if here is None or there is None:
         return None
-    mean = multiply(form.constant, Power(k, number(-1)))
-
-    def steady(at: Expression) -> Expression:
-        return add(mean, waves(form, at, sizes))
-
-    below = subtract(clearance, steady(TAU))
-    speed = negate(derivative(steady(TAU), "tau"))
+    below = subtract(clearance, here)
+    speed = negate(derivative(here, "tau"))
     beta = multiply(number(Fraction(1, 2)), d)
     even, odd = _free(subtract(k, multiply(beta, beta)))
     decay = Call("exp", negate(multiply(beta, T))) if sign_of(d) else number(1)
     free = multiply(decay, add(multiply(below, even), multiply(add(speed, multiply(beta, below)), odd)))
-    return add(steady(add(TAU, T)), free, negate(clearance)), multiply(decay, odd)
+    return add(there, free, negate(clearance)), multiply(decay, odd)
 
 
 def _free(square: Expression) -> Pair:

@@ -29,14 +29,40 @@ class Transition:
 
     Attributes
     ----------
-    kind : "swan, positive", "swan, negative", "swallowtail", "lips", "beaks"; "undecided" where the Hessian is flat.
-    value : of the parameter. tau, t : the flight from rest; its mirror image is where P changes.
+    kind : "swan, positive", "swan, negative", "swallowtail", "lips", "beaks" ("undecided" where the Hessian is flat),
+        "tangency to tangency", "tacnode, opposite", "tacnode, same", "triple point", "periodic graze".
+    value : of the parameter. tau, t : the flight from rest at tau is at the wall again after t; for "swallowtail",
+        "lips" and "beaks" a_c(tau) = 0, for the kinds below "lips" it is at rest after t > 0.
+    rests : all times, in order, at which this flight is at rest at the wall; the first lies in [0, T).
+    visible : whether the map of first hits changes; None where that is not decided.
+    launch : (tau, v) with v > 0 from which a visible flight comes, in the same time as `rests`; None without one.
+    effect : the change in words.
+
+    Examples
+    --------
+    >>> Transition("lips", 0.1, 2.0, -1.5).event
+    'tangency last'
     """
 
     kind: str
     value: float
     tau: float
     t: float
+    rests: tuple[float, ...] = ()
+    visible: bool | None = None
+    launch: tuple[float, float] | None = None
+    effect: str = ""
+
+    @property
+    def event(self) -> str:
+        """What the flight does, without what P looks like.
+
+        "swan", "swallowtail", "tangency first" (the first of two rests is a tangency point), "tangency last", "tangency
+        to tangency", "tacnode", "triple point", "periodic graze".
+        """
+        if self.kind in ("lips", "beaks", "undecided"):
+            return "tangency first" if self.t > 0 else "tangency last"
+        return self.kind.split(",")[0]
 
 
 @dataclass(frozen=True)
@@ -68,7 +94,7 @@ def swans_met(family: Family, values: Array) -> tuple[list[Transition], tuple[st
     if family.over == "clearance":
         known = swan_points_over_clearance(family.model, between)
         inside = [swan for swan in known if between[0] <= Fraction(swan.clearance) <= between[1]]
-        return [Transition(f"swan, {swan.kind}", swan.clearance, swan.tau, 0.0) for swan in inside], ()
+        return [Transition(f"swan, {swan.kind}", swan.clearance, swan.tau, 0.0, (swan.tau,)) for swan in inside], ()
     periods = set(family.periods(values).values())
     if not periods:
         raise InputError(f"g = {family.model.g} is not seen to be periodic: give period=")
@@ -87,7 +113,8 @@ def _in_period(family: Family, zero: DoubleZero, longest: float) -> bool:
 
 def _as_transition(zero: DoubleZero) -> Transition:
     sign = "positive" if zero.curvature > 0 else "negative"  # not 0: the matrix of derivatives is regular there
-    return Transition(f"swan, {sign}", float(zero.value), float(zero.at) + 0.0, 0.0)
+    at = float(zero.at) + 0.0
+    return Transition(f"swan, {sign}", float(zero.value), at, 0.0, (at,))
 
 
 def _doubts(made: DoubleZeros, over: str, periods: int) -> tuple[str, ...]:

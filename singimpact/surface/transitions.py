@@ -1,10 +1,12 @@
-"""Transitions of P over the clearance or a parameter: swans, swallowtails, lips and beaks.
+"""Transitions of P over the clearance or a parameter: all events of codimension one, visible or not.
 
-In flights launched at rest at a tangency point tau_*, a_c(tau_*) = 0:
+P and Pi_0 together are the preimage of one curve of flights, those at rest at the wall.  An event belongs to a flight:
 
-    swan         a_c' = 0 too: two tangency points are born; P appears or vanishes there in a lips transition at t = 0
+    swan         a_c = a_c' = 0: two tangency points are born; P appears or vanishes there in a lips transition at t = 0
     swallowtail  the same, seen at each further crossing t of the flight from rest at tau_*
-    lips, beaks  the flight touches c again, x = c and x' = 0 at t: Z has an isolated point there, or crosses itself
+    lips, beaks  at rest twice, once at a tangency point: Z has an isolated point there, or crosses itself
+    tacnode      at rest twice with dx/dv = 0 between: two branches of P touch
+    triple point at rest three times.  periodic graze: at rest once a period
 """
 
 from __future__ import annotations
@@ -17,15 +19,21 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import tangency_points
+from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
 from singimpact.surface.curve import window_ends
+from singimpact.surface.followed_rests import FollowedRests
 from singimpact.surface.proved_touches import doubts_left
+from singimpact.surface.rest_events import doubts_of_rests, gaps_of, met_rests
 from singimpact.surface.rest_flights import RestFlights
+from singimpact.surface.seen_events import bracketed, told
 from singimpact.surface.swan_families import STEPS, Family, Transition, swans_met
+from singimpact.surface.two_rests import Rests, linear_rests
 
 Array = np.ndarray[Any, Any]
 
@@ -34,25 +42,29 @@ Array = np.ndarray[Any, Any]
 class TransitionSettings:
     """same : relative distance below which two of them are one; Newton's method ends at a thousandth of it.
     samples : of a flight in the window of t. settled : Newton's last step. flat : a Hessian below this share of its
-    terms decides nothing.
+    terms decides nothing. double : of t, to which Newton's method meets a double zero.
     """
 
     samples: int = 400
     settled: float = 1e-12
     same: float = 1e-9
     flat: float = 1e-6
+    double: float = 1e-2
 
 
 SETTINGS = TransitionSettings()
 
 
+KINDS = ("swan", "swallowtail", "tangency", "tacnode", "triple point", "periodic graze")
+"""What is looked for; "tangency" are lips, beaks and flights from tangency to tangency."""
+
+
 class Transitions(tuple[Transition, ...]):
     """Transitions in order, with notes on their completeness.
 
-    Swans are isolated by balls.  The other kinds are met on a grid of the number; balls then show that there are no
-    more, when `complete` or `doubts` is first asked for.
-    Flights from rest to rest with dx/dv = 0, over which V_c' itself is singular, are no transitions of this list:
-    `classify` marks them.
+    Swans are isolated by balls.  Lips, beaks and swallowtails are met on a grid of the number; balls then show that
+    there are no more, when `complete` or `doubts` is first asked for.  Of linear models over the clearance tacnodes and
+    periodic grazes are isolated by balls, triple points met on a grid; of others all three are.
 
     Attributes
     ----------
@@ -69,73 +81,199 @@ class Transitions(tuple[Transition, ...]):
 
     @kept_property
     def doubts(self) -> tuple[str, ...]:
-        """Why a transition of any kind may be missing in the window; nothing where it is proved that none is."""
+        """Why a transition of a kind that was looked for may be missing; nothing where it is proved that none is."""
         return self.notes + (() if self._proof is None else self._proof(self))
 
     @property
     def complete(self) -> bool:
-        """Whether it is proved that no transition in the window is missing; it takes 1 s to 1 minute."""
+        """Whether it is proved that no transition of these kinds is missing in the window; takes 1 s to 1 minute."""
         return not self.doubts
 
+    @property
+    def visible(self) -> tuple[Transition, ...]:
+        """Those at which first hits change."""
+        return tuple(each for each in self if each.visible)
 
-def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6)) -> Transitions:
+
+def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6), kinds: Any = None) -> Transitions:
     """The transitions of P over a parameter, for one period of tau, in order of the parameter.
 
     Parameters
     ----------
     over : clearance, a parameter; "amplitude" and "damping" of any model, "stiffness" and "phase" of `si.linear`, need
         not be parameters of it. No flight depends on the "restitution": P scales with it, and there are no transitions.
-    between : its two ends. t : window of flight times.
+    between : its two ends. t : window of flight times; of flights with two rests or more the time from the first to the
+        last one or its negative lies in it, so that wider windows have more of them.
+    kinds : some of `KINDS`; all without it.
 
     Returns
     -------
-    Transitions : a tuple; `.complete` says whether it is proved that none is missing in the window, `.doubts` why one
-        may be; `.swans_complete` and `.notes` say so of swans alone.
+    Transitions : a tuple, each with its flight, whether it is visible, and what it does; `.complete` says whether it is
+        proved that none is missing in the window, `.doubts` why one may be; `.swans_complete` and `.notes` say so of
+        swans alone.
 
     Raises
     ------
-    InputError : no number of the model; ends that are no numbers in rising order.
+    InputError : no number of the model; ends that are no numbers in rising order; a kind that is none.
+
+    Notes
+    -----
+    Values are roots of the equations of the event to 1e-12. Events nearer to one another than the grid is fine can be
+    missed where `.doubts` says that they rest on a grid. Without a period there are swans, swallowtails, lips and beaks
+    alone.
 
     Examples
     --------
-    >>> found = transitions(Oscillator("x", "cos(2*t)", 0, "1/2"), "clearance", ("0.9", "1.1"))
-    >>> [(each.kind, round(each.value, 9), round(each.t, 6)) for each in found][:1]
-    [('swan, negative', 1.0, 0.0)]
-    >>> found.complete
+    >>> found = transitions(Oscillator("x", "cos(2*t)", 0, "1/2"), "clearance", ("-0.9", "1.1"))
+    >>> [(each.kind, round(each.value, 9), each.visible) for each in found]
+    [('periodic graze', -0.333333333, True), ('periodic graze', 0.333333333, False), ('swan, negative', 1.0, True)]
+    >>> found.visible[0].rests, found.visible[0].launch
+    ((0.0, 3.141592653589793), None)
+    >>> transitions(Oscillator("x", "cos(2*t)", 0, "1/2"), "clearance", ("0.9", "1.1"), kinds="swan").complete
     True
     """
     model = with_number(model, over)
-    ends, times = window_ends(over, between), window_ends("t", t)
+    ends, times, wanted = window_ends(over, between), window_ends("t", t), _kinds(kinds)
     if over == RESTITUTION:
         return Transitions()
     values = np.linspace(*ends, STEPS + 1)
     family = Family(model, over)
     swans, notes = swans_met(family, values)
-    found = [*swans, *_swallowtails(family, swans, times), *_each_once(_touches(family, values, times), ends)]
-    made = Transitions(sorted(found, key=lambda each: (each.value, each.tau, each.t)))
-    made.notes = notes
-    made._proof = partial(doubts_left, family, ends, times)
+    found = [*swans, *(_swallowtails(family, swans, times) if "swallowtail" in wanted else ())]
+    if "tangency" in wanted:
+        found += _tangencies(family, values, times)
+    found += _with_more_rests(family, times, ends, wanted)
+    kept = [told(each, family.at(each.value)) for each in found if _kind_of(each) in wanted]
+    made = Transitions(sorted(kept, key=lambda each: (each.value, each.tau, each.t)))
+    made.notes = notes if {"swan", "swallowtail"} & wanted else ()
+    made._proof = partial(_doubts, family, ends, times, wanted, tuple(swans))
     return made
+
+
+def _kinds(given: Any) -> frozenset[str]:
+    asked = KINDS if given is None else (given,) if isinstance(given, str) else given
+    try:
+        unknown = [kind for kind in asked if kind not in KINDS]
+    except TypeError:
+        unknown = [given]
+    if unknown:
+        raise refuse("kinds", unknown[0], f"some of {', '.join(KINDS)}")
+    return frozenset(asked)
+
+
+def _kind_of(found: Transition) -> str:
+    return "tangency" if found.event.startswith("tangency") else found.event
+
+
+def _doubts(
+    family: Family, ends: tuple[float, float], times: tuple[float, float], wanted: frozenset[str],
+    swans: tuple[Transition, ...], listed: Transitions,
+) -> tuple[str, ...]:  # fmt: skip
+    """Why one of the kinds may be missing."""
+    doubts: tuple[str, ...] = ()
+    if {"swallowtail", "tangency"} & wanted:
+        doubts += doubts_left(family, ends, times, [*(() if "swan" in wanted else swans), *listed])
+    return doubts + doubts_of_rests(family, times, wanted)
+
+
+def _with_more_rests(
+    family: Family, times: tuple[float, float], ends: tuple[float, float], wanted: frozenset[str]
+) -> list[Transition]:
+    """Tacnodes, triple points and periodic grazes."""
+    found = [each for each in met_rests(family, ends, times, wanted) if ends[0] <= each.value <= ends[1]]
+    made = []
+    for each in found:
+        gap, kind = each.gaps[-1], each.kind
+        if kind == "tacnode":
+            flights = RestFlights(family.at(each.value))
+            back = flights.by_speed(np.array([each.first]), np.array([gap]))[0, 1]
+            kind = "tacnode, opposite" if back < 0 else "tacnode, same"
+        first = _reduced(each.first, family.at(each.value))
+        rests = (first, *(first + part for part in each.gaps))
+        if any(low <= sign * gap <= high for sign in (1, -1) for low, high in [_widened(times)]):
+            made.append(Transition(kind, each.value, first, gap, rests))
+    return _each_once(made, ends)
+
+
+def _widened(times: tuple[float, float]) -> tuple[float, float]:
+    """The window of t with both its ends, of which one may be a period."""
+    return times[0] * (1 + np.sign(times[0]) * -SETTINGS.same), times[1] * (1 + np.sign(times[1]) * SETTINGS.same)
+
+
+def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> list[Transition]:
+    """Two rests with a tangency point among them: from the flights of tangency points, and by elimination of c."""
+    ends, linear, found = (float(values[0]), float(values[-1])), linear_rests(family), list[Transition]()
+    if linear is not None:
+        met = [each for each in linear.tangencies(*gaps_of(times)) if ends[0] <= each.value <= ends[1]]
+        both = [each for each in met if each.kind == "tangency to tangency"]
+        for each in met:
+            s, d = each.first, each.gaps[0]
+            tau, t = (s + d, -d) if each.kind == "tangency last" else (s, d)
+            if each not in both and times[0] <= t <= times[1]:
+                place = np.array([_reduced(tau, family.model), t, each.value])
+                kind = _lips_or_beaks(RestFlights(family.at(each.value)), place)
+                found.append(Transition(kind, each.value, float(place[0]), t, _two(tau, t)))
+    else:
+        found += _touches(family, values, times)
+        followed = FollowedRests(family, ends, gaps_of(times))
+        near = [(each.value, *_first_and_gap(each)) for each in found if each.kind == "undecided"]
+        both = [made for made in (followed.both_ends(*place) for place in near) if made is not None]
+    kept = [each for each in found if not any(_is_that(each, other) for other in both)]
+    kept += [Transition(each.kind, each.value, s := _reduced(each.first, family.at(each.value)),
+                        each.gaps[0], (s, s + each.gaps[0]))
+             for each in both if any(times[0] <= sign * each.gaps[0] <= times[1] for sign in (1, -1))]  # fmt: skip
+    return _each_once(kept, ends)
+
+
+def _two(tau: float, t: float) -> tuple[float, float]:
+    return (tau, tau + t) if t > 0 else (tau + t, tau)
+
+
+def _first_and_gap(found: Transition) -> tuple[float, float]:
+    return min(found.tau, found.tau + found.t), abs(found.t)
+
+
+def _is_that(found: Transition, both: Rests) -> bool:
+    """Whether what Newton's method met is the flight from tangency to tangency, a double zero of its equations."""
+    return abs(found.value - both.value) < 1e-6 and abs(abs(found.t) - both.gaps[0]) < SETTINGS.double
+
+
+def _reduced(tau: float, model: Oscillator) -> float:
+    """A time in the first period of a model, where it has one."""
+    if model.period is None:
+        return tau
+    period = as_float(model.period)
+    moved = float(tau - np.floor(tau / period + SETTINGS.same) * period)
+    return moved if abs(moved) > SETTINGS.settled * period else 0.0
 
 
 def _each_once(found: Iterable[Transition], ends: tuple[float, float]) -> list[Transition]:
     """The distinct ones between the ends: Newton's method may leave the interval, or find one point twice."""
     kept: list[Transition] = []
     for each in found:
-        twice = any(
-            max(abs(each.value - old.value), abs(each.tau - old.tau), abs(each.t - old.t)) < SETTINGS.same
-            for old in kept
-        )  # fmt: skip
+        twice = any(_same(each, old) for old in kept)
         if ends[0] <= each.value <= ends[1] and not twice:
             kept.append(each)
     return kept
+
+
+def _same(one: Transition, other: Transition) -> bool:
+    """Whether two flights are one; triple points may differ in the rest between the first and the last alone."""
+    if len(one.rests) != len(other.rests):
+        return False
+    pairs = zip((one.value, one.tau, one.t, *_gaps(one)), (other.value, other.tau, other.t, *_gaps(other)), strict=True)
+    return all(abs(a - b) < SETTINGS.same for a, b in pairs)
+
+
+def _gaps(found: Transition) -> list[float]:
+    return [rest - found.rests[0] for rest in found.rests[1:]]
 
 
 def _swallowtails(family: Family, swans: list[Transition], times: tuple[float, float]) -> Iterator[Transition]:
     for swan in swans:
         flights = RestFlights(family.at(swan.value))
         for t in _crossings(flights, swan.tau, times):
-            yield Transition("swallowtail", swan.value, swan.tau, t)
+            yield Transition("swallowtail", swan.value, swan.tau, t, (swan.tau,))
 
 
 def _samples(flights: RestFlights, tau: float, times: tuple[float, float]) -> tuple[Array, Array]:
@@ -146,27 +284,13 @@ def _samples(flights: RestFlights, tau: float, times: tuple[float, float]) -> tu
 
 
 def _crossings(flights: RestFlights, tau: float, times: tuple[float, float]) -> list[float]:
+    def ends(at: float) -> tuple[float, float]:
+        height, velocity = flights.ends(np.array([tau]), np.array([at]))
+        return float(height[0]), float(velocity[0])
+
     t, y = _samples(flights, tau, times)
-    found = []
-    for i in np.flatnonzero((y[:-1] * y[1:] < 0) & (t[:-1] * t[1:] > 0)).tolist():
-        at = _root(lambda s: flights.ends(np.array([tau]), np.array([s])), t[i], t[i + 1])
-        found.append(at)
-    return found
-
-
-def _root(ends: Callable[[float], tuple[Array, Array]], low: float, high: float) -> float:
-    """Newton's method, kept in a bracket."""
-    start = float(ends(low)[0][0])
-    at = (low + high) / 2
-    for _ in range(80):
-        height, velocity = (float(part[0]) for part in ends(at))
-        low, high = (at, high) if height * start > 0 else (low, at)
-        newton = at - height / velocity if velocity else low
-        following = newton if min(low, high) < newton < max(low, high) else (low + high) / 2
-        if abs(following - at) < 1e-14 * (1 + abs(at)):
-            return float(following)
-        at = following
-    return float(at)
+    turned = np.flatnonzero((y[:-1] * y[1:] < 0) & (t[:-1] * t[1:] > 0)).tolist()
+    return [bracketed(ends, t[i], t[i + 1]) for i in turned]
 
 
 def _touches(family: Family, values: Array, times: tuple[float, float]) -> Iterator[Transition]:
@@ -217,7 +341,8 @@ def _touch(family: Family, start: Array) -> Transition | None:
         place = place + np.clip(move, -0.2, 0.2)
         if np.abs(move).max() < SETTINGS.settled * (1 + np.abs(place).max()):
             flights = RestFlights(family.at(float(place[2])))
-            return Transition(_lips_or_beaks(flights, place), float(place[2]), float(place[0]), float(place[1]))
+            tau, t, value = place.tolist()
+            return Transition(_lips_or_beaks(flights, place), value, tau, t, _two(tau, t))
     return None
 
 

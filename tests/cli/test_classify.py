@@ -21,6 +21,7 @@ def test_transitions_over_the_clearance(singimpact):
     (swan,) = told["transitions"]["found"]
     assert (swan["kind"], told["transitions"]["over"]) == ("swan, negative", "clearance")
     assert abs(swan["value"] - 1) < 1e-10
+    assert (swan["event"], swan["rests"], swan["visible"], swan["launch"]) == ("swan", [swan["tau"]], True, None)
 
 
 def test_orbits_between_transitions(singimpact):

@@ -24,6 +24,8 @@ DUFFING = si.ImpactOscillator("x + 0.1*xdot + x**3/10", "cos(2.8*t)", 0, "0.8")
 DAMPED = si.ImpactOscillator("x + 0.1*xdot", "cos(2.8*t)", 0, "0.8")
 PERIOD = float(2 * np.pi / 2.8)
 WINDOW = ((0.035, 0.055), (2.0, 4.0))
+OUTLINE = ("swan", "swallowtail", "tangency")
+"""The kinds of which balls show that none is missing."""
 STRONG = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 
 
@@ -39,7 +41,7 @@ def flown(tau, t, clearance):
 
 
 def test_lips_and_beaks_of_a_duffing_oscillator_are_all():
-    found = transitions(DUFFING, "clearance", *WINDOW)
+    found = transitions(DUFFING, "clearance", *WINDOW, OUTLINE)
     assert sorted(each.kind for each in found) == ["beaks", "lips"]
     for each in found:
         assert np.abs(flown(each.tau, each.t, each.value)).max() < 1e-10
@@ -54,7 +56,7 @@ def test_one_that_the_search_by_doubles_loses_is_said(monkeypatch):
         return (each for each in search(*given) if each.kind != "lips")
 
     monkeypatch.setattr(transitions_room, "_touches", losing)
-    found = transitions(DUFFING, "clearance", *WINDOW)
+    found = transitions(DUFFING, "clearance", *WINDOW, OUTLINE)
     assert [each.kind for each in found] == ["beaks"]
     assert not found.complete
     (doubt,) = found.doubts
@@ -62,7 +64,7 @@ def test_one_that_the_search_by_doubles_loses_is_said(monkeypatch):
 
 
 def test_swallowtails_on_both_sides_of_the_launch_are_all(monkeypatch):
-    window = "clearance", (0.82, 0.84), (-5, 5)
+    window = "clearance", (0.82, 0.84), (-5, 5), OUTLINE
     found = transitions(STRONG, *window)
     assert [each.kind for each in found] == ["swallowtail", "swan, negative", "swallowtail"]
     assert found.complete

@@ -15,11 +15,13 @@ from singimpact.surface.transitions import Transitions, transitions
 
 DAMPED = si.ImpactOscillator("x + 0.1*xdot", "cos(2.8*t)", 0, "0.8")
 WINDOW = ((-0.14, 0.14), (-6.0, 6.0))
+OUTLINE = ("swan", "swallowtail", "tangency")
+"""The kinds of which balls show that none is missing."""
 
 
 @pytest.fixture(scope="module")
 def four() -> Transitions:
-    return transitions(DAMPED, "clearance", *WINDOW)
+    return transitions(DAMPED, "clearance", *WINDOW, OUTLINE)
 
 
 def test_two_lips_and_two_beaks_are_all(four):
@@ -38,10 +40,10 @@ def test_one_that_the_list_lacks_is_said(four, left_out):
 
 def test_all_three_kinds_of_figure_2():
     """Lips and beaks over the rate, a swallowtail over the clearance; the same window with one of them left out."""
-    over_rate = transitions(damped(), "w", (1.9, 2.3), (0, 8))
+    over_rate = transitions(damped(), "w", (1.9, 2.3), (0, 8), OUTLINE)
     assert {each.kind for each in over_rate} == {"lips", "beaks"}
     assert over_rate.doubts == over_rate.notes  # of the period, which moves with w
-    over_clearance = transitions(damped(), "clearance", (0.9, 1.1), (-8, 8))
+    over_clearance = transitions(damped(), "clearance", (0.9, 1.1), (-8, 8), OUTLINE)
     tail = next(each for each in over_clearance if abs(each.t - 5.1927096149235386) < 1e-12)
     assert tail.kind == "swallowtail"
     assert over_clearance.complete
@@ -87,7 +89,7 @@ def test_what_is_not_proved_is_said():
     assert polynomial.swans_complete
     assert not polynomial.complete
     assert "met on a grid" in polynomial.doubts[0]
-    assert transitions(si.ImpactOscillator("x", 1, 0, "0.5"), "clearance", (-0.2, 0.2), (-1, 1)).complete
+    assert transitions(si.ImpactOscillator("x", 1, 0, "0.5"), "clearance", (-0.2, 0.2), (-1, 1), OUTLINE).complete
     # both ends of this flight are tangency points at one value: the equations are not independent there
     undamped = transitions(si.linear("2.8", 0, "0.8"), "clearance", (-0.14, 0.14), (-6, 6))
     assert "lips and beaks for clearance from -0.0461688" in undamped.doubts[0]

@@ -10,7 +10,7 @@ from singimpact.paper.figures.panel import Picture
 
 FIGURES = tuple(range(1, 18))
 """The numbers of the paper's figures."""
-BEYOND = ("B1", "B2", "B3", "B4", "B5", "B6")
+BEYOND = ("B1", "B2", "B3", "B4", "B5", "B6", "B7", "B8")
 """The names of figures of what the paper does not have."""
 
 
@@ -45,7 +45,7 @@ def _function(number: int | str) -> Callable[[], Picture]:
 
 
 def _beyond(name: str) -> Callable[[], Picture]:
-    from singimpact.paper.figures import corrections, loops
+    from singimpact.paper.figures import corrections, loops, met
 
     functions: dict[str, Callable[[], Picture]] = {
         "B1": corrections.figure_B1,
@@ -54,6 +54,8 @@ def _beyond(name: str) -> Callable[[], Picture]:
         "B4": loops.figure_B4,
         "B5": loops.figure_B5,
         "B6": loops.figure_B6,
+        "B7": met.figure_B7,
+        "B8": met.figure_B8,
     }
     return functions[name]
 

@@ -41,12 +41,20 @@ KINDS = {
     "b:onset-none": "proved",
     "b:onset-hop": "proved",
     "b:onset": "supported",
+    "b:events-front": "proved",
+    "b:events-critical": "proved",
+    "b:events-eliminated": "proved",
+    "b:events-families": "proved",
+    "b:events-values": "proved",
+    "b:events-two": "proved",
+    "b:events-first": "proved",
+    "b:events-met": "supported",
 }
 OWN = {"proved in the model": "proved"}  # the kind of a verifier whose argument is about the universal model
 
 SECONDS = (  # those of enclosures and of true orbits
     "b:cascade", "b:homoclinic", "b:horseshoe", "b:first-order-measured", "b:holder", "b:holder-count", "b:loops",
-    "b:loops-law", "b:onset",
+    "b:loops-law", "b:onset", "b:events-first", "b:events-met",
 )  # fmt: skip
 EACH = [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name for name in BEYOND]
 

@@ -5,7 +5,8 @@ Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a cer
 (what corrected statements of the paper need), `every_order` (contact points of every order), `gauge`
 (linear oscillators as balls under gravity that varies), `first_order` (the first correction to the limits at contact
 points), `holder` (how the foot of a chatter leaves the end of gamma), `loops` (heights of the loops of W^s(X)), `foot`
-(X for every r, in balls), `onset` (what is born at a negative swan).
+(X for every r, in balls), `onset` (what is born at a negative swan), `events` (what a swan meets:
+P as the preimage of a front), `events_harmonic` (all of it for one cosine), `events_met` (what is met first).
 """
 
 from __future__ import annotations
@@ -75,6 +76,24 @@ def _onset() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
+def _events() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import events as section
+
+    return section.CLAIMS
+
+
+def _events_harmonic() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import events_harmonic as section
+
+    return section.CLAIMS
+
+
+def _events_met() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import events_met as section
+
+    return section.CLAIMS
+
+
 BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "cascade": _cascade,
     "horseshoe": _horseshoe,
@@ -86,4 +105,7 @@ BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "foot": _foot,
     "loops": _loops,
     "onset": _onset,
+    "events": _events,
+    "events_harmonic": _events_harmonic,
+    "events_met": _events_met,
 }

@@ -1,0 +1,291 @@
+"""Flights with two rests or more of any model with a period, over any number: met on a grid of its values.
+
+A tacnode is a flight from rest at s with x = c, x' = 0 where dx/dv = 0 first, or for the n-th time, after s: on a grid
+of s and of the number two functions vanish together.  A motion with the period T that grazes is at rest at s and at
+s + T: likewise.  Three rests: at a value of the number the flights with rests at s and s + d are the zeros of
+(x - c, x') in s and d; two of them are followed until their times s agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.flights.path import many_paths
+from singimpact.surface.rest_flights import RestFlights
+from singimpact.surface.swan_families import Family
+from singimpact.surface.two_rests import GRID, Rests, distinct, is_whole, newton
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class FollowSettings:
+    """The grid.
+
+    columns : times s of a rest a period. rows : values of the number between its ends. levels : of these, where two
+    rests are looked for, to be followed. fine, rate : step of d, in parts of the period or of `rate` where that is
+    less, for flights turn by their own rate too. reach : distance in (s, d) between neighbouring levels below which two
+    points may be one branch. push : velocity by which dx/dv is met. loose : Newton's last step for two rests.
+    small : x - c on the first and the last row from which Newton's method starts. moved : columns from row to row.
+    flat : a_c at both rests of a flight that may go from tangency to tangency.
+    """
+
+    columns: int = 48
+    rows: int = 60
+    levels: int = 20
+    fine: float = 0.06
+    rate: float = 2.5
+    reach: float = 0.5
+    push: float = 1e-4
+    loose: float = 1e-5
+    small: float = 1e-3
+    moved: float = 2.0
+    flat: float = 1e-2
+
+
+GRID_OF = FollowSettings()
+
+
+class Level(NamedTuple):
+    """Two rests at one value of the number.
+
+    value : of it. places : (s, d), shape (n, 2). signs : of a(s), a(s + d) and dx/dv there, shape (n, 3).
+    """
+
+    value: float
+    places: Array
+    signs: Array
+
+
+class FollowedRests:
+    """Two rests or more over a number.
+
+    Parameters
+    ----------
+    family : the model and the number, with a period. ends : of it. gaps : the least and the longest d.
+    """
+
+    def __init__(self, family: Family, ends: tuple[float, float], gaps: tuple[float, float]) -> None:
+        self.family, self.ends, self.gaps = family, ends, (max(GRID.least, gaps[0]), gaps[1])
+        periods = family.periods(np.linspace(*ends, GRID_OF.rows + 1))
+        self.longest, self.values = max(periods.values(), default=0.0), np.array(sorted(periods))
+        self.share = np.linspace(-1 / GRID_OF.columns, 1 + 1 / GRID_OF.columns, GRID_OF.columns + 3)
+
+    def met(self, wanted: Collection[str]) -> list[Rests]:
+        """Those of "tacnode", "triple point" and "periodic graze" that are asked for."""
+        found = list[Rests]()
+        if len(self.values) < 2:
+            return found
+        if "periodic graze" in wanted and self.longest <= self.gaps[1] * (1 + GRID.whole):
+            found += self._grazes()
+        if "tacnode" in wanted and self.gaps[1] > self.gaps[0]:
+            found += self._tacnodes()
+        if "triple point" in wanted and self.gaps[1] > 2 * GRID.least:
+            levels = [self._level(value) for value in self.values[:: GRID_OF.rows // GRID_OF.levels].tolist()]
+            for before, after in pairwise(levels):
+                found += self._triples(before, after)
+        return found
+
+    def both_ends(self, value: float, first: float, gap: float) -> Rests | None:
+        """The flight from tangency to tangency there; the equations of one tangency have a double zero at it."""
+        near = np.array([first, gap, value])
+        if np.abs(self._pushed(near)[:2]).max() > GRID_OF.flat:
+            return None
+        met = newton(lambda z: np.array([self._pushed(place) for place in z]), near[None])
+        if not len(met) or np.abs(met[0] - near).max() > GRID_OF.flat:
+            return None
+        s, d, there = met[0]
+        speed = RestFlights(self.family.at(float(there))).ends(met[0, :1], met[0, 1:2])[1][0]
+        return Rests("tangency to tangency", float(there), float(s), (float(d),)) if abs(speed) < GRID.wide else None
+
+    def _pushed(self, place: Array) -> Array:
+        """a(s), a(s + d) and x - c at (s, d, value)."""
+        flights = RestFlights(self.family.at(float(place[2])))
+        height = flights.ends(place[:1], place[1:2])[0]
+        return np.append(flights.acceleration(np.array([place[0], place[0] + place[1]])), height)
+
+    def _turn(self, value: float) -> float:
+        period = self.family.at(value).period
+        return np.nan if period is None else as_float(period)
+
+    def _grid(self, value: float) -> tuple[Array, Array, Array, Array]:
+        """s, d, and (x - c, x') of flights from rest and of such launched a little faster, shape (s, d, 2)."""
+        turn = self._turn(value)
+        step = GRID_OF.fine * min(turn, GRID_OF.rate)
+        s, d = self.share * turn, np.arange(self.gaps[0], self.gaps[1] + step, step)
+        model, zero = self.family.at(value), np.zeros(len(s))
+        rows, faster = (np.stack(many_paths(model, s, zero + v, [d] * len(s))) for v in (0.0, GRID_OF.push))
+        return s, d, rows, faster
+
+    def _tacnodes(self) -> Iterator[Rests]:
+        """Zeros of (x - c, x') at the times at which dx/dv vanishes for the n-th time, over s and the number."""
+        rows = [_at_conjugates(*self._grid(value)[1:]) for value in self.values.tolist()]
+        for n in range(min(row.shape[1] for row in rows)):
+            d, height, speed = (np.stack([row[axis, n] for row in rows]) for axis in range(3))
+            starts = []
+            for i, at in _crossings(height, speed):
+                turn, gap = self._turn(self.values[i]), float(np.interp(at, np.arange(d.shape[1]), d[i]))
+                starts.append([np.interp(at, np.arange(len(self.share)), self.share) * turn, gap, self.values[i]])
+            met = newton(lambda z: np.array([self._touching(place) for place in z]), np.array(starts).reshape(-1, 3))
+            for s, gap, value in distinct(met):
+                if self._inside(value, gap) and not is_whole(gap / self._turn(value)):
+                    yield Rests("tacnode", float(value), float(s), (float(gap),))
+
+    def _inside(self, value: float, gap: float) -> bool:
+        return bool(self.ends[0] <= value <= self.ends[1] and gap > GRID.least)
+
+    def _touching(self, place: Array) -> Array:
+        flights = RestFlights(self.family.at(float(place[2])))
+        height, speed = flights.ends(place[:1], place[1:2])
+        return np.array([height[0], speed[0], flights.by_speed(place[:1], place[1:2])[0, 0]])
+
+    def _level(self, value: float) -> Level:
+        s, d, rows, _ = self._grid(value)
+        i, j = np.nonzero(_may_vanish(rows[..., 0] / d**2, rows[..., 1] / d))
+        flights = RestFlights(self.family.at(value))
+        met = _rests_near(flights, np.stack([s[i] + (s[1] - s[0]) / 2, d[j] + (d[1] - d[0]) / 2], axis=1))
+        turn = self._turn(value)
+        inside = (met[:, 1] > self.gaps[0]) & (met[:, 1] < self.gaps[1]) & (np.abs(met[:, 0] / turn - 0.5) < 0.53)
+        places = distinct(met[inside & ~is_whole(met[:, 1] / turn)])
+        return Level(value, places, self._signs(flights, places))
+
+    @staticmethod
+    def _signs(flights: RestFlights, places: Array) -> Array:
+        if not len(places):
+            return np.empty((0, 3))
+        s, d = places.T
+        values = flights.acceleration(s), flights.acceleration(s + d), flights.by_speed(s, d)[:, 0]
+        return np.asarray(np.sign(np.stack(values, axis=1)))
+
+    def _triples(self, before: Level, after: Level) -> Iterator[Rests]:
+        """Three rests: two branches whose times s pass one another between two values."""
+        to = [_successor(before, n, after) for n in range(len(before.places))]
+        for n, next_n in enumerate(to):
+            for m in range(n):
+                next_m = to[m]
+                if next_n is None or next_m is None or abs(before.places[n, 1] - before.places[m, 1]) < GRID.least:
+                    continue
+                gap = before.places[n, 0] - before.places[m, 0]
+                then = after.places[next_n, 0] - after.places[next_m, 0]
+                if gap * then > 0 or abs(gap) > GRID_OF.reach:
+                    continue
+                share = gap / (gap - then) if gap != then else 0.5
+                s, *d = (share * (after.places[k, axis] - before.places[j, axis]) + before.places[j, axis]
+                         for j, k, axis in ((n, next_n, 0), (n, next_n, 1), (m, next_m, 1)))  # fmt: skip
+                start = np.array([s, *sorted(d), before.value + share * (after.value - before.value)])
+                yield from self._triple(start)
+
+    def _triple(self, start: Array) -> Iterator[Rests]:
+        for s, one, two, value in newton(lambda z: np.array([self._three(place) for place in z]), start[None]):
+            gaps = np.array([one, two, two - one])
+            if self._inside(value, gaps.min()) and not is_whole(gaps / self._turn(value)).any():
+                yield Rests("triple point", float(value), float(s), (float(one), float(two)))
+
+    def _three(self, place: Array) -> Array:
+        flights = RestFlights(self.family.at(float(place[3])))
+        return np.concatenate(flights.ends(np.repeat(place[:1], 2), place[1:3]))
+
+    def _grazes(self) -> Iterator[Rests]:
+        """Motions with the period T that touch the wall: x = c, x' = 0 at s and at s + T."""
+        rows = [self._after_a_period(value, self.share) for value in self.values.tolist()]
+        places = _crossings(np.stack([row[0] for row in rows]), np.stack([row[1] for row in rows]))
+        columns = np.arange(len(self.share))
+        starts = np.array([[self.values[i], np.interp(at, columns, self.share)] for i, at in places]).reshape(-1, 2)
+        for value, part in distinct(newton(self._missed_after_a_period, starts)):
+            if self._inside(value, self.longest) and abs(part - 0.5) < 0.53:
+                yield Rests("periodic graze", float(value), float(part * self._turn(value)), (self._turn(value),))
+
+    def _missed_after_a_period(self, places: Array) -> Array:
+        return np.array([np.ravel(self._after_a_period(float(value), np.array([part]))) for value, part in places])
+
+    def _after_a_period(self, value: float, share: Array) -> tuple[Array, Array]:
+        turn = self._turn(value)
+        return RestFlights(self.family.at(value)).ends(share * turn, np.full(len(share), turn))
+
+
+def _at_conjugates(d: Array, rows: Array, faster: Array) -> Array:
+    """d, x - c and x' at the n-th time at which dx/dv vanishes, shape (3, n, s); those that every flight reaches."""
+    by_speed = (faster[..., 0] - rows[..., 0]) / GRID_OF.push
+    found = []
+    for one, path in zip(by_speed, rows, strict=True):
+        at = np.flatnonzero(one[:-1] * one[1:] < 0)
+        share = one[at] / (one[at] - one[at + 1])
+        values = [part[at] + share * (part[at + 1] - part[at]) for part in (d, path[:, 0], path[:, 1])]
+        found.append(np.stack(values))
+    least = min(each.shape[1] for each in found)
+    return np.stack([each[:, :least] for each in found], axis=2)
+
+
+def _crossings(height: Array, speed: Array) -> list[tuple[int, float]]:
+    """Where two functions of (row, column) vanish together: a row, and the column to a fraction.
+
+    On each row the zeros of the second one are taken, and the first one there; its sign changes from row to row.  So
+    rows may be as near as one likes; on the outermost ones a small value is enough.
+    """
+    zeros = [_heights_at_zeros(*pair) for pair in zip(height, speed, strict=True)]
+    found = [(i, at) for i in (0, len(zeros) - 1) for at, value in zeros[i] if abs(value) < GRID_OF.small]
+    for i, (before, after) in enumerate(pairwise(zeros)):
+        for at, value in before:
+            following = min(after, key=lambda each, at=at: abs(each[0] - at), default=None)  # type: ignore[misc]
+            if following is not None and abs(following[0] - at) < GRID_OF.moved and value * following[1] <= 0:
+                found.append((i, at if abs(value) < abs(following[1]) else following[0]))
+    return found
+
+
+def _heights_at_zeros(height: Array, speed: Array) -> list[tuple[float, float]]:
+    """The zeros of the second function on a row, in columns, and the first one there; cubics through four columns."""
+    found = []
+    for j in np.flatnonzero(speed[:-1] * speed[1:] <= 0).tolist():
+        first = min(max(j - 1, 0), len(speed) - 4)
+        nodes = np.arange(first, first + 4) - j
+        rise, slip = (np.polyfit(nodes, row[first : first + 4], 3) for row in (height, speed))
+        roots = np.roots(slip)
+        inside = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > -0.1) & (roots.real < 1.1)]
+        found += [(j + float(at), float(np.polyval(rise, at))) for at in inside[:1]]
+    return found
+
+
+def _may_vanish(height: Array, speed: Array) -> Array:
+    """Cells over which x' changes sign and x - c is near 0: its zeros touch the lines x' = 0 from one side."""
+    parts = [np.stack([each[:-1, :-1], each[1:, :-1], each[:-1, 1:], each[1:, 1:]]) for each in (height, speed)]
+    turns = (parts[1].min(axis=0) <= 0) & (parts[1].max(axis=0) >= 0)
+    return np.asarray(turns & (np.abs(parts[0]).min(axis=0) <= np.ptp(parts[0], axis=0)))
+
+
+def _rests_near(flights: RestFlights, starts: Array) -> Array:
+    """Zeros of (x - c, x') in (s, d) by Newton's method with the response of the flights."""
+    places, done = starts, list[Array]()
+    for _ in range(GRID.most):
+        if not len(places):
+            break
+        y, gradient, speed, bend = flights.y_and_gradient(places)
+        d = places[:, 1]
+        values = np.stack([y * d**2, speed], axis=1)
+        height = gradient * (d**2)[:, None] + np.stack([0 * d, 2 * d * y], axis=1)
+        sound = np.isfinite(values).all(axis=1) & np.isfinite(height).all(axis=1) & np.isfinite(bend).all(axis=1)
+        matrices = np.stack([height, bend], axis=1)[sound]
+        places = places[sound]
+        moves = np.clip(-np.einsum("ijk,ik->ij", np.linalg.pinv(matrices), values[sound]), -GRID.longest, GRID.longest)
+        places = places + moves
+        settled = np.abs(moves).max(axis=1, initial=0) < GRID_OF.loose
+        done.append(places[settled])
+        places = places[~settled & (places[:, 1] > GRID.least / 2)]
+    return np.vstack([np.empty((0, 2)), *done])
+
+
+def _successor(level: Level, n: int, other: Level) -> int | None:
+    """The nearest point of another level with the same signs; None beyond `REACH`, or where another is nearer to it."""
+    same = np.flatnonzero((other.signs == level.signs[n]).all(axis=1))
+    if not same.size:
+        return None
+    away = np.abs(other.places[same] - level.places[n]).max(axis=1)
+    best = int(same[away.argmin()])
+    rivals = np.flatnonzero((level.signs == level.signs[n]).all(axis=1))
+    back = np.abs(level.places[rivals] - other.places[best]).max(axis=1)
+    return best if away.min() < GRID_OF.reach and rivals[back.argmin()] == n else None
