@@ -164,7 +164,7 @@ def test_the_command(tmp_path):
 
 @pytest.mark.parametrize("wrong", [0, 18, "x", True, 2.5])
 def test_no_such_figure(wrong):
-    with pytest.raises(InputError, match="a number from 1 to 17, or one of B7, B8"):
+    with pytest.raises(InputError, match="a number from 1 to 17, or B1 to B8"):
         si.figure(wrong)
 
 
