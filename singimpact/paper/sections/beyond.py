@@ -25,7 +25,17 @@ NAMES = {
 
 def told() -> Section:
     """The steps of the section."""
-    steps = (*_gauge(), *_every_order(), *_first_order(), *_threshold(), *_loops(), *_foot(), *_onset(), *_repairs())
+    steps = (
+        *_gauge(),
+        *_every_order(),
+        *_first_order(),
+        *_threshold(),
+        *_loops(),
+        *_foot(),
+        *_onset(),
+        *_events(),
+        *_repairs(),
+    )
     return Section("beyond", "Beyond the paper", steps)
 
 
@@ -224,6 +234,37 @@ def _onset() -> tuple[Step, ...]:
             "It hits $4H$ after the release with the speed $\\frac83|a''|H^3$, rises by $\\frac98|a''|H^4$, and is at "
             "rest after $(1 + X)H$. All orbits that come to rest are released together at $A$: the orbit is "
             "superstable. On three oscillators the ratios to these laws tend to 1 (claim b:onset)."
+        ),
+    )
+
+
+def _events() -> tuple[Step, ...]:
+    return (
+        Step(
+            "What a swan meets as $c$ moves on is seen in the plane of flights. $R(\\cdot; s)$ is the flight from "
+            "rest at $s$, $Y$ the solution of its variational equation with $Y = 0$, $Y' = 1$ at $s$, and $\\psi$ "
+            "takes a launch to its flight. The flights from rest form a front with cusps at the zeros of $a_c$; $P$ "
+            "and $\\Pi_0$ together are its preimage under $\\psi$, which is folded along $v = 0$:",
+            r"\frac{\partial R}{\partial s} = -a_c(s)\,Y(\cdot, s),\quad \det D\psi = -v",
+            "b:events-front",
+            ("b:events-front",),
+        ),
+        Step(
+            "An event belongs to a flight, and shows at each of its launches. Along the flights that rest at $s_1$ "
+            "and at $s_2$ the clearance is critical where one of the rests is a tangency, or where the two "
+            "directions agree:",
+            r"dc = 0 \iff a_c(s_1)\,a_c(s_2)\,Y(s_2, s_1) = 0",
+            "b:events-critical",
+            ("b:events-critical", "b:events-eliminated"),
+        ),
+        Step(
+            "For $x'' + x = \\cos\\omega t$ these flights are symmetric about the middle of their rests, or skew and "
+            "not seen. The arc that is born at $c = 1$ is first cut at $c_1$, for $\\omega > 1$ (claim "
+            "b:events-first): where it touches its copy, or where a flight released at $A$ comes to rest at $B$,",
+            r"c_1 = \frac{\cos(\omega\pi/2)}{\omega^2 - 1}\ (\omega < 3),\quad c_1 = -\cos\omega h,\ "
+            r"\tan\omega h = \omega\tan h\ (\omega > 3)",
+            "b:events-first",
+            ("b:events-families", "b:events-values"),
         ),
     )
 

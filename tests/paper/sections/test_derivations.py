@@ -36,7 +36,8 @@ LABELS = [
     "s6-impact", "s6-horizon", "s6-zero-set", "s6-E", "s6n-corr", "s6n-cusp", "s6p-AB", "s6p-BE", "s6p-eps",
     "s6p-gamma", "s6-shadow", "s6n-maps", "s6-GA", "s6n-chatter", "s6n-X", "b:gauge", "b:order-ray",
     "b:order-expansion", "b-rising", "b:first-order", "b-chi", "b:first-order-foot", "b:holder-bounds", "b:loops-map",
-    "b-loops-preimage", "b:foot", "b:foot-limit", "b:onset-hop", "b:cascade-contraction",
+    "b-loops-preimage", "b:foot", "b:foot-limit", "b:onset-hop", "b:events-front",
+    "b:events-critical", "b:events-first", "b:cascade-contraction",
 ]  # fmt: skip
 
 
