@@ -259,12 +259,12 @@ def _events() -> tuple[Step, ...]:
         ),
         Step(
             "For $x'' + x = \\cos\\omega t$ these flights are symmetric about the middle of their rests, or skew and "
-            "not seen. The arc that is born at $c = 1$ is first cut at $c_1$, for $\\omega > 1$ (claim "
-            "b:events-first): where it touches its copy, or where a flight released at $A$ comes to rest at $B$,",
+            "not seen. The arc that is born at $c = 1$ is first cut at $c_1$, for $\\omega > 1$: "
+            "where it touches its copy, or where a flight released at $A$ comes to rest at $B$,",
             r"c_1 = \frac{\cos(\omega\pi/2)}{\omega^2 - 1}\ (\omega < 3),\quad c_1 = -\cos\omega h,\ "
             r"\tan\omega h = \omega\tan h\ (\omega > 3)",
             "b:events-first",
-            ("b:events-families", "b:events-values"),
+            ("b:events-first", "b:events-families", "b:events-values"),
         ),
     )
 
