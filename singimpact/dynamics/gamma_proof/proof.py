@@ -82,6 +82,11 @@ class CertifiedGamma:
     notes: dict[str, str] = field(default_factory=dict)
 
     @property
+    def of_model(self) -> bool:
+        """Whether it is a proof for the restitution of the model alone."""
+        return self.restitution is None or self.restitution[0] == self.restitution[1]
+
+    @property
     def order(self) -> int:
         """The contact order j."""
         return self.zero.order
@@ -132,7 +137,7 @@ class CertifiedGamma:
             return from_ball(self._velocity(self._one(), o, o.s0()), DIGITS)
 
     def _one(self) -> BoxProof:
-        if len(self.boxes) > 1:
+        if not self.of_model:
             raise InputError("gamma is proved for an interval of r here: ask for one restitution")
         return self.boxes[0]
 
