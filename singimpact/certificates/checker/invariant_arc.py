@@ -154,19 +154,26 @@ class Box:
             factor = [part * lead for part in factor]
             left = [arb_poly([part[n]]) for part in rings[n].residual(o, L, ratio)]
             L.append([-part for part in make.times(left, make.inverse(factor))])
-        found = rings[-1].over(rings[-1].residual(o, L, ratio))
+        self.take(rings[-1], L, ratio, make.inverse(gap))
+        self.r = r if r is not None else make.over(ratio)[0]
+        self.require_series(told["series"])
+
+    def take(self, ring: Folded, L: list[list[Any]], ratio: list[Any], inverse: list[Any]) -> None:
+        """L, (1 - L)/(1 - lambda) and the residual over the box."""
+        found = ring.over(ring.residual(self.o, L, ratio))
         if not all(found[i].contains(0) for i in range(self.N)):
             raise Wrong("the series does not annul the residual")
-        self.E = [found[i] for i in range(self.N, D + 1)]
-        self.L = arb_poly([low.union(high), *(make.over(part)[0] for part in L[1:])])
-        inverse = make.inverse(gap)
-        self.gap = arb_poly([1, *(-make.over(make.times(part, inverse))[0] for part in L[1:])])
-        self.r = r if r is not None else make.over(ratio)[0]
-        for n, part in enumerate(told["series"]):
+        self.E = [found[i] for i in range(self.N, ring.D + 1)]
+        self.L: Any = arb_poly([ring.over(part)[0] for part in L])
+        self.gap = arb_poly([1, *(-ring.over(ring.times(part, inverse))[0] for part in L[1:])])
+
+    def require_series(self, told: list[dict[str, str]]) -> None:
+        """Refuse a series that is not the one of the box."""
+        if len(told) != self.N:
+            raise Wrong("the series has another length")
+        for n, part in enumerate(told):
             if not lies_within(self.L[n], part):
                 raise Wrong(f"L_{n} is {self.L[n].str(20)}")
-        if len(told["series"]) != self.N:
-            raise Wrong("the series has another length")
 
     def steps(self) -> list[tuple[Any, Any]]:
         """Pieces of [0, s0]."""
