@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from singimpact.branches.orbits import PeriodicOrbits
     from singimpact.dynamics.chatter import ChatterLimit
+    from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
     from singimpact.dynamics.orbit import Orbit
     from singimpact.flights.enclosed_impact import EnclosedImpact
     from singimpact.flights.off_wall import Launched
@@ -232,6 +233,34 @@ class ImpactOscillator(Oscillator):
         from singimpact.dynamics.chatter import chatter_limit
 
         return chatter_limit(self, tau, v, digits=digits, impacts=impacts)
+
+    def certified_gamma(
+        self, tau: Any = None, *, reach: Any = None, restitution: tuple[Any, Any] | None = None
+    ) -> CertifiedGamma:
+        """gamma before the next zero of a_c, proved: it exists, is unique, and decides the fate of every launch.
+
+        Parameters
+        ----------
+        tau : a phase with a_c(tau) < 0; None for the first of a period. reach : launches with
+            tan(omega_d (tau_* - tau))/omega_d up to this rational number; None for as far as the proof gets.
+        restitution : (low, high) for a proof for all r of an interval.
+
+        Returns
+        -------
+        CertifiedGamma : `.reach`, `.series`, `.threshold(tau)`, `.notes`; `si.certify` makes it a file.
+
+        Raises
+        ------
+        InputError : the model is not linear, no gamma lies ahead, or no reach is proved; the reason.
+
+        Examples
+        --------
+        >>> linear(2, "0.3", "0.5").certified_gamma(reach="1/4").threshold("2.4")
+        Certified(0.0034539185342858600992 +- 3.7e-9)
+        """
+        from singimpact.dynamics.gamma_proof.proof import certified_gamma
+
+        return certified_gamma(self, tau, reach=reach, restitution=restitution)
 
     def periodic(
         self, n: Any, k: int, start: Any = None, *, v: Any = None, digits: int | None = None

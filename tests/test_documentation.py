@@ -30,7 +30,7 @@ def site(request, tmp_path_factory):
 def test_pages_are_there(site, clone):
     pages = ["index", "tutorial", "gallery", "how_to", "reference", "conventions", "trust", "stress", "benchmarks"]
     ideas = ["index", "impact_surface", "regular", "tangency", "swan", "unfolding", "one_structure"]
-    ideas += ["branches", "manifolds"]
+    ideas += ["branches", "gamma_proved", "manifolds"]
     computed = ["errata", "claims", "commands", "figures"]
     pages += ["changelog", "citation", "bibliography"]
     pages += [f"reference/{path.stem}" for path in (clone / "docs" / "reference").glob("*.md")]

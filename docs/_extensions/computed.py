@@ -187,6 +187,35 @@ def manifolds(place: Path) -> None:
     sides[0].figure.savefig(place / "transition_sides.png", dpi=110)
 
 
+def gamma_proved(place: Path) -> None:
+    """The picture of the page on the proof of gamma: orbits that leave it, in S and v/S^2."""
+    import numpy as np
+    from matplotlib.figure import Figure
+
+    import singimpact as si
+
+    osc = si.linear(2, "0.3", "0.5")
+    proved = osc.certified_gamma(reach="1/4")
+    end = proved.zero.tau
+    S = np.linspace(0.01, 0.25, 60)
+    on = np.array([float(proved.threshold(end - np.arctan(each)).value) for each in S * (1 - 1e-12)])
+    axes = Figure(figsize=(7.2, 4.6), layout="constrained").add_subplot()
+    axes.plot(S, on / S**2, color="black", label="gamma, with its proved bound (narrower than the line)")
+    for factor, colour, label in ((1 - 2e-3, "tab:blue", r"below: chatter completes before $\tau_*$"),
+                                  (1 + 2e-3, "tab:orange", "above: contact is lost")):  # fmt: skip
+        orbit = osc.orbit(end - np.arctan(0.25), float(factor * on[-1]), 24)
+        ahead = np.tan(end - orbit.tau)
+        over = np.flatnonzero((orbit.v <= 0) | (orbit.tau >= end))  # at rest, or after tau_*
+        last = int(over[0]) if over.size else len(ahead)
+        axes.plot(ahead[:last], orbit.v[:last] / ahead[:last] ** 2, "o--", color=colour, markersize=4, linewidth=0.8,
+                  label=f"an orbit {label}")  # fmt: skip
+    axes.set(
+        xlabel=r"$S = \tan(\tau_* - \tau)$; orbits run to the left", ylabel="$v/S^2$", xlim=(0, 0.26), ylim=(0, 0.7)
+    )
+    axes.legend(loc="lower right")
+    axes.figure.savefig(place / "gamma_proved.png", dpi=110)
+
+
 def build(app: Any) -> None:
     """Write the pages into the folder `computed` beside those that are written by hand."""
     from singimpact.store import folder
@@ -199,6 +228,7 @@ def build(app: Any) -> None:
     branches(place)
     gallery(Path(app.srcdir) / "gallery.md", place)
     manifolds(place)
+    gamma_proved(place)
     border(place)
 
 

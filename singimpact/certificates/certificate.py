@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from singimpact.algebra.certified import Certified
+from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.numbers import sign_of
 from singimpact.branches.enclosed_event import EnclosedEvent
 from singimpact.branches.enclosed_orbit import EnclosedOrbit
@@ -21,6 +21,7 @@ from singimpact.certificates.checker import SCHEMA, digest_of
 from singimpact.certificates.checker.event import KINDS
 from singimpact.certificates.checker.first_impact import PARTS
 from singimpact.dynamics.chatter import ChatterLimit
+from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
 from singimpact.flights.results import CertifiedImpact, Flight
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
@@ -31,6 +32,7 @@ CHECKER = Path(__file__).with_name("checker")
 """The second program: `python checker FILE.json`."""
 UNIQUE = Fraction(1, 10**8)
 """Distance, at most, within which an orbit is certified to be alone: the second program has no frames for boxes."""
+SERIES_DIGITS, LOOSER = 18, 1.01  # digits of the coefficients of gamma; factor by which bounds are written larger
 LOST, LOOSE = 6, 1000
 """Digits that are left out of a multiplier, and factor of its radius."""
 
@@ -80,6 +82,11 @@ class Certificate:
             states, k = self.content["states"], self.content["periods"]
             shown = ", ".join(f"({each['tau']['value']}, {each['v']['value']})" for each in states)
             return f"<certificate of the ({len(states)}, {k}) {self.content['statement']}: (tau, v) = {shown}>"
+        if "boxes" in self.content:
+            between = self.content["restitution"]
+            which = f"r = {self.content['model']['restitution']}" if between == "model" else f"all r in {between}"
+            tau, reach = self.content["tau"]["value"], self.content["reach"]
+            return f"<certificate of gamma before tau_* = {tau}: {which}, S <= {reach}>"
         if "sets" in self.content:
             short, long = self.content["loops"]
             entropy = self.content["entropy"]["value"]
@@ -99,7 +106,8 @@ def certify(result: Any) -> Certificate:
     ----------
     result : of `osc.impact_map` or `osc.first_hit` for one state with `digits`; a periodic orbit with impacts, of
         `osc.periodic`; or the `.certified` of one of these. `osc.chatter_limit` of one state with v > 0 and with
-        `digits`; `crossing.horseshoe()`; or `event.certified()` of a period doubling over a parameter.
+        `digits`; `crossing.horseshoe()`; `event.certified()` of a period doubling over a parameter; or
+        `osc.certified_gamma()`.
 
     Returns
     -------
@@ -125,6 +133,8 @@ def certify(result: Any) -> Certificate:
         return _sealed("horseshoe", result.oscillator, _of_horseshoe(result))
     if isinstance(result, EnclosedEvent):
         return _of_event(result)
+    if isinstance(result, CertifiedGamma):
+        return _sealed("invariant arc", result.oscillator, _of_gamma(result))
     orbit = result.certified() if isinstance(result, PeriodicOrbit) else result
     if isinstance(orbit, EnclosedOrbit) and orbit.oscillator is not None:
         return _sealed("periodic orbit", orbit.oscillator, _of_orbit(orbit))
@@ -194,6 +204,36 @@ def _of_horseshoe(found: Horseshoe) -> dict[str, Any]:
              "radii": [str(x) for x in each.radii]} for each in found.sets]  # fmt: skip
     return {"period": str(found.oscillator.period), "loops": [str(n) for n in found.loops], "sets": sets,
             "entropy": found.entropy.as_dict()}  # fmt: skip
+
+
+def _of_gamma(found: CertifiedGamma) -> dict[str, Any]:
+    """What is said of gamma, as text; bounds leave room for another evaluation of the same lemmas."""
+    boxes = [{"lambda": [str(box.low), str(box.high)], "N": str(box.settings.N), "D": str(box.settings.D),
+              "pieces": str(box.settings.pieces), "eta": f"{float(box.eta):.6g}", "M": f"{float(box.M):.6g}",
+              "series": [_with_room(from_ball(part, SERIES_DIGITS)) for part in box.series],
+              "R": _bound(box.R, LOOSER), "Kl": _bound(box.Kl, LOOSER),
+              "grow": _bound(box.grow, 2 - LOOSER), "tree": box.tree} for box in found.boxes]  # fmt: skip
+    after = found.lost or found.settled
+    told = {
+        "order": str(found.order),
+        "tau": found.tau.as_dict(),
+        "reach": str(found.reach),
+        "restitution": "model" if found.of_model else [str(end) for end in found.restitution or ()],
+        "after": {name: str(part) for name, part in after._asdict().items()} if after else {},
+        "boxes": boxes,
+    }
+    return {**told, "threshold": _with_room(found.at_reach())} if found.of_model else told
+
+
+def _with_room(number: Certified) -> dict[str, str]:
+    """A number with a radius that leaves room for another enclosure."""
+    told = number.as_dict()
+    return {"value": told["value"], "radius": f"{1.5 * float(told['radius']):.3g}"}
+
+
+def _bound(ball: Any, factor: float) -> str:
+    """A bound, larger by a factor or smaller."""
+    return str(float(f"{factor * float(ball.mid()):.6g}"))
 
 
 def _wider(number: Certified) -> dict[str, str]:

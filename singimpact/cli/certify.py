@@ -15,7 +15,7 @@ State = tuple[str, str] | None
 
 
 @click.command(short_help="a proved result with a certificate that a second program checks")
-@click.argument("files", metavar="[FILE.json]...", nargs=-1)
+@click.argument("files", metavar="[FILE.json]... | gamma [MODEL]", nargs=-1)
 @model_options
 @click.option("--tau", metavar="NUMBER", help="Launch time.")
 @click.option("--v", metavar="NUMBER", help="Launch velocity, > 0.")
@@ -33,17 +33,31 @@ State = tuple[str, str] | None
     metavar="N K",
     help="Beside a saddle of N impacts in K periods; --tau, --v: near it.",
 )
+@click.option(
+    "--reach",
+    metavar="NUMBER",
+    help="With gamma: tan(omega_d (tau_* - tau))/omega_d at most, a rational.  [default: as far as the proof gets]",
+)
+@click.option("--between", type=(str, str), metavar="LOW HIGH", help="With gamma: for all restitutions of an interval.")
 @click.option("--digits", type=click.IntRange(1, 1000), default=30, show_default=True, help="Significant digits.")
 @click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
 def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
     """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, a doubling or a horseshoe, and write
     a certificate; or check FILE.json ...
 
+    `certify gamma MODEL.toml` (or the options of a linear model) proves gamma before the next zero of a_c after --tau:
+    that it exists, is unique, and decides the fate of every launch; standard error says how far it got.
+
     A certificate is accepted by a second program, which imports python-flint alone, reads the model as text and
     encloses the motion again with its own code.
     """
     from singimpact.certificates.certificate import read_certificate
 
+    if files and files[0] == "gamma":
+        _gamma(files[1:], tau, options)
+        return
+    if options["reach"] is not None or options["between"] is not None:
+        raise InputError("--reach and --between are of gamma: give `certify gamma`")
     if files:
         for path in files:
             emit(f"{path}: {read_certificate(path)!r} holds", None)
@@ -60,6 +74,26 @@ def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: A
     found = _made(take_model(options), kinds[0] if kinds else "", near, options)
     found.check()
     emit(found.text.rstrip("\n"), options["output"])
+
+
+def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> None:
+    """`certify gamma [MODEL]`."""
+    from singimpact.certificates.certificate import certify
+
+    taken = [f"--{name}" for name in ("orbit", "chatter", "horseshoe", "doubling") if options[name]]
+    if len(files) > 1 or taken:
+        raise InputError(f"certify gamma takes one model: {', '.join([*files[1:], *taken])} is not accepted")
+    if files:
+        if options["model"] is not None:
+            raise InputError(f"{files[0]} and --model {options['model']} name two models: give one of them")
+        options["model"] = files[0]
+    if options["output"] is not None:
+        require_writable(options["output"])
+    found = take_model(options).certified_gamma(tau, reach=options["reach"], restitution=options["between"])
+    made = certify(found)
+    made.check()
+    click.echo("\n".join([repr(found)[1:-1], *found.notes.values()]), err=True)
+    emit(made.text.rstrip("\n"), options["output"])
 
 
 def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:

@@ -15,6 +15,7 @@ from .event import event
 from .first_impact import first_impact
 from .formulas import Refused, Wrong
 from .horseshoe import horseshoe
+from .invariant_arc import invariant_arc
 from .motion import Model
 from .periodic_orbit import periodic_orbit
 from .told import balls_of
@@ -27,6 +28,7 @@ STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "chatter limit": chatter_limit,
     "horseshoe": horseshoe,
     "event": event,
+    "invariant arc": invariant_arc,
 }
 """What a certificate may say, and what shows it at so many bits."""
 

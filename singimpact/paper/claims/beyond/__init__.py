@@ -6,7 +6,8 @@ Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a cer
 (linear oscillators as balls under gravity that varies), `first_order` (the first correction to the limits at contact
 points), `holder` (how the foot of a chatter leaves the end of gamma), `loops` (heights of the loops of W^s(X)), `foot`
 (X for every r, in balls), `onset` (what is born at a negative swan), `events` (what a swan meets:
-P as the preimage of a front), `events_harmonic` (all of it for one cosine), `events_met` (what is met first).
+P as the preimage of a front), `events_harmonic` (all of it for one cosine), `events_met` (what is met first), `gamma`
+(gamma proved on one oscillator).
 """
 
 from __future__ import annotations
@@ -94,6 +95,12 @@ def _events_met() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
+def _gamma() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import gamma as section
+
+    return section.CLAIMS
+
+
 BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "cascade": _cascade,
     "horseshoe": _horseshoe,
@@ -108,4 +115,5 @@ BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "events": _events,
     "events_harmonic": _events_harmonic,
     "events_met": _events_met,
+    "gamma": _gamma,
 }

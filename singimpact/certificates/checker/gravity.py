@@ -1,0 +1,154 @@
+"""A linear model before a zero of a_c as a ball under gravity, and the speeds of its flights.
+
+X'' + 2 b X' + (b^2 + w) X = a_c(t), X = x - c.  With s = tan(sqrt(w) t)/sqrt(w), t from the zero, and y = X e^(b t)/C,
+C^-2 = 1 + w s^2, it is y'' = A(s) = e^(b t) C^3 a_c; velocities at the wall are multiplied by e^(b t) C, and the
+restitution stays.  |A(-x)| = b_j x^j + b_(j+1) x^(j+1) + ...; by Cauchy |b_k| <= M R^-k if |A| <= M on |s| <= R.
+
+A flight from s = -S to s = -l S is launched with S^(j+1) (1-l) W and lands with S^(j+1) (1-l) U, where
+
+    W = sum b_k S^(k-j) P_k/((k+1)(k+2)),   P_k = (k+1) + l P_(k-1),        P_k, Q_k <= (k+1)(k+2)/2 for |l| <= 1.
+    U = sum b_k S^(k-j) Q_k/((k+1)(k+2)),   Q_k = (1 + ... + l^k) + l Q_(k-1)
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import Any
+
+from flint import acb, arb, arb_series
+
+from .formulas import Formula, Refused, Wrong
+from .motion import Model, size, within
+
+MOST = 240  # terms
+SMALL = 2.0**-36  # tail, in units of b_j
+
+
+def affine(f: Formula, node: ast.expr) -> tuple[Any, Any, Any]:
+    """(k, d, m) of a part k x + d xdot + m."""
+    names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)} & {"x", "xdot"}
+    zero = arb(0)
+    if not names:
+        return zero, zero, f._at(node, {})
+    match node:
+        case ast.Name(name):
+            return arb(int(name == "x")), arb(int(name == "xdot")), zero
+        case ast.UnaryOp(ast.USub(), part):
+            k, d, m = affine(f, part)
+            return -k, -d, -m
+        case ast.BinOp(left, ast.Add() | ast.Sub() as op, right):
+            sign = 1 if isinstance(op, ast.Add) else -1
+            one, other = affine(f, left), affine(f, right)
+            return one[0] + sign * other[0], one[1] + sign * other[1], one[2] + sign * other[2]
+        case ast.BinOp(left, ast.Mult() | ast.Div() as op, right):
+            (k, d, m), (p, q, factor) = affine(f, left), affine(f, right)
+            if isinstance(op, ast.Mult) and not any(
+                isinstance(part, ast.Name) and part.id in names for part in ast.walk(left)
+            ):
+                (k, d, m), (p, q, factor) = (p, q, factor), (k, d, m)
+            if p == 0 and q == 0:
+                factor = factor if isinstance(op, ast.Mult) else 1 / factor
+                return k * factor, d * factor, m * factor
+    raise Wrong(f"f = {f.text} is not linear")
+
+
+def contact(model: Model, told: Any, j: int) -> Any:
+    """A ball of the zero of a_c of order j in [told]: simple, or at the clearance for which it has this order.
+
+    For j > 1 no number of digits shows that a_c vanishes: what is shown holds for the clearance at which it does.
+    """
+
+    force = model.f(x=model.c(), xdot=arb(0))
+
+    def jet(at: Any) -> list[Any]:
+        found = model.g(t=arb_series([at, 1], prec=j + 1)) - force
+        return [found[k] for k in range(j + 1)]
+
+    whole, sign = told, 1 if j % 2 else -1
+    low, high = (sign * jet(arb(end))[j - 1] for end in (told.lower(), told.upper()))
+    if not (low < 0 < high and sign * jet(whole)[j] > 0):
+        raise Refused("that tau is a zero of a_c of its order is not shown")
+    for _ in range(6):
+        middle = arb(whole.mid())
+        whole = whole.intersection(middle - jet(middle)[j - 1] / (j * jet(whole)[j]))
+    if not all(part.contains(0) for part in jet(whole)[: j - 1]):
+        raise Wrong("a_c does not vanish at tau to the order that is written")
+    return whole
+
+
+class Gravity:
+    """b_j, ..., b_K for 0 <= x <= reach, the bound of the tail, and W, U with their derivatives."""
+
+    def __init__(self, model: Model, tau: Any, j: int, reach: Any, small: float = SMALL) -> None:
+        stiffness, damping, _ = affine(model.f, model.f.tree)
+        self.model, self.tau, self.j, self.s0 = model, tau, j, reach
+        self.damping, self.square = damping / 2, stiffness - damping * damping / 4
+        K = MOST
+        one, w = arb(1), self.square
+        time = arb_series([0, *(one * (-w) ** (k // 2) / (k + 1) if k % 2 == 0 else 0 for k in range(K))], prec=K + 1)
+        spread = arb_series([1, 0, w], prec=K + 1)
+        rest = -model.f(x=model.c(), xdot=arb(0))
+        pressed = model.g(t=time + arb_series([tau], prec=K + 1)) + rest
+        A = (self.damping * time).exp() * pressed / (spread * spread.sqrt())
+        b = [-A[k] if k % 2 == 0 else A[k] for k in range(K + 1)]
+        self.b = [arb(0)] * j + b[j:]
+        if not self.b[j] > 0:
+            raise Refused("that gamma ends at tau is not shown: |A| has no positive leading coefficient")
+        discs = self.discs(rest)
+        if not discs:
+            raise Wrong("the reach is not within the disc of convergence")
+        for terms in range(48, K + 1, 16):
+            self.M, self.R = min(discs, key=lambda disc: float(disc[0] * (self.s0 / disc[1]) ** terms))
+            self.K = terms
+            if self.tail(j + 1) < small * self.b[j]:
+                break
+        del self.b[self.K + 1 :]
+        self.rest = within(self.tail(j).max(self.tail(j + 1)) / 2)
+
+    def discs(self, rest: Any) -> list[tuple[Any, Any]]:
+        """(M, R): |A| <= M for |s| <= R, where |t| <= atanh(sqrt|w| R)/sqrt|w|."""
+        found, w = [], size(self.square)
+        root = w.sqrt()
+        for n in range(24):
+            R = arb((self.s0 * arb(1.2) ** (n + 1)).mid())
+            left = 1 - w * R * R
+            if not left > 0.05:
+                break
+            T = size((root * R).atanh() / root) if root > 0 else R
+            push = abs(self.model.g(t=acb(self.tau + within(T), within(T))) + rest)
+            M = size(size(push) * (abs(self.damping) * T).exp() / (left * left.sqrt()))
+            if M.is_finite():
+                found.append((M, R))
+        return found
+
+    def tail(self, power: int) -> Any:
+        """A bound of sum k |b_k| x^(k - power) over k > K."""
+        q = self.s0 / self.R
+        return size(self.M * q ** (self.K + 1) / self.s0**power * (self.K + 1) / (1 - q) ** 2)
+
+    def time(self, S: Any) -> Any:
+        """The time between the zero and an impact at S."""
+        root = size(self.square).sqrt()
+        if self.square > 0:
+            return (self.square.sqrt() * S).atan() / self.square.sqrt()
+        if self.square < 0:
+            return ((-self.square).sqrt() * S).atanh() / (-self.square).sqrt()
+        return S + within((root * S).atanh() / root - S) if root > 0 else S
+
+    def speeds(self, S: Any, x: Any) -> list[Any]:
+        """W and U at (S, l = x), then their derivatives by S, then by l."""
+        j, zero = self.j, arb(0)
+        W, U, WS, US, Wx, Ux = [zero] * 6
+        P, Q, G, dP, dQ, dG, power, before = arb(1), arb(1), arb(1), zero, zero, zero, arb(1), zero
+        for k in range(1, self.K + 1):
+            dP, P = P + x * dP, (k + 1) + x * P
+            dG, G = G + x * dG, 1 + x * G
+            dQ, Q = dG + Q + x * dQ, G + x * Q
+            if k < j:
+                continue
+            if k > j:
+                before, power = power, power * S
+            f = self.b[k] / ((k + 1) * (k + 2))
+            W, U, Wx, Ux = W + f * power * P, U + f * power * Q, Wx + f * power * dP, Ux + f * power * dQ
+            WS, US = WS + f * (k - j) * before * P, US + f * (k - j) * before * Q
+        return [part + self.rest for part in (W, U, WS, US, Wx, Ux)]

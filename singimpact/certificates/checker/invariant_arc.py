@@ -1,0 +1,311 @@
+"""That gamma exists before a contact point, is the only invariant arc there, and decides the fate of every launch.
+
+Launches (S, l), 0 < S <= s0: see `gravity`.  L(S) = lambda + L_1 S + ... annuls E(S) = l^(j+1) (1-L(lS)) W(lS, L(lS))
+- r (1-l) U(S, l), l = L(S), below order N, so E <= R S^N.  With q = (1-l)/(1-L(S)), K = (1-L(lS))/(1-L(S)) and
+m = 1-(1-l) K three things are shown for all lambda of a box.
+
+1. l^(j+1) K W(lS, m)/U(S, l) increases in l: its logarithmic derivative times l is positive.  So q decreases along
+   orbits that start with l > L + Kl S^N and increases along those with l < L - Kl S^N.
+2. Kl = R/(slope U) with bounds on the strip |l - L| <= eta, which is wider.
+3. The relation of two flights, F(S, y, y1) = 0, y = l - L(S), maps the cones |dS| <= M |dy| of the strip into
+   themselves and expands them.
+
+From these: below, chatter completes before tau; above, finitely many impacts come before tau; between them lies one
+Lipschitz graph.  Every r of an interval has its lambda in one of the boxes, as r(lambda) is continuous.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from flint import arb, arb_poly, ctx
+
+from .after_contact import require_after
+from .formulas import Refused, Wrong, ball
+from .gravity import Gravity, contact
+from .motion import Model, size, within
+from .told import compared, lies_within, read
+
+LEAST_BITS = 112
+SHARE = 4  # a box of this part of S and l is halved no further than 2^-40
+
+
+class Folded:
+    """Polynomials in d, |d| <= h, whose coefficients are polynomials in S; what exceeds d^m or S^D becomes a ball."""
+
+    def __init__(self, D: int, s0: Any, h: Any, m: int) -> None:
+        self.D, self.s0, self.m = D, s0, m
+        self.d = [within(h**k) if k else arb(1) for k in range(2 * m + 1)]
+
+    def constant(self, *parts: Any) -> list[Any]:
+        return [arb_poly([part]) for part in (*parts, *[arb(0)] * self.m)[: self.m + 1]]
+
+    def folded(self, p: Any) -> Any:
+        c = p.coeffs()
+        if len(c) <= self.D + 1:
+            return p
+        last = c[self.D]
+        for i in range(self.D + 1, len(c)):
+            last = last + c[i] * arb(0).union(self.s0 ** (i - self.D))
+        return arb_poly([*c[: self.D], last])
+
+    def times(self, p: list[Any], q: list[Any]) -> list[Any]:
+        parts = [arb_poly([0]) for _ in range(2 * self.m + 1)]
+        for a, left in enumerate(p):
+            for b, right in enumerate(q):
+                parts[a + b] = parts[a + b] + left * right
+        for k in range(self.m + 1, 2 * self.m + 1):
+            parts[self.m] = parts[self.m] + parts[k] * self.d[k - self.m]
+        return [self.folded(part) for part in parts[: self.m + 1]]
+
+    def plus(self, p: list[Any], q: list[Any], factor: Any = 1) -> list[Any]:
+        return [a + b * factor for a, b in zip(p, q, strict=True)]
+
+    def inverse(self, p: list[Any]) -> list[Any]:
+        """1/p for p without S: p = p_0 (1 + e), 1/(1 + e) = 1 - e + e^2 - e^3/(1 + e)."""
+        first = p[0][0]
+        if not self.m:
+            return self.constant(1 / first)
+        e = [arb_poly([0]), *(part * (1 / first) for part in p[1:])]
+        square = self.times(e, e)
+        cube = self.times(square, e)
+        found = self.plus(self.plus(self.constant(arb(1)), e, -1), square)
+        found = self.plus(found, cube, -1 / (1 + self.over(e)[0]))
+        return [part * (1 / first) for part in found]
+
+    def over(self, p: list[Any]) -> Any:
+        """p for all d."""
+        return sum((part * self.d[k] for k, part in enumerate(p)), arb_poly([0]))
+
+    def composed(self, L: list[list[Any]], q: list[Any]) -> list[Any]:
+        found = self.constant(arb(0))
+        for part in reversed(L):
+            found = self.plus(self.times(found, q), part)
+        return found
+
+    def speeds(self, o: Gravity, S: list[Any], x: list[Any]) -> tuple[list[Any], list[Any]]:
+        """W and U of `gravity`."""
+        j, D, one = o.j, self.D, self.constant(arb(1))
+        W, U, P, Q, G, power = self.constant(arb(0)), self.constant(arb(0)), one, one, one, one
+        for k in range(1, D + j + 1):
+            P = self.plus(self.constant(arb(k + 1)), self.times(x, P))
+            G = self.plus(one, self.times(x, G))
+            Q = self.plus(G, self.times(x, Q))
+            if k >= j:
+                power = self.times(power, S) if k > j else power
+                f = o.b[k] / ((k + 1) * (k + 2))
+                W, U = self.plus(W, self.times(power, P), f), self.plus(U, self.times(power, Q), f)
+        beyond = o.tail(j + D) + sum((abs(o.b[k]) * o.s0 ** (k - j - D) for k in range(D + j + 1, o.K + 1)), arb(0))
+        last = [arb_poly([0] * D + [within(beyond / 2)]), *[arb_poly([0])] * self.m]
+        return self.plus(W, last), self.plus(U, last)
+
+    def residual(self, o: Gravity, L: list[list[Any]], r: list[Any]) -> list[Any]:
+        one, S = self.constant(arb(1)), [arb_poly([0, 1]), *[arb_poly([0])] * self.m]
+        here = self.composed(L, S)
+        S1 = self.times(S, here)
+        there = self.composed(L, S1)
+        launch = self.times(self.plus(one, there, -1), self.speeds(o, S1, there)[0])
+        for _ in range(o.j + 1):
+            launch = self.times(launch, here)
+        landing = self.times(self.plus(one, here, -1), self.speeds(o, S, here)[1])
+        return self.plus(launch, self.times(r, landing), -1)
+
+
+def parts_of(j: int) -> tuple[list[int], list[int], list[int]]:
+    """The coefficients of P_j, Q_j and Q_j'."""
+    return [j + 1 - i for i in range(j + 1)], [i + 1 for i in range(j + 1)], [(i + 1) * i for i in range(1, j + 1)]
+
+
+def restitution(j: int, x: Any) -> Any:
+    """r = lambda^(j+1) P_j/Q_j."""
+    P, Q, _ = parts_of(j)
+    return x ** (j + 1) * arb_poly(P)(x) / arb_poly(Q)(x)
+
+
+class Box:
+    """The series for all lambda of a box."""
+
+    def __init__(self, o: Gravity, told: dict[str, Any], r: Any) -> None:
+        self.o, self.told, j = o, told, o.j
+        self.N, D, self.pieces = (int(told[name]) for name in ("N", "D", "pieces"))
+        low, high = (ball(Fraction(end)) for end in told["lambda"])
+        if not (0 < low < high < 1 and 2 <= self.N < D <= o.K - j and self.pieces >= 1):
+            raise Wrong("a box, or an order, is not as it must be")
+        self.high, self.eta, self.slope = high, *(ball(Fraction(told[name])) for name in ("eta", "M"))
+        centre = arb(((low + high) / 2).mid())
+        h, m = size((low - centre).union(high - centre)), 0 if r is not None else 2
+        rings = [Folded(n + 1, o.s0, h, m) for n in range(self.N)] + [Folded(D, o.s0, h, m)]
+        make = rings[0]
+        lam = make.constant(centre, arb(1)) if m else make.constant(low.union(high))
+        powers = [make.constant(arb(1))]
+        for _ in range(j + self.N + 1):
+            powers.append(make.times(powers[-1], lam))
+        zero, one = make.constant(arb(0)), powers[0]
+        P, Q, dQ = (sum_of(make, zero, powers, parts) for parts in parts_of(j))
+        ratio = make.constant(r) if r is not None else make.times(make.times(powers[j + 1], P), make.inverse(Q))
+        lead, gap = o.b[j] / ((j + 1) * (j + 2)), make.plus(one, lam, -1)
+        L = [lam]
+        for n in range(1, self.N):
+            factor = make.plus(make.times(make.times(powers[j], gap), P), zero)
+            factor = make.plus(make.plus(zero, factor, j + 1), make.times(powers[j + 1 + n], Q), -1)
+            factor = make.plus(factor, make.times(ratio, make.plus(make.times(gap, dQ), Q, -1)), -1)
+            factor = [part * lead for part in factor]
+            left = [arb_poly([part[n]]) for part in rings[n].residual(o, L, ratio)]
+            L.append([-part for part in make.times(left, make.inverse(factor))])
+        self.take(rings[-1], L, ratio, make.inverse(gap))
+        self.r = r if r is not None else make.over(ratio)[0]
+        self.require_series(told["series"])
+
+    def take(self, ring: Folded, L: list[list[Any]], ratio: list[Any], inverse: list[Any]) -> None:
+        """L, (1 - L)/(1 - lambda) and the residual over the box."""
+        found = ring.over(ring.residual(self.o, L, ratio))
+        if not all(found[i].contains(0) for i in range(self.N)):
+            raise Wrong("the series does not annul the residual")
+        self.E = [found[i] for i in range(self.N, ring.D + 1)]
+        self.L: Any = arb_poly([ring.over(part)[0] for part in L])
+        self.gap = arb_poly([1, *(-ring.over(ring.times(part, inverse))[0] for part in L[1:])])
+
+    def require_series(self, told: list[dict[str, str]]) -> None:
+        """Refuse a series that is not the one of the box."""
+        if len(told) != self.N:
+            raise Wrong("the series has another length")
+        for n, part in enumerate(told):
+            if not lies_within(self.L[n], part):
+                raise Wrong(f"L_{n} is {self.L[n].str(20)}")
+
+    def steps(self) -> list[tuple[Any, Any]]:
+        """Pieces of [0, s0]."""
+        return list(pairwise(self.o.s0 * i / self.pieces for i in range(self.pieces + 1)))
+
+    def drift(self, S: Any, x: Any) -> Any:
+        """Lemma 1 on a box of S and l = x."""
+        o, slopes = self.o, self.gap.derivative()
+        S1, below = x * S, self.gap(S)
+        K, Kx = self.gap(S1) / below, S * slopes(S1) / below
+        m = 1 - (1 - x) * K
+        if not (K > 0 and -1 < m < 1.01):
+            return None
+        m = arb(m.lower()).union(arb(m.upper()).min(arb(1)))
+        _, U, _, _, _, Ux = o.speeds(S, x)
+        W, _, WS, _, Wx, _ = o.speeds(S1, m)
+        if not (U > 0 and W > 0 and (m > 0 or o.speeds(S1, m.union(arb(0)))[1] > 0)):
+            return None
+        return (o.j + 1) + x * (Kx / K + (S * WS + (K - (1 - x) * Kx) * Wx) / W - Ux / U)
+
+    def least_drift(self) -> Any:
+        """Lemma 1 on the boxes that the certificate names."""
+        least, half, todo = arb(9), arb(1) / 2, [(0, 0, 0, 0)]
+        for letter in self.told["tree"]:
+            if not todo:
+                raise Wrong("the boxes of lemma 1 do not fit together")
+            a, n, e, k = todo.pop()
+            if n + k > 10 * SHARE:
+                raise Wrong("a box of lemma 1 is too small")
+            if letter == "S":
+                todo += [(2 * a + 1, n + 1, e, k), (2 * a, n + 1, e, k)]
+            elif letter == "l":
+                todo += [(a, n, 2 * e + 1, k + 1), (a, n, 2 * e, k + 1)]
+            elif letter == ".":
+                S = (a * half**n).union((a + 1) * half**n) * self.o.s0
+                found = self.drift(S, (e * half**k).union((e + 1) * half**k))
+                if found is None or not found > 0:
+                    raise Refused("lemma 1 is not shown on a box")
+                least = least.min(arb(found.lower()))
+            else:
+                raise Wrong("the boxes of lemma 1 are written with S, l and . alone")
+        if todo:
+            raise Wrong("the boxes of lemma 1 do not cover the square")
+        return least
+
+    def cones(self, a: Any, b: Any) -> tuple[Any, Any, Any]:
+        """Lemma 3 on a piece: bounds of (H + r)/l, of U times 1 - l, and of the growth."""
+        o, j, eta, M, L = self.o, self.o.j, self.eta, self.slope, self.L
+        S = (a - 2 * M * eta).max(arb(0)).union((b + 2 * M * eta).min(o.s0))
+        y, dL = within(eta), self.L.derivative()
+        x = L(S) + y
+        S1 = x * S
+        x1 = L(S1) + y
+        K = self.gap(S1) / self.gap(S)
+        m = 1 - (1 - x) * K
+        if not (0 < x < 1 and 0 < x1 < 1 and -1 < m < 1 and self.N * (1 - L(S)) + S * dL(S) > 0):
+            raise Refused("the strip leaves 0 < l < 1")
+        W1, U1, WS1, _, _, _ = o.speeds(S1, x1)
+        _, U, _, US, _, Ux = o.speeds(S, x)
+        rate = x**j * K * o.speeds(S1, m)[0] / U
+        along = (1 - x1) * WS1 - U1 * dL(S1)
+        by_y1 = -(x ** (j + 1)) * U1
+        by_l = (j + 1) * x**j * (1 - x1) * W1 + x ** (j + 1) * S * along - self.r * ((1 - x) * Ux - U)
+        by_S = x ** (j + 2) * along - self.r * (1 - x) * US + by_l * dL(S)
+        d, g, e = -by_l / by_y1, -by_S / by_y1, x + S * dL(S)
+        up = d - abs(g) * M
+        if not (U > 0 and U1 > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0):
+            raise Refused("lemma 3 is not shown: the cones are not expanded into themselves")
+        return rate, (1 - x) * U, up
+
+    def require(self) -> None:
+        """Refuse the box unless the three lemmas hold with its numbers."""
+        R, Kl, grow = (ball(Fraction(self.told[name])) for name in ("R", "Kl", "grow"))
+        if not (self.eta > 0 and self.slope > 0):
+            raise Wrong("eta and M must be positive")
+        for a, b in self.steps():
+            E, S = arb(0), a.union(b)
+            for part in reversed(self.E):
+                E = E * S + part
+            if not abs(E) <= R:
+                raise (Refused if abs(E).overlaps(R) else Wrong)(f"the residual is not shown to be below {R.str(8)}")
+        least = self.least_drift()
+        bounds = [self.cones(a, b) for a, b in self.steps()]
+        rate, U = (lowest(each[k] for each in bounds) for k in (0, 1))
+        if not R / (rate * least * U) <= Kl:
+            raise Wrong("Kl is not shown to bound the distance from the series")
+        if not Kl * self.o.s0**self.N < self.eta:
+            raise Wrong("the strip is narrower than the bound")
+        if not (grow > 1 and lowest(each[2] for each in bounds) >= grow):
+            raise Wrong("that distances grow as fast as is written is not shown")
+
+    def threshold(self, S: Any) -> Any:
+        """The speed on gamma at S, as of y'."""
+        x = self.L(S) + within(ball(Fraction(self.told["Kl"])) * S**self.N)
+        return S ** (self.o.j + 1) * (1 - x) * self.o.speeds(S, x)[0]
+
+
+def sum_of(make: Folded, zero: list[Any], powers: list[list[Any]], parts: list[int]) -> list[Any]:
+    for part, power in zip(parts, powers, strict=False):
+        zero = make.plus(zero, power, part)
+    return zero
+
+
+def lowest(parts: Any) -> Any:
+    found = arb(10) ** 9
+    for part in parts:
+        found = found.min(arb(part.lower()))
+    return found
+
+
+def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:
+    """That gamma is as the certificate says, for the r of the model or for all r of an interval."""
+    ctx.prec = max(bits, LEAST_BITS)
+    j, reach = int(told["order"]), ball(Fraction(told["reach"]))
+    if not (1 <= j <= 12 and reach > 0 and told["boxes"]):
+        raise Wrong("an order, a reach and boxes must be given")
+    tau = contact(model, read(told["tau"]), j)
+    o = Gravity(model, tau, j, reach)
+    cuts = [[Fraction(end) for end in box["lambda"]] for box in told["boxes"]]
+    single = told["restitution"] == "model"
+    r = model.ratio() if single else None
+    ends: list[Any] = [r, r] if single else [ball(Fraction(end)) for end in told["restitution"]]
+    if not all(0 < end < 1 for end in ends) or (single and len(cuts) != 1):
+        raise Wrong("r must lie in (0, 1)")
+    if any(one[1] != other[0] for one, other in pairwise(cuts)):
+        raise Wrong("the boxes of lambda do not touch")
+    if not (restitution(j, ball(cuts[0][0])) <= ends[0] and ends[-1] <= restitution(j, ball(cuts[-1][1]))):
+        raise Wrong("the boxes of lambda do not contain the lambda of every r")
+    boxes = [Box(o, each, r) for each in told["boxes"]]
+    for box in boxes:
+        box.require()
+    if single:
+        factor = (o.damping * o.time(reach)).exp() * (1 + o.square * reach * reach).sqrt()
+        compared({"threshold": (boxes[0].threshold(reach) * factor, told["threshold"])})
+    require_after(o, told, size(ends[-1]))

@@ -1,0 +1,163 @@
+"""A linear impact oscillator before a contact point as a ball under gravity: its power series, the tail bounded.
+
+X'' + 2 b X' + (b^2 + w) X = a_c(t) for X = x - c.  With C = cos(sqrt(w) t), s = tan(sqrt(w) t)/sqrt(w), t counted from
+tau_*, and y = X e^(b t)/C it is y'' = A(s), A = e^(b t) C^3 a_c, with the same restitution (claim b:gauge).  As
+dt/ds = 1/(1 + w s^2) and C^-2 = 1 + w s^2, the series in s hold for w > 0, w = 0 and w < 0 alike.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.precision import balls_at, series_of_any_length
+from singimpact.contact.next_zero import ContactZero
+from singimpact.inputs import InputError
+from singimpact.oscillator.linear import at_rest, linear_form
+from singimpact.oscillator.model import Oscillator
+
+MOST = 240  # terms of the series of A
+RADII = 40  # discs on which A is bounded; each radius is 4/5 of the one before
+SMALL = 2.0**-36  # tail, in units of the leading coefficient, at which the series is cut
+
+
+class LinearNumbers(NamedTuple):
+    """b, w, the constant part of a_c, and (rate, phase at tau_*, cosine, sine) of each harmonic, as balls."""
+
+    damping: Any
+    square: Any
+    steady: Any
+    waves: tuple[tuple[Any, Any, Any, Any], ...]
+
+
+@dataclass(frozen=True)
+class Gravity:
+    """|A(-x)| = sum of b_k x^k for 0 <= x <= reach.
+
+    Attributes
+    ----------
+    j : contact order; b_k = 0 below it. reach : a rational. b : balls of b_0, ..., b_K. size, radius : a bound of |A|
+        on |s| <= radius, so that |b_k| <= size radius^-k. bits : of the balls.
+    """
+
+    j: int
+    reach: Fraction
+    b: tuple[Any, ...]
+    size: Any
+    radius: Any
+    bits: int
+
+    def s0(self) -> Any:
+        """The reach as a ball."""
+        return Balls(self.bits).rational(self.reach)
+
+    def tail(self, power: int) -> Any:
+        """A bound of sum k |b_k| x^(k - power) over the terms left out, for 0 <= x <= reach."""
+        s0, K = self.s0(), len(self.b) - 1
+        ratio = s0 / self.radius
+        return self.size * ratio ** (K + 1) / s0**power * ((K + 1) - K * ratio) / (1 - ratio) ** 2
+
+
+def numbers_of(osc: Oscillator, zero: ContactZero, bits: int) -> LinearNumbers:
+    """The numbers of a linear model at the precision that is set.
+
+    Raises
+    ------
+    InputError : the model is not linear.
+    """
+    form = linear_form(osc)
+    if form is None:
+        raise InputError(
+            f"f = {osc.f}, g = {osc.g} is not accepted: gamma is certified for linear f and a forcing of harmonics"
+        )
+    balls = Balls(bits)
+
+    def ball(tree: Expression) -> Any:
+        return evaluate(tree, {}, balls)
+
+    time, b = zero.moved(bits), ball(form.damping) / 2
+    waves = tuple(
+        (ball(each.rate), ball(each.rate) * time + ball(each.phase), ball(each.cosine), ball(each.sine))
+        for each in form.harmonics
+    )
+    return LinearNumbers(b, ball(form.stiffness) - b * b, ball(at_rest(form, osc.clearance)), waves)
+
+
+@lru_cache(maxsize=64)
+def gravity(osc: Oscillator, zero: ContactZero, reach: Fraction, bits: int, small: float = SMALL) -> Gravity:
+    """The gravity before a contact point, with as many terms as the reach needs.
+
+    Parameters
+    ----------
+    reach : x goes up to it. bits : of the balls, the precision that is set. small : tail, in units of b_j.
+
+    Raises
+    ------
+    InputError : the model is not linear, or the reach lies outside the disc of convergence.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.numbers import constant
+    >>> from singimpact.contact.next_zero import next_zero
+    >>> osc = Oscillator("x", "cos(2*t)", 1, "1/2")
+    >>> found = gravity(osc, next_zero(osc, constant("tau", 3)).zero, Fraction(1, 4), 96)
+    >>> [round(float(b.mid()), 12) for b in found.b[:5]]
+    [0.0, 0.0, 2.0, 0.0, -5.0]
+    """
+    with balls_at(bits):
+        numbers = numbers_of(osc, zero, bits)
+        b = _coefficients(numbers, zero.order, MOST)
+        s0, discs = Balls(bits).rational(reach), _discs(numbers, Balls(bits).rational(reach))
+        if not discs:
+            raise InputError(f"S <= {reach} is not accepted: the series in S converges up to 1/omega_d only")
+        for K in range(40, MOST + 1, 8):  # folded models take at least D + j terms
+            size, radius = min(discs, key=lambda disc: float((disc[0] * (s0 / disc[1]) ** K).upper()))
+            found = Gravity(zero.order, reach, tuple(b[: K + 1]), size, radius, bits)
+            if found.tail(zero.order + 1) < small * b[zero.order]:
+                break
+        return found
+
+
+def _coefficients(numbers: LinearNumbers, j: int, K: int) -> list[Any]:
+    """b_0, ..., b_K: the first j are 0 by the contact order."""
+    from flint import arb, arb_series
+
+    with series_of_any_length():
+        prec, w = K + 1, numbers.square
+        time = arb_series([0] + [(-w) ** (k // 2) / (k + 1) if k % 2 == 0 else 0 for k in range(K)], prec=prec)
+        spread = arb_series([1, 0, w], prec=prec)  # C^-2
+        pressed = arb_series([numbers.steady], prec=prec)
+        for rate, phase, cosine, sine in numbers.waves:
+            angle = rate * time + arb_series([phase], prec=prec)
+            pressed += cosine * angle.cos() + sine * angle.sin()
+        whole = (numbers.damping * time).exp() * pressed / (spread * spread.sqrt())
+        found = [-((-1) ** k) * whole[k] for k in range(K + 1)]
+    return [arb(0)] * j + found[j:]
+
+
+def _discs(numbers: LinearNumbers, s0: Any) -> list[tuple[Any, Any]]:
+    """Bounds of |A| on discs |s| <= R with R > reach: |t| <= atanh(sqrt|w| R)/sqrt|w| and |cos z| <= cosh |z| there."""
+    from flint import arb
+
+    w, found = abs(numbers.square), []
+    root = arb(w.upper()).sqrt()
+    widest = 1 / root if root > 0 else 64 * s0
+    widest = arb((19 * widest / 20).min(64 * s0).lower())
+    for n in range(RADII):
+        R = arb((widest * (arb(4) / 5) ** n).lower())
+        if not s0 < R:
+            break
+        time = (root * R).atanh() / root if root > 0 else R
+        push = abs(numbers.steady)
+        for rate, phase, cosine, sine in numbers.waves:
+            size = (abs(rate) * time).cosh()
+            shifted = abs(cosine * phase.cos() + sine * phase.sin()), abs(sine * phase.cos() - cosine * phase.sin())
+            push = push + size * (shifted[0] + shifted[1])
+        left = 1 - w * R * R  # |C^-2| is at least this
+        size = (abs(numbers.damping) * time).exp() / (left * left.sqrt())
+        found.append((arb((size * push).upper()), R))
+    return found

@@ -1,0 +1,162 @@
+"""Theorems t:t2 and t:t3 on one oscillator with numbers: gamma before a tangency and before a swan of x'' + x = cos 2t.
+
+`b:gamma-tangency`, `b:gamma-swan` : one restitution. `b:gamma-interval` : all restitutions of an interval at once.
+How it is proved: `dynamics.gamma_proof`; longer intervals of r: `osc.certified_gamma(restitution=)`.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import NamedTuple
+
+from singimpact.algebra.numbers import exact
+from singimpact.dynamics.gamma_proof.proof import CertifiedGamma, certified_gamma
+from singimpact.inputs import InputError
+from singimpact.oscillator.model import Oscillator
+from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.verifiers import every
+
+claim = in_section("beyond")
+
+BEFORE = 2
+"""A phase with a_c < 0 between the zero before tau_* and tau_*, at c = 0.3 and at c = 1."""
+
+
+class Stated(NamedTuple):
+    """What is stated of x'' + x = cos 2t.
+
+    Attributes
+    ----------
+    clearance, restitution : of the model. order : of contact. reach : of S = tan(tau_* - tau). velocity : on gamma at
+        S = reach, and by how much it may differ. grows : distances across gamma grow by more than this, an impact.
+    after : at a tangency the time after tau_* in which at most one impact comes; at a swan the launch speed dy/ds up to
+        which chatter completes for all S <= reach.
+    """
+
+    clearance: str
+    restitution: str
+    order: int
+    reach: str
+    velocity: tuple[str, str]
+    grows: str
+    after: str
+
+
+def _proved(clearance: str, restitution: str, reach: str, between: tuple[str, str] | None = None) -> CertifiedGamma:
+    osc = Oscillator("x", "cos(2*t)", clearance, restitution)
+    return certified_gamma(osc, BEFORE, reach=reach, restitution=between)
+
+
+def _certified(stated: Stated) -> Check:
+    """Whether gamma is proved up to the reach, with these numbers; and what comes after tau_*."""
+    try:
+        found = _proved(stated.clearance, stated.restitution, stated.reach)
+    except InputError as reason:
+        return Check(False, "certified", str(reason), {"fails": str(reason)})
+    at, (velocity, off) = found.at_reach(), map(Fraction, stated.velocity)
+    close = abs(exact("value", at.value) - velocity) + exact("radius", at.radius) < off
+    return every(
+        [
+            (f"tau_* = {found.tau} is a zero of a_c of order {found.order}", found.order == stated.order),
+            (
+                f"for S <= {found.reach} the drift lemma holds on {found.boxes[0].boxes} boxes, the residual is below "
+                f"{float(found.boxes[0].R):.3g} S^6: gamma is one graph with |l - L(S)| <= {found.Kl:.3g} S^6, below "
+                "it chatter completes before tau_*, above it finitely many impacts come before tau_*",
+                found.reach == Fraction(stated.reach),
+            ),
+            (f"gamma has v = {at} at S = {found.reach}", close),
+            (f"distances across gamma grow by {found.grow:.4g} per impact", found.grow > float(stated.grows)),
+            _after(found, stated),
+        ],
+        "certified",
+    )
+
+
+def _after(found: CertifiedGamma, stated: Stated) -> tuple[str, bool]:
+    """What is proved of the time after tau_*, and whether it is as much as is stated."""
+    if found.lost:
+        time = found.lost.time
+        return f"after tau_* at most one impact comes within {float(time):.6g}", time >= Fraction(stated.after)
+    if found.settled is None:
+        return "what comes after tau_* is not decided", False
+    launch, speed, _, end = found.settled
+    return (
+        f"above gamma, with dy/ds <= {float(speed):.3g} and S <= {launch}, tau_* is passed, chatter completes before "
+        f"s = {end}",
+        launch >= Fraction(stated.reach) and speed >= Fraction(stated.after),
+    )
+
+
+def _for_all(stated: tuple[str, tuple[str, str], str, str]) -> Check:
+    """(c, (low, high), reach, K): gamma is proved for all these r, with |l - L(S)| <= K S^6."""
+    clearance, between, reach, bound = stated
+    try:
+        found = _proved(clearance, between[0], reach, between)
+    except InputError as reason:
+        return Check(False, "certified", str(reason), {"fails": str(reason)})
+    touch = all(one.high == other.low for one, other in zip(found.boxes, found.boxes[1:], strict=False))
+    return every(
+        [
+            (f"{len(found.boxes)} boxes of lambda touch, and hold that of every r in {list(between)}", touch),
+            (f"the lemmas hold for S <= {found.reach} on each of them", found.reach == Fraction(reach)),
+            (f"|l - L(S)| <= {found.Kl:.3g} S^6 on gamma", found.Kl <= float(bound)),
+        ],
+        "certified",
+    )
+
+
+TANGENCY = Stated("3/10", "1/2", 1, "1/4", ("0.0177931543", "1e-4"), "1.8", "1.25")
+SWAN = Stated("1", "1/2", 2, "1/4", ("0.0031225", "1e-5"), "1.8", "0.00317")
+INTERVAL = ("3/10", ("0.48", "0.52"), "1/4", "0.5")
+
+CLAIMS = (
+    claim(
+        "b:gamma-tangency",
+        "x'' + x = cos 2t, c = 3/10, r = 1/2: gamma exists for S <= 1/4, alone, and decides the fate of every launch",
+        Statement(
+            r"\ddot x+x=\cos2t,\ c=\tfrac3{10},\ r=\tfrac12,\ \tan(\tau_*-\tau)\le\tfrac14:\quad"
+            r"\gamma\ \text{is one Lipschitz graph; below it chatter completes before}\ \tau_*\text{, above it contact "
+            r"is lost}",
+            TANGENCY,
+        ),
+        _certified,
+        (
+            TANGENCY._replace(reach="9/10"),
+            TANGENCY._replace(velocity=("0.0181", "1e-4")),
+            TANGENCY._replace(restitution="0.51"),
+            TANGENCY._replace(grows="2.2"),
+            TANGENCY._replace(order=2),
+            TANGENCY._replace(after="1.27"),
+        ),
+        ("b:gauge", "b:order-ray"),
+    ),
+    claim(
+        "b:gamma-swan",
+        "x'' + x = cos 2t at the swan c = 1, r = 1/2: the same for S <= 1/4; above gamma chatter completes after tau_*",
+        Statement(
+            r"\ddot x+x=\cos2t,\ c=1,\ r=\tfrac12,\ \tan(\tau_*-\tau)\le\tfrac14:\quad"
+            r"\gamma\ \text{is one Lipschitz graph; below it chatter completes before}\ \tau_*\text{, above it, for}\ "
+            r"\tfrac{dy}{ds}\le0.00317\text{, after}\ \tau_*",
+            SWAN,
+        ),
+        _certified,
+        (
+            SWAN._replace(reach="9/10"),
+            SWAN._replace(velocity=("0.00325", "1e-5")),
+            SWAN._replace(clearance="9/10"),
+            SWAN._replace(after="0.01"),
+        ),
+        ("b:gauge", "b:order-ray"),
+    ),
+    claim(
+        "b:gamma-interval",
+        "x'' + x = cos 2t, c = 3/10: the same for every r in [0.48, 0.52] at once",
+        Statement(
+            r"\forall r\in[0.48,0.52],\ S\le\tfrac14:\quad|\ell-L(S)|\le\tfrac12S^6\ \text{on}\ \gamma",
+            INTERVAL,
+        ),
+        _for_all,
+        (("3/10", ("0.48", "0.52"), "9/10", "0.5"), ("3/10", ("0.48", "0.52"), "1/4", "0.05")),
+        ("b:gamma-tangency",),
+    ),
+)

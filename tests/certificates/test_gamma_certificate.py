@@ -1,0 +1,151 @@
+"""Certificates of gamma: accepted as they were made; wrong series, restitutions, bounds and functions are refused."""
+
+from __future__ import annotations
+
+import json
+
+import flint
+import pytest
+from second_program import changed, copied, is_read_back, no_number_may_change, refuses, renewed
+
+import singimpact as si
+from singimpact.certificates import checker
+from singimpact.certificates.checker import gravity, invariant_arc
+
+TANGENCY = si.linear(2, "0.3", "0.5")
+CASES = {
+    "tangency": (TANGENCY, {"reach": "1/4"}),
+    "swan": (si.linear(2, 1, "0.5"), {"tau": 2, "reach": "1/4"}),
+    "damped": (si.ImpactOscillator("4*x + 0.3*xdot", "cos(2*t) + sin(5*t + 1)/2", "0.1", "0.7"), {"reach": "1/5"}),
+    "interval": (TANGENCY, {"reach": "1/8", "restitution": ("0.48", "0.52")}),
+}
+
+
+@pytest.fixture(scope="module")
+def made():
+    return {name: si.certify(osc.certified_gamma(**options)) for name, (osc, options) in CASES.items()}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_it_is_accepted_from_its_file(name, made, tmp_path):
+    is_read_back(made[name], tmp_path / "gamma.json")
+    assert "certificate of gamma before tau_* = " in repr(made[name])
+
+
+def test_any_changed_number_changes_the_digest(made):
+    no_number_may_change(made["tangency"], 30)
+
+
+def boxed(content, **changes):
+    """With the first box changed."""
+    found = copied(content)
+    found["boxes"][0].update(changes)
+    return found
+
+
+def nudged(content, n, by):
+    """With L_n off by so much."""
+    found = copied(content)
+    part = found["boxes"][0]["series"][n]
+    part["value"] = str(float(part["value"]) + by)
+    return found
+
+
+@pytest.mark.parametrize("name", ["tangency", "swan"])
+def test_false_statements_are_refused(name, made):
+    content, true = made[name].content, made[name].content["boxes"][0]
+    refuses(nudged(content, 2, 1e-6), "L_2 is")
+    refuses(nudged(content, 5, 1e-9), "L_5 is")
+    wrong = copied(content)
+    wrong["model"]["restitution"] = "0.5000005"
+    refuses(wrong, "boxes of lambda do not contain")
+    refuses(boxed(content, M="0"), "must be positive")
+    refuses(boxed(content, eta="1e-6"), "narrower")
+    refuses(boxed(content, M=str(float(true["M"]) * 40)), "lemma 3")
+    for bound, why in (("R", "residual"), ("Kl", "Kl is not")):
+        refuses(boxed(content, **{bound: str(0.9 * float(true[bound]))}), why)
+    refuses(boxed(content, grow=str(1.1 * float(true["grow"]))), "grow as fast")
+    refuses(boxed(content, tree="l" + true["tree"][1:-1]), "cover|fit")
+    refuses(boxed(content, tree="."), "lemma 1")
+    refuses(boxed(content, tree=true["tree"].replace(".", "x")), "written with")
+    refuses(boxed(content, series=true["series"][:-1]), "another length")
+    refuses({**copied(content), "tau": {"value": "2.5", "radius": "1e-9"}}, "zero of a_c")
+    refuses({**copied(content), "threshold": {**content["threshold"], "radius": "1e-12"}}, "threshold is")
+    refuses({**copied(content), "reach": "9/10"})
+    refuses({**copied(content), "order": "3"})
+
+
+def test_another_order_or_model_is_refused(made):
+    wrong = copied(made["swan"].content)
+    wrong["model"]["clearance"] = "0.9999"
+    refuses(wrong, "does not vanish")
+    wrong["model"].update(f="x*x", clearance="1")
+    refuses(wrong, "not linear")
+
+
+def test_what_comes_after_is_checked(made):
+    content = made["tangency"].content
+    refuses({**copied(content), "after": {**content["after"], "time": "1.27"}}, "a_c > 0 for so long")
+    refuses({**copied(content), "after": {**content["after"], "time": "1.6"}}, "longer than")
+    content = made["swan"].content
+    for name, value, why in (("speed", "0.01", "lands in time"), ("end", "0.4", "completes in time"),
+                             ("end", "0.9", None), ("launch", "0.3", "beyond the reach")):  # fmt: skip
+        refuses({**copied(content), "after": {**content["after"], name: value}}, why)
+    checker.check(renewed({**copied(content), "after": {}}))  # nothing is said of it then
+
+
+def test_boxes_of_lambda_must_touch_and_cover(made):
+    content = made["interval"].content
+    assert len(content["boxes"]) > 1
+    refuses({**copied(content), "boxes": content["boxes"][1:]}, "do not contain")
+    gap = copied(content)
+    low, high = gap["boxes"][0]["lambda"]
+    gap["boxes"][0]["lambda"] = [low, changed({"x": high}, ("x",))["x"]]
+    refuses(gap, "touch")
+    refuses({**copied(content), "restitution": "model"}, "must lie")
+    refuses({**copied(content), "restitution": ["0.48", "0.6"]}, "do not contain")
+
+
+@pytest.mark.parametrize("where", ["balls", "models", "cut"])
+def test_a_checker_with_wrong_functions_refuses(where, made, monkeypatch):
+    """W and U exchanged, in balls or in Taylor models; a tail that is left out makes it accept, as it must."""
+    true = gravity.Gravity.speeds
+    if where == "balls":
+        monkeypatch.setattr(gravity.Gravity, "speeds", lambda self, S, x: [true(self, S, x)[k] for k in
+                                                                           (1, 0, 3, 2, 5, 4)])  # fmt: skip
+    elif where == "models":
+        twice = invariant_arc.Folded.speeds
+        monkeypatch.setattr(invariant_arc.Folded, "speeds", lambda self, o, S, x: twice(self, o, S, x)[::-1])
+    else:
+        monkeypatch.setattr(gravity.Gravity, "tail", lambda self, power: flint.arb(1))  # noqa: ARG005
+    with pytest.raises(checker.Refused):
+        checker.check(made["tangency"].content)
+
+
+def test_from_the_command_line(singimpact, tmp_path):
+    model = tmp_path / "model.toml"
+    model.write_text(TANGENCY.to_toml())
+    file = tmp_path / "gamma.json"
+    done = singimpact("certify", "gamma", model, "--reach", "1/4", "-o", file)
+    assert "proved for r = 1/2" in done.stderr
+    assert json.loads(file.read_text())["statement"] == "invariant arc"
+    assert "certificate of gamma" in singimpact("certify", file).stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("gamma", "a.toml", "b.toml"), "one model"),
+        (("gamma", "--omega", "2", "--clearance", "0.3", "--restitution", "0.5", "--chatter"), "one model"),
+        (("gamma", "a.toml", "--model", "b.toml"), "two models"),
+        (("--reach", "1/4"), "certify gamma"),
+    ],
+)
+def test_bad_command_lines(words, why):
+    from click.testing import CliRunner
+
+    from singimpact.cli.certify import command
+
+    done = CliRunner().invoke(command, list(words))
+    assert isinstance(done.exception, si.InputError)
+    assert why in str(done.exception)
