@@ -21,6 +21,7 @@ from .periodic_orbit import periodic_orbit
 from .told import balls_of
 
 SCHEMA = "singimpact certificate 1"
+LEAST = 80  # bits, for bounds that are given with a few digits
 TERMS = 10_000  # flint cuts a series after ctx.cap terms without a word
 STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "first impact": first_impact,
@@ -58,7 +59,7 @@ def check(told: dict[str, Any]) -> None:
         if narrowest <= 0:
             raise Refused("a radius that is not above 0")
         wanted = narrowest.denominator.bit_length() - narrowest.numerator.bit_length()
-        for bits in ((wanted + 16) * 2**k for k in range(4)):
+        for bits in (max(wanted + 16, LEAST) * 2**k for k in range(4)):
             ctx.prec, ctx.cap = bits + 32, TERMS
             try:
                 return shown(Model(told["model"]), told, bits)

@@ -20,7 +20,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from flint import arb, arb_poly, ctx
+from flint import arb, arb_poly
 
 from .after_contact import require_after
 from .formulas import Refused, Wrong, ball
@@ -28,7 +28,6 @@ from .gravity import Gravity, contact
 from .motion import Model, size, within
 from .told import compared, lies_within, read
 
-LEAST_BITS = 112
 SHARE = 4  # a box of this part of S and l is halved no further than 2^-40
 
 
@@ -284,9 +283,8 @@ def lowest(parts: Any) -> Any:
     return found
 
 
-def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:
+def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:  # noqa: ARG001
     """That gamma is as the certificate says, for the r of the model or for all r of an interval."""
-    ctx.prec = max(bits, LEAST_BITS)
     j, reach = int(told["order"]), ball(Fraction(told["reach"]))
     if not (1 <= j <= 12 and reach > 0 and told["boxes"]):
         raise Wrong("an order, a reach and boxes must be given")
