@@ -23,6 +23,7 @@ NO_NUMBER |= {
     "bifurcation",
     "classify",
     "grown_gamma",
+    "certified_gamma",  # what it proves is checked by a second program
     "transitions",
     "manifold",
     "homoclinic_points",

@@ -13,6 +13,7 @@ from singimpact.oscillator.acceleration import acceleration
 from singimpact.paper.figures.panel import Array, Line, Panel, Picture, Region
 from singimpact.paper.trials import loop_heights
 from singimpact.paper.trials.universal_foot import covering, elastic, foot, scaled
+from singimpact.scenes.style import SKY
 
 SHOWN = 5  # generations in figure B4
 BORN = ("0.9", "0.97", "0.999")  # clearances of figure B6, c_0 = 1
@@ -97,7 +98,7 @@ def figure_B5() -> Picture:
     ]
     regions = [
         Region(band, words="3 within 2 %"),
-        Region(np.vstack([tops, bottoms[::-1]]), "#56B4E9", words="proved bounds, for all $r$ up to 0.95"),
+        Region(np.vstack([tops, bottoms[::-1]]), SKY, words="proved bounds, for all $r$ up to 0.95"),
     ]
     facts = {"limit": limit, "most": float(tops[:, 1].max()), "least": float(bottoms[:, 1].min())}
     caption = (
