@@ -62,11 +62,11 @@ class CertifiedGamma:
 
     Attributes
     ----------
-    oscillator : the model. order : contact order j. tau : tau_*. reach, asked : of S, rationals. duration : tau_* - tau
-        at S = reach. restitution : (low, high), rationals or None where r is no rational. boxes : proofs for boxes of
-        lambda, which touch. lost : after an odd order, the time after tau_* in which at most one impact
-        comes. settled : after a swan, the launches (S <= launch, y' <= speed) that pass tau_* and whose chatter is
-        shown to complete, and where in s > 0. notes : how far it got, and why not farther.
+    oscillator : the model. zero : tau_* with its contact order. tau : tau_*. reach, asked : of S, rationals.
+    duration : tau_* - tau at S = reach. restitution : (low, high), rationals or None where r is no rational.
+    boxes : proofs for boxes of lambda, which touch. lost : after an odd order, the time after tau_* in which at most
+        one impact comes. settled : after a swan, the launches (S <= launch, y' <= speed) that pass tau_* and whose
+        chatter is shown to complete, and where in s > 0. notes : how far it got, and why not farther.
     """
 
     oscillator: Oscillator
