@@ -72,8 +72,14 @@ class Machine:
             return None
         self._looked[name] = now
         place = self.place(name)
-        code = cache.recall(place) if place.is_file() else None
-        return None if code is None else self._load(name, code)
+        if not place.is_file():
+            return None
+        code = cache.recall(place)
+        if code is None:  # damaged, and told so once: whoever waits for this entry waits for another file
+            with suppress(OSError):
+                place.unlink()
+            return None
+        return self._load(name, code)
 
     def interpreted(self, seconds: float, name: str) -> None:
         """Count flights that were interpreted; after a while a process compiles the text, the entry `name` first."""
