@@ -106,9 +106,9 @@ class LinearRests:
         self.form, self.turn, self.undecided = form, as_float(period), list[str]()
         self.k, self.half = as_float(form.stiffness), as_float(form.damping) / 2
         self.square = self.k - self.half**2
-        self.steady = [steady, *(derivative(steady, "t") for _ in range(1))]
-        push = [add(waves(form, Name("t"), [(w.cosine, w.sine) for w in form.harmonics]), at_rest(form, number(0)))]
-        self.push = [*push, derivative(push[0], "t")]
+        self.steady = steady, derivative(steady, "t")
+        forcing = waves(form, Name("t"), [(w.cosine, w.sine) for w in form.harmonics])
+        self.push = add(forcing, at_rest(form, number(0)))  # a_c at c = 0
 
     def q(self, t: Array, order: int = 0) -> Array:
         """The motion with the period of the forcing, or its derivative."""
@@ -116,7 +116,7 @@ class LinearRests:
 
     def a(self, t: Array, c: Array) -> Array:
         """The acceleration at the wall."""
-        return np.asarray(evaluate(self.push[0], {"t": t}, DOUBLES) - self.k * c)
+        return np.asarray(evaluate(self.push, {"t": t}, DOUBLES) - self.k * c)
 
     def free(self, d: Array) -> tuple[Array, Array, Array]:
         """C, S and S' at d: C(0) = S'(0) = 1, C'(0) = S(0) = 0."""

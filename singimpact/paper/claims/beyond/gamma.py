@@ -7,6 +7,7 @@ How it is proved: `dynamics.gamma_proof`; longer intervals of r: `osc.certified_
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 from typing import NamedTuple
 
 from singimpact.algebra.numbers import exact
@@ -94,7 +95,7 @@ def _for_all(stated: tuple[str, tuple[str, str], str, str]) -> Check:
         found = _proved(clearance, between[0], reach, between)
     except InputError as reason:
         return Check(False, "certified", str(reason), {"fails": str(reason)})
-    touch = all(one.high == other.low for one, other in zip(found.boxes, found.boxes[1:], strict=False))
+    touch = all(one.high == other.low for one, other in pairwise(found.boxes))
     return every(
         [
             (f"{len(found.boxes)} boxes of lambda touch, and hold that of every r in {list(between)}", touch),
