@@ -13,7 +13,7 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls, Zero, as_rational, derivatives, refined, sign_at
 from singimpact.algebra.certified import Certified, as_certified
-from singimpact.algebra.expressions import Call, Expression, Power, children, names_in, walk
+from singimpact.algebra.expressions import Call, Expression, Power, children, evaluate, names_in, walk
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at, digits_at, for_user, kept_property
 from singimpact.algebra.zeros import isolate
@@ -185,7 +185,7 @@ def _decided(function: Expression, zero: Zero) -> list[TangencyPoint]:
     for bits in (256, 2048):
         ball = refined(function, "t", turn, bits, order=1)
         with balls_at(bits):
-            value = derivatives(function, "t", ball, 0, Balls(bits))[0]
+            value = evaluate(function, {"t": ball}, Balls(bits))
             if value > 0 or value < 0:
                 return _beside(function, zero, as_rational(ball), turn.slope)
     return [TangencyPoint(function, turn, "degenerate")]

@@ -211,17 +211,18 @@ class _Flown:
         self.osc, self.given, self.most = osc, states.given(index), most
         self.times, self.speeds, self.cause = [float(states.tau[index])], [float(states.v[index])], Cause.decided
         self.slopes: list[list[float]] = []
+        self.short = False  # whether the rest is summed up from the last impact
         self._known: list[Any] | None = None
 
     def limit(self) -> ChatterLimit:
         lasting = compare(self.osc.slope_at_rest(), 1) != 0
-        status, short, count = self._first(), False, 256
+        status, count = self._first(), 256
         while status == Status.hit:
             tau, v = self.times[-1], self.speeds[-1]
             a = acceleration(self.osc, np.array([tau]))
             if a[0] >= 0 and len(self.times) > 1:
                 return self._ended(tau, 0.0, Status.lifts_off)
-            if short:
+            if self.short:
                 left, error = (float(part[0]) for part in remaining(self.osc, np.array([tau]), np.array([v]), a))
                 if error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290:
                     return self._ended(tau + left, error, Status.complete)
@@ -230,7 +231,7 @@ class _Flown:
                     continue
                 count = impacts_until(self.osc, error, EPSILON * abs(tau) / 8)
             if self._left() > 0:
-                status, short = self._fly(count, 0.0 if short or not lasting else ENDING.near, short)
+                status = self._fly(count, 0.0 if self.short or not lasting else ENDING.near)
             else:
                 status, self.cause = Status.unresolved, Cause.impacts_exhausted
         return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status), cause=np.int8(self.cause))
@@ -250,25 +251,19 @@ class _Flown:
         self.cause = Cause(int(step.cause))
         return Status(int(step.status))
 
-    def _fly(self, count: int, near: float, short: bool) -> tuple[Status, bool]:
-        """Fly further impacts; the sequence is cut after the first impact with a_c >= 0.
-
-        Returns the status, and whether the remaining chatter is short.
-        """
+    def _fly(self, count: int, near: float) -> Status:
+        """Fly further impacts; the sequence is cut after the first impact with a_c >= 0."""
         found = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), near)
         kept = self._kept(found)
         self.times += found.tau[:kept].tolist()
         self.speeds += found.v[:kept].tolist()
         self.slopes += found.slopes.T[:kept].tolist()
         if kept != found.tau.size:
-            return Status.hit, False
+            return Status.hit
         if found.status and len(self.times) > 1 and acceleration(self.osc, np.array(self.times[-1:]))[0] >= 0:
-            return (
-                Status.hit,
-                False,
-            )  # the mass lifts off at this impact, so the status of its next flight does not matter
-        self.cause = Cause(found.cause)
-        return Status(found.status), found.short or (short and near == 0.0)
+            return Status.hit  # the mass lifts off here, so the status of the flight after it does not matter
+        self.cause, self.short = Cause(found.cause), self.short or found.short
+        return Status(found.status)
 
     def _kept(self, found: Segment) -> int:
         lifted = np.flatnonzero(found.acceleration[1:] >= 0)

@@ -1,5 +1,7 @@
 """The published errors are errors: each term of them is needed by some state."""
 
+from fractions import Fraction
+
 import mpmath
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ import pytest
 import singimpact as si
 from singimpact.dynamics.attractors import CHATTER, OTHER
 from singimpact.dynamics.chatter import ENDING, _Flown
+from singimpact.dynamics.remaining import remaining
 from singimpact.flights.states import States
 
 EPSILON = 2.0**-52
@@ -53,3 +56,36 @@ def test_a_chatter_is_summed_up_only_where_the_last_term_is_below_rounding():
         found = flown.limit()
         series = found.error - flown.rounding(float(found.tau), found.status)
         assert series <= ENDING.trust * EPSILON * abs(float(found.tau)) / 4 * (1 + 1e-6) + 1e-22
+
+
+def test_the_rounding_of_nearly_a_bouncing_ball_is_that_of_each_impact():
+    """tau_inf = tau + 2 v/(g (1 - r)) from every impact: each brings the roundings of its tau and of its v."""
+    ball, r, g = si.ImpactOscillator("0", "-2 + t/1000", 0, "1/2"), 0.5, 2.0  # constant gravity needs no impact
+    flown = _Flown(ball, States.of(ball, 0.0, 0.01), 10_000)
+    found = flown.limit()
+    times, speeds = np.array(flown.times), np.array(flown.speeds)
+    expected = ENDING.trust * EPSILON * ((2 * times + 4 * speeds * 2 / (g * (1 - r))).sum() + found.tau)
+    assert len(times) == 2
+    assert flown.rounding(float(found.tau), found.status) == pytest.approx(expected, rel=1e-4)
+
+
+def test_what_is_summed_up_is_right_to_its_order():
+    """Every derivative of f, g and rho enters: the error falls by 2^5 when v is halved."""
+    f = "7*x + 2*xdot + 3*xdot**2 + 5*xdot**3 + 11*x*xdot + 3*x**2"
+    model = si.ImpactOscillator(f, "cos(2*t) - 4 + t**3", "1/10", "-v*(1 + v + 3*v**2 + 2*v**3)/2")
+    off = []
+    for v in (Fraction(1, 100), Fraction(1, 200)):
+        truth = model.chatter_limit("1/2", str(v), digits=25).tau - mpmath.mpf("0.5")
+        left, error = (float(part[0]) for part in remaining(model, np.array([0.5]), np.array([float(v)])))
+        off.append(abs(float(truth) - left))
+        assert off[-1] < 3 * error
+    assert off[0] / off[1] == pytest.approx(32, rel=0.2)
+
+
+def test_a_small_last_term_is_not_taken_for_the_error():
+    """Its coefficient vanishes here: the error is what the terms v and v^3 let expect of it, |t_3| |t_3/t_1|^(1/2)."""
+    model = si.ImpactOscillator("xdot**2", "-2", 0, "1/2")
+    left, error = (float(part[0]) for part in remaining(model, np.array([0.0]), np.array([0.05])))
+    third = left - 0.1
+    assert third != 0
+    assert error == pytest.approx(abs(third) * (abs(third) / 0.1) ** 0.5, rel=1e-9)
