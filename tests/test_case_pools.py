@@ -326,6 +326,7 @@ def test_cases_that_look_like_tasks_of_the_cluster_are_cases(cluster):
     assert sweep(lambda pair: pair[1], [(abs, -2), (abs, -3)], cluster).tolist() == [-2, -3]
 
 
+@pytest.mark.slow
 def test_a_case_that_ends_its_workers_ends_the_sweep_in_one_line(cluster):
     with pytest.raises(Unfinished, match="workers of the cluster were lost with case 0 = 3"):
         sweep(os._exit, [3], cluster)

@@ -76,7 +76,7 @@ def wait_for(found, seconds=300):
 
 @pytest.mark.parametrize(
     "number",
-    [pytest.param(each, marks=pytest.mark.slow) for each in (signal.SIGINT, signal.SIGTERM)] + [signal.SIGKILL],
+    [pytest.param(each, marks=pytest.mark.slow) for each in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)],
 )
 def test_an_interrupted_verify_keeps_whole_verdicts_and_resumes(number, tmp_path):
     place, output = tmp_path / "cache" / "verdicts", tmp_path / "verdicts.txt"

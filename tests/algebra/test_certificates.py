@@ -1,6 +1,7 @@
 """Certificates: what is true gets one, what is false none, and a damaged one is rejected."""
 
 import json
+from fractions import Fraction
 
 import false_certificates as false
 import pytest
@@ -11,6 +12,7 @@ from tampering import bumped, changed, leaves
 
 from singimpact.algebra import certificates, derivations
 from singimpact.algebra.checking import accepts
+from singimpact.algebra.plain import times
 from singimpact.algebra.sentences import sentence
 from singimpact.paper.routes import implicit
 from singimpact.theory import sheet
@@ -188,3 +190,8 @@ def test_sentences_read_as_they_should():
     assert told["vanishing"] == "(x)/(x**2 + y) -> 0 as x -> -oo"
     assert told["pole"] == "(y)/(x - 1) is unbounded as x -> 1"
     assert told["root"].endswith("(x*w)/(y + 1) where -x + y*w**2 + w**2 = 0")
+
+
+def test_polynomials_of_other_variables_are_not_multiplied():
+    with pytest.raises(ValueError, match="shorter"):
+        times({(1, 0): Fraction(1)}, {(1,): Fraction(1)})

@@ -43,6 +43,7 @@ def test_a_wrong_impact_is_seen() -> None:
     assert states._errors("linear", 2.0, 0.0, 1.0, 0.5, [3.0, np.inf, np.nan])[2] == 1
 
 
+@pytest.mark.slow
 def test_command(singimpact) -> None:
     told = singimpact("bench", "states", "--states", "25", "--workers", "1", "--seed", "3", "--json")
     assert told.exit_code == 0

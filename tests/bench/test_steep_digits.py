@@ -16,6 +16,7 @@ def test_each_steep_family_is_drawn():
     assert {family_of(number) for number in steep_digits.cases_of(20)} == set(STEEP)
 
 
+@pytest.mark.slow
 def test_a_few_states_are_enclosed_by_both():
     found = steep_digits.check(6, 1)
     assert (found.states, found.enclosed, found.refused, found.apart) == (6, 6, (), 0)

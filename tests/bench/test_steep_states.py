@@ -80,6 +80,7 @@ def test_both_truths_give_known_flight_times(force, forcing, plain, layer, launc
     assert hit.velocity == pytest.approx(float(ball.velocity), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_steps_that_ignore_the_layer_do_not_agree_in_silence() -> None:
     """With the layer left out of the grading, the halved flights still find it or stay undecided."""
     plain, _, launch, time = KNOWN[1][2:]
@@ -96,7 +97,9 @@ def test_a_dip_inside_a_step_is_found() -> None:
         assert graded_steps.first_hit(motion, 0.0, 1.0, 30.0).status == status
 
 
-@pytest.mark.parametrize("number", range(22))
+@pytest.mark.parametrize(
+    "number", [each if each % 4 == 0 else pytest.param(each, marks=pytest.mark.slow) for each in range(22)]
+)
 def test_truth_agrees_with_balls(number: int) -> None:
     case = steep_states.drawn(2, number, 2)
     tau, v = float(case.tau[0]), float(case.v[0])

@@ -308,7 +308,8 @@ def test_edges_shrink_by_mu_to_six_digits(name):
     assert abs(found.ratios[best] - mu) < 2e-6 * mu
 
 
-@pytest.mark.parametrize("r", ["3/10", pytest.param("1/2", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("r", ["3/10", "1/2"])
 def test_with_digits_the_ratios_themselves_are_mu(r):
     found = certified(r).cascade
     assert abs(found.ratios[-1] / found.mu - 1) < 1e-9
@@ -443,6 +444,7 @@ def test_cascade_as_json():
     assert abs(cascade["limit"] / cascade["mu"] - 1) < 1e-6
 
 
+@pytest.mark.slow
 def test_command(singimpact, tmp_path):
     asked = ["border", "--omega", "2.8", "--clearance", "0", "--restitution", "3/10", "--from", "0.47", "--to", "0.475",
              "--points", "3"]  # fmt: skip

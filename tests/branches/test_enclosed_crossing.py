@@ -60,6 +60,7 @@ def test_every_impact_leads_to_the_next_one_in_closed_form(proved):
             assert abs(leaving - speed.value) < wall
 
 
+@pytest.mark.slow
 def test_it_is_the_orbit_of_newtons_method(found, proved):
     assert float(proved.tau.value) == pytest.approx(found[0].tau, abs=1e-13)
     assert float(proved.v.value) == pytest.approx(found[0].v, abs=1e-13)

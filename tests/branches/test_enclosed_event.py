@@ -205,6 +205,7 @@ def test_a_torus():
 # ---- statements that are wrong
 
 
+@pytest.mark.slow
 def test_a_parameter_off_by_one_in_the_eighth_digit_is_refused(duffing, monkeypatch):
     """The point between the ends is forged: it is an orbit of the curve, and the event is elsewhere."""
     honest = room._Curve._crossing

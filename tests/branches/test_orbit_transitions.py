@@ -18,7 +18,11 @@ TWO_WAVES = si.ImpactOscillator("x", "-cos(2.8*t) - h*cos(5.6*t)", "0.3", "0.8",
 
 @pytest.mark.parametrize(
     ("over", "between", "value"),
-    [("amplitude", ("0.2", 1), 0.5), ("stiffness", (1, 3), 2.0), ("clearance", ("0.2", 2), 1.0)],
+    [
+        pytest.param("amplitude", ("0.2", 1), 0.5, marks=pytest.mark.slow),
+        pytest.param("stiffness", (1, 3), 2.0, marks=pytest.mark.slow),
+        ("clearance", ("0.2", 2), 1.0),
+    ],
 )
 def test_swans_over_numbers_that_the_model_does_not_name(over: str, between, value: float) -> None:
     """a_c = A cos 2t - k c has a double zero at A = k c; with c = 1/2 at A = 1/2, and at k = 2."""
@@ -33,7 +37,9 @@ def test_swans_over_numbers_that_the_model_does_not_name(over: str, between, val
     assert found.complete == (over == "clearance")  # the others where a theorem says so
 
 
-@pytest.mark.parametrize("over", ["damping", "phase", "restitution"])
+@pytest.mark.parametrize(
+    "over", ["restitution", *(pytest.param(each, marks=pytest.mark.slow) for each in ("damping", "phase"))]
+)
 def test_numbers_that_a_c_does_not_depend_on_but_for_a_shift(over: str) -> None:
     found = si.transitions(si.linear(2, "0.5", "0.5"), over, ("0.1", "0.9"), t=(-1, 1))
     assert list(found) == []
@@ -174,6 +180,7 @@ def test_refusals(ask, told: str) -> None:
     assert told in str(caught.value)
 
 
+@pytest.mark.slow
 def test_sides_that_are_none(waves: OrbitTransitions) -> None:
     with pytest.raises(InputError, match="index = 9"):
         waves.both_sides(9)

@@ -193,6 +193,7 @@ def test_folds_and_doublings_are_those_of_the_closed_form(resonance) -> None:
                 assert pytest.approx(float(truth.amplitude(mpmath.mpf(float(w)), -1, speed)), rel=1e-10) == -A
 
 
+@pytest.mark.slow
 def test_folds_and_doublings_leave_the_grazes_quadratically(resonance) -> None:
     """A - A_graze = coefficient (w - w_0)^2 + O(3): a series of the closing conditions against a fit to the curves."""
     truth, (turns, halves), curves = resonance

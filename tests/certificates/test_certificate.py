@@ -252,6 +252,7 @@ def test_a_periodic_orbit_is_accepted_from_its_file(name, orbits, tmp_path):
     assert f"certificate of the ({n}, {k}) periodic orbit" in repr(orbits[name])
 
 
+@pytest.mark.slow
 def test_any_changed_number_of_an_orbit_is_refused(orbits):
     content = orbits["saddle"].content
     places = list(places_of(content))

@@ -47,6 +47,7 @@ def all_of(folder):
     return [json.loads(text) for text in texts]
 
 
+@pytest.mark.slow
 def test_every_file_holds_in_a_process_of_its_own(folder):
     paths = sorted(folder.iterdir())
     done = judged(*paths)

@@ -71,6 +71,7 @@ def test_a_number_that_moves_the_period_is_refused(made):
     refuses(content, "is not shown to have the period")
 
 
+@pytest.mark.slow
 def test_without_the_change_of_sign_an_orbit_beside_the_event_passes(made, monkeypatch):
     """At another number of the same curve: its orbit is there, and its test does not vanish."""
     model = si.ImpactOscillator(**{**made.content["model"], "parameters": {"A": "0.9"}})

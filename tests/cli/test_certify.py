@@ -50,6 +50,7 @@ def test_a_periodic_orbit_is_written_and_checked(singimpact, tmp_path):
     assert "--orbit 2 1: 0 orbits are found" in none.output
 
 
+@pytest.mark.slow
 def test_a_chatter_limit_and_a_horseshoe(singimpact, tmp_path):
     limit, shoe = str(tmp_path / "limit.json"), str(tmp_path / "horseshoe.json")
     singimpact("certify", *MODEL, "--chatter", "--tau", "0.9", "--v", "0.005", "--digits", "15", "-o", limit)

@@ -2,6 +2,7 @@
 
 import inspect
 from fractions import Fraction
+from functools import lru_cache
 
 import flint
 import mpmath
@@ -108,11 +109,16 @@ def turn(line):
 
 def scale(name, point):
     """The sum with every sign between terms turned to plus and every argument positive; factors in lambda are kept."""
+    return abs(turned(name)(**{k: abs(v) for k, v in point.items()}))
+
+
+@lru_cache
+def turned(name):
+    """The function with the signs of all its lines turned but those that hold 1 - lambda."""
     lines = inspect.getsource(getattr(curves, name)).splitlines()
-    turned = [line if "1 - lambda_)" in line else turn(line) for line in lines]
     scope = {"Any": object}
-    exec("\n".join(turned), scope)
-    return abs(scope[name](**{k: abs(v) for k, v in point.items()}))
+    exec("\n".join(line if "1 - lambda_)" in line else turn(line) for line in lines), scope)
+    return scope[name]
 
 
 @pytest.mark.parametrize("name", NAMES)

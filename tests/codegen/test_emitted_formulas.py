@@ -2,6 +2,7 @@
 
 import inspect
 from fractions import Fraction
+from functools import lru_cache
 
 import flint
 import mpmath
@@ -77,6 +78,7 @@ def test_accuracy_contract(name, size):
     assert worst < CONTRACT[name]
 
 
+@lru_cache
 def moduli(name):
     """The function with every minus sign turned: for positive arguments, the sum of the moduli of its terms."""
     source = inspect.getsource(getattr(sheets, name))

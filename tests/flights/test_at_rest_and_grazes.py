@@ -99,7 +99,9 @@ def test_what_is_written_exactly_is_meant_exactly():
     assert model.first_hit(after, 0).status == Status.hit
 
 
-@pytest.mark.parametrize("omega", ["2", "3", "1/3", "0.1", "5"])
+@pytest.mark.parametrize(
+    "omega", ["2", *(pytest.param(each, marks=pytest.mark.slow) for each in ("3", "1/3", "0.1", "5"))]
+)
 @pytest.mark.parametrize("digits", [None, 25])
 def test_a_flight_that_comes_back_to_rest_grazes_after_the_common_period(omega, digits):
     """From a positive swan, of fourth order; from a_c > 0, of second: both touch as they left."""

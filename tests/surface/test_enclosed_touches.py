@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import flint
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 import singimpact as si
@@ -63,6 +64,7 @@ def test_one_that_the_search_by_doubles_loses_is_said(monkeypatch):
     assert "the list lacks lips or beaks at clearance = 0.0511908" in doubt
 
 
+@pytest.mark.slow
 def test_swallowtails_on_both_sides_of_the_launch_are_all(monkeypatch):
     window = "clearance", (0.82, 0.84), (-5, 5), OUTLINE
     found = transitions(STRONG, *window)

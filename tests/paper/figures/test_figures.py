@@ -185,7 +185,7 @@ def test_every_line_is_in_the_legend_and_the_figure_has_a_caption(number):
     assert found.to_dict()["caption"] == found.caption
 
 
-@pytest.mark.parametrize("number", [4, 5, 9, 13, 15, 16])
+@pytest.mark.parametrize("number", [4, 13, *(pytest.param(each, marks=pytest.mark.slow) for each in (5, 9, 15, 16))])
 def test_letters_are_clear_of_curves_and_of_one_another(number):
     """The box of each letter, less its margins, holds no part of a curve, and no other letter."""
     from matplotlib.text import Text
