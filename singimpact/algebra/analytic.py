@@ -39,6 +39,11 @@ class Recorder:
         """The place of a tree's value."""
         return evaluate(tree, _Names(self), self)  # type: ignore[no-any-return]
 
+    def alone(self, tree: Expression) -> Callable[..., Any]:
+        """A tree as a function of balls, complex balls or series that are given by name."""
+        program = self.program([self.record(tree)])
+        return lambda **values: program(values)[0]
+
     def rational(self, value: Fraction) -> Place:
         return self._place("number", Fraction(value))
 

@@ -17,7 +17,7 @@ from singimpact.dynamics.gamma_proof import proof
 from singimpact.dynamics.gamma_proof.gauge import place_of, speed_factor
 from singimpact.dynamics.gamma_proof.gravity import gravity, numbers_of
 from singimpact.dynamics.gamma_proof.lemmas import ProofSettings, Undecided, grown, prove_box
-from singimpact.dynamics.gamma_proof.relation import Relation
+from singimpact.dynamics.gamma_proof.relation import Relation, residual
 
 BITS = 160
 TANGENCY = si.linear(2, "0.3", "0.5")
@@ -143,10 +143,8 @@ def test_what_is_false_is_refused(name, spoiled, monkeypatch):
             monkeypatch.setattr(Relation, "hats", lambda self, S, ell: (h := true(self, S, ell))._replace(
                 W=h.U, U=h.W, WS=h.US, US=h.WS, Wl=h.Ul, Ul=h.Wl))  # fmt: skip
         elif spoiled == "exchanged in models":
-            from singimpact.dynamics.gamma_proof.folded import Models
-
-            twice = Models.hats
-            monkeypatch.setattr(Models, "hats", lambda self, o, S, ell: twice(self, o, S, ell)[::-1])
+            twice = Relation.modelled
+            monkeypatch.setattr(Relation, "modelled", lambda self, models, S, ell: twice(self, models, S, ell)[::-1])
         elif spoiled == "M = 0":
             settings = replace(settings, steep=0.0)
         else:  # a tail as large as the first term
@@ -162,8 +160,8 @@ def spoiled_series(relation, box, settings, n, by):
 
     models = Models(settings.D, relation.s0, flint.arb(0), 0)
     rows = [flint.arb_poly([made.L[i] + (by if i == n else 0)]) for i in range(settings.N)]
-    residual = models.residual(relation.o, rows, flint.arb_poly([made.r]))
-    parts = [residual[i] for i in range(settings.D + 1)]
+    left = residual(relation, models, rows, flint.arb_poly([made.r]))
+    parts = [left[i] for i in range(settings.D + 1)]
     return made._replace(L=flint.arb_poly([row[0] for row in rows]), residual=parts[settings.N :],
                          low=parts[: settings.N])  # fmt: skip
 

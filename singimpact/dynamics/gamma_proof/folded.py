@@ -12,8 +12,6 @@ from typing import Any
 
 from flint import arb, arb_poly
 
-from singimpact.dynamics.gamma_proof.gravity import Gravity
-
 
 def symmetric(bound: Any) -> Any:
     """All numbers of at most this size."""
@@ -53,6 +51,10 @@ class Models:
         """The model with these coefficients, by power of S and of d."""
         pad = [arb(0)] * self.stride
         return arb_poly([part for row in rows for part in (row + pad)[: self.stride]])
+
+    def folded_last(self, ball: Any) -> Any:
+        """The model of a ball times S^D."""
+        return self.model([[arb(0)]] * self.D + [[ball]])
 
     def row(self, p: Any, i: int) -> list[Any]:
         """The coefficients of S^i by power of d."""
@@ -115,34 +117,3 @@ class Models:
         for part in reversed(rows):
             z = self.mul(z, q) + part
         return z
-
-    def hats(self, o: Gravity, S: Any, ell: Any) -> tuple[Any, Any]:
-        """W^(S, l) and U^(S, l) of models S and l, |l| <= 1."""
-        j, D = o.j, self.D
-        W, U = arb_poly([0]), arb_poly([0])
-        G = P = Q = lk = Sk = arb_poly([1])
-        for k in range(1, D + j + 1):
-            G = 1 + self.mul(ell, G)
-            P, lk = P + G, self.mul(lk, ell)
-            Q = Q + (k + 1) * lk
-            if k < j:
-                continue
-            Sk = self.mul(Sk, S) if k > j else Sk
-            f = o.b[k] / ((k + 1) * (k + 2))
-            W, U = W + self.mul(f * Sk, P), U + self.mul(f * Sk, Q)
-        beyond = o.tail(j + D)
-        for k in range(D + j + 1, len(o.b)):
-            beyond = beyond + abs(o.b[k]) * self.s0 ** (k - j - D)
-        last = self.model([[arb(0)]] * D + [[symmetric(beyond)]])
-        return W + last, U + last
-
-    def residual(self, o: Gravity, L: list[Any], r: Any) -> Any:
-        """l^(j+1) W(l S, L(l S)) - r U(S, l) on l = L(S)."""
-        ell = self.compose(L, self.S) if len(L) > 1 else L[0]
-        S1 = self.mul(self.S, ell)
-        l1 = self.compose(L, S1)
-        w = self.mul(1 - l1, self.hats(o, S1, l1)[0])
-        u = self.mul(1 - ell, self.hats(o, self.S, ell)[1])
-        for _ in range(o.j + 1):
-            w = self.mul(w, ell)
-        return w - self.mul(r, u)

@@ -6,8 +6,18 @@ from typing import Any
 
 from flint import arb
 
+from singimpact.contact.next_zero import ContactZero
 from singimpact.dynamics.gamma_proof.folded import symmetric
-from singimpact.dynamics.gamma_proof.gravity import LinearNumbers
+from singimpact.dynamics.gamma_proof.gravity import LinearNumbers, numbers_of
+from singimpact.oscillator.linear import linear_form
+from singimpact.oscillator.model import Oscillator
+
+
+def clock_of(osc: Oscillator, zero: ContactZero, bits: int) -> LinearNumbers:
+    """The numbers by which S and time are exchanged: those of a linear model; S is the time for others."""
+    if linear_form(osc) is None:
+        return LinearNumbers(arb(0), arb(0), arb(0), ())
+    return numbers_of(osc, zero, bits)
 
 
 def time_of(w: Any, S: Any) -> Any:

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from flint import arb, arb_poly, fmpq
 
 from singimpact.dynamics.gamma_proof.folded import Models, between, symmetric
-from singimpact.dynamics.gamma_proof.relation import Relation
+from singimpact.dynamics.gamma_proof.relation import Flights, residual
 
 
 @dataclass(frozen=True)
@@ -91,14 +91,14 @@ class BoxProof:
         return self.tree.count(".")
 
 
-def grown(relation: Relation, low: Any, high: Any, settings: ProofSettings, exact: Any = None) -> BoxSeries:
+def grown(relation: Flights, low: Any, high: Any, settings: ProofSettings, exact: Any = None) -> BoxSeries:
     """The series over all lambda in [low, high]: the real numbers that annul the residual below order N, enclosed.
 
     Parameters
     ----------
     exact : a ball of r where it is known better than by its formula in lambda.
     """
-    o, j, N = relation.o, relation.j, settings.N
+    j, N = relation.j, settings.N
     centre = arb(((low + high) / 2).mid())
     h = arb((high - centre).max(centre - low).upper())
     order = 2 if float(h) > 2.0**-60 else 0
@@ -118,14 +118,14 @@ def grown(relation: Relation, low: Any, high: Any, settings: ProofSettings, exac
     r = make.mul(make.mul(powers[j + 1], P), make.model([make.reciprocal(make.row(Q, 0))]))
     if exact is not None and not order:
         r = constant(exact)
-    L, f, one = [lam], o.b[j] / ((j + 1) * (j + 2)), 1 - lam
+    L, f, one = [lam], relation.leading, 1 - lam
     for n in range(1, N):
         factor = (j + 1) * make.mul(make.mul(powers[j], one), P) - make.mul(powers[j + 1 + n], Q)
         factor = f * (factor - make.mul(r, make.mul(one, slope) - Q))
-        found = models[n].residual(o, L, r)
+        found = residual(relation, models[n], L, r)
         L.append(-make.mul(make.model([models[n].row(found, n)]), make.model([make.reciprocal(make.row(factor, 0))])))
     last = models[-1]
-    found = last.residual(o, L, r)
+    found = residual(relation, last, L, r)
     inverse = make.model([make.reciprocal(make.row(one, 0))])
     gap = [arb(1), *(-make.range(make.mul(part, inverse), 0) for part in L[1:])]
     coefficients = [last.range(found, i) for i in range(settings.D + 1)]
@@ -143,7 +143,7 @@ def short(value: Any) -> Fraction:
     return Fraction(f"{float(value.mid()):.6g}")
 
 
-def prove_box(relation: Relation, ends: tuple[Fraction, Fraction], settings: ProofSettings, exact: Any = None,
+def prove_box(relation: Flights, ends: tuple[Fraction, Fraction], settings: ProofSettings, exact: Any = None,
               series: BoxSeries | None = None) -> BoxProof:  # fmt: skip
     """All three lemmas for all lambda between the ends.
 
@@ -171,7 +171,7 @@ def prove_box(relation: Relation, ends: tuple[Fraction, Fraction], settings: Pro
     Kl = arb((R / (U0 * slope)).upper())
     if not WIDE * Kl * s0**N < cone[0]:
         raise Undecided("lemma 2: the bound of |l - L| is wider than the strip")
-    Kw = arb((Kl * _largest(each.U_hat for each in bounds)).upper())
+    Kw = arb((Kl * _largest(each.V for each in bounds)).upper())
     return BoxProof(*ends, tuple(L[i] for i in range(N)), made.r, settings, eta, M, R, Kl, Kw, least,
                     _least(each.grow for each in bounds), tree)  # fmt: skip
 
@@ -198,8 +198,8 @@ def _least(balls: Any) -> Any:
     return found
 
 
-def _require_agreement(relation: Relation, made: BoxSeries, size: Any) -> None:
-    """Refuse balls and Taylor models that differ at s0, and W^ and U^ that do not fit dW/dl = -U^."""
+def _require_agreement(relation: Flights, made: BoxSeries, size: Any) -> None:
+    """Refuse balls and Taylor models that differ at s0, and W^ that does not fit dW/dl = -V."""
     if not (size.is_finite() and all(part.is_finite() for part in made.L.coeffs())):
         raise Undecided("the series, or its residual, is enclosed too widely")
     L, j, s0 = made.L, relation.j, relation.s0
@@ -209,11 +209,11 @@ def _require_agreement(relation: Relation, made: BoxSeries, size: Any) -> None:
         raise Undecided("the series leaves 0 < l < 1")
     after, before = relation.hats(ell * s0, l1), relation.hats(s0, ell)
     direct = ell ** (j + 1) * (1 - l1) * after.W - made.r * (1 - ell) * before.U
-    if not ((1 - l1) * after.Wl - after.W + after.U).contains(0) or not direct.overlaps(symmetric(size)):
+    if not ((1 - l1) * after.Wl - after.W + after.V).contains(0) or not direct.overlaps(symmetric(size)):
         raise Undecided("W^ and U^ in balls and in Taylor models differ")
 
 
-def drift(relation: Relation, made: BoxSeries, slopes: Any, S: Any, ell: Any) -> Any:
+def drift(relation: Flights, made: BoxSeries, slopes: Any, S: Any, ell: Any) -> Any:
     """Lemma 1: l d/dl ln(H + r); None where a sign is not decided."""
     j, gap = relation.j, made.gap
     S1 = ell * S
@@ -224,12 +224,12 @@ def drift(relation: Relation, made: BoxSeries, slopes: Any, S: Any, ell: Any) ->
         return None
     m = m if m < 1 else between(m.lower(), 1)  # l <= 1 makes m <= 1
     at, to = relation.hats(S, ell), relation.hats(S1, m)
-    if not (at.U > 0 and to.W > 0 and (m > 0 or relation.hats(S1, m.union(arb(0))).U > 0)):
+    if not (at.U > 0 and at.V > 0 and to.W > 0 and (m > 0 or relation.hats(S1, m.union(arb(0))).V > 0)):
         return None
     return (j + 1) + ell * (Kl / K + (to.WS * S + to.Wl * (K - (1 - ell) * Kl)) / to.W - at.Ul / at.U)
 
 
-def drift_bound(relation: Relation, made: BoxSeries, settings: ProofSettings) -> tuple[Any, str]:
+def drift_bound(relation: Flights, made: BoxSeries, settings: ProofSettings) -> tuple[Any, str]:
     """Lemma 1 by bisection of [0, s0] x [0, 1]: the least value, and the bisection as text."""
     slopes, least, tree = made.gap.derivative(), arb(9), []
     todo, half = [(0, 0, 0, 0)], arb(1) / 2  # (index, level) of the piece of S and of that of l
@@ -257,11 +257,11 @@ class Strip(NamedTuple):
 
     rate: Any  # (H + r)/l, without the factor of lemma 1
     U: Any
-    U_hat: Any
+    V: Any
     grow: Any
 
 
-def _cones(relation: Relation, made: BoxSeries, piece: tuple[Any, Any], cone: tuple[Any, Any],
+def _cones(relation: Flights, made: BoxSeries, piece: tuple[Any, Any], cone: tuple[Any, Any],
            settings: ProofSettings) -> Strip:  # fmt: skip
     """Lemma 3 on a piece of [0, s0]."""
     j, s0, L = relation.j, relation.s0, made.L
@@ -282,12 +282,12 @@ def _cones(relation: Relation, made: BoxSeries, piece: tuple[Any, Any], cone: tu
     if not (m > -1 and m < 1):
         raise Undecided("the strip leaves 0 < l < 1")
     rate = ell**j * K * relation.hats(S1, m).W / at.U
-    shifted = (1 - l1) * to.WS - to.U * d1  # d/dS1 of W(S1, L(S1) + y1)
-    F1 = -(ell ** (j + 1)) * to.U
+    shifted = (1 - l1) * to.WS - to.V * d1  # d/dS1 of W(S1, L(S1) + y1)
+    F1 = -(ell ** (j + 1)) * to.V
     Fy = (j + 1) * ell**j * (1 - l1) * to.W + ell ** (j + 1) * S * shifted - made.r * ((1 - ell) * at.Ul - at.U)
     FS = ell ** (j + 2) * shifted - made.r * (1 - ell) * at.US + Fy * dS
     d, g, e = -Fy / F1, -FS / F1, ell + S * dS
     up = d - abs(g) * M
-    if not (at.U > 0 and to.U > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0):
+    if not (at.U > 0 and to.V > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0):
         raise Undecided("lemma 3: the cones are not shown to be expanded into themselves")
-    return Strip(rate, (1 - ell) * at.U, at.U, up)
+    return Strip(rate, (1 - ell) * at.U, at.V, up)

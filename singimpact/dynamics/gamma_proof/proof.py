@@ -1,4 +1,4 @@
-"""`certified_gamma`: gamma of a linear model proved on an interval of launch times before a contact point."""
+"""`certified_gamma`: gamma of an analytic model proved on an interval of launch times before a contact point."""
 
 from __future__ import annotations
 
@@ -19,12 +19,14 @@ from singimpact.algebra.precision import balls_at
 from singimpact.contact.next_zero import ContactZero, next_zero
 from singimpact.dynamics.gamma_proof.after import PIECES, Lost, Settled, lost_contact, settled
 from singimpact.dynamics.gamma_proof.folded import between
-from singimpact.dynamics.gamma_proof.gauge import place_of, speed_factor, time_of
-from singimpact.dynamics.gamma_proof.gravity import Gravity, gravity, numbers_of
+from singimpact.dynamics.gamma_proof.gauge import clock_of, place_of, speed_factor, time_of
+from singimpact.dynamics.gamma_proof.gravity import gravity, numbers_of
 from singimpact.dynamics.gamma_proof.lemmas import BoxProof, ProofSettings, Undecided, prove_box, rational
-from singimpact.dynamics.gamma_proof.relation import Relation, restitution_at
+from singimpact.dynamics.gamma_proof.nonlinear import NonlinearRelation, nonlinear_relation
+from singimpact.dynamics.gamma_proof.relation import Flights, Relation, restitution_at
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import sign_of_acceleration
+from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 
 BITS = 96  # of the balls
@@ -58,7 +60,8 @@ class CertifiedGamma:
 
     For launches (tau, v) with 0 < S <= reach, S = tan(omega_d (tau_* - tau))/omega_d, and any v > 0: there is one
     Gamma(tau) > 0, a graph that is Lipschitz, from which infinitely many impacts accumulate at tau_*; below it chatter
-    completes before tau_*, above it finitely many impacts come before tau_*.
+    completes before tau_*, above it finitely many impacts come before tau_*.  For a nonlinear model S = tau_* - tau,
+    and v goes up to `fastest`.
 
     Attributes
     ----------
@@ -66,7 +69,8 @@ class CertifiedGamma:
     duration : tau_* - tau at S = reach. restitution : (low, high), rationals or None where r is no rational.
     boxes : proofs for boxes of lambda, which touch. lost : after an odd order, the time after tau_* in which at most
         one impact comes. settled : after a swan, the launches (S <= launch, y' <= speed) that pass tau_* and whose
-        chatter is shown to complete, and where in s > 0. notes : how far it got, and why not farther.
+        chatter is shown to complete, and where in s > 0. fastest : of v, None for any. notes : how far it got, and why
+        not farther.
     """
 
     oscillator: Oscillator
@@ -79,6 +83,7 @@ class CertifiedGamma:
     duration: Certified
     lost: Lost | None
     settled: Settled | None
+    fastest: Certified | None = None
     notes: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -115,26 +120,25 @@ class CertifiedGamma:
         """
         box, place = self._one(), constant("tau", tau)
         with balls_at(BITS):
-            numbers = numbers_of(self.oscillator, self.zero, BITS)
+            square = clock_of(self.oscillator, self.zero, BITS).square
             T = self.zero.moved(BITS) - evaluate(place, {}, Balls(BITS))
-            o = gravity(self.oscillator, self.zero, self.reach, BITS)
-            inside = T > 0 and time_of(numbers.square, o.s0()) >= T
-            S = place_of(numbers.square, T) if inside else None
+            flights = flights_before(self.oscillator, self.zero, self.reach)
+            S = place_of(square, T) if T > 0 and time_of(square, flights.s0) >= T else None
             if S is None or not S > 0:
                 first = as_float(constant("tau", str(self.tau))) - float(self.duration.value)
                 raise refuse("tau", tau, f"a launch time from {first:.12g} to {self.tau}")
-            return from_ball(self._velocity(box, o, S), DIGITS)
+            return from_ball(self._velocity(box, flights, S), DIGITS)
 
-    def _velocity(self, box: BoxProof, o: Gravity, S: Any) -> Any:
+    def _velocity(self, box: BoxProof, flights: Flights, S: Any) -> Any:
         """Gamma at S as a ball."""
-        S = S.min(o.s0())
-        return _gauged(box, Relation(o), S) * speed_factor(numbers_of(self.oscillator, self.zero, BITS), S)
+        S = S.min(flights.s0)
+        return _gauged(box, flights, S) * speed_factor(clock_of(self.oscillator, self.zero, BITS), S)
 
     def at_reach(self) -> Certified:
         """v on gamma at S = reach, for one r."""
         with balls_at(BITS):
-            o = gravity(self.oscillator, self.zero, self.reach, BITS)
-            return from_ball(self._velocity(self._one(), o, o.s0()), DIGITS)
+            flights = flights_before(self.oscillator, self.zero, self.reach)
+            return from_ball(self._velocity(self._one(), flights, flights.s0), DIGITS)
 
     def _one(self) -> BoxProof:
         if not self.of_model:
@@ -159,10 +163,10 @@ def certified_gamma(
 
     Parameters
     ----------
-    osc : a linear model; its restitution a number in (0, 1). tau : a phase with a_c(tau) < 0; None for the first one
-        of a period. reach : S = tan(omega_d (tau_* - tau))/omega_d goes up to this rational number; None for as far as
-        the proof gets. A reach that is not proved is halved, and `notes` says so. restitution : (low, high) for a proof
-        for all r of an interval.
+    osc : a model with analytic f and g; its restitution a number in (0, 1). tau : a phase with a_c(tau) < 0; None for
+        the first one of a period. reach : S = tan(omega_d (tau_* - tau))/omega_d, tau_* - tau itself for a nonlinear
+        model, goes up to this rational number; None for as far as the proof gets. A reach that is not proved is
+        halved, and `notes` says so. restitution : (low, high) for a proof for all r of an interval.
 
     Returns
     -------
@@ -170,7 +174,7 @@ def certified_gamma(
 
     Raises
     ------
-    InputError : a model that is not linear, no zero of a_c with a gamma ahead, or no reach at which the lemmas hold.
+    InputError : a model that is not analytic, no zero of a_c with a gamma ahead, or no reach at which the lemmas hold.
 
     Examples
     --------
@@ -187,11 +191,10 @@ def certified_gamma(
     if asked is not None and not 0 < asked <= 1000:
         raise refuse("reach", reach, "a rational number > 0")
     with balls_at(BITS):
-        numbers = numbers_of(osc, zero, BITS)
         why, tried = "", []
-        for s0 in _reaches(asked, numbers):
+        for s0 in _reaches(asked, osc, zero):
             try:
-                relation = Relation(gravity(osc, zero, s0, BITS))
+                relation = flights_before(osc, zero, s0)
                 _require_pressed(relation)
                 boxes = _covered(relation, ends)
             except (Undecided, InputError) as reason:
@@ -200,6 +203,13 @@ def certified_gamma(
                 continue
             return _found(osc, zero, (s0, asked), ends, boxes, tried)
     raise InputError(f"gamma is not certified before tau_* = {zero.tau:.12g}: {why}")
+
+
+def flights_before(osc: Oscillator, zero: ContactZero, reach: Fraction) -> Flights:
+    """The relation of two flights: of a linear model as a ball under gravity, of others by their series."""
+    if linear_form(osc) is None:
+        return nonlinear_relation(osc, zero, reach, BITS)
+    return Relation(gravity(osc, zero, reach, BITS))
 
 
 class _Ends:
@@ -265,25 +275,29 @@ def phase_below(osc: Oscillator) -> Expression | None:
     return next((phase for phase in phases if sign_of_acceleration(osc, phase) < 0), None)
 
 
-def _reaches(asked: Fraction | None, numbers: Any) -> Iterator[Fraction]:
+def _reaches(asked: Fraction | None, osc: Oscillator, zero: ContactZero) -> Iterator[Fraction]:
     """The reaches that are tried, from the largest."""
     if asked is not None:
         yield from (asked / 2**k for k in range(7))
         return
+    if linear_form(osc) is None:
+        yield from REACHES
+        return
+    numbers = numbers_of(osc, zero, BITS)
     fastest = max([1e-6, abs(float(numbers.square.mid())) ** 0.5, *(abs(float(wave[0].mid())) / 4
                                                                    for wave in numbers.waves)])  # fmt: skip
     unit = 1 / Fraction(fastest).limit_denominator(64) if fastest > 1 / 32 else Fraction(1 / fastest)
     yield from (unit * part for part in REACHES)
 
 
-def _require_pressed(relation: Relation) -> None:
+def _require_pressed(relation: Flights) -> None:
     """Refuse a reach on which a_c < 0 is not shown: U^(S, 1) is half of |A|/S^j."""
     steps = [relation.s0 * i / PIECES for i in range(PIECES + 1)]
     if not all(relation.hats(between(a, b), arb(1)).U > 0 for a, b in pairwise(steps)):
         raise Undecided("a_c is not shown to be negative on all of the interval")
 
 
-def _covered(relation: Relation, ends: _Ends) -> tuple[BoxProof, ...]:
+def _covered(relation: Flights, ends: _Ends) -> tuple[BoxProof, ...]:
     """Proofs for boxes of lambda that touch and contain all r asked for."""
     if ends.tree is not None:
         r = evaluate(ends.tree, {}, Balls(BITS))
@@ -306,7 +320,7 @@ def _covered(relation: Relation, ends: _Ends) -> tuple[BoxProof, ...]:
     return tuple(found)
 
 
-def _tried(relation: Relation, box: tuple[Fraction, Fraction], r: Any, patient: bool = True) -> BoxProof:
+def _tried(relation: Flights, box: tuple[Fraction, Fraction], r: Any, patient: bool = True) -> BoxProof:
     """A proof with the first settings that allow one."""
     why: Undecided | None = None
     for settings in TRIED if patient else TRIED[:2]:
@@ -342,11 +356,14 @@ def _found(osc: Oscillator, zero: ContactZero, reaches: tuple[Fraction, Fraction
            boxes: tuple[BoxProof, ...], tried: list[str]) -> CertifiedGamma:  # fmt: skip
     """The result, with what comes after tau_*."""
     s0, asked = reaches
-    numbers, notes = numbers_of(osc, zero, BITS), {}
+    flights, notes = flights_before(osc, zero, s0), {}
     if tried:
         notes["reach"] = "; ".join(tried)
     told: dict[str, Any] = {"lost": None, "settled": None}
-    if zero.order % 2:
+    if isinstance(flights, NonlinearRelation):
+        told["fastest"] = from_ball(flights.fastest, DIGITS)
+        notes["after"] = "what comes after tau_* is proved for linear models alone"
+    elif zero.order % 2:
         told["lost"] = _lost(osc, zero, s0)
         if told["lost"] is None:
             notes["after"] = "that contact is lost after tau_* is not decided"
@@ -354,7 +371,7 @@ def _found(osc: Oscillator, zero: ContactZero, reaches: tuple[Fraction, Fraction
         told["settled"] = _settled(osc, zero, s0, boxes)
         if told["settled"] is None:
             notes["after"] = f"that chatter completes after tau_* is not decided for r = {float(boxes[-1].r.mid()):.4g}"
-    duration = time_of(numbers.square, gravity(osc, zero, s0, BITS).s0())
+    duration = time_of(clock_of(osc, zero, BITS).square, flights.s0)
     return CertifiedGamma(osc, zero, s0, asked, ends.told, boxes, from_ball(zero.moved(BITS), DIGITS),
                           from_ball(duration, DIGITS), notes=notes, **told)  # fmt: skip
 
@@ -399,7 +416,7 @@ def _settled(osc: Oscillator, zero: ContactZero, s0: Fraction, boxes: tuple[BoxP
     return None
 
 
-def _gauged(box: BoxProof, relation: Relation, S: Any) -> Any:
+def _gauged(box: BoxProof, relation: Flights, S: Any) -> Any:
     """gamma at S as a ball of y'."""
     N, ell = len(box.series), arb(0)
     for part in reversed(box.series):
