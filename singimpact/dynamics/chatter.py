@@ -201,7 +201,8 @@ def impacts_until(osc: Oscillator, error: float, wanted: float) -> int:
 
 def _last(terms: list[Any]) -> Any:
     """The size of the last term; extrapolated from the term before it if its own coefficient happens to be small."""
-    return max(abs(terms[-1]), abs(terms[-2]) * abs(terms[-2] / terms[0]) ** (terms[0] * 0 + 1 / (len(terms) - 2)))
+    first, *_, before, last = terms
+    return max(abs(last), abs(before) * abs(before / first) ** (first * 0 + 1 / (len(terms) - 2)))
 
 
 class _Flown:
@@ -322,7 +323,7 @@ def _precise(osc: Oscillator, states: States, found: ChatterLimit, digits: int) 
             time = mp.convert(impact_map(osc, tau, v, digits=precision).flight_time)
             series = completion(osc, tau, ENDING.many, Multiprecision(mp))
             terms = [c * time ** (n + 1) for n, c in enumerate(series)]
-            error = max(abs(terms[-1]), abs(terms[-2]) * abs(terms[-2] / terms[0]) ** (mp.mpf(1) / (ENDING.many - 2)))
+            error = _last(terms)
             end = tau + sum(reversed(terms))
             if ENDING.trust * error <= small * abs(end) or v == 0:
                 return _rounded(end, count, ENDING.trust * error + small * abs(end), Status.complete, digits)

@@ -42,10 +42,10 @@ def remaining(osc: Oscillator, tau: Array, v: Array, a: Array | None = None) -> 
     with np.errstate(all="ignore"):
         jets = {f"a_d{n}": evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau for n, tree in enumerate(slopes, 1)}
         terms = chatter_terms(v=v, lambda_=as_float(osc.slope_at_rest()), a=push, **jets, **forces, **rebounds)
-        last = np.abs(terms[-1])
+        first, *_, before, last = terms
         # a coefficient may happen to be small: the term before lets expect this one
-        likely = np.abs(terms[-2]) * np.abs(terms[-2] / terms[0]) ** (1 / (ORDER - 2))
-    return sum(reversed(terms)), np.maximum(last, likely)
+        likely = np.abs(before) * np.abs(before / first) ** (1 / (ORDER - 2))
+    return sum(reversed(terms)), np.maximum(np.abs(last), likely)
 
 
 @lru_cache(maxsize=256)

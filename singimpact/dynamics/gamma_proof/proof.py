@@ -205,11 +205,11 @@ def certified_gamma(
     raise InputError(f"gamma is not certified before tau_* = {zero.tau:.12g}: {why}")
 
 
-def flights_before(osc: Oscillator, zero: ContactZero, reach: Fraction) -> Flights:
+def flights_before(osc: Oscillator, zero: ContactZero, reach: Fraction, bits: int = BITS) -> Flights:
     """The relation of two flights: of a linear model as a ball under gravity, of others by their series."""
     if linear_form(osc) is None:
-        return nonlinear_relation(osc, zero, reach, BITS)
-    return Relation(gravity(osc, zero, reach, BITS))
+        return nonlinear_relation(osc, zero, reach, bits)
+    return Relation(gravity(osc, zero, reach, bits))
 
 
 class _Ends:

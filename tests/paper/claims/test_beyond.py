@@ -29,6 +29,7 @@ KINDS = {
     "b:gamma-tangency": "certified",
     "b:gamma-swan": "certified",
     "b:gamma-interval": "certified",
+    "b:gamma-nonlinear": "certified",
     "b:first-order": "proved",
     "b:first-order-foot": "proved modulo",
     "b:first-order-measured": "supported",

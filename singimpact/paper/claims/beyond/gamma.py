@@ -1,6 +1,7 @@
-"""Theorems t:t2 and t:t3 on one oscillator with numbers: gamma before a tangency and before a swan of x'' + x = cos 2t.
+"""Theorems t:t2 and t:t3 with numbers: gamma of x'' + x = cos 2t at a tangency and at a swan, and of a Duffing model.
 
 `b:gamma-tangency`, `b:gamma-swan` : one restitution. `b:gamma-interval` : all restitutions of an interval at once.
+`b:gamma-nonlinear` : a damped Duffing oscillator.
 How it is proved: `dynamics.gamma_proof`; longer intervals of r: `osc.certified_gamma(restitution=)`.
 """
 
@@ -24,14 +25,16 @@ BEFORE = 2
 
 
 class Stated(NamedTuple):
-    """What is stated of x'' + x = cos 2t.
+    """What is stated of x'' + f = cos 2t.
 
     Attributes
     ----------
-    clearance, restitution : of the model. order : of contact. reach : of S = tan(tau_* - tau). velocity : on gamma at
-        S = reach, and by how much it may differ. grows : distances across gamma grow by more than this, an impact.
+    clearance, restitution : of the model. order : of contact. reach : of S, which is tan(tau_* - tau) for f = x and
+        tau_* - tau for others. velocity : on gamma at S = reach, and by how much it may differ. grows : distances
+        across gamma grow by more than this, an impact.
     after : at a tangency the time after tau_* in which at most one impact comes; at a swan the launch speed dy/ds up to
-        which chatter completes for all S <= reach.
+        which chatter completes for all S <= reach; for a nonlinear f the launch speed up to which all this is shown.
+    force : f.
     """
 
     clearance: str
@@ -41,17 +44,14 @@ class Stated(NamedTuple):
     velocity: tuple[str, str]
     grows: str
     after: str
-
-
-def _proved(clearance: str, restitution: str, reach: str, between: tuple[str, str] | None = None) -> CertifiedGamma:
-    osc = Oscillator("x", "cos(2*t)", clearance, restitution)
-    return certified_gamma(osc, BEFORE, reach=reach, restitution=between)
+    force: str = "x"
 
 
 def _certified(stated: Stated) -> Check:
     """Whether gamma is proved up to the reach, with these numbers; and what comes after tau_*."""
     try:
-        found = _proved(stated.clearance, stated.restitution, stated.reach)
+        osc = Oscillator(stated.force, "cos(2*t)", stated.clearance, stated.restitution)
+        found = certified_gamma(osc, BEFORE, reach=stated.reach)
     except InputError as reason:
         return Check(False, "certified", str(reason), {"fails": str(reason)})
     at, (velocity, off) = found.at_reach(), map(Fraction, stated.velocity)
@@ -78,6 +78,9 @@ def _after(found: CertifiedGamma, stated: Stated) -> tuple[str, bool]:
     if found.lost:
         time = found.lost.time
         return f"after tau_* at most one impact comes within {float(time):.6g}", time >= Fraction(stated.after)
+    if found.fastest:
+        fastest = exact("fastest", found.fastest.value) - exact("radius", found.fastest.radius)
+        return f"for every launch speed up to {float(fastest):.3g}", fastest >= Fraction(stated.after)
     if found.settled is None:
         return "what comes after tau_* is not decided", False
     launch, speed, _, end = found.settled
@@ -92,7 +95,8 @@ def _for_all(stated: tuple[str, tuple[str, str], str, str]) -> Check:
     """(c, (low, high), reach, K): gamma is proved for all these r, with |l - L(S)| <= K S^6."""
     clearance, between, reach, bound = stated
     try:
-        found = _proved(clearance, between[0], reach, between)
+        osc = Oscillator("x", "cos(2*t)", clearance, between[0])
+        found = certified_gamma(osc, BEFORE, reach=reach, restitution=between)
     except InputError as reason:
         return Check(False, "certified", str(reason), {"fails": str(reason)})
     touch = all(one.high == other.low for one, other in pairwise(found.boxes))
@@ -108,6 +112,7 @@ def _for_all(stated: tuple[str, tuple[str, str], str, str]) -> Check:
 
 TANGENCY = Stated("3/10", "1/2", 1, "1/4", ("0.0177931543", "1e-4"), "1.8", "1.25")
 SWAN = Stated("1", "1/2", 2, "1/4", ("0.0031225", "1e-5"), "1.8", "0.00317")
+DUFFING = Stated("3/10", "1/2", 1, "1/4", ("0.01857755", "1e-4"), "1.8", "4", "x + x**3/5 + xdot/10")
 INTERVAL = ("3/10", ("0.48", "0.52"), "1/4", "0.5")
 
 CLAIMS = (
@@ -159,5 +164,24 @@ CLAIMS = (
         _for_all,
         (("3/10", ("0.48", "0.52"), "9/10", "0.5"), ("3/10", ("0.48", "0.52"), "1/4", "0.05")),
         ("b:gamma-tangency",),
+    ),
+    claim(
+        "b:gamma-nonlinear",
+        "x'' + x + x^3/5 + x'/10 = cos 2t, c = 3/10, r = 1/2: the same for tau_* - tau <= 1/4 and every v <= 4",
+        Statement(
+            r"\ddot x+x+\tfrac15x^3+\tfrac1{10}\dot x=\cos2t,\ c=\tfrac3{10},\ r=\tfrac12,\ \tau_*-\tau\le\tfrac14,\ "
+            r"v\le4:\quad\gamma\ \text{is one Lipschitz graph; below it chatter completes before}\ \tau_*\text{, above "
+            r"it finitely many impacts come before}\ \tau_*",
+            DUFFING,
+        ),
+        _certified,
+        (
+            DUFFING._replace(reach="9/10"),
+            DUFFING._replace(velocity=("0.0189", "1e-4")),
+            DUFFING._replace(restitution="0.51"),
+            DUFFING._replace(after="400"),
+            DUFFING._replace(force="x + x**3/4 + xdot/10"),
+        ),
+        ("e:yeq", "b:order-ray"),
     ),
 )
