@@ -242,8 +242,8 @@ class ImpactOscillator(Oscillator):
         Parameters
         ----------
         tau : a phase with a_c(tau) < 0; None for the first of a period. reach : launches with
-            tan(omega_d (tau_* - tau))/omega_d up to this rational number; None for as far as the proof gets.
-        restitution : (low, high) for a proof for all r of an interval.
+            tan(omega_d (tau_* - tau))/omega_d, for a nonlinear model tau_* - tau, up to this rational number; None for
+            as far as the proof gets. restitution : (low, high) for a proof for all r of an interval.
 
         Returns
         -------
@@ -251,7 +251,7 @@ class ImpactOscillator(Oscillator):
 
         Raises
         ------
-        InputError : the model is not linear, no gamma lies ahead, or no reach is proved; the reason.
+        InputError : f or g is not analytic, r is no number, no gamma lies ahead, or no reach is proved; the reason.
 
         Examples
         --------

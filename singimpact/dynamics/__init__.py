@@ -3,7 +3,7 @@
 Not here: one flight (`flights`), periodic orbits (`branches`), power series of the chatter limit (`theory`), pictures
 (`scenes`).
 Files: `orbit` (impacts, rest and chatter in order), `sampling` (x and x' of an orbit at times), `lyapunov` (its
-exponents), `gamma_proof` (gamma of linear models proved, a folder), `release` (when a mass lifts off), `chatter`
+exponents), `gamma_proof` (gamma proved, a folder), `release` (when a mass lifts off), `chatter`
 (when impacts end), `completion` (its map), `remaining` (its terms in doubles), `gathered` (results of many states),
 `threshold` (the velocity between complete and incomplete chatter), `enclosed` (both in balls, of linear models),
 `guide` (a velocity on gamma in many digits, not proved),

@@ -1,9 +1,10 @@
-"""gamma of a linear model proved before a contact point: it exists, is unique, and decides the fate of every launch.
+"""gamma of an analytic model proved before a contact point: it exists, is unique, and decides the fate of every launch.
 
 Not here: its series in (tau, v) (`theory.invariant_curve`), single thresholds (`dynamics.threshold`), the certificate
 as a file and its check (`certificates`).
 Files: `gravity` (the model as a ball under gravity: power series with a bound of its tail), `gauge` (times and places),
-`folded` (Taylor models in S and lambda), `relation` (launch and landing speeds, in balls), `lemmas` (drift, residual
+`folded` (Taylor models in S and lambda), `relation` (launch and landing speeds, in balls), `nonlinear` (the same from
+the series of v_c, with a bound of the rest), `lemmas` (drift, residual
 and cones, for a box of lambda), `after` (what comes after the contact point), `proof` (`certified_gamma`).
 
 The argument.  Launches are (S, l), S = -s at launch and l the ratio of landing to launch place; q = (1-l)/(1-L(S)).
