@@ -33,6 +33,7 @@ CHECKER = Path(__file__).with_name("checker")
 UNIQUE = Fraction(1, 10**8)
 """Distance, at most, within which an orbit is certified to be alone: the second program has no frames for boxes."""
 SERIES_DIGITS, LOOSER = 18, 1.01  # digits of the coefficients of gamma; factor by which bounds are written larger
+FREER = 1.2  # that of the residual of nonlinear models, whose series the second program cuts on a disc of its own
 LOST, LOOSE = 6, 1000
 """Digits that are left out of a multiplier, and factor of its radius."""
 
@@ -208,10 +209,11 @@ def _of_horseshoe(found: Horseshoe) -> dict[str, Any]:
 
 def _of_gamma(found: CertifiedGamma) -> dict[str, Any]:
     """What is said of gamma, as text; bounds leave room for another evaluation of the same lemmas."""
+    loose = FREER if found.fastest else LOOSER
     boxes = [{"lambda": [str(box.low), str(box.high)], "N": str(box.settings.N), "D": str(box.settings.D),
               "pieces": str(box.settings.pieces), "eta": f"{float(box.eta):.6g}", "M": f"{float(box.M):.6g}",
               "series": [_with_room(from_ball(part, SERIES_DIGITS)) for part in box.series],
-              "R": _bound(box.R, LOOSER), "Kl": _bound(box.Kl, LOOSER),
+              "R": _bound(box.R, loose), "Kl": _bound(box.Kl, LOOSER * loose),
               "grow": _bound(box.grow, 2 - LOOSER), "tree": box.tree} for box in found.boxes]  # fmt: skip
     after = found.lost or found.settled
     told = {
@@ -222,6 +224,8 @@ def _of_gamma(found: CertifiedGamma) -> dict[str, Any]:
         "after": {name: str(part) for name, part in after._asdict().items()} if after else {},
         "boxes": boxes,
     }
+    if found.fastest:
+        told["fastest"] = f"{0.99 * float(found.fastest.value):.4g}"
     return {**told, "threshold": _with_room(found.at_reach())} if found.of_model else told
 
 

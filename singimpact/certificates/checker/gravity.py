@@ -15,7 +15,7 @@ from __future__ import annotations
 import ast
 from typing import Any
 
-from flint import acb, arb, arb_series
+from flint import acb, arb, arb_poly, arb_series
 
 from .formulas import Formula, Refused, Wrong
 from .motion import Model, size, within
@@ -92,7 +92,8 @@ class Gravity:
         A = (self.damping * time).exp() * pressed / (spread * spread.sqrt())
         b = [-A[k] if k % 2 == 0 else A[k] for k in range(K + 1)]
         self.b = [arb(0)] * j + b[j:]
-        if not self.b[j] > 0:
+        self.lead = self.b[j] / ((j + 1) * (j + 2))
+        if not self.lead > 0:
             raise Refused("that gamma ends at tau is not shown: |A| has no positive leading coefficient")
         discs = self.discs(rest)
         if not discs:
@@ -152,3 +153,28 @@ class Gravity:
             W, U, Wx, Ux = W + f * power * P, U + f * power * Q, Wx + f * power * dP, Ux + f * power * dQ
             WS, US = WS + f * (k - j) * before * P, US + f * (k - j) * before * Q
         return [part + self.rest for part in (W, U, WS, US, Wx, Ux)]
+
+    def fall(self, speeds: list[Any], x: Any) -> Any:  # noqa: ARG002
+        """Minus the derivative of (1 - l) W by l."""
+        return speeds[1]
+
+    def folded(self, ring: Any, S: list[Any], x: list[Any]) -> tuple[list[Any], list[Any]]:
+        """W and U of polynomials."""
+        j, D, one = self.j, ring.D, ring.constant(arb(1))
+        W, U, P, Q, G, power = ring.constant(arb(0)), ring.constant(arb(0)), one, one, one, one
+        for k in range(1, D + j + 1):
+            P = ring.plus(ring.constant(arb(k + 1)), ring.times(x, P))
+            G = ring.plus(one, ring.times(x, G))
+            Q = ring.plus(G, ring.times(x, Q))
+            if k >= j:
+                power = ring.times(power, S) if k > j else power
+                f = self.b[k] / ((k + 1) * (k + 2))
+                W, U = ring.plus(W, ring.times(power, P), f), ring.plus(U, ring.times(power, Q), f)
+        beyond = self.tail(j + D)
+        beyond += sum((abs(self.b[k]) * self.s0 ** (k - j - D) for k in range(D + j + 1, self.K + 1)), arb(0))
+        last = [arb_poly([0] * D + [within(beyond / 2)]), *[arb_poly([0])] * ring.m]
+        return ring.plus(W, last), ring.plus(U, last)
+
+    def factor(self, S: Any) -> Any:
+        """v over the speed dy/ds."""
+        return (self.damping * self.time(S)).exp() * (1 + self.square * S * S).sqrt()

@@ -1,8 +1,9 @@
 """That gamma exists before a contact point, is the only invariant arc there, and decides the fate of every launch.
 
-Launches (S, l), 0 < S <= s0: see `gravity`.  L(S) = lambda + L_1 S + ... annuls E(S) = l^(j+1) (1-L(lS)) W(lS, L(lS))
-- r (1-l) U(S, l), l = L(S), below order N, so E <= R S^N.  With q = (1-l)/(1-L(S)), K = (1-L(lS))/(1-L(S)) and
-m = 1-(1-l) K three things are shown for all lambda of a box.
+Launches (S, l), 0 < S <= s0: see `gravity`, and `nonlinear` for a certificate that names the fastest launch.
+L(S) = lambda + L_1 S + ... annuls E(S) = l^(j+1) (1-L(lS)) W(lS, L(lS)) - r (1-l) U(S, l), l = L(S), below order N, so
+E <= R S^N.  With q = (1-l)/(1-L(S)), K = (1-L(lS))/(1-L(S)) and m = 1-(1-l) K three things are shown for all lambda of
+a box.
 
 1. l^(j+1) K W(lS, m)/U(S, l) increases in l: its logarithmic derivative times l is positive.  So q decreases along
    orbits that start with l > L + Kl S^N and increases along those with l < L - Kl S^N.
@@ -26,6 +27,7 @@ from .after_contact import require_after
 from .formulas import Refused, Wrong, ball
 from .gravity import Gravity, contact
 from .motion import Model, size, within
+from .nonlinear import Flights
 from .told import compared, lies_within, read
 
 SHARE = 4  # a box of this part of S and l is halved no further than 2^-40
@@ -84,31 +86,15 @@ class Folded:
             found = self.plus(self.times(found, q), part)
         return found
 
-    def speeds(self, o: Gravity, S: list[Any], x: list[Any]) -> tuple[list[Any], list[Any]]:
-        """W and U of `gravity`."""
-        j, D, one = o.j, self.D, self.constant(arb(1))
-        W, U, P, Q, G, power = self.constant(arb(0)), self.constant(arb(0)), one, one, one, one
-        for k in range(1, D + j + 1):
-            P = self.plus(self.constant(arb(k + 1)), self.times(x, P))
-            G = self.plus(one, self.times(x, G))
-            Q = self.plus(G, self.times(x, Q))
-            if k >= j:
-                power = self.times(power, S) if k > j else power
-                f = o.b[k] / ((k + 1) * (k + 2))
-                W, U = self.plus(W, self.times(power, P), f), self.plus(U, self.times(power, Q), f)
-        beyond = o.tail(j + D) + sum((abs(o.b[k]) * o.s0 ** (k - j - D) for k in range(D + j + 1, o.K + 1)), arb(0))
-        last = [arb_poly([0] * D + [within(beyond / 2)]), *[arb_poly([0])] * self.m]
-        return self.plus(W, last), self.plus(U, last)
-
-    def residual(self, o: Gravity, L: list[list[Any]], r: list[Any]) -> list[Any]:
+    def residual(self, o: Gravity | Flights, L: list[list[Any]], r: list[Any]) -> list[Any]:
         one, S = self.constant(arb(1)), [arb_poly([0, 1]), *[arb_poly([0])] * self.m]
         here = self.composed(L, S)
         S1 = self.times(S, here)
         there = self.composed(L, S1)
-        launch = self.times(self.plus(one, there, -1), self.speeds(o, S1, there)[0])
+        launch = self.times(self.plus(one, there, -1), o.folded(self, S1, there)[0])
         for _ in range(o.j + 1):
             launch = self.times(launch, here)
-        landing = self.times(self.plus(one, here, -1), self.speeds(o, S, here)[1])
+        landing = self.times(self.plus(one, here, -1), o.folded(self, S, here)[1])
         return self.plus(launch, self.times(r, landing), -1)
 
 
@@ -126,7 +112,7 @@ def restitution(j: int, x: Any) -> Any:
 class Box:
     """The series for all lambda of a box."""
 
-    def __init__(self, o: Gravity, told: dict[str, Any], r: Any) -> None:
+    def __init__(self, o: Gravity | Flights, told: dict[str, Any], r: Any) -> None:
         self.o, self.told, j = o, told, o.j
         self.N, D, self.pieces = (int(told[name]) for name in ("N", "D", "pieces"))
         low, high = (ball(Fraction(end)) for end in told["lambda"])
@@ -144,7 +130,7 @@ class Box:
         zero, one = make.constant(arb(0)), powers[0]
         P, Q, dQ = (sum_of(make, zero, powers, parts) for parts in parts_of(j))
         ratio = make.constant(r) if r is not None else make.times(make.times(powers[j + 1], P), make.inverse(Q))
-        lead, gap = o.b[j] / ((j + 1) * (j + 2)), make.plus(one, lam, -1)
+        lead, gap = o.lead, make.plus(one, lam, -1)
         L = [lam]
         for n in range(1, self.N):
             factor = make.plus(make.times(make.times(powers[j], gap), P), zero)
@@ -181,15 +167,16 @@ class Box:
     def drift(self, S: Any, x: Any) -> Any:
         """Lemma 1 on a box of S and l = x."""
         o, slopes = self.o, self.gap.derivative()
-        S1, below = x * S, self.gap(S)
-        K, Kx = self.gap(S1) / below, S * slopes(S1) / below
+        S1, gap = x * S, self.gap(S)
+        K, Kx = self.gap(S1) / gap, S * slopes(S1) / gap
         m = 1 - (1 - x) * K
         if not (K > 0 and -1 < m < 1.01):
             return None
         m = arb(m.lower()).union(arb(m.upper()).min(arb(1)))
-        _, U, _, _, _, Ux = o.speeds(S, x)
+        here, below = o.speeds(S, x), m.union(arb(0))
+        _, U, _, _, _, Ux = here
         W, _, WS, _, Wx, _ = o.speeds(S1, m)
-        if not (U > 0 and W > 0 and (m > 0 or o.speeds(S1, m.union(arb(0)))[1] > 0)):
+        if not (U > 0 and W > 0 and o.fall(here, x) > 0 and (m > 0 or o.fall(o.speeds(S1, below), below) > 0)):
             return None
         return (o.j + 1) + x * (Kx / K + (S * WS + (K - (1 - x) * Kx) * Wx) / W - Ux / U)
 
@@ -230,16 +217,18 @@ class Box:
         m = 1 - (1 - x) * K
         if not (0 < x < 1 and 0 < x1 < 1 and -1 < m < 1 and self.N * (1 - L(S)) + S * dL(S) > 0):
             raise Refused("the strip leaves 0 < l < 1")
-        W1, U1, WS1, _, _, _ = o.speeds(S1, x1)
+        there = o.speeds(S1, x1)
+        W1, _, WS1, _, _, _ = there
+        fall = o.fall(there, x1)
         _, U, _, US, _, Ux = o.speeds(S, x)
         rate = x**j * K * o.speeds(S1, m)[0] / U
-        along = (1 - x1) * WS1 - U1 * dL(S1)
-        by_y1 = -(x ** (j + 1)) * U1
+        along = (1 - x1) * WS1 - fall * dL(S1)
+        by_y1 = -(x ** (j + 1)) * fall
         by_l = (j + 1) * x**j * (1 - x1) * W1 + x ** (j + 1) * S * along - self.r * ((1 - x) * Ux - U)
         by_S = x ** (j + 2) * along - self.r * (1 - x) * US + by_l * dL(S)
         d, g, e = -by_l / by_y1, -by_S / by_y1, x + S * dL(S)
         up = d - abs(g) * M
-        if not (U > 0 and U1 > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0):
+        if not (U > 0 and fall > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0):
             raise Refused("lemma 3 is not shown: the cones are not expanded into themselves")
         return rate, (1 - x) * U, up
 
@@ -289,7 +278,9 @@ def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:  # noq
     if not (1 <= j <= 12 and reach > 0 and told["boxes"]):
         raise Wrong("an order, a reach and boxes must be given")
     tau = contact(model, read(told["tau"]), j)
-    o = Gravity(model, tau, j, reach)
+    o = Flights(model, tau, j, reach) if "fastest" in told else Gravity(model, tau, j, reach)
+    if isinstance(o, Flights) and not ball(Fraction(told["fastest"])) <= o.fastest:
+        raise Wrong("the launch speeds go beyond what is shown")
     cuts = [[Fraction(end) for end in box["lambda"]] for box in told["boxes"]]
     single = told["restitution"] == "model"
     r = model.ratio() if single else None
@@ -304,6 +295,8 @@ def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:  # noq
     for box in boxes:
         box.require()
     if single:
-        factor = (o.damping * o.time(reach)).exp() * (1 + o.square * reach * reach).sqrt()
-        compared({"threshold": (boxes[0].threshold(reach) * factor, told["threshold"])})
-    require_after(o, told, size(ends[-1]))
+        compared({"threshold": (boxes[0].threshold(reach) * o.factor(reach), told["threshold"])})
+    if isinstance(o, Gravity):
+        require_after(o, told, size(ends[-1]))
+    elif told["after"]:
+        raise Wrong("what comes after tau is shown for linear models alone")
