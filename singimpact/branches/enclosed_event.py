@@ -164,7 +164,7 @@ def _touching(orbit: PeriodicOrbit, over: str, parameter: float, digits: int) ->
         tau, *rest = _numbers(closing.balls, point, tight.offsets, digits)
         rested = from_ball(closing.balls.rational(Fraction(0)), digits)
         return EnclosedEvent("graze", over, rest[-1], (tau, *rest[:-1:2]), (rested, *rest[1:-1:2]), unique,
-                             SHOWN["graze"])  # fmt: skip
+                             SHOWN["graze"], None, orbit.oscillator, orbit.k)  # fmt: skip
 
 
 def _from_touching_point(orbit: PeriodicOrbit, closing: TouchingClosing, parameter: Fraction) -> Point:

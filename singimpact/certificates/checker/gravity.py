@@ -26,7 +26,7 @@ SMALL = 2.0**-36  # tail, in units of b_j
 
 def affine(f: Formula, node: ast.expr) -> tuple[Any, Any, Any]:
     """(k, d, m) of a part k x + d xdot + m."""
-    names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)} & {"x", "xdot"}
+    names = f.names(node) & {"x", "xdot"}
     zero = arb(0)
     if not names:
         return zero, zero, f._at(node, {})
@@ -42,9 +42,7 @@ def affine(f: Formula, node: ast.expr) -> tuple[Any, Any, Any]:
             return one[0] + sign * other[0], one[1] + sign * other[1], one[2] + sign * other[2]
         case ast.BinOp(left, ast.Mult() | ast.Div() as op, right):
             (k, d, m), (p, q, factor) = affine(f, left), affine(f, right)
-            if isinstance(op, ast.Mult) and not any(
-                isinstance(part, ast.Name) and part.id in names for part in ast.walk(left)
-            ):
+            if isinstance(op, ast.Mult) and not f.names(left) & names:
                 (k, d, m), (p, q, factor) = (p, q, factor), (k, d, m)
             if p == 0 and q == 0:
                 factor = factor if isinstance(op, ast.Mult) else 1 / factor
