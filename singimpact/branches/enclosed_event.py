@@ -10,7 +10,7 @@ shows one orbit for each: a curve of orbits. With M the derivative of the return
 
 is continuous on that curve, and has opposite signs at its ends. So it vanishes between them. At a fold dp/ds is this
 number times another that does not vanish on the box: p turns back. All orbits in the box lie on the curve. The rate of
-the number along it, from first and second derivatives of all flights over the box (`event_test`), has one sign: the
+the number along it, from first and second derivatives of all flights over the box (`event_function`), has one sign: the
 number vanishes once, and the event is the only one.
 """
 
@@ -27,7 +27,7 @@ from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.ball_closing import BallClosing, TouchingClosing, return_slope
-from singimpact.branches.event_test import rate_over, test_of
+from singimpact.branches.event_function import event_function, rate_over
 from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused
@@ -220,7 +220,7 @@ class _Curve:
 
     def _test(self, slopes: Any) -> Any:
         """What vanishes at the event, over a box."""
-        return test_of(self.kind, return_slope(slopes))
+        return event_function(self.kind, return_slope(slopes))
 
     def _crossing(self, operator: Krawczyk, near: Point, close: Fraction) -> Point:
         """An orbit where the test vanishes up to `close` in the held unknown, by secants: nothing is proved here."""

@@ -19,7 +19,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.branches import enclosed_event as room
 from singimpact.branches.ball_closing import BallClosing, Spans, TouchingClosing, return_slope
 from singimpact.branches.enclosed_event import enclosed_event
-from singimpact.branches.event_test import rate_of, rate_over
+from singimpact.branches.event_function import rate_of, rate_over
 from singimpact.branches.krawczyk import Krawczyk
 from singimpact.flights.enclosures.certified_hit import Launch
 from singimpact.flights.enclosures.equation import Refused
@@ -242,7 +242,7 @@ def test_three_doublings_next_to_one_another_are_not_one(doubling):
 
 def test_a_test_that_vanishes_at_no_rate_is_refused(doubling, monkeypatch):
     """The cube of the test has the same signs, and its rate vanishes where it does."""
-    honest, rate = room.test_of, room.rate_over
+    honest, rate = room.event_function, room.rate_over
 
     def cubed(kind, closing, operator, point, radius):
         value = honest(kind, return_slope(closing.slopes(point, radius)))
@@ -264,7 +264,7 @@ def test_the_rate_is_that_of_differences(kind, duffing):
         point = operator.solved([*near, Fraction(event.parameter)])
         step = Fraction(1, 10**6)
         ends = [operator.solved(operator.moved(point, shift)) for shift in (-step, step)]
-        low, high = (room.test_of(kind, return_slope(closing.slopes(end, operator.small))) for end in ends)
+        low, high = (room.event_function(kind, return_slope(closing.slopes(end, operator.small))) for end in ends)
         rate = rate_over(kind, closing, operator, point, Fraction(1, 10**9))
         truth = float(((high - low) / (2 * Balls(200).rational(step))).mid())
         assert float(rate.mid()) == pytest.approx(truth, rel=1e-6, abs=1e-8)  # d = r^4 e^(-b T) is constant here
@@ -275,7 +275,7 @@ def test_the_rate_is_that_of_differences(kind, duffing):
 @pytest.mark.parametrize("kind", ["fold", "period-doubling", "torus"])
 def test_the_rate_of_a_matrix_is_that_of_differences(kind):
     at, change, h = flint.arb_mat([[2, 3], [5, 7]]), flint.arb_mat([[1, -4], [6, 9]]), flint.arb(2) ** -20
-    high, low = (room.test_of(kind, at + change * side) for side in (h, -h))
+    high, low = (room.event_function(kind, at + change * side) for side in (h, -h))
     assert abs((high - low) / (2 * h) - rate_of(kind, at, change)) < 1e-9  # quadratic: rounding alone
 
 

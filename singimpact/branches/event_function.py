@@ -19,7 +19,7 @@ SIGNS = {"fold": -1, "period-doubling": 1, "torus": 0}
 """The factor of the trace."""
 
 
-def test_of(kind: str, total: Any) -> Any:
+def event_function(kind: str, total: Any) -> Any:
     """What vanishes at the event, of the derivative of the return map."""
     trace, determinant = total[0, 0] + total[1, 1], total.det()
     return 1 - determinant if kind == "torus" else 1 + SIGNS[kind] * trace + determinant
