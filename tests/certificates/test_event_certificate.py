@@ -76,11 +76,14 @@ def test_a_graze_is_accepted_and_no_other_number(graze, tmp_path):
     no_number_may_change(graze, 11)
     for place in ("parameter", (0, "tau")):
         refuses(shifted(graze.content, place, 1e4), "Krawczyk")
-    refuses({**graze.content, "periods": "2"}, "lost|meets the wall|both|shown")  # it touches the wall on its way
-    refuses({**graze.content, "unique_within": "1/2"})
     moving = copied(graze.content)
     moving["states"][0]["v"]["value"] = "1e-20"
     refuses(moving, "v is not 0")
+
+
+@pytest.mark.slow
+def test_grazes_that_are_none(graze):
+    refuses({**graze.content, "unique_within": "1/2"})
     pressed = copied(graze.content)  # the mirror image: the mass is below the wall but where it touches it
     pressed["model"] |= {"g": "A*cos(0.8*t)", "clearance": "1"}
     refuses(pressed)
@@ -131,8 +134,8 @@ def test_any_changed_number_is_refused(made):
     ("change", "why"),
     [
         ({"kind": "cusp"}, "an event is a fold or a period-doubling"),
-        ({"kind": "torus"}, "complex"),
-        ({"kind": "fold"}, None),
+        pytest.param({"kind": "torus"}, "complex", marks=pytest.mark.slow),
+        pytest.param({"kind": "fold"}, None, marks=pytest.mark.slow),
         ({"kind": "graze"}, "v is not 0"),
         ({"over": "omega"}, "no parameter"),
         ({"period": "pi"}, "is not shown to have the period"),

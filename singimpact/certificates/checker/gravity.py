@@ -13,6 +13,7 @@ A flight from s = -S to s = -l S is launched with S^(j+1) (1-l) W and lands with
 from __future__ import annotations
 
 import ast
+from collections.abc import Sequence
 from typing import Any
 
 from flint import acb, arb, arb_series
@@ -135,18 +136,19 @@ class Gravity:
 
     def speeds(self, S: Any, x: Any) -> list[Any]:
         """W and U at (S, l = x), then their derivatives by S, then by l."""
-        j, zero = self.j, arb(0)
-        W, U, WS, US, Wx, Ux = [zero] * 6
-        P, Q, G, dP, dQ, dG, power, before = arb(1), arb(1), arb(1), zero, zero, zero, arb(1), zero
-        for k in range(1, self.K + 1):
-            dP, P = P + x * dP, (k + 1) + x * P
-            dG, G = G + x * dG, 1 + x * G
-            dQ, Q = dG + Q + x * dQ, G + x * Q
-            if k < j:
-                continue
-            if k > j:
-                before, power = power, power * S
-            f = self.b[k] / ((k + 1) * (k + 2))
-            W, U, Wx, Ux = W + f * power * P, U + f * power * Q, Wx + f * power * dP, Ux + f * power * dQ
-            WS, US = WS + f * (k - j) * before * P, US + f * (k - j) * before * Q
-        return [part + self.rest for part in (W, U, WS, US, Wx, Ux)]
+        moved = [[arb_series([part, int(i == k)], prec=2) for i, part in enumerate((S, x))] for k in (0, 1)]
+        (W, U), (Wx, Ux) = (sums(self.b, self.j, self.K, *each) for each in moved)
+        return [part + self.rest for part in (W[0], U[0], W[1], U[1], Wx[1], Ux[1])]
+
+
+def sums(b: Sequence[Any], j: int, last: int, S: Any, x: Any) -> tuple[Any, Any]:
+    """The terms of W and U up to k = last, at elements of any ring."""
+    W, U, P, Q, G, power = 0, 0, 1, 1, 1, 1
+    for k in range(1, last + 1):
+        P, G = x * P + (k + 1), x * G + 1
+        Q = x * Q + G
+        if k >= j:
+            power = power * S if k > j else power
+            share = power * (b[k] / ((k + 1) * (k + 2)))
+            W, U = share * P + W, share * Q + U
+    return W, U
