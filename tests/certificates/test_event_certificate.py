@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from second_program import copied, is_read_back, no_number_may_change, refuses, renewed, weakened
+from second_program import changed, copied, is_read_back, no_number_may_change, places_of, refuses, renewed, weakened
 
 import singimpact as si
 from singimpact.certificates import checker
@@ -186,3 +186,24 @@ def test_others_have_no_file(branch):
         si.certify(replace(ball, kind="cusp"))
     with pytest.raises(InputError, match="only those over a parameter"):
         si.certify(replace(ball, over="clearance"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["fold", "graze"])
+def test_any_other_number_with_a_digest_of_its_own_is_refused(kind, branch, graze):
+    """But for the number's value in the model, which is not used, and a restitution without an impact."""
+    content = (graze if kind == "graze" else si.certify(event_of(branch, kind).certified(10))).content
+    unused = {"A", *(("restitution", "v") if kind == "graze" else ())}
+    tried = 0
+    for place in places_of(content):
+        if unused.intersection(place) or place[-1] in ("radius", "unique_within"):
+            continue
+        forged = changed(content, place)
+        if place[-1] == "value":
+            inner = forged
+            for key in place[:-1]:
+                inner = inner[key]
+            inner["value"] = repr(float(inner["value"]) + 1e4 * float(inner["radius"]))
+        refuses(forged)
+        tried += 1
+    assert tried >= 6
