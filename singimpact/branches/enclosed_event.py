@@ -274,22 +274,27 @@ class _Curve:
         offsets.insert(operator.held, balls.interval(-half, half))
         *states, parameter = _numbers(balls, near, offsets, self.digits)
         curved = operator.unique_within(near, step, radius, Fraction(1, SETTINGS.reach))
-        alone = self._monotone_within(operator, near, curved, radius)
+        alone = self._monotone_within(operator, near, step, (radius, curved))
         if alone is None:
             return "the test of the event is not shown to vary at a rate of one sign: there may be more events than one"
         return EnclosedEvent(self.kind, self.over, parameter, tuple(states[::2]), tuple(states[1::2]),
                              alone / SETTINGS.reach, SHOWN[self.kind], curved / SETTINGS.reach,
                              self.orbit.oscillator, self.orbit.k)  # fmt: skip
 
-    def _monotone_within(self, operator: Krawczyk, near: Point, widest: Fraction, least: Fraction) -> Fraction | None:
-        """A radius of a box on which the test varies along the curve at a rate of one sign; None where none is."""
-        closing = operator.equations
+    def _monotone_within(
+        self, operator: Krawczyk, near: Point, step: list[Any], between: tuple[Fraction, Fraction]
+    ) -> Fraction | None:
+        """A radius of a box on which the test varies along the curve at a rate of one sign; None where none is.
+
+        The curve is shown to stay in that box too: between two events on it the rate is one of those over the box.
+        """
+        closing, (least, radius) = operator.equations, between
         assert isinstance(closing, BallClosing)
-        radius = widest
         while True:
             try:
                 rate = rate_over(self.kind, closing, operator, near, radius)
-                if rate > 0 or rate < 0:
+                held = operator.image(near, step, radius, radius / SETTINGS.reach)
+                if held is not None and (rate > 0 or rate < 0):
                     return radius
             except (ArithmeticError, ValueError):  # refused, or a matrix that may be singular, over so wide a box
                 pass

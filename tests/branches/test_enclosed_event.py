@@ -240,6 +240,26 @@ def test_three_doublings_next_to_one_another_are_not_one(doubling):
         assert isinstance(enclosed_event("period-doubling", over_b(doubling, text), "B", 0.0, 12), str)
 
 
+def test_the_curve_is_shown_to_stay_where_its_rate_is_bounded(doubling, monkeypatch):
+    """In the box of the rate Krawczyk's operator is applied again: a curve of a wider box may leave it."""
+    honest, shown = Krawczyk.image, []
+
+    def recorded(operator, point, step, radius, spread=Fraction(0)):
+        found = honest(operator, point, step, radius, spread)
+        if found is not None and spread:
+            shown.append((radius, spread))
+        return found
+
+    monkeypatch.setattr(Krawczyk, "image", recorded)
+    alone = doubling[0].certified(12).unique_within
+    assert (alone * room.SETTINGS.reach, alone) in shown
+    refused = alone * room.SETTINGS.reach
+    monkeypatch.setattr(
+        Krawczyk, "image", lambda *given: None if given[3] == refused and len(given) > 4 else honest(*given)
+    )
+    assert doubling[0].certified(12).unique_within < alone
+
+
 def test_a_test_that_vanishes_at_no_rate_is_refused(doubling, monkeypatch):
     """The cube of the test has the same signs, and its rate vanishes where it does."""
     honest, rate = room.event_function, room.rate_over
