@@ -18,6 +18,7 @@ from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
 from singimpact.branches.enclosed_map import SPARE
 from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
+from singimpact.flights.enclosures.jet_flight import JetHit, jet_hit
 from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
 from singimpact.flights.model_numbers import horizon_of
 from singimpact.oscillator.model import Oscillator
@@ -131,6 +132,12 @@ class BallClosing:
         """D G over the box round each state, with a third column for the number; and the derivative of k P."""
         count = len(self.states(point))
         return [self.hit(point, i, radius).derivative for i in range(count)], self.span(point, radius)[1]
+
+    def bends(self, point: list[Fraction], radius: Fraction) -> tuple[list[JetHit], Any]:
+        """G with D G and D^2 G over the box round each state, by the number too; and the derivative of k P."""
+        model = self.model(point)
+        hits = [jet_hit(model, self.launch(state, radius), self.horizon) for state in self.states(point)]
+        return hits, self.span(point, radius)[1]
 
     def matrix(self, slopes: tuple[list[list[list[Any]]], Any]) -> Any:
         """D F from the D G: blocks beside the diagonal, less the identity."""

@@ -9,7 +9,9 @@ shows one orbit for each: a curve of orbits. With M the derivative of the return
     fold   1 - t + d,      period-doubling   1 + t + d,      torus   1 - d, where t^2 < 4 d,
 
 is continuous on that curve, and has opposite signs at its ends. So it vanishes between them. At a fold dp/ds is this
-number times another that does not vanish on the box: p turns back.
+number times another that does not vanish on the box: p turns back. All orbits in the box lie on the curve. The rate of
+the number along it, from first and second derivatives of all flights over the box (`event_function`), has one sign: the
+number vanishes once, and the event is the only one.
 """
 
 from __future__ import annotations
@@ -25,7 +27,8 @@ from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.ball_closing import BallClosing, TouchingClosing, return_slope
-from singimpact.branches.krawczyk import Krawczyk, Point
+from singimpact.branches.event_function import event_function, rate_over
+from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.oscillator.model import Oscillator
@@ -59,10 +62,11 @@ class EventSettings:
 SETTINGS = EventSettings()
 
 SHOWN = {
-    "fold": "the orbits form one curve, on which the parameter turns back: a multiplier is 1",
-    "period-doubling": "the orbits form one curve, on which 1 + trace + determinant of the return map changes sign: a "
-    "multiplier is -1",
-    "torus": "the orbits form one curve, on which the product of two complex multipliers passes 1",
+    "fold": "the orbits form one curve, on which the parameter turns back once: a multiplier is 1",
+    "period-doubling": "the orbits form one curve, on which 1 + trace + determinant of the return map vanishes once, "
+    "at a rate that is not 0: a multiplier is -1",
+    "torus": "the orbits form one curve, on which the product of two complex multipliers passes 1 once, at a rate that "
+    "is not 0",
     "graze": "an orbit that touches the wall in the point tau[0], where a_c > 0, and is above it between its impacts",
 }
 
@@ -77,7 +81,7 @@ class EnclosedEvent:
     tau, v : `Certified` states just after the impacts, all of which are first hits. Of a graze or hidden impact the
         first is the touching point, with v = 0.
     unique_within : no other event of this kind has its parameter and its states within this distance, in tau and in v,
-        of these; None at a fold, period-doubling or torus, where others on the same curve are not excluded.
+        of these.
     curve_within : at a fold, period-doubling or torus, all orbits of so many impacts and periods that have their
         parameter and their states within this distance of these lie on one curve, on which the event is; None at a
         graze or hidden impact.
@@ -90,7 +94,7 @@ class EnclosedEvent:
     parameter: Certified
     tau: tuple[Certified, ...]
     v: tuple[Certified, ...]
-    unique_within: Fraction | None
+    unique_within: Fraction
     shown: str
     curve_within: Fraction | None = None
     oscillator: Oscillator | None = field(default=None, repr=False)
@@ -160,7 +164,7 @@ def _touching(orbit: PeriodicOrbit, over: str, parameter: float, digits: int) ->
         tau, *rest = _numbers(closing.balls, point, tight.offsets, digits)
         rested = from_ball(closing.balls.rational(Fraction(0)), digits)
         return EnclosedEvent("graze", over, rest[-1], (tau, *rest[:-1:2]), (rested, *rest[1:-1:2]), unique,
-                             SHOWN["graze"])  # fmt: skip
+                             SHOWN["graze"], None, orbit.oscillator, orbit.k)  # fmt: skip
 
 
 def _from_touching_point(orbit: PeriodicOrbit, closing: TouchingClosing, parameter: Fraction) -> Point:
@@ -216,14 +220,7 @@ class _Curve:
 
     def _test(self, slopes: Any) -> Any:
         """What vanishes at the event, over a box."""
-        total = return_slope(slopes)
-        trace, determinant = total[0, 0] + total[1, 1], total.det()
-        match self.kind:
-            case "fold":
-                return 1 - trace + determinant
-            case "period-doubling":
-                return 1 + trace + determinant
-        return 1 - determinant
+        return event_function(self.kind, return_slope(slopes))
 
     def _crossing(self, operator: Krawczyk, near: Point, close: Fraction) -> Point:
         """An orbit where the test vanishes up to `close` in the held unknown, by secants: nothing is proved here."""
@@ -276,6 +273,32 @@ class _Curve:
         assert operator.held is not None
         offsets.insert(operator.held, balls.interval(-half, half))
         *states, parameter = _numbers(balls, near, offsets, self.digits)
-        within = operator.unique_within(near, step, radius, Fraction(1, SETTINGS.reach)) / SETTINGS.reach
-        return EnclosedEvent(self.kind, self.over, parameter, tuple(states[::2]), tuple(states[1::2]), None,
-                             SHOWN[self.kind], within, self.orbit.oscillator, self.orbit.k)  # fmt: skip
+        curved = operator.unique_within(near, step, radius, Fraction(1, SETTINGS.reach))
+        alone = self._monotone_within(operator, near, step, (radius, curved))
+        if alone is None:
+            return "the test of the event is not shown to vary at a rate of one sign: there may be more events than one"
+        return EnclosedEvent(self.kind, self.over, parameter, tuple(states[::2]), tuple(states[1::2]),
+                             alone / SETTINGS.reach, SHOWN[self.kind], curved / SETTINGS.reach,
+                             self.orbit.oscillator, self.orbit.k)  # fmt: skip
+
+    def _monotone_within(
+        self, operator: Krawczyk, near: Point, step: list[Any], between: tuple[Fraction, Fraction]
+    ) -> Fraction | None:
+        """A radius of a box on which the test varies along the curve at a rate of one sign; None where none is.
+
+        The curve is shown to stay in that box too: between two events on it the rate is one of those over the box.
+        """
+        closing, (least, radius) = operator.equations, between
+        assert isinstance(closing, BallClosing)
+        while True:
+            try:
+                rate = rate_over(self.kind, closing, operator, near, radius)
+                held = operator.image(near, step, radius, radius / SETTINGS.reach)
+                if held is not None and (rate > 0 or rate < 0):
+                    return radius
+            except (ArithmeticError, ValueError):  # refused, or a matrix that may be singular, over so wide a box
+                pass
+            if radius <= least:
+                return None
+            smaller = radius / KRAWCZYK.shrink
+            radius = smaller if smaller > max(KRAWCZYK.narrowest, least) else least

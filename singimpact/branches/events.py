@@ -59,7 +59,7 @@ class Event:
         return graze_time(self.kind, self.orbit)
 
     def certified(self, digits: int = 20) -> EnclosedEvent:
-        """The event, proved to exist: its parameter and its states with radii.
+        """The event, proved to exist and to be the only one in a box: its parameter and its states with radii.
 
         Parameters
         ----------
@@ -71,8 +71,10 @@ class Event:
 
         Notes
         -----
-        A graze or hidden impact is shown to be the only one in a box, a fold, doubling or torus by a change of sign on
-        a curve of orbits: see `EnclosedEvent.shown` and `unique_within`. It takes 0.02 to 2 s.
+        A graze or hidden impact is a zero of smooth equations, alone in a box by Krawczyk's operator. At a fold,
+        doubling or torus all orbits in a box lie on one curve, along which the test of the event varies at a rate of
+        one sign: it vanishes once. The box is `unique_within`. An event at which the rate vanishes, such as two
+        doublings that meet, is refused. It takes 0.02 to 2 s.
 
         Examples
         --------

@@ -107,6 +107,19 @@ class Krawczyk:
             moved[self.held] = point[self.held] + shift
         return moved
 
+    def tangent_over(self, matrix: Any) -> list[Any]:
+        """The vector that D F maps to 0, its held component 1, where D F is one of the matrices over a box.
+
+        Raises
+        ------
+        ZeroDivisionError : the columns of the free unknowns may be dependent.
+        """
+        import flint
+
+        assert self.held is not None
+        found = (self.Y * self._columns(matrix, self.free)).solve(self.Y * self._columns(matrix, [self.held])).entries()
+        return [*(-part for part in found[: self.held]), flint.arb(1), *(-part for part in found[self.held :])]
+
     @staticmethod
     def _columns(matrix: Any, kept: list[int]) -> Any:
         import flint

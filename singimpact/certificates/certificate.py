@@ -18,7 +18,7 @@ from singimpact.branches.enclosed_orbit import EnclosedOrbit
 from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.certificates.checker import SCHEMA, digest_of
-from singimpact.certificates.checker.event import KINDS
+from singimpact.certificates.checker.event import KINDS, TOUCHING
 from singimpact.certificates.checker.first_impact import PARTS
 from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
@@ -107,7 +107,7 @@ def certify(result: Any) -> Certificate:
     ----------
     result : of `osc.impact_map` or `osc.first_hit` for one state with `digits`; a periodic orbit with impacts, of
         `osc.periodic`; or the `.certified` of one of these. `osc.chatter_limit` of one state with v > 0 and with
-        `digits`; `crossing.horseshoe()`; `event.certified()` of a period doubling over a parameter; or
+        `digits`; `crossing.horseshoe()`; `event.certified()` over a parameter of g or f; or
         `osc.certified_gamma()`.
 
     Returns
@@ -186,7 +186,7 @@ def _of_limit(limit: ChatterLimit) -> Certificate:
 
 
 def _of_event(event: EnclosedEvent) -> Certificate:
-    """The certificate of a period doubling."""
+    """The certificate of an event."""
     if event.kind not in KINDS or event.oscillator is None:
         raise InputError(f"a {event.kind} has no certificate as a file: only a {' or a '.join(KINDS)} has one")
     if event.over not in event.oscillator.parameters:
@@ -196,6 +196,9 @@ def _of_event(event: EnclosedEvent) -> Certificate:
     states = [{"tau": tau.as_dict(), "v": v.as_dict()} for tau, v in zip(event.tau, event.v, strict=True)]
     told = {"kind": event.kind, "over": event.over, "period": str(event.oscillator.period), "periods": str(event.k),
             "parameter": event.parameter.as_dict(), "states": states}  # fmt: skip
+    if event.kind in TOUCHING:
+        states[0]["v"] = {"value": "0", "radius": event.tau[0].as_dict()["radius"]}
+        told["unique_within"] = str(min(event.unique_within, UNIQUE))
     return _sealed("event", event.oscillator, told)
 
 

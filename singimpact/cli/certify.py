@@ -12,6 +12,8 @@ from singimpact.inputs import InputError
 from singimpact.store import require_writable
 
 State = tuple[str, str] | None
+EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact")
+"""Kinds of events that have certificates; a test compares them with those of the checker."""
 
 
 @click.command(short_help="a proved result with a certificate that a second program checks")
@@ -24,7 +26,11 @@ State = tuple[str, str] | None
 )
 @click.option(
     "--doubling", type=(str, float, float), metavar="OVER LOW HIGH",
-    help="With --orbit: the first period doubling of its branch over a parameter.",
+    help="As --event period-doubling OVER LOW HIGH.",
+)  # fmt: skip
+@click.option(
+    "--event", type=(click.Choice(EVENTS), str, float, float), metavar="KIND OVER LOW HIGH",
+    help=f"With --orbit: the first event of its branch over a parameter, of the kind {', '.join(EVENTS)}.",
 )  # fmt: skip
 @click.option("--chatter", is_flag=True, help="The chatter limit from --tau, --v.")
 @click.option(
@@ -42,8 +48,8 @@ State = tuple[str, str] | None
 @click.option("--digits", type=click.IntRange(1, 1000), default=30, show_default=True, help="Significant digits.")
 @click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
 def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
-    """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, a doubling or a horseshoe, and write
-    a certificate; or check FILE.json ...
+    """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, an event of its branch or a horseshoe, and
+    write a certificate; or check FILE.json ...
 
     `certify gamma MODEL.toml` (or the options of a linear model) proves gamma before the next zero of a_c after --tau:
     that it exists, is unique, and decides the fate of every launch; standard error says how far it got.
@@ -66,6 +72,8 @@ def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: A
     kinds = [name for name in ("orbit", "chatter", "horseshoe") if options[name]]
     if len(kinds) > 1:
         raise InputError(f"give one of --{kinds[0]} and --{kinds[1]}")
+    if (options["event"] or options["doubling"]) and kinds != ["orbit"]:
+        raise InputError("--event and --doubling are of an orbit: give --orbit N K")
     if near is None and kinds in ([], ["chatter"]):
         raise InputError("give --tau and --v, or --orbit N K, or --horseshoe N K, for a new certificate; or the files "
                          "to check")  # fmt: skip
@@ -80,7 +88,7 @@ def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> 
     """`certify gamma [MODEL]`."""
     from singimpact.certificates.certificate import certify
 
-    taken = [f"--{name}" for name in ("orbit", "chatter", "horseshoe", "doubling") if options[name]]
+    taken = [f"--{name}" for name in ("orbit", "chatter", "horseshoe", "event", "doubling") if options[name]]
     if len(files) > 1 or taken:
         raise InputError(f"certify gamma takes one model: {', '.join([*files[1:], *taken])} is not accepted")
     if files:
@@ -107,21 +115,22 @@ def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
         return certify(model.chatter_limit(*(near or ()), digits=digits))
     if kind == "orbit":
         orbit = _orbit(model, kind, options[kind], near)
-        return certify((_doubling(orbit, *options["doubling"]) if options["doubling"] else orbit).certified(digits))
+        wanted = options["event"] or (("period-doubling", *options["doubling"]) if options["doubling"] else None)
+        return certify((_event(orbit, *wanted) if wanted else orbit).certified(digits))
     crossings = homoclinic_points(_orbit(model, kind, options[kind], near, saddle=True))
     if not len(crossings):
         raise InputError("no homoclinic orbit of the saddle is found")
     return certify(crossings[0].horseshoe())
 
 
-def _doubling(orbit: Any, over: str, low: float, high: float) -> Any:
-    """The first period doubling of visible orbits of a branch."""
+def _event(orbit: Any, kind: str, over: str, low: float, high: float) -> Any:
+    """The first event of a kind, of visible orbits of a branch."""
     from singimpact.branches.branch import branch
 
     events = branch(orbit, over, (low, high)).events
-    found = [each for each in events if each.kind == "period-doubling" and each.orbit.visible]
+    found = [each for each in events if each.kind == kind and each.orbit.visible]
     if not found:
-        raise InputError(f"--doubling {over} {low:g} {high:g}: no period doubling of visible orbits is found there")
+        raise InputError(f"--event {kind} {over} {low:g} {high:g}: no {kind} of visible orbits is found there")
     return found[0]
 
 

@@ -129,6 +129,8 @@ def _chatter(flow: Flow, tau: Expression, v: Expression, removed: int, digits: i
             found = as_certified(time + left, digits)
             if found is not None:
                 return EnclosedLimit(found, count, False)
+            if left.rad() < time.rad():
+                return None  # the flights have lost the digits, and further ones do not give them back
         hit = flow.first_hit(time, speed, removed=removed)
         if hit is None or hit.time is None:
             return None

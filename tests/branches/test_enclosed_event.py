@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+import flint
 import mpmath
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.branches import enclosed_event as room
 from singimpact.branches.ball_closing import BallClosing, Spans, TouchingClosing, return_slope
 from singimpact.branches.enclosed_event import enclosed_event
+from singimpact.branches.event_function import rate_of, rate_over
 from singimpact.branches.krawczyk import Krawczyk
 from singimpact.flights.enclosures.certified_hit import Launch
 from singimpact.flights.enclosures.equation import Refused
@@ -148,9 +150,8 @@ def test_doubles_see_the_multiplier(duffing, kind, multiplier):
     for tau, v in zip(ball.tau, ball.v, strict=True):
         total = model.derivative(float(tau.value), float(v.value)).matrix @ total
     assert np.abs(np.linalg.eigvals(total) - multiplier).min() < 1e-7
-    assert ball.unique_within is None
     assert ball.over == "A"
-    assert 1e-8 < ball.curve_within < 1e-3
+    assert 1e-6 < ball.unique_within <= ball.curve_within < 1e-3
 
 
 @pytest.mark.slow
@@ -200,6 +201,102 @@ def test_a_torus():
     assert np.linalg.det(matrix) == pytest.approx(1, abs=1e-10)
     assert abs(np.trace(matrix)) < 2
     assert enclosed_event("fold", torus.orbit, "A", torus.parameter, 12) != ball
+
+
+# ---- the only event on its curve
+
+
+@pytest.fixture(scope="module")
+def doubling(duffing):
+    """The doubling of the (2, 1) orbits, and A there."""
+    (event,) = [each for each in events(duffing, "period-doubling") if each.orbit.visible]
+    return event, event.certified(30).parameter
+
+
+def over_b(doubling, text):
+    """The orbit at the doubling, of the model in which A is the doubling's value plus a function of B."""
+    event, at = doubling
+    osc = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", f"({at} + {text})*cos(1.7*t)", "0.3", "0.6", {"B": 0})
+    return replace(event.orbit, oscillator=osc)
+
+
+def test_a_box_with_two_doublings_is_not_said_to_have_one(doubling, monkeypatch):
+    """A = A_0 + B^2 - 1e-8: the doublings at B = 1e-4 and -1e-4 are on one curve; without the rate one is denied."""
+    orbit = over_b(doubling, "B**2 - 1/10**8")
+    for side in (1, -1):
+        found = enclosed_event("period-doubling", orbit, "B", side * 1e-4, 12)
+        assert float(found.parameter.value) == pytest.approx(side * 1e-4, rel=1e-12)
+        assert 1e-8 < found.unique_within < 2e-4 < found.curve_within
+    monkeypatch.setattr(room, "rate_over", lambda *_: flint.arb(1))
+    assert enclosed_event("period-doubling", orbit, "B", 1e-4, 12).unique_within > 2e-4
+
+
+@pytest.mark.slow
+def test_three_doublings_next_to_one_another_are_not_one(doubling):
+    """A = A_0 + B (B^2 - d^2): the test vanishes at -d, 0 and d, wide apart or within the digits."""
+    found = enclosed_event("period-doubling", over_b(doubling, "B*(B**2 - 1/10**8)"), "B", 0.0, 12)
+    assert found.unique_within < 1e-4 < found.curve_within
+    for text in ("B**2", "B**2 + 1/10**12"):
+        assert isinstance(enclosed_event("period-doubling", over_b(doubling, text), "B", 0.0, 12), str)
+
+
+def test_the_curve_is_shown_to_stay_where_its_rate_is_bounded(doubling, monkeypatch):
+    """In the box of the rate Krawczyk's operator is applied again: a curve of a wider box may leave it."""
+    honest, shown = Krawczyk.image, []
+
+    def recorded(operator, point, step, radius, spread=Fraction(0)):
+        found = honest(operator, point, step, radius, spread)
+        if found is not None and spread:
+            shown.append((radius, spread))
+        return found
+
+    monkeypatch.setattr(Krawczyk, "image", recorded)
+    alone = doubling[0].certified(12).unique_within
+    assert (alone * room.SETTINGS.reach, alone) in shown
+    refused = alone * room.SETTINGS.reach
+    monkeypatch.setattr(
+        Krawczyk, "image", lambda *given: None if given[3] == refused and len(given) > 4 else honest(*given)
+    )
+    assert doubling[0].certified(12).unique_within < alone
+
+
+def test_a_test_that_vanishes_at_no_rate_is_refused(doubling, monkeypatch):
+    """The cube of the test has the same signs, and its rate vanishes where it does."""
+    honest, rate = room.event_function, room.rate_over
+
+    def cubed(kind, closing, operator, point, radius):
+        value = honest(kind, return_slope(closing.slopes(point, radius)))
+        return 3 * value**2 * rate(kind, closing, operator, point, radius)
+
+    monkeypatch.setattr(room, "rate_over", cubed)
+    with pytest.raises(InputError, match="a rate of one sign"):
+        doubling[0].certified(12)
+
+
+@pytest.mark.parametrize("kind", ["fold", "period-doubling", "torus"])
+def test_the_rate_is_that_of_differences(kind, duffing):
+    """Along the curve of orbits through the doubling, for each of the three tests."""
+    (event,) = [each for each in events(duffing, "period-doubling") if each.orbit.visible]
+    near = [Fraction(float(part)) for pair in zip(event.orbit.tau, event.orbit.v, strict=True) for part in pair]
+    with balls_at(200):
+        closing = BallClosing(DUFFING, 1, 30, 200, "A")
+        operator = Krawczyk(closing, [*near, Fraction(event.parameter)], Fraction(1, 10**32))
+        point = operator.solved([*near, Fraction(event.parameter)])
+        step = Fraction(1, 10**6)
+        ends = [operator.solved(operator.moved(point, shift)) for shift in (-step, step)]
+        low, high = (room.event_function(kind, return_slope(closing.slopes(end, operator.small))) for end in ends)
+        rate = rate_over(kind, closing, operator, point, Fraction(1, 10**9))
+        truth = float(((high - low) / (2 * Balls(200).rational(step))).mid())
+        assert float(rate.mid()) == pytest.approx(truth, rel=1e-6, abs=1e-8)  # d = r^4 e^(-b T) is constant here
+        assert rate.rad() < 1e-3 * abs(truth) + 1e-4
+        assert (kind == "torus") == rate.contains(0)
+
+
+@pytest.mark.parametrize("kind", ["fold", "period-doubling", "torus"])
+def test_the_rate_of_a_matrix_is_that_of_differences(kind):
+    at, change, h = flint.arb_mat([[2, 3], [5, 7]]), flint.arb_mat([[1, -4], [6, 9]]), flint.arb(2) ** -20
+    high, low = (room.event_function(kind, at + change * side) for side in (h, -h))
+    assert abs((high - low) / (2 * h) - rate_of(kind, at, change)) < 1e-9  # quadratic: rounding alone
 
 
 # ---- statements that are wrong

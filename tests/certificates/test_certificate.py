@@ -348,7 +348,7 @@ def test_derivatives_of_the_impact_map_contain_differences(name):
             assert row[k][1] < 1e-2
 
 
-@pytest.mark.parametrize("condition", ["abs(part) < radius", "span if i == n - 1 else 0"])
+@pytest.mark.parametrize("condition", ["abs(part) < radius", "self.span if i == n - 1 else 0"])
 def test_a_checker_without_a_condition_accepts_what_is_false(condition, orbits, monkeypatch):
     """Krawczyk's condition, and the period that is taken off, are what refuses: without them it is otherwise."""
     monkeypatch.setitem(files.STATEMENTS, "periodic orbit", weakened("periodic_orbit", condition))

@@ -6,6 +6,9 @@ import json
 
 import pytest
 
+from singimpact.certificates.checker.event import KINDS
+from singimpact.cli.certify import EVENTS
+
 MODEL = ["--omega", "2.8", "--clearance", "0.1", "--restitution", "0.8"]
 
 
@@ -74,4 +77,16 @@ def test_a_period_doubling(singimpact, tmp_path):
     assert (made.exit_code, made.output) == (0, "")
     assert "certificate of a period-doubling: A = 1.502" in singimpact("certify", str(model)).output
     none = singimpact("certify", *given, "--doubling", "A", "0.9", "1.1")
-    assert "no period doubling of visible orbits is found" in none.output
+    assert "no period-doubling of visible orbits is found" in none.output
+    fold = singimpact("certify", *given, "--event", "fold", "A", "0.9", "1.1")
+    assert "--event fold A 0.9 1.1: no fold of visible orbits is found there" in fold.output
+    assert "'cusp' is not one of" in singimpact("certify", *given, "--event", "cusp", "A", "0.9", "1.1").output
+
+
+def test_an_event_is_of_an_orbit(singimpact):
+    none = singimpact("certify", *MODEL, "--chatter", "--tau", "1", "--v", "1", "--event", "fold", "A", "0", "1")
+    assert "--event and --doubling are of an orbit: give --orbit N K" in none.output
+
+
+def test_the_commands_kinds_are_those_of_the_checker():
+    assert EVENTS == KINDS

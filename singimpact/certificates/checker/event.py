@@ -1,9 +1,16 @@
-"""A period doubling of periodic orbits over a number of the model, by a change of sign on a curve of orbits.
+"""An event of periodic orbits over a number of the model.
 
-With the number anywhere in a short interval, Krawczyk's operator shows one orbit in a box for each of its values: they
-form a curve.  With M the derivative of the return map, t its trace and d its determinant, the test 1 + t + d, which is
-0 where -1 is a multiplier, is continuous on the curve.  It has opposite signs at the ends of the interval, so it
-vanishes between them.
+Fold, period-doubling, torus: one unknown is held anywhere in a short interval, v after the first impact at a fold, else
+the number.  Krawczyk's operator shows one orbit in a box for each of its values: they form a curve.  With M the
+derivative of the return map, t its trace and d its determinant, the test
+
+    fold  1 - t + d,        period-doubling  1 + t + d,        torus  1 - d, where t^2 < 4 d,
+
+is 0 where 1 or -1 is a multiplier, or two complex ones have the product 1.  It is continuous on the curve and has
+opposite signs at the ends of the interval, so it vanishes between them.
+
+Graze, hidden impact: an orbit touches the wall in its first state.  v = 0 is held there, the number is an unknown, and
+Krawczyk's operator shows one such orbit in a box.
 """
 
 from __future__ import annotations
@@ -11,105 +18,107 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, arb_mat
+from flint import arb
 
 from .formulas import Formula, Refused, Wrong, ball
-from .motion import Model, size, within
-from .periodic_orbit import krawczyk
+from .motion import Model, size
+from .periodic_orbit import Orbits, return_map
 from .periods import require_period
 from .told import compared
 
-KINDS = ("period-doubling",)
-PART = 512  # of the radii: half of the interval of the number
-ROUNDS = 40  # of Newton's method and of secants
+CURVED, TOUCHING = ("fold", "period-doubling", "torus"), ("graze", "hidden impact")
+KINDS = (*CURVED, *TOUCHING)
+PART = 512  # of the radii: half of the interval of the held unknown
+ROUNDS = 12  # of Newton's method and of secants
 
 
-class Family:
-    """The orbits of a model over a number, between which and an orbit of so many periods there is nothing to choose."""
+def event(model: Model, told: dict[str, Any], bits: int) -> None:
+    """That an event with its number and an orbit within the radii exists."""
+    kind, over, touches = told["kind"], told["over"], told["kind"] in TOUCHING
+    if kind not in KINDS or int(told["periods"]) < 1 or not told["states"]:
+        raise Wrong(f"an event is a {' or a '.join(KINDS)} of an orbit that has impacts and closes after periods")
+    others = {name: text for name, text in model.g.parameters.items() if name != over}
+    if len(others) == len(model.g.parameters) or over in model.c.names():
+        raise Wrong(f"{over} is no parameter of the model, or moves the wall")
+    require_period(Formula(model.g.text, others), told["period"])  # whatever the number is
+    numbers = [state[name] for state in told["states"] for name in ("tau", "v")] + [told["parameter"]]
+    point, radii = ([ball(Fraction(each[part])) for each in numbers] for part in ("value", "radius"))
+    family = Model(told["model"], over, point[-1])
+    span, held = Formula(told["period"], others)() * int(told["periods"]), -1 if kind in CURVED[1:] else 1
+    orbits = Orbits(family, span, bits, held % len(point), touches)
+    if touches:
+        if told["states"][0]["v"]["value"] != "0":
+            raise Wrong("v is not 0 where the orbit touches the wall")
+        near = [ball(Fraction(told["unique_within"]))] * len(point)
+        near[1] = radii[1] = arb(0)
+        orbits.alone(point, [near, radii])
+        return
+    found = Curve(orbits, kind).event(point, radii)
+    compared({f"number {k + 1}": pair for k, pair in enumerate(zip(found, numbers, strict=True))})
 
-    def __init__(self, told: dict[str, Any], bits: int) -> None:
-        self.told, self.bits, self.over = told["model"], bits, told["over"]
-        model = Model(self.told)
-        if self.over not in model.g.parameters:
-            raise Wrong(f"{self.over} is no parameter of the model")
-        others = {name: text for name, text in model.g.parameters.items() if name != self.over}
-        require_period(Formula(model.g.text, others), told["period"])  # whatever the number is
-        self.span = Formula(told["period"], others)() * int(told["periods"])
 
-    def model(self, value: Any) -> Model:
-        """The model with a ball for the number."""
-        return Model({**self.told, "parameters": {**self.told["parameters"], self.over: value}})
+class Curve:
+    """The orbits next to a fold, period doubling or torus."""
 
-    def over_box(self, value: Any, point: list[Any], radius: Any) -> tuple[Any, list[Any]]:
-        """M over a box, and Krawczyk's image of the box less its centre."""
-        slopes, image = krawczyk(self.model(value), point, [radius] * len(point), self.span, self.bits)
-        total = arb_mat([[1, 0], [0, 1]])
-        for slope in slopes:
-            total = arb_mat(slope) * total
-        return total, image
+    def __init__(self, orbits: Orbits, kind: str) -> None:
+        self.orbits, self.kind, self.bits = orbits, kind, orbits.bits
 
-    def test(self, total: Any) -> Any:
+    def test(self, slopes: list[Any]) -> Any:
         """What vanishes at the event."""
+        total = return_map(slopes)
         trace, determinant = total[0, 0] + total[1, 1], total.det()
-        return 1 + trace + determinant
+        if self.kind == "torus" and not trace * trace < 4 * determinant:
+            raise Refused("the multipliers are not shown to be complex")
+        return 1 + {"fold": -trace, "period-doubling": trace, "torus": -2 * determinant}[self.kind] + determinant
 
-    def solved(self, value: Any, point: list[Any]) -> tuple[list[Any], Any]:
+    def moved(self, point: list[Any], shift: Any) -> list[Any]:
+        """The point with another value of the held unknown."""
+        return [arb((x + shift).mid()) if k == self.orbits.held else x for k, x in enumerate(point)]
+
+    def solved(self, point: list[Any]) -> tuple[list[Any], Any]:
         """About the orbit, by Newton's method, and the middle of its test: nothing is shown."""
         small = arb(2) ** -(self.bits - 12)
         for _ in range(ROUNDS):
-            total, image = self.over_box(value, point, small)
+            slopes, image = self.orbits.krawczyk(point, [small] * len(point))
             point = [arb((x + part).mid()) for x, part in zip(point, image, strict=True)]
             if all(size(part) < 4 * small for part in image):
-                return point, arb(self.test(total).mid())
+                return point, arb(self.test(slopes).mid())
         raise Refused("Newton's method does not come to an orbit")
 
-    def require_inside(self, value: Any, point: list[Any], radius: Any) -> tuple[Any, list[Any]]:
-        """M and the orbits less the centre, where one orbit is shown in the box for each value of a ball."""
-        total, image = self.over_box(value, point, radius)
+    def crossing(self, point: list[Any], close: Any) -> list[Any]:
+        """An orbit at which the test is about 0, by secants: nothing is shown."""
+        (point, test), step = self.solved(point), arb(2) ** -(self.bits // 3)
+        for _ in range(ROUNDS):
+            point, after = self.solved(self.moved(point, step))
+            if test == after:
+                break
+            step, test = arb((after * step / (test - after)).mid()), after
+            if abs(step) < close / 16:
+                return self.solved(self.moved(point, step))[0]
+        raise Refused("no orbit is found at which the test vanishes")
+
+    def inside(self, point: list[Any], radius: Any, half: Any = None) -> tuple[list[Any], list[Any]]:
+        """D G and the orbits less the centre, where one orbit is shown in the box for each value of the held one."""
+        slopes, image = self.orbits.krawczyk(point, [radius] * len(point), half)
         if not all(abs(part) < radius for part in image):
             raise Refused("Krawczyk's operator does not map the box of the curve into itself")
-        return total, image
+        return slopes, image
 
-
-def event(model: Model, told: dict[str, Any], bits: int) -> None:  # noqa: ARG001
-    """That an event with its number and an orbit within the radii exists."""
-    if told["kind"] not in KINDS or int(told["periods"]) < 1 or not told["states"]:
-        raise Wrong(f"an event is a {' or '.join(KINDS)} of an orbit that has impacts and closes after periods")
-    family, numbers = Family(told, bits), [state[name] for state in told["states"] for name in ("tau", "v")]
-    value, radius = (ball(Fraction(told["parameter"][part])) for part in ("value", "radius"))
-    narrow = min((ball(Fraction(each["radius"])) for each in numbers), key=float) / 4
-    half, own = arb((min(radius, narrow, key=float) / PART).mid()), arb(2) ** -(bits - 20)
-    if not own < half / PART:
-        raise Refused("too few bits")
-    value, point = crossing(family, arb(value.mid()), [ball(Fraction(each["value"])) for each in numbers], half)
-    narrow = arb(narrow.mid())
-    _, image = family.require_inside(value + within(half), point, narrow)
-    signs = []
-    for side in (-1, 1):
-        at = value + side * half
-        end, _ = family.solved(at, point)
-        found, _ = family.require_inside(at, end, own)
-        if not all(abs(a - b) + own < narrow for a, b in zip(end, point, strict=True)):
-            raise Refused("an orbit beside the event is not shown to lie on the curve")
-        test = family.test(found)
-        signs.append(1 if test > 0 else -1 if test < 0 else 0)
-    if sorted(signs) != [-1, 1]:
-        raise (Wrong if abs(sum(signs)) == 2 else Refused)("the test is not shown to change its sign")
-    states = {f"state {k}": (x + part, each)
-              for k, (x, part, each) in enumerate(zip(point, image, numbers, strict=True))}  # fmt: skip
-    compared({told["over"]: (value + within(half), told["parameter"]), **states})
-
-
-def crossing(family: Family, value: Any, point: list[Any], close: Any) -> tuple[Any, list[Any]]:
-    """A number and an orbit at which the test is about 0, by secants: nothing is shown."""
-    point, test = family.solved(value, point)
-    other = arb((value + arb(2) ** -(family.bits // 3)).mid())
-    for _ in range(ROUNDS):
-        point, after = family.solved(other, point)
-        if test == after:
-            break
-        step = arb((after * (other - value) / (test - after)).mid())
-        value, test, other = other, after, arb((other + step).mid())
-        if abs(step) < close / 16:
-            return other, family.solved(other, point)[0]
-    raise Refused("no number is found at which the test vanishes")
+    def event(self, point: list[Any], radii: list[Any]) -> list[Any]:
+        """Balls of the event, within the radii round a point if all goes well."""
+        narrow = arb((min(radii, key=float) / 4).mid())
+        half, own, signs = arb((narrow / PART).mid()), arb(2) ** -(self.bits - 20), []
+        if not own < half / PART:
+            raise Refused("too few bits")
+        point = self.crossing(point, half)
+        slopes, image = self.inside(point, narrow, half * arb(1.01))  # its ends are beyond those below
+        self.test(slopes)  # along the whole curve a torus has complex multipliers
+        for side in (-1, 1):
+            end, _ = self.solved(self.moved(point, side * half))
+            if not all(abs(a - b) + own < narrow for a, b in zip(end, point, strict=True)):
+                raise Refused("an orbit beside the event is not shown to lie on the curve")
+            test = self.test(self.inside(end, own)[0])
+            signs.append(1 if test > 0 else -1 if test < 0 else 0)
+        if sorted(signs) != [-1, 1]:
+            raise (Wrong if abs(sum(signs)) == 2 else Refused)("the test is not shown to change its sign")
+        return [x + part for x, part in zip(point, image, strict=True)]

@@ -90,6 +90,10 @@ class Formula:
     def __call__(self, **values: Any) -> Any:
         return self._at(self.tree, values)
 
+    def names(self, node: ast.expr | None = None) -> set[str]:
+        """The names in the text, or in a part of it."""
+        return {part.id for part in ast.walk(node or self.tree) if isinstance(part, ast.Name)}
+
     def _exact(self, node: ast.expr) -> Fraction | None:
         """The rational that a part is, if it is one: decimals are exact."""
         match node:
@@ -126,7 +130,7 @@ class Formula:
 
     def rate(self, node: ast.expr) -> tuple[Fraction, int] | None:
         """(q, k) of a part that is q pi^k t + a constant; q = 0 where it is constant."""
-        if not any(isinstance(part, ast.Name) and part.id == "t" for part in ast.walk(node)):
+        if "t" not in self.names(node):
             return Fraction(0), 0
         match node:
             case ast.Name():

@@ -13,6 +13,7 @@ A flight from s = -S to s = -l S is launched with S^(j+1) (1-l) W and lands with
 from __future__ import annotations
 
 import ast
+from collections.abc import Sequence
 from typing import Any
 
 from flint import acb, arb, arb_poly, arb_series
@@ -26,7 +27,7 @@ SMALL = 2.0**-36  # tail, in units of b_j
 
 def affine(f: Formula, node: ast.expr) -> tuple[Any, Any, Any]:
     """(k, d, m) of a part k x + d xdot + m."""
-    names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)} & {"x", "xdot"}
+    names = f.names(node) & {"x", "xdot"}
     zero = arb(0)
     if not names:
         return zero, zero, f._at(node, {})
@@ -42,9 +43,7 @@ def affine(f: Formula, node: ast.expr) -> tuple[Any, Any, Any]:
             return one[0] + sign * other[0], one[1] + sign * other[1], one[2] + sign * other[2]
         case ast.BinOp(left, ast.Mult() | ast.Div() as op, right):
             (k, d, m), (p, q, factor) = affine(f, left), affine(f, right)
-            if isinstance(op, ast.Mult) and not any(
-                isinstance(part, ast.Name) and part.id in names for part in ast.walk(left)
-            ):
+            if isinstance(op, ast.Mult) and not f.names(left) & names:
                 (k, d, m), (p, q, factor) = (p, q, factor), (k, d, m)
             if p == 0 and q == 0:
                 factor = factor if isinstance(op, ast.Mult) else 1 / factor
@@ -138,43 +137,35 @@ class Gravity:
 
     def speeds(self, S: Any, x: Any) -> list[Any]:
         """W and U at (S, l = x), then their derivatives by S, then by l."""
-        j, zero = self.j, arb(0)
-        W, U, WS, US, Wx, Ux = [zero] * 6
-        P, Q, G, dP, dQ, dG, power, before = arb(1), arb(1), arb(1), zero, zero, zero, arb(1), zero
-        for k in range(1, self.K + 1):
-            dP, P = P + x * dP, (k + 1) + x * P
-            dG, G = G + x * dG, 1 + x * G
-            dQ, Q = dG + Q + x * dQ, G + x * Q
-            if k < j:
-                continue
-            if k > j:
-                before, power = power, power * S
-            f = self.b[k] / ((k + 1) * (k + 2))
-            W, U, Wx, Ux = W + f * power * P, U + f * power * Q, Wx + f * power * dP, Ux + f * power * dQ
-            WS, US = WS + f * (k - j) * before * P, US + f * (k - j) * before * Q
-        return [part + self.rest for part in (W, U, WS, US, Wx, Ux)]
+        moved = [[arb_series([part, int(i == k)], prec=2) for i, part in enumerate((S, x))] for k in (0, 1)]
+        (W, U), (Wx, Ux) = (sums(self.b, self.j, self.K, *each) for each in moved)
+        return [part + self.rest for part in (W[0], U[0], W[1], U[1], Wx[1], Ux[1])]
 
     def fall(self, speeds: list[Any], x: Any) -> Any:  # noqa: ARG002
         """Minus the derivative of (1 - l) W by l."""
         return speeds[1]
 
-    def folded(self, ring: Any, S: list[Any], x: list[Any]) -> tuple[list[Any], list[Any]]:
+    def folded(self, ring: Any, S: Any, x: Any) -> tuple[Any, Any]:
         """W and U of polynomials."""
-        j, D, one = self.j, ring.D, ring.constant(arb(1))
-        W, U, P, Q, G, power = ring.constant(arb(0)), ring.constant(arb(0)), one, one, one, one
-        for k in range(1, D + j + 1):
-            P = ring.plus(ring.constant(arb(k + 1)), ring.times(x, P))
-            G = ring.plus(one, ring.times(x, G))
-            Q = ring.plus(G, ring.times(x, Q))
-            if k >= j:
-                power = ring.times(power, S) if k > j else power
-                f = self.b[k] / ((k + 1) * (k + 2))
-                W, U = ring.plus(W, ring.times(power, P), f), ring.plus(U, ring.times(power, Q), f)
-        beyond = self.tail(j + D)
-        beyond += sum((abs(self.b[k]) * self.s0 ** (k - j - D) for k in range(D + j + 1, self.K + 1)), arb(0))
-        last = [arb_poly([0] * D + [within(beyond / 2)]), *[arb_poly([0])] * ring.m]
-        return ring.plus(W, last), ring.plus(U, last)
+        D, j = ring.D, self.j
+        left = (abs(self.b[k]) * self.s0 ** (k - j - D) for k in range(D + j + 1, self.K + 1))
+        last = ring(arb_poly([0] * D + [within((self.tail(j + D) + sum(left, arb(0))) / 2)]))
+        W, U = sums(self.b, j, D + j, S, x)
+        return W + last, U + last
 
     def factor(self, S: Any) -> Any:
         """v over the speed dy/ds."""
         return (self.damping * self.time(S)).exp() * (1 + self.square * S * S).sqrt()
+
+
+def sums(b: Sequence[Any], j: int, last: int, S: Any, x: Any) -> tuple[Any, Any]:
+    """The terms of W and U up to k = last, at elements of any ring."""
+    W, U, P, Q, G, power = 0, 0, 1, 1, 1, 1
+    for k in range(1, last + 1):
+        P, G = x * P + (k + 1), x * G + 1
+        Q = x * Q + G
+        if k >= j:
+            power = power * S if k > j else power
+            share = power * (b[k] / ((k + 1) * (k + 2)))
+            W, U = share * P + W, share * Q + U
+    return W, U

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import pairwise
+from operator import add, mul
 from typing import Any
 
 from flint import arb, arb_poly
@@ -40,8 +41,10 @@ class Folded:
         self.D, self.s0, self.m = D, s0, m
         self.d = [within(h**k) if k else arb(1) for k in range(2 * m + 1)]
 
-    def constant(self, *parts: Any) -> list[Any]:
-        return [arb_poly([part]) for part in (*parts, *[arb(0)] * self.m)[: self.m + 1]]
+    def __call__(self, *parts: Any) -> Part:
+        """The element with these coefficients of powers of d."""
+        return Part(self, [part if isinstance(part, arb_poly) else arb_poly([part]) for part in parts]
+                    + [arb_poly([0])] * (self.m + 1 - len(parts)))  # fmt: skip
 
     def folded(self, p: Any) -> Any:
         c = p.coeffs()
@@ -52,50 +55,58 @@ class Folded:
             last = last + c[i] * arb(0).union(self.s0 ** (i - self.D))
         return arb_poly([*c[: self.D], last])
 
-    def times(self, p: list[Any], q: list[Any]) -> list[Any]:
-        parts = [arb_poly([0]) for _ in range(2 * self.m + 1)]
-        for a, left in enumerate(p):
-            for b, right in enumerate(q):
+    def residual(self, o: Gravity | Flights, L: list[Part], r: Part) -> Any:
+        L, S, r = [Part(self, part.parts) for part in L], self(arb_poly([0, 1])), Part(self, r.parts)
+        here = composed(L, S)
+        S1 = S * here
+        there = composed(L, S1)
+        launch = (there * -1 + 1) * o.folded(self, S1, there)[0] * here ** (o.j + 1)
+        return launch + r * ((here * -1 + 1) * o.folded(self, S, here)[1]) * -1
+
+
+class Part:
+    """An element of these polynomials."""
+
+    def __init__(self, ring: Folded, parts: list[Any]) -> None:
+        self.ring, self.parts = ring, parts
+
+    def __add__(self, other: Any) -> Part:
+        parts = other.parts if isinstance(other, Part) else [arb_poly([other])]
+        return Part(self.ring, [*map(add, self.parts, parts), *self.parts[len(parts) :]])
+
+    def __mul__(self, other: Any) -> Part:
+        if not isinstance(other, Part):
+            return Part(self.ring, [part * other for part in self.parts])
+        ring = self.ring
+        parts = [arb_poly([0]) for _ in range(2 * ring.m + 1)]
+        for a, left in enumerate(self.parts):
+            for b, right in enumerate(other.parts):
                 parts[a + b] = parts[a + b] + left * right
-        for k in range(self.m + 1, 2 * self.m + 1):
-            parts[self.m] = parts[self.m] + parts[k] * self.d[k - self.m]
-        return [self.folded(part) for part in parts[: self.m + 1]]
+        for k in range(ring.m + 1, 2 * ring.m + 1):
+            parts[ring.m] = parts[ring.m] + parts[k] * ring.d[k - ring.m]
+        return Part(ring, [ring.folded(part) for part in parts[: ring.m + 1]])
 
-    def plus(self, p: list[Any], q: list[Any], factor: Any = 1) -> list[Any]:
-        return [a + b * factor for a, b in zip(p, q, strict=True)]
+    __radd__, __rmul__ = __add__, __mul__
 
-    def inverse(self, p: list[Any]) -> list[Any]:
+    def __pow__(self, exponent: int) -> Any:
+        return self * self ** (exponent - 1) if exponent else 1
+
+    def over(self) -> Any:
+        """The polynomial in S for all d."""
+        return sum((part * self.ring.d[k] for k, part in enumerate(self.parts)), arb_poly([0]))
+
+    def inverse(self) -> Any:
         """1/p for p without S: p = p_0 (1 + e), 1/(1 + e) = 1 - e + e^2 - e^3/(1 + e)."""
-        first = p[0][0]
-        if not self.m:
-            return self.constant(1 / first)
-        e = [arb_poly([0]), *(part * (1 / first) for part in p[1:])]
-        square = self.times(e, e)
-        cube = self.times(square, e)
-        found = self.plus(self.plus(self.constant(arb(1)), e, -1), square)
-        found = self.plus(found, cube, -1 / (1 + self.over(e)[0]))
-        return [part * (1 / first) for part in found]
+        first = 1 / self.parts[0][0]
+        e = Part(self.ring, [arb_poly([0]), *(part * first for part in self.parts[1:])])
+        return (e * -1 + e * e + e * e * e * (-1 / (1 + e.over()[0])) + 1) * first
 
-    def over(self, p: list[Any]) -> Any:
-        """p for all d."""
-        return sum((part * self.d[k] for k, part in enumerate(p)), arb_poly([0]))
 
-    def composed(self, L: list[list[Any]], q: list[Any]) -> list[Any]:
-        found = self.constant(arb(0))
-        for part in reversed(L):
-            found = self.plus(self.times(found, q), part)
-        return found
-
-    def residual(self, o: Gravity | Flights, L: list[list[Any]], r: list[Any]) -> list[Any]:
-        one, S = self.constant(arb(1)), [arb_poly([0, 1]), *[arb_poly([0])] * self.m]
-        here = self.composed(L, S)
-        S1 = self.times(S, here)
-        there = self.composed(L, S1)
-        launch = self.times(self.plus(one, there, -1), o.folded(self, S1, there)[0])
-        for _ in range(o.j + 1):
-            launch = self.times(launch, here)
-        landing = self.times(self.plus(one, here, -1), o.folded(self, S, here)[1])
-        return self.plus(launch, self.times(r, landing), -1)
+def composed(L: list[Part], q: Part) -> Part:
+    found = L[-1]
+    for part in reversed(L[:-1]):
+        found = found * q + part
+    return found
 
 
 def parts_of(j: int) -> tuple[list[int], list[int], list[int]]:
@@ -123,34 +134,30 @@ class Box:
         h, m = size((low - centre).union(high - centre)), 0 if r is not None else 2
         rings = [Folded(n + 1, o.s0, h, m) for n in range(self.N)] + [Folded(D, o.s0, h, m)]
         make = rings[0]
-        lam = make.constant(centre, arb(1)) if m else make.constant(low.union(high))
-        powers = [make.constant(arb(1))]
+        lam = make(centre, arb(1)) if m else make(low.union(high))
+        powers = [make(arb(1))]
         for _ in range(j + self.N + 1):
-            powers.append(make.times(powers[-1], lam))
-        zero, one = make.constant(arb(0)), powers[0]
-        P, Q, dQ = (sum_of(make, zero, powers, parts) for parts in parts_of(j))
-        ratio = make.constant(r) if r is not None else make.times(make.times(powers[j + 1], P), make.inverse(Q))
-        lead, gap = o.lead, make.plus(one, lam, -1)
+            powers.append(powers[-1] * lam)
+        P, Q, dQ = (sum(map(mul, powers, parts), make(arb(0))) for parts in parts_of(j))
+        ratio = make(r) if r is not None else powers[j + 1] * P * Q.inverse()
+        lead, gap = o.lead, lam * -1 + 1
         L = [lam]
         for n in range(1, self.N):
-            factor = make.plus(make.times(make.times(powers[j], gap), P), zero)
-            factor = make.plus(make.plus(zero, factor, j + 1), make.times(powers[j + 1 + n], Q), -1)
-            factor = make.plus(factor, make.times(ratio, make.plus(make.times(gap, dQ), Q, -1)), -1)
-            factor = [part * lead for part in factor]
-            left = [arb_poly([part[n]]) for part in rings[n].residual(o, L, ratio)]
-            L.append([-part for part in make.times(left, make.inverse(factor))])
-        self.take(rings[-1], L, ratio, make.inverse(gap))
-        self.r = r if r is not None else make.over(ratio)[0]
+            factor = powers[j] * gap * P * (j + 1) + powers[j + 1 + n] * Q * -1 + ratio * (gap * dQ + Q * -1) * -1
+            left = make(*(part[n] for part in rings[n].residual(o, L, ratio).parts))
+            L.append(left * (factor * lead).inverse() * -1)
+        self.take(rings[-1], L, ratio, gap.inverse())
+        self.r = r if r is not None else ratio.over()[0]
         self.require_series(told["series"])
 
-    def take(self, ring: Folded, L: list[list[Any]], ratio: list[Any], inverse: list[Any]) -> None:
+    def take(self, ring: Folded, L: list[Part], ratio: Part, inverse: Part) -> None:
         """L, (1 - L)/(1 - lambda) and the residual over the box."""
-        found = ring.over(ring.residual(self.o, L, ratio))
+        found = ring.residual(self.o, L, ratio).over()
         if not all(found[i].contains(0) for i in range(self.N)):
             raise Wrong("the series does not annul the residual")
         self.E = [found[i] for i in range(self.N, ring.D + 1)]
-        self.L: Any = arb_poly([ring.over(part)[0] for part in L])
-        self.gap = arb_poly([1, *(-ring.over(ring.times(part, inverse))[0] for part in L[1:])])
+        self.L: Any = arb_poly([part.over()[0] for part in L])
+        self.gap = arb_poly([1, *(-(part * inverse).over()[0] for part in L[1:])])
 
     def require_series(self, told: list[dict[str, str]]) -> None:
         """Refuse a series that is not the one of the box."""
@@ -257,12 +264,6 @@ class Box:
         """The speed on gamma at S, as of y'."""
         x = self.L(S) + within(ball(Fraction(self.told["Kl"])) * S**self.N)
         return S ** (self.o.j + 1) * (1 - x) * self.o.speeds(S, x)[0]
-
-
-def sum_of(make: Folded, zero: list[Any], powers: list[list[Any]], parts: list[int]) -> list[Any]:
-    for part, power in zip(parts, powers, strict=False):
-        zero = make.plus(zero, power, part)
-    return zero
 
 
 def lowest(parts: Any) -> Any:

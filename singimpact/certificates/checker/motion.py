@@ -7,11 +7,13 @@ K = M R^(1-n) exp(B h + A h^2/2)/n.  By Gronwall's lemma the motion exists on [0
 
     |x'(s) - P'(s)| <= K s^n,        |x(s) - P(s)| <= K s^(n+1)/(n+1)        if K h^n (1 + h) < slack.
 
-The same holds for x with its derivatives psi by the state at the launch, psi'' + f_x psi + f_x' psi' = 0, as one
-motion: then P, F and f stand for all components, and A, B for the largest sum of sizes in a row of derivatives.
+The same holds for x with its derivatives psi by the state at the launch, psi'' + f_x psi + f_x' psi' = 0, and that by
+a number p of the model, driven by g_p - f_p, as one motion: then P, F and f stand for all components, and A, B for the
+largest sum of sizes in a row of derivatives.
 
 A first hit is a change of sign of x - c on a piece on which x' < 0, with x - c > 0 on all pieces before; on the first
-step (x - c)/s takes the place of x - c, so that launches from the wall are decided however slow they are.
+step (x - c)/s takes the place of x - c, so that launches from the wall are decided however slow they are, and
+(x - c)/s^2 from rest.
 
 A ball of launches round a centre is flown with the centre: at the end of a step the distance of x from that of the
 centre is at most the distance of the launches times a bound of the derivatives by them, by the mean value theorem.
@@ -19,7 +21,6 @@ centre is at most the distance of the launches times a bound of the derivatives 
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -31,33 +32,48 @@ HORIZON = 1e4  # of a flight
 
 
 class Model:
-    """x'' + f(x, x') = g(t), x >= c, and what an impact makes of a velocity."""
+    """x'' + f(x, x') = g(t), x >= c, and what an impact makes of a velocity; a parameter `over` may be a ball."""
 
-    def __init__(self, told: dict[str, Any]) -> None:
-        given = dict(told.get("parameters") or {})
+    def __init__(self, told: dict[str, Any], over: str | None = None, value: Any = None) -> None:
+        self.told, self.over, self.value = told, over, value
+        given = dict(told.get("parameters") or {}) | ({over: value} if over else {})
         self.f, self.g, self.c = (Formula(told[name], given) for name in ("f", "g", "clearance"))
         self._law = Formula(told["restitution"], given)
 
+    def at(self, value: Any) -> Model:
+        """The model with another number."""
+        return Model(self.told, self.over, value) if self.over else self
+
     def ratio(self) -> Any:
         """r, where the restitution is a number."""
-        if any(isinstance(node, ast.Name) and node.id == "v" for node in ast.walk(self._law.tree)):
+        if "v" in self._law.names():
             raise Wrong("the restitution is a law, and no number")
         return self._law()
 
-    def rebound(self, velocity: Any) -> Any:
+    def rebound(self, velocity: Any, **number: Any) -> Any:
         """The velocity after an impact with x' = velocity < 0: by a law in v, or r |x'|."""
-        law = any(isinstance(node, ast.Name) and node.id == "v" for node in ast.walk(self._law.tree))
-        return self._law(v=velocity) if law else self._law() * (velocity * -1)
+        law = "v" in self._law.names()
+        return self._law(v=velocity, **number) if law else self._law(**number) * (velocity * -1)
 
-    def push(self, time: Any, velocity: Any) -> Any:
-        """x'' at the wall."""
-        return self.g(t=time) - self.f(x=self.c(), xdot=velocity)
+    def push(self, time: Any, velocity: Any, height: Any = None) -> Any:
+        """x'', at the wall where no x is given."""
+        return self.g(t=time) - self.f(x=self.c() if height is None else height, xdot=velocity)
+
+    def moved(self, *slopes: int) -> dict[str, Any]:
+        """The number with its derivatives."""
+        return {self.over: Dual(self.value, slopes)} if self.over else {}
 
     def field(self, X: Sequence[Any], V: Sequence[Any]) -> list[Any]:
-        """f at x = X[0], and f_x psi + f_x' psi' of the other components psi."""
-        found = self.f(x=Dual(X[0], [1, 0]), xdot=Dual(V[0], [0, 1])) if X[1:] else self.f(x=X[0], xdot=V[0])
-        value, slopes = (found.value, found.slopes) if X[1:] and isinstance(found, Dual) else (found, [0, 0])
-        return [value, *(p * slopes[0] + q * slopes[1] for p, q in zip(X[1:], V[1:], strict=True))]
+        """f at x = X[0], and f_x psi + f_x' psi' of the other components psi, with f_p of the one by the number p."""
+        if len(X) == 1:
+            return [self.f(x=X[0], xdot=V[0])]
+        found = self.f(x=Dual(X[0], X[1:]), xdot=Dual(V[0], V[1:]), **self.moved(0, 0, 1))
+        return [found.value, *found.slopes] if isinstance(found, Dual) else [found, *[0] * (len(X) - 1)]
+
+    def forcing(self, time: Any, count: int) -> list[Any]:
+        """g, and what drives the other components."""
+        found = self.g(t=time, **(self.moved(0, 0, 1) if count > 1 else {}))
+        return [found.value, *found.slopes] if isinstance(found, Dual) else [found, *[0] * (count - 1)]
 
 
 def size(number: Any) -> Any:
@@ -72,6 +88,7 @@ def within(radius: Any) -> Any:
 
 def coefficients(number: Any, count: int) -> list[Any]:
     """The first coefficients of a series, or of a constant."""
+    number = number if isinstance(number, arb_series) else arb(number)
     return [number[k] for k in range(count)] if isinstance(number, arb_series) else [number, *[arb(0)] * (count - 1)]
 
 
@@ -82,19 +99,20 @@ def derived(X: Sequence[Any]) -> list[Any]:
 
 def taylor(model: Model, time: Any, x: Sequence[Any], v: Sequence[Any], n: int) -> list[list[Any]]:
     """The coefficients 0, ..., n of all components of the motion, one after the other."""
-    forcing, X = coefficients(model.g(t=arb_series([time, 1], prec=n)), n), [x[0], v[0]]
+    forcing, X = [coefficients(part, n) for part in model.forcing(arb_series([time, 1], prec=n), len(x))], [x[0], v[0]]
     for k in range(n - 1):
         f = model.f(x=arb_series(X, prec=k + 1), xdot=arb_series(derived(X), prec=k + 1))
-        X.append((forcing[k] - coefficients(f, k + 1)[k]) / ((k + 1) * (k + 2)))
-    found, one, zero = [X], arb_series([1], prec=n - 1), arb_series([0], prec=n - 1)
+        X.append((forcing[0][k] - coefficients(f, k + 1)[k]) / ((k + 1) * (k + 2)))
+    found, count = [X], n - 1
     if x[1:]:
-        place = [arb_series(part, prec=n - 1) for part in (X, derived(X))]
-        by_x, by_v = (coefficients(model.field([place[0], *pair[0]], [place[1], *pair[1]])[1], n - 1)
-                      for pair in (((one,), (zero,)), ((zero,), (one,))))  # fmt: skip
-    for start in zip(x[1:], v[1:], strict=True):
+        units = [[arb_series([int(i == k)], prec=count) for k in range(len(x) - 1)] for i in (0, 1)]
+        place = [[arb_series(part, prec=count), *unit] for part, unit in zip((X, derived(X)), units, strict=True)]
+        by_x, by_v, *by_number = (coefficients(part, count) for part in model.field(*place)[1:])
+    for i, start in enumerate(zip(x[1:], v[1:], strict=True)):
         psi, rate = list(start), [start[1]]
         for k in range(n - 1):
             pull = sum(map(arb.__mul__, by_x, psi[k::-1]), arb(0)) + sum(map(arb.__mul__, by_v, rate[k::-1]), arb(0))
+            pull += by_number[0][k] - forcing[3][k] if i == 2 else 0
             psi.append(-pull / ((k + 1) * (k + 2)))
             rate.append((k + 2) * psi[-1])
         found.append(psi)
@@ -113,8 +131,8 @@ def defect(model: Model, time: Any, X: list[list[Any]], R: Any) -> Any:
     bounds = [[bound(R) for bound in spread(part)] for part in X]
     places = [[acb(part[i] + within(bound[i]), within(bound[i])) for part, bound in zip(X, bounds, strict=True)]
               for i in (0, 1)]  # fmt: skip
-    found = [acb(part) for part in model.field(*places)]
-    found[0] -= acb(model.g(t=acb(time + within(R), within(R))))
+    forcing = model.forcing(acb(time + within(R), within(R)), len(X))
+    found = [acb(part) - acb(pull) for part, pull in zip(model.field(*places), forcing, strict=True)]
     if not all(part.is_finite() for part in found):
         return None
     return largest(size(part) + bound[2] for part, bound in zip(found, bounds, strict=True))
@@ -192,53 +210,114 @@ def first_root(q: Callable[[Any], Any], slope: Callable[[Any], Any], h: Any, lea
     raise Refused(f"near t = {float(a):.6g} neither a hit nor a miss is shown")
 
 
-def flight(
-    model: Model, tau: Any, v: Any, bits: int, columns: int = 0, centre: tuple[Any, Any] | None = None
-) -> tuple[Any, Any, list[tuple[Any, Any]]]:
-    """The time of the first hit and x' there; and psi, psi' of the derivatives by x and x' at the launch, of 0 or 2.
+def tiny(h: Any, bits: int) -> Any:
+    """The least piece of a step on which a root is looked for."""
+    return h * arb(2) ** (-(2 * bits) // 3)
 
-    `centre` is a launch within the balls tau and v, beside which they are flown; then there are 2 columns.
+
+def above(X: Sequence[Any], K: Any, c: Any, removed: int) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
+    """y = (x - c)/s^removed and y' on a step, where so many coefficients of x - c vanish at its beginning."""
+    n = len(X[0]) - 1
+    Q = arb_poly(X[0][removed:]) if removed else arb_poly(X[0]) - arb_poly([c])
+    dQ = Q.derivative()
+
+    def y(s: Any) -> Any:
+        return Q(s) + within(K / (n + 1) * size(s) ** (n + 1 - removed))
+
+    def slope(s: Any) -> Any:
+        # |y' - Q'| <= K s^(n - removed) + removed K s^(n - removed)/(n + 1)
+        return dQ(s) + within(K * size(s) ** (n - removed) * (1 + arb(removed) / (n + 1)))
+
+    return y, slope
+
+
+class Flight:
+    """A motion from the wall, step after step: x, x' and their derivatives by x and x' at the launch, and a number.
+
+    `columns` derivatives are carried.  `centre` is a launch within the balls tau and v, beside which they are flown.
     """
-    if not v > 0:
-        raise Refused("the launch velocity is not shown to be positive")
-    c, passed, first = model.c(), arb(0), True
-    x, speed = [c, arb(1), arb(0)][: 1 + columns], [v, arb(0), arb(1)][: 1 + columns]
-    beside = None if centre is None else Beside(model, (tau, v), centre)
-    while passed < HORIZON:
-        X, h, K = step(model, tau + passed, x, speed, bits)
-        if beside is not None:
-            h = min(h, beside.step(passed, bits), key=float)
-        n, P = len(X[0]) - 1, arb_poly(X[0])
-        Q = arb_poly(X[0][1:]) if first else P - arb_poly([c])
-        dQ, k = Q.derivative(), n if first else n + 1
 
-        def q(s: Any, Q: Any = Q, K: Any = K, k: int = k, n: int = n) -> Any:
-            return Q(s) + within(K / (n + 1) * size(s) ** k)
+    def __init__(
+        self, model: Model, tau: Any, v: Any, bits: int, columns: int = 0, centre: tuple[Any, Any] | None = None
+    ) -> None:
+        if not (v > 0 or v == 0):
+            raise Refused("the launch velocity is not shown to be positive")
+        self.model, self.tau, self.bits, self.c, self.passed = model, tau, bits, model.c(), arb(0)
+        self.x, self.speed = [self.c, arb(1), arb(0), arb(0)][: 1 + columns], [v, arb(0), arb(1), arb(0)][: 1 + columns]
+        self.removed = 1 if v > 0 else 2
+        self.beside = None if centre is None else Beside(model, (tau, v), centre)
 
-        def slope(s: Any, dQ: Any = dQ, K: Any = K, k: int = k, n: int = n) -> Any:
-            # of y = (x - c)/s: |y' - Q'| <= K s^(n-1) + K s^(n-1)/(n+1)
-            return dQ(s) + within(K * size(s) ** (k - 1) * (1 if k > n else 1 + arb(1) / (n + 1)))
+    def step(self) -> Any:
+        """The polynomials of the next step, and its length."""
+        self.X, h, self.K = step(self.model, self.tau + self.passed, self.x, self.speed, self.bits)
+        self.y, self.slope = above(self.X, self.K, self.c, self.removed)
+        return h if self.beside is None else min(h, self.beside.step(self.passed, self.bits), key=float)
 
-        U = None
+    def root(self, h: Any) -> tuple[Any, Any]:
+        """The first root on the step, or None; and the length up to which that is shown."""
+        why = Refused()
         for part in (1.0, 0.93, 0.86, 0.79):  # a root at the very end of a step is not decided there
             h = arb((h * part).mid())
             try:
-                U = first_root(q, slope, h, h * arb(2) ** (-(2 * bits) // 3))
-                break
-            except Refused:
-                if part < 0.8:
-                    raise
-        s = h if U is None else U
-        x, speed = ends(X, K, s)
-        if U is not None:
-            there = speed[0].intersection(U * slope(U)) if first else speed[0]
-            return passed + U, there, list(zip(x[1:], speed[1:], strict=True))
-        passed, first = passed + s, False
-        if beside is not None:
-            x[0], speed[0] = beside.narrowed(x, speed, passed, s)
-        if not x[0] - c > 0:
+                return first_root(self.y, self.slope, h, tiny(h, self.bits)), h
+            except Refused as reason:
+                why = reason
+        raise why
+
+    def advance(self, s: Any) -> None:
+        """To the end of a step, at which x > c."""
+        self.x, self.speed = ends(self.X, self.K, s)
+        self.passed, self.removed = self.passed + s, 0
+        if self.beside is not None:
+            self.x[0], self.speed[0] = self.beside.narrowed(self.x, self.speed, self.passed, s)
+        self.require_above()
+        if not self.passed < HORIZON:
+            raise Refused(f"no hit before {HORIZON:g}")
+
+    def require_above(self) -> None:
+        """Refuse the end of a step that may be on the wall."""
+        if not self.x[0] - self.c > 0:
             raise Refused("x - c is lost at the end of a step")
-    raise Refused(f"no hit before {HORIZON:g}")
+
+
+def flight(
+    model: Model, tau: Any, v: Any, bits: int, columns: int = 0, centre: tuple[Any, Any] | None = None
+) -> tuple[Any, Any, list[tuple[Any, Any]]]:
+    """The time of the first hit and x' there; and psi, psi' of the derivatives, see `Flight`."""
+    motion = Flight(model, tau, v, bits, columns, centre)
+    while True:
+        U, h = motion.root(motion.step())
+        if U is not None:
+            x, speed = ends(motion.X, motion.K, U)
+            there = speed[0].intersection(U**motion.removed * motion.slope(U)) if motion.removed else speed[0]
+            return motion.passed + U, there, list(zip(x[1:], speed[1:], strict=True))
+        motion.advance(h)
+
+
+def touching(model: Model, launch: tuple[Any, Any], time: Any, bits: int, columns: int) -> list[tuple[Any, Any]]:
+    """x - c, x' and the derivatives of x, x' at a time before which x > c is shown, if x - c = x' = 0 then.
+
+    Up to a last piece x > c; on it x'' > 0.
+    """
+    motion = Flight(model, *launch, bits, columns)
+    while True:
+        h, left = motion.step(), time - motion.passed
+        if not left.upper() <= h:
+            h = arb(min(h, left * arb(0.8), key=float).mid())
+            U, h = motion.root(h)
+            if U is not None:
+                raise Refused("the motion meets the wall before it touches it")
+            motion.advance(h)
+            continue
+        for k in range(1, 30):
+            last = arb((left * (1 - arb(2) ** -k)).mid())
+            x, speed = ends(motion.X, motion.K, last.union(left))
+            if model.push(launch[0] + motion.passed + last.union(left), speed[0], x[0]) > 0:
+                if last > 0 and first_root(motion.y, motion.slope, last, tiny(last, bits)) is not None:
+                    raise Refused("the motion meets the wall before it touches it")
+                x, speed = ends(motion.X, motion.K, left)
+                return [(x[0] - motion.c, speed[0]), *zip(x[1:], speed[1:], strict=True)]
+        raise Refused("that the mass is driven off the wall where it touches it is not shown")
 
 
 def ends(X: Sequence[Any], K: Any, s: Any) -> tuple[list[Any], list[Any]]:
@@ -274,15 +353,23 @@ class Beside:
         return found
 
 
-def impact(model: Model, tau: Any, v: Any, bits: int, centre: tuple[Any, Any] | None = None) -> list[list[Any]]:
-    """The derivative of the impact map over a ball of states: rows of the next tau and v, columns of tau and v."""
-    time, speed, ((p, p_dot), (q, q_dot)) = flight(model, tau, v, bits, 2, centre)
-    rebound = model.rebound(Dual(speed, [1]))
-    start, end = model.push(tau, v), model.push(tau + time, speed)
+def by_launch(model: Model, tau: Any, v: Any, columns: Sequence[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
+    """The derivatives of x and x' by tau, v and a number, from those by x, x' at the launch and the number."""
+    (p, p_dot), (q, q_dot), *rest = columns
+    start = model.push(tau, v)
     # a later launch is, at its time, a launch with x less by v and x' less by x''
-    moved = [(-v * p - start * q, -v * p_dot - start * q_dot), (q, q_dot)]
-    late = [-x / speed for x, _ in moved]
-    return [late, [rebound.slopes[0] * (w + end * part) for (_, w), part in zip(moved, late, strict=True)]]
+    return [(-v * p - start * q, -v * p_dot - start * q_dot), (q, q_dot), *rest]
+
+
+def impact(model: Model, tau: Any, v: Any, bits: int, centre: tuple[Any, Any] | None = None) -> list[list[Any]]:
+    """The derivative of the impact map over a ball of states: rows of the next tau and v, columns of tau, v, number."""
+    time, speed, columns = flight(model, tau, v, bits, 3 if model.over else 2, centre)
+    rebound = model.rebound(Dual(speed, [1, 0]), **model.moved(0, 1))
+    end = model.push(tau + time, speed)
+    late = [-x / speed for x, _ in by_launch(model, tau, v, columns)]
+    faster = [w + end * part for (_, w), part in zip(by_launch(model, tau, v, columns), late, strict=True)]
+    after = [rebound.slopes[0] * part for part in faster]
+    return [late, [*after[:2], *(part + rebound.slopes[1] for part in after[2:])]]
 
 
 def next_state(model: Model, tau: Any, v: Any, bits: int) -> tuple[Any, Any]:

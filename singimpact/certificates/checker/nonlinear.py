@@ -15,6 +15,7 @@ bounds their coefficients.
 
 from __future__ import annotations
 
+from operator import mul
 from typing import Any
 
 from flint import acb, arb, arb_poly, arb_series
@@ -154,23 +155,19 @@ class Flights:
         """Minus the derivative of (1 - l) W by l."""
         return speeds[0] - (1 - x) * speeds[4]
 
-    def folded(self, ring: Any, S: list[Any], x: list[Any]) -> tuple[list[Any], list[Any]]:
+    def folded(self, ring: Any, S: Any, x: Any) -> tuple[Any, Any]:
         """W and U of polynomials."""
         if ring.D > TERMS:
             raise Wrong("the order D is larger than the series")
-        zero, one = ring.constant(arb(0)), ring.constant(arb(1))
-        found, power, powers = [zero, zero], one, [one]
+        W, U, power, powers = 0, 0, 1, [1]
         for n in range(ring.D + 1):
-            power = ring.times(power, S) if n else power
-            for k, part in enumerate((self.W[n], self.U[n])):
-                value = zero
-                for e, coefficient in enumerate(part.coeffs()):
-                    if e == len(powers):
-                        powers.append(ring.times(powers[-1], x))
-                    value = ring.plus(value, powers[e], coefficient)
-                found[k] = ring.plus(found[k], ring.times(power, value))
-        last = [arb_poly([0] * ring.D + [within(self.tail(0, ring.D, ring.D))]), *[arb_poly([0])] * ring.m]
-        return ring.plus(found[0], last), ring.plus(found[1], last)
+            power = power * S if n else power
+            while len(powers) <= max(self.W[n].degree(), self.U[n].degree()):
+                powers.append(x * powers[-1])
+            W, U = (power * sum(map(mul, powers, part.coeffs())) + value for value, part in
+                    ((W, self.W[n]), (U, self.U[n])))  # fmt: skip
+        last = ring(arb_poly([0] * ring.D + [within(self.tail(0, ring.D, ring.D))]))
+        return W + last, U + last
 
     def factor(self, S: Any) -> Any:  # noqa: ARG002
         """v over the speed in these units."""

@@ -2,19 +2,102 @@
 
 It is a zero of F_i = G(state i) - state i+1, G the map from impact to impact.  With Y about the inverse of D F, the
 zero exists and is alone in a box X round a point p if p - Y F(p) + (1 - Y D F(X)) (X - p) lies inside X.
+
+A number of the model may be one more unknown.  Then one unknown is held: at any value within `half` of its centre,
+where F(p) gains D F(X) e times that, e the held unknown, and there is one zero for each of its values.
+
+The last flight of an orbit that touches the wall in its first state, with v = 0, has x - c and x' after the time that
+leads there in place of G.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import arb, arb_mat
 
 from .formulas import Formula, Refused, Wrong, ball
-from .motion import Model, impact, next_state, size, within
+from .motion import Model, by_launch, impact, next_state, size, touching, within
 from .periods import require_period
 from .told import compared
+
+
+class Orbits(NamedTuple):
+    """F: a model, k periods, bits, the place of the held unknown, and whether the orbit touches the wall."""
+
+    model: Model
+    span: Any
+    bits: int
+    held: int | None = None
+    touches: bool = False
+
+    def linearised(self, point: list[Any], radii: list[Any]) -> tuple[list[Any], Any, list[Any]]:
+        """D G of the flights over a box, D F, and F at its centre."""
+        bits, n = self.bits, len(point) // 2
+        box = [x + within(r) for x, r in zip(point, radii, strict=True)]
+        wide, exact = (self.model.at(*each[2 * n :] or [None]) for each in (box, point))
+        missed: list[Any] = []
+        D, slopes = arb_mat(2 * n, len(point)), []
+        for i in range(n):
+            (tau, v), (at, speed), after = box[2 * i : 2 * i + 2], point[2 * i : 2 * i + 2], 2 * ((i + 1) % n)
+            rows: Any = None
+            span = self.span if i == n - 1 else 0
+            if span and self.touches:
+                (height, fall), *columns = touching(wide, (tau, v), span + (box[0] - tau if i else 0), bits, 3)
+                rows = list(zip(*by_launch(wide, tau, v, columns), strict=True))
+                for a, rate in enumerate((fall, wide.push(box[0] + span, fall, wide.c() + height))):
+                    D[2 * i + a, 0] += rate
+                missed += touching(exact, (at, speed), span + (point[0] - at if i else 0), bits, 0)[0]
+            else:
+                for a in (0, 1):
+                    D[2 * i + a, after + a] -= 1
+                image = next_state(exact, at, speed, bits)
+                missed += [image[0] - point[after] - span, image[1] - point[after + 1]]
+            rows = rows or impact(wide, tau, v, bits)
+            slopes.append(arb_mat([row[:2] for row in rows]))
+            for a in (0, 1):
+                for column, part in zip((2 * i, 2 * i + 1, 2 * n), rows[a], strict=False):
+                    D[2 * i + a, column] += part
+        return slopes, D, missed
+
+    def krawczyk(self, point: list[Any], radii: list[Any], half: Any = None) -> tuple[list[Any], list[Any]]:
+        """D G over a box, and what Krawczyk's operator makes of the box less its centre."""
+        slopes, D, missed = self.linearised(point, radii)
+        free = [k for k in range(len(point)) if k != self.held]
+        square, moved = arb_mat([[row[k] for k in free] for row in D.table()]), [[part] for part in missed]
+        if half is not None:
+            moved = [[part + row[self.held] * within(half)] for part, row in zip(missed, D.table(), strict=True)]
+        Y = middles(middles(square).inv())
+        one = arb_mat([[int(i == j) for j in free] for i in free])
+        spread_out = (one - Y * square) * arb_mat([[within(radii[k])] for k in free])
+        found = (spread_out - Y * arb_mat(moved)).entries()
+        if self.held is not None:
+            found.insert(self.held, arb(0) if half is None else within(half))
+        return slopes, found
+
+    def alone(self, point: list[Any], boxes: list[list[Any]]) -> list[Any]:
+        """D G over the last of some boxes round a point, in each of which one zero is shown."""
+        for radii in boxes:
+            slopes, image = self.krawczyk(point, radii)
+            for k, (part, radius) in enumerate(zip(image, radii, strict=True)):
+                if k != self.held and not abs(part) < radius:
+                    # more bits help a narrow box alone, and only if there may be a zero in it
+                    error = Wrong if radii is not boxes[-1] or abs(part) > radius else Refused
+                    raise error(f"Krawczyk's operator maps a side of {float(radius):.3g} to {float(size(part)):.3g}")
+        return slopes
+
+
+def middles(matrix: Any) -> Any:
+    return arb_mat([[arb(part.mid()) for part in row] for row in matrix.table()])
+
+
+def return_map(slopes: list[Any]) -> Any:
+    """The derivative of the return map."""
+    total = arb_mat([[1, 0], [0, 1]])
+    for slope in slopes:
+        total = slope * total
+    return total
 
 
 def periodic_orbit(model: Model, told: dict[str, Any], bits: int) -> None:
@@ -25,43 +108,12 @@ def periodic_orbit(model: Model, told: dict[str, Any], bits: int) -> None:
     require_period(model.g, told["period"])
     numbers = [state[name] for state in states for name in ("tau", "v")]
     point, radii = ([ball(Fraction(each[part])) for each in numbers] for part in ("value", "radius"))
-    span, unique = Formula(told["period"], model.g.parameters)() * k, ball(Fraction(told["unique_within"]))
-    for near in ([unique] * len(point), radii):
-        slopes, image = krawczyk(model, point, near, span, bits)
-        for part, radius in zip(image, near, strict=True):
-            if not abs(part) < radius:
-                # more bits help a narrow box alone, and only if there may be a zero in it
-                error = Wrong if near is not radii or abs(part) > radius else Refused
-                raise error(f"Krawczyk's operator maps a side of {float(radius):.3g} to {float(size(part)):.3g}")
-    total = arb_mat([[1, 0], [0, 1]])
-    for slope in slopes:  # over the balls of the states
-        total = arb_mat(slope) * total
+    orbits = Orbits(model, Formula(told["period"], model.g.parameters)() * k, bits)
+    total = return_map(orbits.alone(point, [[ball(Fraction(told["unique_within"]))] * len(point), radii]))
     if told["multipliers"]:
         wanted = [each[part] for each in told["multipliers"] for part in ("real", "imaginary")]
         for found, written in zip(eigenvalues(total), wanted, strict=True):
             compared({"a multiplier": (found, written)})
-
-
-def krawczyk(
-    model: Model, point: list[Any], radii: list[Any], span: Any, bits: int
-) -> tuple[list[list[list[Any]]], list[Any]]:
-    """The derivatives of the impact map over a box, and what Krawczyk's operator makes of the box less its centre."""
-    size_of, n = len(point), len(point) // 2
-    box = [x + within(r) for x, r in zip(point, radii, strict=True)]
-    slopes = [impact(model, box[2 * i], box[2 * i + 1], bits) for i in range(n)]
-    D, missed = arb_mat(size_of, size_of), []
-    for i in range(n):
-        image, following = next_state(model, point[2 * i], point[2 * i + 1], bits), 2 * ((i + 1) % n)
-        missed += [image[0] - point[following] - (span if i == n - 1 else 0), image[1] - point[following + 1]]
-        for a in (0, 1):
-            for b in (0, 1):
-                D[2 * i + a, 2 * i + b] += slopes[i][a][b]
-            D[2 * i + a, following + a] -= 1
-    middle = arb_mat([[arb(part.mid()) for part in row] for row in D.table()])
-    Y = arb_mat([[arb(part.mid()) for part in row] for row in middle.inv().table()])
-    one = arb_mat([[int(i == j) for j in range(size_of)] for i in range(size_of)])
-    spread_out = (one - Y * D) * arb_mat([[within(r)] for r in radii])
-    return slopes, (spread_out - Y * arb_mat([[part] for part in missed])).entries()
 
 
 def eigenvalues(matrix: Any) -> list[Any]:

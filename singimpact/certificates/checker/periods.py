@@ -17,9 +17,7 @@ def require_period(g: Formula, period: str) -> None:
         match node:
             case ast.Name("t"):
                 return False
-            case ast.Call(ast.Name("sin" | "cos" | "tan"), [argument]) if any(
-                isinstance(part, ast.Name) and part.id == "t" for part in ast.walk(argument)
-            ):
+            case ast.Call(ast.Name("sin" | "cos" | "tan"), [argument]) if "t" in g.names(argument):
                 rate = g.rate(argument)
                 if rate is None or turn is None or rate[1] + turn[1] != 1:
                     return False

@@ -191,19 +191,26 @@ def motion_from(
 
     names = launch.names
     programs = programs_of(osc, names)
-    tau, v = _phase(osc, launch.tau, bits, names), _ball(launch.v, bits)
     if not framed and not names:
+        tau, v = _phase(osc, launch.tau, bits, names), _ball(launch.v, bits)
         return PlainMotion(equation_of(osc), tau, v, bits, launch.removed, derivative, time)
+    tau, v, wide_numbers = box_of(osc, launch, bits)
     numbers = {name: _ball(_number(osc, name), bits) for name in names}
     deviations = {name: _radius(launch.radii[name]) for name in names}
     own = Equation(programs, numbers)
-    wide = Equation(programs, {name: value + deviations[name] for name, value in numbers.items()}) if names else own
-    tau, v = (value + _radius(launch.radii.get(name, Fraction(0))) for name, value in (("tau", tau), ("v", v)))
+    wide = Equation(programs, wide_numbers) if names else own
     if not v > 0 and launch.removed == 1:
         raise Refused("the launch velocity is not shown positive")
     assert isinstance(v, flint.arb)
     carried = deviations if derivative or any(launch.radii.values()) else None
     return FramedMotion((own, wide), tau, v, bits, min(coarse, bits), carried, launch.removed)
+
+
+def box_of(osc: Oscillator, launch: Launch, bits: int) -> tuple[Any, Any, dict[str, Any]]:
+    """tau, v and the numbers that have a radius, as balls."""
+    tau, v = _phase(osc, launch.tau, bits, launch.names), _ball(launch.v, bits)
+    tau, v = (value + _radius(launch.radii.get(name, Fraction(0))) for name, value in (("tau", tau), ("v", v)))
+    return tau, v, {name: _ball(_number(osc, name), bits) + _radius(launch.radii[name]) for name in launch.names}
 
 
 def _number(osc: Oscillator, name: str) -> Expression:

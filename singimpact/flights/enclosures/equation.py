@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
-from singimpact.algebra.analytic import Program, Recorder
+from singimpact.algebra.analytic import Place, Program, Recorder
 from singimpact.algebra.expressions import Name, add, names_in, substitute
 from singimpact.algebra.precision import bits_of_balls
 from singimpact.oscillator.model import Oscillator
@@ -55,20 +55,36 @@ class Programs:
     rho: Program
 
 
+class Recorded(NamedTuple):
+    """f, g and the rebound as places of three recorders."""
+
+    force: Recorder
+    f: Place
+    forcing: Recorder
+    g: Place
+    law: Recorder
+    rho: Place
+
+
+def recorded(osc: Oscillator, names: tuple[str, ...]) -> Recorded:
+    """f(c + z, z'), g and the rebound of a model; `names` of its numbers stay letters."""
+    clearance = Name(CLEARANCE) if CLEARANCE in names else osc.clearance
+    force, forcing, law = Recorder(), Recorder(), Recorder()
+    f = force.record(substitute(osc.force(names), {"x": add(Name("x"), clearance)}))
+    g = forcing.record(osc.forcing(names))
+    fixed_number = RESTITUTION in names and not names_in(osc.restitution)
+    rho = law.record(rho_of(Name(RESTITUTION)) if fixed_number else osc.rho(names))
+    return Recorded(force, f, forcing, g, law, rho)
+
+
 @lru_cache(maxsize=128)
 def programs_of(osc: Oscillator, names: tuple[str, ...]) -> Programs:
     """The programs of a model; `names` of its numbers stay letters (parameters, "clearance", "restitution")."""
-    clearance = Name(CLEARANCE) if CLEARANCE in names else osc.clearance
-    force, forcing = Recorder(), Recorder()
-    f = force.record(substitute(osc.force(names), {"x": add(Name("x"), clearance)}))
+    force, f, forcing, g, law, rho = recorded(osc, names)
     by_x, by_v = force.derivative(f, "x"), force.derivative(f, "xdot")
     by_names = [force.derivative(f, name) for name in names]
     second = [force.derivative(by_x, "x"), force.derivative(by_x, "xdot"), force.derivative(by_v, "xdot")]
     mixed = [force.derivative(part, name) for part in by_names for name in ("x", "xdot")]
-    g = forcing.record(osc.forcing(names))
-    law = Recorder()
-    fixed_number = RESTITUTION in names and not names_in(osc.restitution)
-    rho = law.record(rho_of(Name(RESTITUTION)) if fixed_number else osc.rho(names))
     return Programs(
         names,
         force.program([f, by_x, by_v]),

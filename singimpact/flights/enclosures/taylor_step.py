@@ -13,7 +13,7 @@ K (1 + h) h times second derivatives of f, is there since f_x and f_v are taken 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil, log2
 from typing import Any, NamedTuple
@@ -119,11 +119,16 @@ def _made(
         raise NotAnalytic("f or g has no power series where the flight goes")
     psi = [column(equation, state[0], X, each, degree) for each in columns]
     with balls_at(STEP.disc_bits):
-        sums = [_sums(part) for part in (X, *psi)]
-        length, R, bounds = _widest_disc(equation, state[0], X, psi, [each.drive for each in columns], sums, bits, last)
+        sums = [sums_of(part) for part in (X, *psi)]
+        drives = [each.drive for each in columns]
+
+        def defects(R: Any) -> list[Any] | None:
+            return _defects(equation, state[0], X, psi, drives, sums, R)
+
+        length, R, bounds = widest_disc(X, defects, bits, None if last is None else last.radius)
         if most is not None and length > most:
             length = most
-        return _bounded(equation, (X, psi), [each.drive for each in columns], sums, (length, R, bounds), bits)
+        return _bounded(equation, (X, psi), drives, sums, (length, R, bounds), bits)
 
 
 def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, removed: int = 1) -> list[Any]:
@@ -135,14 +140,14 @@ def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, r
     from flint import arb, arb_series
 
     t, z, v = state
-    g = _listed(equation.run("forcing", t=arb_series([t, 1], prec=degree))[0], degree)
+    g = listed(equation.run("forcing", t=arb_series([t, 1], prec=degree))[0], degree)
     X, V = [z, v], [v]
     while len(X) <= degree:
         m = len(X) - 1
         # Newton's method on series doubles the number of right coefficients (Brent and Kung 1978)
         count = min(2 * m, degree - 1)
         f, by_x, by_v = (
-            _listed(part, count)
+            listed(part, count)
             for part in equation.run("force", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
         )
         constant = all(part.is_zero() for part in by_v[1:])
@@ -165,17 +170,24 @@ def column(equation: Equation, t: Any, X: list[Any], launch: Column, degree: int
     V = [(k + 1) * part for k, part in enumerate(X[1:])]
     count = degree - 1
     _, by_x, by_v, *by_names = (
-        _listed(part, count)
+        listed(part, count)
         for part in equation.run("disc", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
     )
     driven = [arb(0)] * count
     if launch.drive >= 0:
-        driven = _listed(equation.run("forcing", t=arb_series([t, 1], prec=count))[1 + launch.drive], count)
+        driven = listed(equation.run("forcing", t=arb_series([t, 1], prec=count))[1 + launch.drive], count)
         if launch.drive:
             driven = [a - b for a, b in zip(driven, by_names[launch.drive - 1], strict=True)]
+    return response(by_x, by_v, driven, launch.start)
+
+
+def response(by_x: list[Any], by_v: list[Any], driven: list[Any], start: tuple[Any, Any]) -> list[Any]:
+    """Taylor coefficients of the psi with psi'' + by_x psi + by_v psi' = driven, all lists, from (psi, psi')."""
+    from flint import arb
+
     constant = all(part.is_zero() for part in by_v[1:])
-    P, Q = [arb(launch.start[0]), arb(launch.start[1])], [arb(launch.start[1])]
-    for k in range(count):
+    P, Q = [arb(start[0]), arb(start[1])], [arb(start[1])]
+    for k in range(len(driven)):
         rest = driven[k] - sum(map(arb.__mul__, by_x, P[k::-1]), arb(0))
         rest -= by_v[0] * Q[k] if constant else sum(map(arb.__mul__, by_v, Q[::-1]), arb(0))
         P.append(rest / ((k + 1) * (k + 2)))
@@ -183,7 +195,7 @@ def column(equation: Equation, t: Any, X: list[Any], launch: Column, degree: int
     return P
 
 
-def _listed(series: Any, count: int) -> list[Any]:
+def listed(series: Any, count: int) -> list[Any]:
     """The first coefficients of a series, or of a constant."""
     from flint import arb, arb_series
 
@@ -193,7 +205,7 @@ def _listed(series: Any, count: int) -> list[Any]:
     return [*found, *[arb(0)] * (count - len(found))]
 
 
-def _sums(X: list[Any]) -> tuple[Any, Any, Any]:
+def sums_of(X: list[Any]) -> tuple[Any, Any, Any]:
     """Polynomials in R that bound |P - P(0)|, |P' - P'(0)| and |P''| on the disc |s| <= R."""
     from flint import arb_poly
 
@@ -202,11 +214,15 @@ def _sums(X: list[Any]) -> tuple[Any, Any, Any]:
     return first, second - arb_poly([second[0]]), second.derivative()
 
 
-def _widest_disc(
-    equation: Equation, t: Any, X: list[Any], psi: list[list[Any]], drives: list[int], sums: list[Any], bits: int,
-    last: Step | None,
-) -> tuple[Any, Any, list[Any]]:  # fmt: skip
-    """Length, R and the defects on that disc, where the step allowed is the longest."""
+def widest_disc(
+    X: list[Any], defects: Callable[[Any], list[Any] | None], bits: int, last: Any = None
+) -> tuple[Any, Any, list[Any]]:
+    """Length, R and the defects on that disc, where the step allowed is the longest.
+
+    Parameters
+    ----------
+    X : coefficients of z. defects : of z first, on a disc; None where it is refused. last : R of the step before.
+    """
     from flint import arb
 
     n = len(X) - 1
@@ -215,10 +231,10 @@ def _widest_disc(
     # the coefficients decay like R^-k: the largest of the last three roots gives a first guess of the radius
     R = min(STEP.first / max(rates), STEP.widest) if max(rates, default=0) > 0 else STEP.widest
     if last is not None:
-        R = min(R, STEP.grow * float(last.radius))
+        R = min(R, STEP.grow * float(last))
     best: tuple[float, float, list[Any]] | None = None
     for _ in range(STEP.discs):
-        bounds = _defects(equation, t, X, psi, drives, sums, arb(R))
+        bounds = defects(arb(R))
         if bounds is not None:
             # Cauchy's bound of the cut-off at length h is about D R (h/R)^n/n: h where it is 2^-bits of the size
             ratio = size * n / (bounds[0] * R + size * arb(2) ** -900)
@@ -237,14 +253,18 @@ def _root(value: Any, order: int) -> float:
     return float((value.log() / order).exp()) if value > 0 else 0.0
 
 
+def around(value: Any, width: Any) -> Any:
+    """A complex ball that holds all numbers within a distance of a real ball."""
+    from flint import acb
+
+    return acb(value + ball(width), ball(width))
+
+
 def _defects(
     equation: Equation, t: Any, X: list[Any], psi: list[list[Any]], drives: list[int], sums: list[Any], R: Any
 ) -> list[Any] | None:
     """Bounds of the defects of z and of the columns on a disc; None where f or g is not shown analytic on its image."""
     from flint import acb
-
-    def around(value: Any, width: Any) -> Any:
-        return acb(value + ball(width), ball(width))
 
     def at(P: list[Any], part: tuple[Any, Any, Any], order: int) -> Any:
         return around(P[order], part[order](R))

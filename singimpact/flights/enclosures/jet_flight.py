@@ -1,0 +1,286 @@
+"""G with its first and second derivatives over a box of launches and of a number of the model.
+
+The flight from (tau + eps_1, v + eps_2) of the model with the number p + eps_3 is a motion z(s) with values in the jets
+of order 2, s the time since the launch, and solves the equation of the model: its coefficients are the derivatives of
+the flight. Jets are a Banach algebra, so the bounds of `taylor_step` hold with the norm of jets as size:
+
+    |z' - P'| <= K s^n,   |z - P| <= K s^(n+1)/(n+1),   K = M R^(1-n) e^(B h + A h^2/2)/n,
+
+M a bound of the norm of the defect on |s| <= R, A and B of those of f_x and f_v next to the step. The time of the hit
+is the jet that solves z(T) = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+from singimpact.algebra.analytic import Place, Program, Recorder
+from singimpact.algebra.precision import balls_at
+from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, box_of, working_at
+from singimpact.flights.enclosures.equation import Equation, NotAnalytic, Programs, Refused, programs_of, recorded
+from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
+from singimpact.flights.enclosures.jets import (
+    MONOMIALS,
+    Jet,
+    composed,
+    jet,
+    norm,
+    orders,
+    product,
+    quotient,
+    scaled,
+    total,
+)
+from singimpact.flights.enclosures.taylor_step import (
+    STEP,
+    around,
+    coefficients,
+    degree_at,
+    listed,
+    response,
+    sums_of,
+    widest_disc,
+)
+from singimpact.flights.enclosures.tube import Tube, ball, centre, divided, height, speed, upper
+from singimpact.oscillator.model import Oscillator
+
+SHORTER = 0.93
+"""Of a step at whose end the root may lie."""
+
+
+@dataclass(frozen=True)
+class JetPrograms(Programs):
+    """The programs of a model with one name, and partial derivatives.
+
+    Parameters
+    ----------
+    near, far : of f by x, x', the name up to order 2, and 3. forced : of g by t and the name up to order 2. law : of
+        the rebound by x' and the name up to order 2.
+    """
+
+    near: Program
+    far: Program
+    forced: Program
+    law: Program
+
+
+@lru_cache(maxsize=64)
+def jet_programs(osc: Oscillator, name: str) -> JetPrograms:
+    """The programs of a model whose number `name` stays a letter."""
+    force, f, forcing, g, law, rho = recorded(osc, (name,))
+    return JetPrograms(
+        **vars(programs_of(osc, (name,))),
+        near=_partials(force, f, ("x", "xdot", name), 2),
+        far=_partials(force, f, ("x", "xdot", name), 3),
+        forced=_partials(forcing, g, ("t", name), 2),
+        law=_partials(law, rho, ("v", name), 2),
+    )
+
+
+def _partials(recorder: Recorder, place: Place, names: tuple[str, ...], most: int) -> Program:
+    """The partial derivatives of a place in the order of `orders`."""
+    found = []
+    for each in orders(len(names), most):
+        part = place
+        for name, count in zip(names, each, strict=True):
+            for _ in range(count):
+                part = recorder.derivative(part, name)
+        found.append(part)
+    return recorder.program(found)
+
+
+class JetHit:
+    """What a flight over a box gives: the next tau and v as jets."""
+
+    def __init__(self, tau: Jet, v: Jet) -> None:
+        self.jets = tau, v
+
+    def slopes(self) -> list[list[Any]]:
+        """Rows of the next tau and v, columns of tau, v and the number."""
+        return [list(each[1:4]) for each in self.jets]
+
+    def along(self, direction: tuple[Any, Any, Any]) -> list[list[Any]]:
+        """The derivative of `slopes`, columns tau and v alone, in a direction of (tau, v, number)."""
+        return [[sum((self._second(each, i, j) * part for j, part in enumerate(direction)), each[0] * 0)
+                 for i in (0, 1)] for each in self.jets]  # fmt: skip
+
+    @staticmethod
+    def _second(each: Jet, i: int, j: int) -> Any:
+        part = each[MONOMIALS.index((min(i, j), max(i, j)))]
+        return 2 * part if i == j else part
+
+
+def jet_hit(osc: Oscillator, launch: Launch, horizon: Fraction) -> JetHit:
+    """The first impact of all members of a box, with first and second derivatives over it.
+
+    Parameters
+    ----------
+    osc : an analytic model. launch : with v > 0, and radii of "tau", "v" and one number of the model.
+
+    Raises
+    ------
+    Refused : some member is not shown to hit, or the balls of the derivatives grow too wide.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.numbers import constant
+    >>> small = Fraction(1, 10**9)
+    >>> ball = Oscillator("g", "0", 0, "1/2", {"g": 2})  # T = 2 v/g, v' = v/2
+    >>> launch = Launch(constant("tau", 1), constant("v", 3), 1, {"tau": small, "v": small, "g": small})
+    >>> hit = jet_hit(ball, launch, Fraction(10))
+    >>> [round(float(part.mid()), 6) for part in hit.slopes()[0]]  # of tau + 2 v/g
+    [1.0, 1.0, -1.5]
+    >>> [round(float(part.mid()), 6) for part in hit.along((0, 0, 1))[0]]  # by g, of its derivatives by tau and v
+    [0.0, -0.5]
+    """
+    bits = ENCLOSURE.coarse
+    with working_at(bits + ENCLOSURE.guard):
+        return _JetFlight(osc, launch, bits).hit(horizon)
+
+
+class _JetFlight:
+    """z and z' as jets, from step to step."""
+
+    def __init__(self, osc: Oscillator, launch: Launch, bits: int) -> None:
+        from flint import arb
+
+        self.bits, self.name = bits, launch.names[0]
+        self.tau, self.v0, numbers = box_of(osc, launch, bits)
+        if not self.v0 > 0:
+            raise Refused("the launch velocity is not shown positive")
+        self.equation, self.time = Equation(jet_programs(osc, self.name), numbers), arb(0)
+        zero, one = arb(0), arb(1)
+        self.z: Jet = jet({}, zero)
+        self.v: Jet = jet({0: self.v0, 2: one}, zero)
+        self.last: Any = None
+
+    # ---- functions of jets
+
+    def _run(self, kind: str, names: int, most: int, **values: Any) -> dict[tuple[int, ...], Any]:
+        return dict(zip(orders(names, most), self.equation.run(kind, **values), strict=True))
+
+    def _force(self, z: Jet, v: Jet, kind: str, at: tuple[int, int, int]) -> Jet:
+        """f, or a derivative of it, at jets."""
+        partials = self._run(kind, 3, 2 if kind == "near" else 3, x=z[0], xdot=v[0])
+        return composed(partials, ([0, *z[1:]], [0, *v[1:]], jet({3: 1}, 0)), at)
+
+    def _forcing(self, time: Any) -> Jet:
+        """g at a time, as a jet."""
+        return composed(self._run("forced", 2, 2, t=time), (jet({1: 1}, 0), jet({3: 1}, 0)))
+
+    # ---- steps
+
+    def _series(self) -> list[list[Any]]:
+        """Taylor coefficients of each coefficient of the jet z."""
+        from flint import arb, arb_series
+
+        time, n = self.tau + self.time, degree_at(self.bits)
+        count = n - 1
+        X = coefficients(self.equation, (time, self.z[0], self.v[0]), n)
+        if not X[-1].is_finite():
+            raise NotAnalytic("f or g has no power series where the flight goes")
+        zero = arb_series([0], prec=count)
+        forced = [listed(part, count) for part in self._forcing(arb_series([time, 1], prec=count))]
+        found = [X, *([[arb(0)]] * (len(MONOMIALS) - 1))]
+        V = [(k + 1) * part for k, part in enumerate(X[1:])]
+        partials = self._run("near", 3, 2, x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
+        partials = {key: part + zero for key, part in partials.items()}
+        by_x, by_v = (listed(partials[key], count) for key in ((1, 0, 0), (0, 1, 0)))
+        z, v = jet({}, zero), jet({}, zero)  # without the coefficients that are not known yet
+        for degree in (1, 2):
+            f = composed(partials, (z, v, jet({3: 1}, 0)))
+            for place, monomial in enumerate(MONOMIALS):
+                if len(monomial) == degree:
+                    pull = listed(f[place], count)
+                    driven = [a - b for a, b in zip(forced[place], pull, strict=True)]
+                    P = response(by_x, by_v, driven, (self.z[place], self.v[place]))
+                    found[place] = P
+                    z[place] = arb_series(P, prec=count)
+                    v[place] = arb_series([(k + 1) * part for k, part in enumerate(P[1:])], prec=count)
+        return found
+
+    def _defect(self, series: list[list[Any]], sums: list[Any], R: Any) -> list[Any] | None:
+        """A bound of the norm of the defect on a disc; None where f or g is not shown analytic on its image."""
+        from flint import acb
+
+        z, v = ([around(P[order], part[order](R)) for P, part in zip(series, sums, strict=True)] for order in (0, 1))
+        g = self._forcing(around(self.tau + self.time, R))
+        rest = total(self._force(z, v, "near", (0, 0, 0)), scaled(g, -1))
+        if not all(acb(part).is_finite() for part in rest):
+            return None
+        return [upper(norm(rest) + sum((upper(part[2](R)) for part in sums), upper(R * 0)))]
+
+    def _step(self) -> tuple[list[list[Any]], Any, Any]:
+        """The polynomials of a step, the bound K of their errors, and its length."""
+        from flint import arb
+
+        series = self._series()
+        n = len(series[0]) - 1
+        with balls_at(STEP.disc_bits):
+            sums = [sums_of(part) for part in series]
+            length, R, (M,) = widest_disc(series[0], lambda R: self._defect(series, sums, R), self.bits, self.last)
+            self.last = R
+            slack = arb(2) ** (-self.bits // 2)
+            for _ in range(STEP.boxes):
+                z, v = ([P[order] + ball(part[order](length) + slack) for P, part in zip(series, sums, strict=True)]
+                        for order in (0, 1))  # fmt: skip
+                A, B = (norm(self._force(z, v, "far", at)) for at in ((1, 0, 0), (0, 1, 0)))
+                if A.is_finite() and B.is_finite():
+                    K = upper(M * R ** (1 - n) * (B * length + A * length**2 / 2).exp() / n)
+                    if K * length**n * (1 + length) < slack:
+                        return series, K, length
+                length = arb(float(length) / 2)
+        raise Refused("no step on which the bounds hold")
+
+    def hit(self, horizon: Fraction) -> JetHit:
+        """Fly to the first impact."""
+        for _ in range(ENCLOSURE.steps):
+            try:
+                series, K, length = self._step()
+            except (ValueError, ZeroDivisionError) as reason:  # flint raises where a series has no inverse
+                raise Refused(str(reason)) from None
+            value, slope = height(series[0], K), speed(series[0], K)
+            launched = bool(self.time == 0)
+            inner = divided(value, slope, 1) if launched else (value, slope)
+            if not inner[0].polynomial[0] > 0:
+                raise Refused("the mass is not shown to leave the wall")
+            root, length = self._root(inner, length)
+            tubes = [(height(P, K), speed(P, K)) for P in series]
+            at = length if root is None else root
+            self.z, self.v = [part(at) for part, _ in tubes], [rate(at) for _, rate in tubes]
+            self.time = self.time + at
+            if root is not None:
+                return self._landed()
+            if not self.z[0] > 0:
+                raise Refused("x - c is not shown positive at the end of a step")
+            if self.time > float(horizon):
+                raise Refused("no hit comes before the horizon")
+        raise Refused(f"{ENCLOSURE.steps} steps do not come to a hit")
+
+    def _root(self, inner: tuple[Tube, Tube], length: Any) -> tuple[Any, Any]:
+        """The first root, or None, and the length of the step on which that is decided."""
+        while True:
+            try:
+                return first_root(*inner, length, self.bits), length
+            except RootAtEnd:
+                length = centre(length * SHORTER)
+            except NearGraze:
+                raise Refused("x - c and x' both vanish, as far as balls tell") from None
+
+    def _landed(self) -> JetHit:
+        """The state after the hit: the jet N with z(T + N) = 0 by Taylor's formula, T the ball of the times."""
+        from flint import arb
+
+        z, v, clock = [arb(0), *self.z[1:]], self.v, self.tau + self.time
+        a = total(self._forcing(clock), scaled(self._force(z, v, "near", (0, 0, 0)), -1))
+        late = scaled(quotient(z, v), -1)
+        late = scaled(quotient(total(z, scaled(product(late, late), a[0] / 2)), v), -1)
+        _, by_x, by_v = self.equation.run("force", x=arb(0), xdot=v[0])
+        jerk = self.equation.run("forcing", t=clock)[1] - by_x * v[0] - by_v * a[0]
+        landing = total(v, product(a, late), scaled(product(late, late), jerk / 2))
+        law = self._run("law", 2, 2, v=landing[0])
+        after = composed(law, ([0, *landing[1:]], jet({3: 1}, 0)))
+        return JetHit(total(late, jet({0: clock, 1: arb(1)}, arb(0))), after)
