@@ -160,11 +160,11 @@ def test_errors_are_measured_against_balls() -> None:
 @pytest.mark.slow
 def test_command(singimpact) -> None:
     told = singimpact(
-        "bench", "states", "--family", "steep", "--states", "50", "--workers", "1", "--quick", "--balls", "2",
+        "bench", "states", "--family", "steep", "--states", "25", "--workers", "1", "--quick", "--balls", "2",
         "--digits-checks", "0", "--json",
     )  # fmt: skip
     data = json.loads(told.stdout)["states"]
-    assert sum(row["states"] for row in data["families"]) == 50
+    assert sum(row["states"] for row in data["families"]) == 25
     assert {row["family"] for row in data["families"]} == {"friction", "stop"}
     assert data["balls"]["agree"] == 2
     assert told.exit_code == int(any(row["wrong"] for row in data["families"]))

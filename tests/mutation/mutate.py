@@ -50,8 +50,8 @@ GUARDS = {
     "singimpact/flights/kernels/steps.py": ["tests/flights"],
     "singimpact/flights/no_return/barrier.py": ["tests/flights"],
 }
-SECONDS = 240.0  # a mutant may make a loop endless: a trial that takes longer counts as noticed
-NEAR = 40.0  # seconds of tests that run the line of a mutant, before all tests that guard its file
+SECONDS = 400.0  # a mutant may make a loop endless: a trial that takes longer counts as noticed
+NEAR = 20.0  # seconds of tests that run the line of a mutant, before all tests that guard its file
 Lines = dict[str, dict[str, list[tuple[str, float]]]]  # file, line: tests with their seconds
 
 
