@@ -42,7 +42,7 @@ EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact")
 @click.option(
     "--reach",
     metavar="NUMBER",
-    help="With gamma: tan(omega_d (tau_* - tau))/omega_d (tau_* - tau if nonlinear) at most.  [default: as far as it gets]",
+    help="With gamma: tan(omega_d T)/omega_d at most, T = tau_* - tau; T if nonlinear.  [default: as far as it gets]",
 )
 @click.option("--between", type=(str, str), metavar="LOW HIGH", help="With gamma: for all restitutions of an interval.")
 @click.option("--digits", type=click.IntRange(1, 1000), default=30, show_default=True, help="Significant digits.")

@@ -34,6 +34,7 @@ def told() -> Section:
         *_foot(),
         *_onset(),
         *_events(),
+        *_gamma(),
         *_repairs(),
     )
     return Section("beyond", "Beyond the paper", steps)
@@ -265,6 +266,22 @@ def _events() -> tuple[Step, ...]:
             r"\tan\omega h = \omega\tan h\ (\omega > 3)",
             "b:events-first",
             ("b:events-first", "b:events-families", "b:events-values"),
+        ),
+    )
+
+
+def _gamma() -> tuple[Step, ...]:
+    return (
+        Step(
+            "For one oscillator the theorems on $\\gamma$ hold on an interval that can be named. Let $S$ be the "
+            "place of a launch before $\\tau_*$ and $\\ell S$ that of its landing, $S^{j+1}W$ and $S^{j+1}U$ the "
+            "two speeds, and $q = (1 - \\ell)/(1 - L(S))$ with the series $L$ of the landing ratio on $\\gamma$. "
+            "Balls show that $q$ falls below $\\gamma$ and rises above it, that $L$ annuls the difference of both "
+            "sides of the relation between two flights up to $S^N$, and that this relation expands cones about "
+            "$\\gamma$. So it is the only invariant arc there, and decides the fate of every launch: for $x'' + x "
+            "= \\cos2t$ at $c = 0.3$ and at the swan $c = 1$, $r = \\frac12$ and $S \\le \\frac14$ (claims "
+            "b:gamma-tangency, b:gamma-swan), for all $r$ of an interval (b:gamma-interval), and for a damped "
+            "Duffing oscillator (b:gamma-nonlinear)."
         ),
     )
 
