@@ -216,10 +216,15 @@ def require_smooth_rho(osc: Oscillator, what: str) -> None:
     what : the task, as the subject of a sentence.
     """
     if not osc.smooth_at_rest:
-        raise InputError(
-            f"restitution = {shown(str(osc.restitution))} has powers of v at v = 0 that are not whole: {what} needs a "
-            "number r, or a rho that is smooth there, such as -0.8*v + v**2"
-        )
+        raise not_smooth(osc, what)
+
+
+def not_smooth(osc: Oscillator, what: str) -> InputError:
+    """The refusal of a restitution that is not smooth at rest."""
+    return InputError(
+        f"restitution = {shown(str(osc.restitution))} is not accepted here: at v = 0 it has powers of v that are not "
+        f"whole, and {what} needs a number r, or a rho that is smooth there, such as -0.8*v + v**2"
+    )
 
 
 def _written(value: Any) -> str:
