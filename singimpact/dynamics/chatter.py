@@ -221,25 +221,25 @@ class _Flown:
         self._known: list[Any] | None = None
 
     def limit(self) -> ChatterLimit:
-        elastic, count = compare(self.osc.slope_at_rest(), 1) == 0, 256
-        # where r = 1 no time is short by the rules of the kernels, which know r alone
-        lasting, short = not elastic, elastic and chatter_completes(self.osc)
-        status, rough = self._first(), short
+        elastic = compare(self.osc.slope_at_rest(), 1) == 0
+        # where r = 1 no time is short by the rules of the kernels, which know r alone: the sum is tried in any case
+        tried = elastic and chatter_completes(self.osc)
+        status, short, count = self._first(), False, 256
         while status == Status.hit:
             tau, v = self.times[-1], self.speeds[-1]
             a = acceleration(self.osc, np.array([tau]))
             if a[0] >= 0 and len(self.times) > 1:
                 return self._ended(tau, 0.0, Status.lifts_off)
-            if (short or rough) and a[0] < 0:
+            if short or (tried and a[0] < 0):
                 left, error = (float(part[0]) for part in remaining(self.osc, np.array([tau]), np.array([v]), a))
                 if error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290:
                     return self._ended(tau + left, error, Status.complete)
-                if not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
+                if not np.isfinite(error) and short:  # a derivative of a_c leaves the range of doubles
                     status, self.cause = Status.unresolved, Cause.overflow
                     continue
                 count = impacts_until(self.osc, error, EPSILON * abs(tau) / 8)
             if self._left() > 0:
-                status, short = self._fly(count, 0.0 if short or not lasting else ENDING.near, short)
+                status, short = self._fly(count, 0.0 if short or elastic else ENDING.near, short)
             else:
                 status, self.cause = Status.unresolved, Cause.impacts_exhausted
         return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status), cause=np.int8(self.cause))

@@ -185,7 +185,7 @@ def _bracket(
     """The narrowest bracket of gamma that the compiled loop of a linear model decides."""
     model = compiled_model(osc)
     # the loop knows the time left of a chatter from r alone
-    if abs(tau) >= model.nearest or not model.linear or not osc.smooth_at_rest:
+    if abs(tau) >= model.nearest or not model.linear or compare(osc.slope_at_rest(), 1) == 0:
         return low, high
     series = _series(osc, replace(zero, turns=0)) if model.constant_restitution else (0.0, 1.0, *[0.0] * TERMS_OF_GAMMA)
     settings = SEARCH.short, SEARCH.narrow, float(impacts), SEARCH.coarse, *series
