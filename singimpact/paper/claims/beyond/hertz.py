@@ -1,4 +1,4 @@
-"""Impacts that lose C v^q of a low speed, 0 < q < 1, as in Hertz's law: gamma is steeper than sigma^(j+1).
+"""Impacts that lose C v^q of a low speed, 0 < q < 1, as in Hertz's law: gamma is flatter than sigma^(j+1).
 
 h is the time to the contact point, a_c = -b h^j there, and a flight from h lands at h (1 - e).  Velocities are in units
 of b h^(j+1): v = P e/((j+1)(j+2)) and U = Q e/((j+1)(j+2)), with P and Q of `every_order` at l = 1 - e.
@@ -19,13 +19,13 @@ from singimpact.paper.claims.verifiers import every, same, sample
 from singimpact.paper.trials.hertz import POWERS, STARTS, Measured, measured
 
 claim = in_section("beyond")
-q, e, rate, steepness = sympy.symbols("q e x N")
+q, e, rate, exponent = sympy.symbols("q e x N")
 WITHIN = 0.15  # of the second term of gamma; what is left out has the part P = v/(b h^(j+1)) <= 1/60 of it, times 5
 
-STEEP = (j + 1) / (1 - q)
+EXPONENT = (j + 1) / (1 - q)
 FACTOR = 3 * (1 - q) / (2 * (3 + (2 + q) * j))
 REPELLED = 1 + (2 + q) * j / 3
-FOUND = STEEP, FACTOR
+FOUND = EXPONENT, FACTOR
 SECOND = q * (3 + (2 + q) * j) * (3 + (1 + 2 * q) * j) / (3 * (1 - q) * (3 + 2 * j + 2 * j * q - j * q**2))
 
 
@@ -67,29 +67,29 @@ def _adiabatic(power: int) -> Check:
 
 def _balanced(stated: tuple[Any, Any]) -> Check:
     """(N, K): v = (K C b h^(j+1))^(1/(1-q)) = w h^N is kept by an impact to first order in the flight time."""
-    steep, factor = stated
-    kept = _vanishes(LANDING * (1 - rate * e) - LAUNCH * (1 - steepness * e), {rate: steepness - j / 3}, e, 1)
-    found = 1 / (2 * (steep - j / 3))
+    stated_n, factor = stated
+    kept = _vanishes(LANDING * (1 - rate * e) - LAUNCH * (1 - exponent * e), {rate: exponent - j / 3}, e, 1)
+    found = 1 / (2 * (stated_n - j / 3))
     power = j * (q + 2) / 3 + 1  # I^(1-q) is the integral of (1-q) C/2 |a|^((q+2)/3), |a| = b h^j
     averaged = (1 - q) / 2 / power
     return every(
         [
             *_expanded(),
             ("U (1 - x e) = v (1 - e)^N for x = N - j/3 alone, and x e is the loss C v^q", kept),
-            ("C v^q = 2x v/(b h^(j+1)) is solved by v = w h^N for N (1 - q) = j + 1", same(steep * (1 - q), j + 1)),
+            ("C v^q = 2x v/(b h^(j+1)) is solved by v = w h^N for N (1 - q) = j + 1", same(stated_n * (1 - q), j + 1)),
             (f"v^(1-q) = K C b h^(j+1) with K = 1/(2N - 2j/3) = {sympy.factor(found)}", same(factor, found)),
             (
                 "the invariant I = v/|a_c|^(1/3) falls by (C/2) I^q |a_c|^((q+2)/3) a time: this integral gives K too",
                 same(power + j * (1 - q) / 3, j + 1) and same(factor, averaged),
             ),
         ],
-        witness=lambda: sample(factor, found) if same(steep * (1 - q), j + 1) else sample(steep, STEEP),
+        witness=lambda: sample(factor, found) if same(stated_n * (1 - q), j + 1) else sample(stated_n, EXPONENT),
     )  # fmt: skip
 
 
 def _repelled(stated: Any) -> Check:
     """The relative distance of v/h^N from its value on gamma grows like h^(-p)."""
-    found = sympy.factor((1 - q) * (STEEP - j / 3))
+    found = sympy.factor((1 - q) * (EXPONENT - j / 3))
     box = {j: (0, sympy.oo), q: (0, 1)}
     return every(
         [
@@ -119,7 +119,7 @@ def _second(stated: Any) -> Check:
     full = sympy.Poly(sympy.expand(invariance.subs(images, simultaneous=True)), part)
     orders = [full.coeff_monomial(part**n) for n in (1, 2, 3)]
     substitution(At(invariance, images), orders[1] * part**2 + orders[2] * part**3, order=3, small=[part])
-    values = {s: STEEP - (j + 1), rate: STEEP - j / 3}
+    values = {s: EXPONENT - (j + 1), rate: EXPONENT - j / 3}
     linear = sympy.Poly(orders[2], second)
     found = sympy.cancel((-linear.coeff_monomial(1) / linear.coeff_monomial(second)).subs(values))
     return every(
@@ -157,14 +157,14 @@ def _left(stated: Any) -> Check:
 
 def _found(stated: tuple[Any, Any, Any]) -> Check:
     """(N, K, G) against gamma of true orbits, at two distances: v/(w h^N) - 1 = G P."""
-    steep, factor, second = stated
+    stated_n, factor, second = stated
     checks, worst = [], dict[str, str]()
     for start in STARTS:
         told = []
         for power in POWERS:
             found = measured(start, power)
             values = {j: start.order, q: sympy.Rational(power.numerator, power.denominator)}
-            n, k, g = (float(part.subs(values)) for part in (steep, factor, second))
+            n, k, g = (float(part.subs(values)) for part in (stated_n, factor, second))
             off = _beside(found, start.order, power, (n, k))
             near = all(
                 abs(ratio - g * part) < WITHIN * abs(g) * part + 2 * width
@@ -200,16 +200,16 @@ CLAIMS = (
         Statement(
             r"v^{1-q}\sim\frac{3(1-q)}{2(3+(2+q)j)}\,\frac{C\,|a_j|}{j!}\,|\sigma|^{j+1},\ "
             r"\rho(-v)=v(1-Cv^q+\ldots),\ 0<q<1",
-            (STEEP, FACTOR),
+            (EXPONENT, FACTOR),
         ),
         _balanced,
         (
             (j + 1, FACTOR),
             ((j + 1) / (1 + q), FACTOR),
-            (STEEP, FACTOR * 2),
-            (STEEP, 3 * (1 - q) / (2 * (3 + 2 * j))),
-            (STEEP, 3 / (2 * (3 + (2 + q) * j))),
-            (STEEP, 3 * (1 - q) / (2 * (5 + q))),
+            (EXPONENT, FACTOR * 2),
+            (EXPONENT, 3 * (1 - q) / (2 * (3 + 2 * j))),
+            (EXPONENT, 3 / (2 * (3 + (2 + q) * j))),
+            (EXPONENT, 3 * (1 - q) / (2 * (5 + q))),
         ),
         ("b:hertz-adiabatic", "b:first-order"),
     ),
@@ -246,15 +246,15 @@ CLAIMS = (
         "gamma of four oscillators, j = 1 and 2, q = 1/10, 1/5, 3/10, 1/2: both terms on true orbits",
         Statement(
             r"v=w|\sigma|^{(j+1)/(1-q)}\bigl(1+GP\bigr),\ w^{1-q}=\frac{3(1-q)}{2(3+(2+q)j)}\,\frac{C\,|a_j|}{j!}",
-            (STEEP, FACTOR, SECOND),
+            (EXPONENT, FACTOR, SECOND),
         ),
         _found,
         (
             (j + 1, FACTOR, SECOND),
-            (STEEP + q / 10, FACTOR, SECOND),
-            (STEEP, 3 * (1 - q) / (2 * (3 + 2 * j)), SECOND),
-            (STEEP, FACTOR, sympy.Integer(0)),
-            (STEEP, FACTOR, 2 * SECOND),
+            (EXPONENT + q / 10, FACTOR, SECOND),
+            (EXPONENT, 3 * (1 - q) / (2 * (3 + 2 * j)), SECOND),
+            (EXPONENT, FACTOR, sympy.Integer(0)),
+            (EXPONENT, FACTOR, 2 * SECOND),
         ),
         ("b:hertz", "b:hertz-next"),
     ),
