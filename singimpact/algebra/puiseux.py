@@ -89,8 +89,8 @@ def expansion(tree: Expression, variable: str, sign: int = 1, count: int = 6) ->
     >>> from singimpact.algebra.parsing import parse
     >>> print(expansion(parse("-v*(1 - 0.3*(-v)**(1/5))", ["v"]), "v", -1))
     1*w**(1) + (-0.3)*w**(6/5)
-    >>> print(expansion(parse("sin(sqrt(v))/v", ["v"]), "v", 1, 2))
-    1*w**(-1/2) + (-1/6)*w**(1/2) + O(w**(3/2))
+    >>> print(expansion(parse("sin(sqrt(v))/v", ["v"]), "v", 1, 3))
+    1*w**(-1/2) + (-1/6)*w**(1/2) + O(w**(1))
     """
     return _Expander(variable, sign, count).of(tree)
 

@@ -273,7 +273,15 @@ def test_figures_beyond_the_paper_have_claims_and_data(name):
 def test_the_paper_has_none_of_them():
     assert not set(BEYOND) & set(FIGURES)
     with pytest.raises(InputError, match="B1 to B9"):
-        picture("B9")
+        picture("B10")
+
+
+@pytest.mark.slow
+def test_b9_slopes():
+    """Slopes of gamma between two points, beside (j+1)/(1-q); the second term raises them, most at q = 1/2."""
+    facts = made("B9").facts
+    assert len(facts) == 16
+    assert all(0 < off < (0.1 if name.endswith("1/2") else 0.003) for name, off in facts.items())
 
 
 def test_b1_the_ball_falls_freely():
