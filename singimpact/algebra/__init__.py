@@ -7,7 +7,7 @@ one place that sets one), `certified` (a number with its radius), `symbols` (pol
 `long_sums` (these as sympy objects).
 Trees: `expressions` (evaluated over a ring, so one tree serves all kinds of number), `parsing` (a user's text into a
 tree), `derivatives` (of a tree by a name), `analytic` (trees with their derivatives as programs over balls, nan beside
-a branch cut), `taylor` (elementary functions at a point).
+a branch cut), `taylor` (elementary functions at a point), `puiseux` (a tree in rational powers of a variable).
 Jets: `jets`, `polynomials` (what they are made of), `jet_maps` (inverses,
 implicit functions, blow-ups), `univariate` (one variable, level by level), `interpolation`, `horner` (on arrays).
 Zeros: `solving` (halving, secants, Newton in balls), `roots` (of polynomials), `zeros` (of functions, by balls),

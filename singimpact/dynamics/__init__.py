@@ -4,7 +4,8 @@ Not here: one flight (`flights`), periodic orbits (`branches`), power series of 
 (`scenes`).
 Files: `orbit` (impacts, rest and chatter in order), `sampling` (x and x' of an orbit at times), `lyapunov` (its
 exponents), `gamma_proof` (gamma proved, a folder), `release` (when a mass lifts off), `chatter`
-(when impacts end), `completion` (its map), `remaining` (its terms in doubles), `gathered` (results of many states),
+(when impacts end), `completion` (its map), `remaining` (its terms in doubles),
+`fractional_chatter` (for rho that is not smooth at rest), `gathered` (results of many states),
 `threshold` (the velocity between complete and incomplete chatter), `enclosed` (both in balls, of linear models),
 `guide` (a velocity on gamma in many digits, not proved),
 `growth` (an invariant curve of a map, cut at discontinuities),

@@ -27,6 +27,7 @@ from singimpact.dynamics.attractors import (
     states_of,
     within,
 )
+from singimpact.dynamics.fractional_chatter import rest_after
 from singimpact.dynamics.long_run import chaotic, futures, lift_offs, next_lift_off, settled
 from singimpact.flights.orbits import iterate
 from singimpact.inputs import refuse
@@ -265,7 +266,7 @@ def classify(model: Oscillator, phases: tuple[float, ...], fast: float, tau: Arr
 def _at_rest(model: Oscillator, tau: Array, v: Array) -> Array:
     """The phase, within a period, at which the remaining chatter ends, to first order."""
     assert model.period is not None
-    left = -2 * v / (acceleration(model, tau) * (1 - as_float(model.slope_at_rest())))
+    left = rest_after(model, v, acceleration(model, tau))
     period = as_float(model.period)
     return np.asarray((tau + left) - period * np.floor((tau + left) / period))
 
@@ -285,13 +286,14 @@ def _caught(known: list[Attractor], model: Oscillator, tau: Array, v: Array, fas
 def _chattering(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
     """CHATTER where an orbit is slow, a_c < 0, and the mass comes to rest before a_c can become positive.
 
-    What is left of chatter lasts about 2 v/((1 - r)|a|); over eight times that, a_c must keep its sign.
+    What is left of chatter lasts about 2 v/((1 - r)|a|), see `rest_after`; over eight times that, a_c must keep its
+    sign.
     """
     codes = np.full(tau.size, OTHER, dtype=np.int32)
     found = np.flatnonzero(np.isfinite(tau) & np.isfinite(v) & (np.nan_to_num(v) <= SETTINGS.slow * fast))
     now, speed = acceleration(model, tau[found]), v[found]
     with np.errstate(all="ignore"):
-        rest = np.where(now < 0, -2 * speed / (now * (1 - as_float(model.slope_at_rest()))), np.inf)
+        rest = np.where(now < 0, rest_after(model, speed, now), np.inf)
     short = (now < 0) & (rest < SETTINGS.lasting * as_float(model.period)) if model.period is not None else now < 0
     pressed = [acceleration(model, tau[found] + np.where(short, k * rest, 0.0)) < now / 2 for k in (2, 4, 8)]
     settled = (now < 0) & (speed <= SETTINGS.rest * fast)

@@ -15,6 +15,7 @@ from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.completion import completion
+from singimpact.dynamics.fractional_chatter import chatter_completes
 from singimpact.dynamics.gathered import gathered
 from singimpact.dynamics.remaining import remaining
 from singimpact.flights.causes import decoded
@@ -26,7 +27,7 @@ from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
 from singimpact.inputs import whole
 from singimpact.oscillator.acceleration import acceleration
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words
 
@@ -48,6 +49,7 @@ class Ending:
     many: int = 8  # terms with digits=
     # longest remaining time, as a part of the time scale of a_c; successive terms then fall by a factor above 10
     near: float = 1 / 64
+    elastic: int = 256  # impacts between two estimates where r = 1
     impacts: int = 1_000_000  # default limit; r = 0.9999 from v = 1 to 1e-17 takes 400 000
     # factor on the error estimate: the last term, and the rounding error of every impact carried to the end
     trust: float = 4.0
@@ -134,6 +136,8 @@ def chatter_limit(
     found = _in_doubles(osc, states, most)
     if digits is None or found.status not in (Status.complete, Status.lifts_off):
         return found
+    if found.status == Status.complete:
+        require_smooth_rho(osc, "a chatter limit with digits=")
     return _enclosed(osc, states, checked_digits(digits)) or _precise(osc, states, found, digits)
 
 
@@ -185,7 +189,7 @@ def _covering(found: Certified) -> Any:
 def chatter_left(osc: Oscillator, tau: float, v: float) -> tuple[float, float] | None:
     """The remaining time of a complete chatter and the last term of its series; None where a_c >= 0."""
     a = acceleration(osc, np.array([tau]))
-    if not a[0] < 0 or compare(osc.slope_at_rest(), 1) == 0:
+    if not a[0] < 0 or not chatter_completes(osc):
         return None
     left, error = remaining(osc, np.array([tau]), np.array([v]), a)
     return float(left[0]), float(error[0])
@@ -196,7 +200,10 @@ def impacts_until(osc: Oscillator, error: float, wanted: float) -> int:
     if not np.isfinite(error):
         return 1
     r = as_float(osc.slope_at_rest())
-    return max(1, ceil(log(error / (wanted + 1e-300)) / (ENDING.order * -log(r))))
+    if r == 1:  # the speeds fall like a power of the number of impacts, not geometrically
+        return ENDING.elastic
+    order = ENDING.order if osc.smooth_at_rest else 2
+    return max(1, ceil(log(error / (wanted + 1e-300)) / (order * -log(r))))
 
 
 def _last(terms: list[Any]) -> Any:
@@ -216,23 +223,25 @@ class _Flown:
         self._known: list[Any] | None = None
 
     def limit(self) -> ChatterLimit:
-        lasting = compare(self.osc.slope_at_rest(), 1) != 0
+        elastic = compare(self.osc.slope_at_rest(), 1) == 0
+        # where r = 1 no time is short by the rules of the kernels, which know r alone: the sum is tried in any case
+        tried = elastic and chatter_completes(self.osc)
         status, count = self._first(), 256
         while status == Status.hit:
             tau, v = self.times[-1], self.speeds[-1]
             a = acceleration(self.osc, np.array([tau]))
             if a[0] >= 0 and len(self.times) > 1:
                 return self._ended(tau, 0.0, Status.lifts_off)
-            if self.short:
+            if self.short or (tried and a[0] < 0):
                 left, error = (float(part[0]) for part in remaining(self.osc, np.array([tau]), np.array([v]), a))
                 if error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290:
                     return self._ended(tau + left, error, Status.complete)
-                if not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
+                if not np.isfinite(error) and self.short:  # a derivative of a_c leaves the range of doubles
                     status, self.cause = Status.unresolved, Cause.overflow
                     continue
                 count = impacts_until(self.osc, error, EPSILON * abs(tau) / 8)
             if self._left() > 0:
-                status = self._fly(count, 0.0 if self.short or not lasting else ENDING.near)
+                status = self._fly(count, 0.0 if self.short or elastic else ENDING.near)
             else:
                 status, self.cause = Status.unresolved, Cause.impacts_exhausted
         return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status), cause=np.int8(self.cause))
@@ -280,7 +289,7 @@ class _Flown:
         by_tau, by_v = 1.0, 0.0
         if status == Status.complete:
             a = float(acceleration(self.osc, np.array(times[-1:]))[0])
-            by_v = -2 / a / (1 - as_float(self.osc.slope_at_rest()))
+            by_v = -2 / a / (1 - as_float(self.osc.slope_at_rest())) if self.osc.smooth_at_rest else self._end_by_v()
         total = 0.0
         for index in range(len(times) - 1, -1, -1):
             total += abs(by_tau) * (abs(times[index]) + abs(times[index] - first)) + 4 * abs(by_v) * speeds[index]
@@ -288,6 +297,12 @@ class _Flown:
                 (a, b), (c, d) = self._matrices[index - 1]
                 by_tau, by_v = by_tau * a + by_v * c, by_tau * b + by_v * d
         return ENDING.trust * EPSILON * (total + abs(end))
+
+    def _end_by_v(self) -> float:
+        """The derivative of the end by the last velocity, from the time left at two velocities."""
+        v = self.speeds[-1]
+        (less, _), (more, _) = (chatter_left(self.osc, self.times[-1], speed) or (0.0, 0.0) for speed in (v / 2, v))
+        return 2 * (more - less) / v if v > 0 else 0.0
 
     @property
     def _matrices(self) -> list[Any]:

@@ -14,6 +14,7 @@ from singimpact.algebra.expressions import evaluate, names_in
 from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.contact.contact import Contact
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.rho_series import series_of_rho
 from singimpact.theory.sheet import sheet
 
 
@@ -44,9 +45,9 @@ def _rebound(osc: Oscillator, space: JetSpace, velocity: Jet) -> Jet:
     if not names_in(osc.restitution):
         return velocity.scaled(-evaluate(osc.restitution, {}, space.ring))
     line = JetSpace(("v",), space.order, space.ring)
-    found = line.evaluate(osc.rho(), {"v": line.generators()[0]})
-    # rho(0) = 0 exactly; tanh and sin leave a zero as a constant term, with which no jet is composed
-    return line.jet({key: value for key, value in found.terms.items() if any(key)}).compose([velocity])
+    # rho(0) = 0 exactly: a series without a constant term
+    found = series_of_rho(osc, space.order, space.ring)
+    return line.jet({(k,): value for k, value in found.items()}).compose([velocity])
 
 
 def _next_time(space: JetSpace, V: Jet, velocity: Jet) -> Jet:

@@ -15,6 +15,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import compare
 from singimpact.dynamics.chatter import ENDING, chatter_limit
+from singimpact.dynamics.fractional_chatter import chatter_completes
 from singimpact.dynamics.release import periods_between, release
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
@@ -22,7 +23,7 @@ from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.rebound_law import rebound_slope
 from singimpact.flights.states import States
-from singimpact.inputs import InputError, refuse, whole
+from singimpact.inputs import InputError, refuse, shown, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 
@@ -159,6 +160,11 @@ class _Run:
         self.tau, self.v = float(states.tau[0]), float(states.v[0])
         self.first, self.lifted, self.status = True, list[float](), Status.hit
         self.near = 0.0 if compare(osc.slope_at_rest(), 1) == 0 else ENDING.near
+        if not self.near and chatter_completes(osc):
+            raise InputError(
+                f"restitution = {shown(str(osc.restitution))} is not accepted: exponents need r < 1, or r = 1 without "
+                "the power q < 1 of the speed by which chatter comes to rest"
+            )
         self.begin()
 
     def begin(self) -> None:

@@ -16,6 +16,7 @@ from singimpact.algebra.expressions import Expression, evaluate, number, substit
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import Contact
+from singimpact.dynamics.fractional_chatter import left_of_chatter
 from singimpact.generated.completion import chatter_terms
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
@@ -29,7 +30,7 @@ def remaining(osc: Oscillator, tau: Array, v: Array, a: Array | None = None) -> 
 
     Parameters
     ----------
-    osc : the model, r < 1. tau, v : states. a : a_c there, when it is known.
+    osc : the model, with `fractional_chatter.chatter_completes`. tau, v : states. a : a_c there, when it is known.
 
     Examples
     --------
@@ -41,6 +42,8 @@ def remaining(osc: Oscillator, tau: Array, v: Array, a: Array | None = None) -> 
     push = acceleration(osc, tau) if a is None else a
     with np.errstate(all="ignore"):
         jets = {f"a_d{n}": evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau for n, tree in enumerate(slopes, 1)}
+        if not osc.smooth_at_rest:
+            return left_of_chatter(osc, v, push, jets, forces)  # type: ignore[no-any-return]
         terms = chatter_terms(v=v, lambda_=as_float(osc.slope_at_rest()), a=push, **jets, **forces, **rebounds)
         first, *_, before, last = terms
         # a coefficient may happen to be small: the term before lets expect this one
@@ -54,14 +57,27 @@ def _jets(osc: Oscillator) -> tuple[dict[str, float], dict[str, float], tuple[Ex
     at = Contact.of(osc, 0.0, 0, ORDER, DOUBLES).f
     names = {(0, 1): "f_01", (0, 2): "f_02", (0, 3): "f_03", (1, 0): "f_10", (1, 1): "f_11"}
     forces = {name: float(at.get(key, 0.0)) * factorial(key[0]) * factorial(key[1]) for key, name in names.items()}
-    rebounds, slope = {}, osc.rho()
-    for n in range(1, ORDER + 1):
-        slope = derivative(slope, "v")
-        if n > 1:
-            rebounds[f"rho_{n}"] = as_float(substitute(slope, {"v": number(0)})) / factorial(n)
+    rebounds = _coefficients(osc)
     trees = []
     forcing = osc.forcing()
     for _ in range(ORDER - 1):
         forcing = derivative(forcing, "t")
         trees.append(forcing)
     return forces, rebounds, tuple(trees)
+
+
+def _coefficients(osc: Oscillator) -> dict[str, float]:
+    """rho_2, rho_3, ... of a law that is smooth at rest; zeros of one that is not, which has other terms."""
+    found = {f"rho_{n}": 0.0 for n in range(2, ORDER + 1)}
+    if not osc.smooth_at_rest:
+        return found
+    known = osc.rho_at_rest()
+    if known is not None and (known.bound is None or known.bound > ORDER):
+        terms = {int(exponent): as_float(value) for exponent, value in known.terms}
+        return {f"rho_{n}": (-1) ** n * terms.get(n, 0.0) for n in range(2, ORDER + 1)}
+    slope = osc.rho()
+    for n in range(1, ORDER + 1):
+        slope = derivative(slope, "v")
+        if n > 1:
+            found[f"rho_{n}"] = as_float(substitute(slope, {"v": number(0)})) / factorial(n)
+    return found

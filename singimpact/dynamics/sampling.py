@@ -100,7 +100,8 @@ def _in_chatter(osc: Oscillator, tau: float, v: float, times: Array, slow: float
     out, done = np.zeros((times.size, 2)), 0
     rate = -log(as_float(osc.slope_at_rest()))
     while done < times.size and v > slow:
-        count = min(SETTINGS.block, ceil(log(v / slow) / rate) + 1)
+        # where r = 1 the speeds fall like a power of the number of impacts
+        count = min(SETTINGS.block, ceil(log(v / slow) / rate) + 1) if rate else SETTINGS.block
         found = orbit_segment(osc, tau, v, count)
         starts, speeds = np.append(tau, found.tau), np.append(v, found.v)
         inside = np.arange(done, np.searchsorted(times, starts[-1]))

@@ -15,6 +15,7 @@ from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.contact.next_zero import ContactZero, next_zero
 from singimpact.dynamics import enclosed
+from singimpact.dynamics.fractional_chatter import chatter_completes, power_of_gamma, rest_after
 from singimpact.dynamics.gathered import gathered
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
@@ -23,7 +24,7 @@ from singimpact.flights.kernels.gamma import TERMS_OF_GAMMA
 from singimpact.flights.orbits import orbit_segment
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.status import Status
 from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
@@ -45,6 +46,10 @@ class Search:
     # chatter completes if its predicted time is below this part of the time to the end of gamma; on gamma the part is
     # above 2/(j + 2) at contact order j
     short: float = 1 / 64
+    # where r = 1 that part is 3/(3 + (2 + q) j) on gamma, above 1/(j + 1); speeds fall so slowly that 1/64 comes late
+    part: float = 8.0
+    # halvings towards undecided velocities where r = 1: impacts until a side is decided grow like a power of 1/distance
+    elastic: int = 8
     edges: int = 40  # bisections towards velocities whose side doubles do not decide
     widest: float = 1e-3  # relative error of v at most; the status is `unresolved` beyond it
     first: int = 6  # impacts in the first refinement with digits=
@@ -83,7 +88,8 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
 
     Parameters
     ----------
-    osc : the model, r < 1. tau : a phase with a_c(tau) < 0, or an array of them: the fields then have its shape.
+    osc : the model, r < 1, or r = 1 with a loss C |v|^q, q < 1, at low speed.
+    tau : a phase with a_c(tau) < 0, or an array of them: the fields then have its shape.
     digits : decimal digits; v is then an mpmath number.
     impacts : at most for one velocity; if they do not decide the side the status is `unresolved`.
 
@@ -101,8 +107,13 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
         raise InputError(
             f"tau = {tau} is not accepted: give a phase with a_c(tau) < 0, at which a mass at rest stays on the wall"
         )
-    if compare(osc.slope_at_rest(), 1) == 0:
-        raise InputError(f"restitution = {osc.restitution} is not accepted: chatter completes only for rho'(0) > -1")
+    if not chatter_completes(osc):
+        raise InputError(
+            f"restitution = {osc.restitution} is not accepted: chatter completes only for rho'(0) > -1, or where the "
+            "loss at low speed is C |v|^q with q < 1"
+        )
+    if digits is not None:
+        require_smooth_rho(osc, "a threshold with digits=")
     ahead = next_zero(osc, place)
     if ahead.zero is None:
         return _without(Status.none if ahead.decided else Status.unresolved)
@@ -140,27 +151,29 @@ class _Side(Enum):
 
 
 def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> Threshold:
-    end = zero.tau
+    end, elastic = zero.tau, compare(osc.slope_at_rest(), 1) == 0
     low, high = 0.0, -float(acceleration(osc, np.array([tau]))[0]) * (end - tau) / 4
     if not 0 < high < np.inf:
         return _without(Status.unresolved)
-    while (side := _side(osc, tau, high, end, impacts)) != _Side.above:
+    while (side := _side(osc, tau, high, zero, impacts)) != _Side.above:
         low, high = high, 2 * high
         if side != _Side.below or high > 1e12:
             return _without(Status.unresolved)
     low, high = _bracket(osc, tau, low, high, zero, impacts)
     while high - low > SEARCH.narrow * high:
         middle = (low + high) / 2
-        side = _side(osc, tau, middle, end, impacts)
-        if side == _Side.exhausted:
+        side = _side(osc, tau, middle, zero, impacts)
+        if side == _Side.exhausted and not elastic:
             return _without(Status.unresolved)
-        if side == _Side.near:
-            low, high = (_edge(osc, tau, decided, middle, end, impacts) for decided in (low, high))
+        if side in (_Side.near, _Side.exhausted):
+            halvings = SEARCH.elastic if elastic else SEARCH.edges
+            low, high = (_edge(osc, tau, (decided, middle), zero, (impacts, halvings)) for decided in (low, high))
             break
         low, high = (low, middle) if side == _Side.above else (middle, high)
     v = (low + high) / 2
-    # v on gamma is proportional to (end - tau)^(j + 1): a rounding error of tau is multiplied by (j + 1) v/(end - tau)
-    error = high - low + EPSILON * (8 * v + 2 * (zero.order + 1) * v * abs(tau) / (end - tau))
+    # v on gamma is proportional to (end - tau)^n: a rounding error of tau is multiplied by n v/(end - tau)
+    n = power_of_gamma(osc, zero.order)
+    error = high - low + EPSILON * (8 * v + 2 * n * v * abs(tau) / (end - tau))
     if not error < SEARCH.widest * v:
         return _without(Status.unresolved)
     return Threshold(np.float64(v), np.float64(error), np.int8(Status.complete))
@@ -171,7 +184,8 @@ def _bracket(
 ) -> tuple[float, float]:
     """The narrowest bracket of gamma that the compiled loop of a linear model decides."""
     model = compiled_model(osc)
-    if abs(tau) >= model.nearest or not model.linear:
+    # the loop knows the time left of a chatter from r alone
+    if abs(tau) >= model.nearest or not model.linear or compare(osc.slope_at_rest(), 1) == 0:
         return low, high
     series = _series(osc, replace(zero, turns=0)) if model.constant_restitution else (0.0, 1.0, *[0.0] * TERMS_OF_GAMMA)
     settings = SEARCH.short, SEARCH.narrow, float(impacts), SEARCH.coarse, *series
@@ -192,28 +206,37 @@ def _series(osc: Oscillator, zero: ContactZero) -> tuple[float, ...]:
     return min(sizes, default=1.0), float(zero.order), *g
 
 
-def _edge(osc: Oscillator, tau: float, decided: float, near: float, end: float, impacts: int) -> float:
-    """A velocity whose side is decided, next to the interval around gamma in which doubles do not decide."""
-    for _ in range(SEARCH.edges):
+def _edge(
+    osc: Oscillator, tau: float, between: tuple[float, float], zero: ContactZero, rules: tuple[int, int]
+) -> float:
+    """A velocity whose side is decided, next to the interval around gamma in which it is not.
+
+    Parameters
+    ----------
+    between : a velocity whose side is decided, and one where it is not. rules : impacts, and halvings.
+    """
+    (decided, near), (impacts, halvings) = between, rules
+    for _ in range(halvings):
         middle = (decided + near) / 2
-        if _side(osc, tau, middle, end, impacts) in (_Side.below, _Side.above):
+        if _side(osc, tau, middle, zero, impacts) in (_Side.below, _Side.above):
             decided = middle
         else:
             near = middle
     return decided
 
 
-def _side(osc: Oscillator, tau: float, v: float, end: float, impacts: int) -> _Side:
+def _side(osc: Oscillator, tau: float, v: float, zero: ContactZero, impacts: int) -> _Side:
     """The side of gamma on which (tau, v) lies."""
-    lost = 1 - as_float(osc.slope_at_rest())
+    end, elastic = zero.tau, compare(osc.slope_at_rest(), 1) == 0
+    short = 1 / (SEARCH.part * (zero.order + 1)) if elastic else SEARCH.short
     block, remaining = SEARCH.block, impacts
     while remaining > 0:
         found = orbit_segment(osc, tau, v, block)
         if np.any(found.tau >= end):
             return _Side.above
-        with np.errstate(divide="ignore"):
-            left = -2 * found.v[:-1] / (found.acceleration[1:] * lost)
-        if np.any(left < SEARCH.short * (end - found.tau[:-1])):
+        left = rest_after(osc, found.v[:-1], found.acceleration[1:])
+        pressed = found.acceleration[1:] < 0
+        if np.any(pressed & (left < short * (end - found.tau[:-1]))):
             return _Side.below
         if found.tau.size:
             tau, v = float(found.tau[-1]), float(found.v[-1])

@@ -46,10 +46,17 @@ def _slope_of_rho(osc: Oscillator) -> Any:
 
 
 def rebound_slope(osc: Oscillator, velocity: Any, ring: Any = DOUBLES) -> Any:
-    """rho'(velocity)."""
+    """rho'(velocity); at rest from the expansion of rho, for the formula of rho' may be 0/0 there."""
     if not names_in(osc.restitution):
         return -evaluate(osc.restitution, {}, ring) + 0 * velocity
-    return evaluate(_slope_of_rho(osc), {"v": velocity}, ring) + 0 * velocity
+    if osc.rho_at_rest() is None:
+        return evaluate(_slope_of_rho(osc), {"v": velocity}, ring) + 0 * velocity
+    still = -evaluate(osc.slope_at_rest(), {}, ring)
+    if np.ndim(velocity) == 0 and velocity == 0:
+        return still + 0 * velocity
+    with np.errstate(all="ignore"):
+        slope = evaluate(_slope_of_rho(osc), {"v": velocity}, ring) + 0 * velocity
+    return slope if np.ndim(velocity) == 0 else np.where(velocity == 0, float(still), slope)
 
 
 def speed_before(osc: Oscillator, v: Array) -> Array:

@@ -9,6 +9,7 @@ from typing import Any, Self
 
 from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in, substitute, walk
 from singimpact.algebra.numbers import constant, tree_of
+from singimpact.algebra.puiseux import Puiseux
 from singimpact.inputs import InputError, refuse, shown, unknown
 from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, period_of
@@ -27,7 +28,7 @@ class Oscillator:
     g : expression in t and the parameters.
     clearance : number, the obstacle's place; finite.
     restitution : number r in (0, 1], for v -> -r v; or an expression rho in the velocity v before the impact and the
-        parameters, with rho(0) = 0 and rho'(0) in [-1, 0), for v -> rho(v).
+        parameters, with rho(0) = 0 and rho'(0) in [-1, 0), for v -> rho(v). Powers such as (-v)**(6/5) are allowed.
     parameters : name -> number.
     period : number, optional; a period of g. Found from g when it can be; needed only where a task asks for one.
 
@@ -119,6 +120,22 @@ class Oscillator:
         """
         return rebound.slope_at_rest(self.restitution, tuple(sorted(self.parameters.items())))
 
+    def rho_at_rest(self) -> Puiseux | None:
+        """The first terms of rho(-w) in rational powers of w > 0; None where there is no such expansion.
+
+        Examples
+        --------
+        >>> print(Oscillator("x", "cos(t)", 0, "-v*(1 - C*(-v)**q)", {"C": "0.3", "q": "1/5"}).rho_at_rest())
+        1*w**(1) + (-0.3)*w**(6/5)
+        """
+        return rebound.at_rest(self.restitution, tuple(sorted(self.parameters.items())))
+
+    @property
+    def smooth_at_rest(self) -> bool:
+        """Whether rho has whole powers of v alone at v = 0, in the terms that are known."""
+        found = None if not names_in(self.restitution) else self.rho_at_rest()
+        return found is None or found.whole
+
     def replace(self, **changes: Any) -> Self:
         """The same model with some fields changed; a parameter is changed by its own name.
 
@@ -189,6 +206,25 @@ def require_smooth_text(tree: Expression, what: str) -> None:
             raise InputError(
                 f"{what} = {shown(str(tree))} is not smooth where abs changes sign: a smooth expression is needed here"
             )
+
+
+def require_smooth_rho(osc: Oscillator, what: str) -> None:
+    """Refuse a restitution that is not smooth at rest where a task needs its Taylor series there.
+
+    Parameters
+    ----------
+    what : the task, as the subject of a sentence.
+    """
+    if not osc.smooth_at_rest:
+        raise not_smooth(osc, what)
+
+
+def not_smooth(osc: Oscillator, what: str) -> InputError:
+    """The refusal of a restitution that is not smooth at rest."""
+    return InputError(
+        f"restitution = {shown(str(osc.restitution))} is not accepted here: at v = 0 it has powers of v that are not "
+        f"whole, and {what} needs a number r, or a rho that is smooth there, such as -0.8*v + v**2"
+    )
 
 
 def _written(value: Any) -> str:

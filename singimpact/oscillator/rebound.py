@@ -9,9 +9,12 @@ from typing import Any
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Name, evaluate, multiply, names_in, number, substitute
 from singimpact.algebra.numbers import compare, constant, tree_of
+from singimpact.algebra.puiseux import Puiseux, expansion
 from singimpact.inputs import InputError, refuse
 
 ACCEPTED = "a number in (0, 1], or an expression rho in v with rho(0) = 0 and -1 <= rho'(0) < 0, such as -0.8*v + v**2"
+# terms of the expansion of rho at rest: more where the first ones cancel, fewer where their coefficients become long
+TERMS = (6, 24, 2)
 
 
 def read(value: Any, parameters: dict[str, Expression]) -> Expression:
@@ -42,12 +45,41 @@ def rho_of(restitution: Expression) -> Expression:
 
 
 def _good(rho: Expression) -> bool:
+    found = expanded(rho)
+    if found is not None:
+        (power, slope) = found.terms[0]
+        return power == 1 and compare(slope, 0) > 0 >= compare(slope, 1)
     rest = {"v": number(0)}
     try:
         start, slope = _value(substitute(rho, rest)), _value(substitute(derivative(rho, "v"), rest))
         return compare(start, 0) == 0 and compare(slope, 0) < 0 <= compare(slope, -1)
     except (ArithmeticError, ValueError):
         return False
+
+
+@lru_cache(maxsize=256)
+def expanded(rho: Expression) -> Puiseux | None:
+    """rho(-w) in rational powers of w > 0; None where it has no such expansion, or none of its terms is found.
+
+    Examples
+    --------
+    >>> print(expanded(tree_of("-v + 0.3*(-v)**1.2", ("v",))))
+    1*w**(1) + (0.3)*w**(6/5)
+    """
+    for count in TERMS:
+        try:
+            found = expansion(rho, "v", -1, count)
+        except (ArithmeticError, ValueError):
+            continue
+        if found.terms:
+            return found
+    return None
+
+
+@lru_cache(maxsize=256)
+def at_rest(restitution: Expression, parameters: tuple[tuple[str, Expression], ...]) -> Puiseux | None:
+    """rho(-w) as in `expanded`, of a restitution as a model keeps it."""
+    return expanded(substitute(rho_of(restitution), dict(parameters)))
 
 
 def _value(tree: Expression) -> Expression:
@@ -65,5 +97,8 @@ def slope_at_rest(restitution: Expression, parameters: tuple[tuple[str, Expressi
     """-rho'(0), the r of an impact that is slow enough."""
     if not names_in(restitution):
         return restitution
+    found = at_rest(restitution, parameters)
+    if found is not None:
+        return found.terms[0][1]
     slope = substitute(derivative(restitution, "v"), {"v": number(0), **dict(parameters)})
     return multiply(number(-1), _value(slope))

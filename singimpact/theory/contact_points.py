@@ -8,7 +8,6 @@ from typing import Any
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression, evaluate
-from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float, as_fraction, compare, constant
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES, EXACT, Doubles
@@ -18,7 +17,8 @@ from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet
 from singimpact.contact.next_zero import ContactZero
 from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.inputs import InputError, refuse
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_smooth_rho
+from singimpact.oscillator.rho_series import TASK, series_of_rho
 
 NEAR = 1e-7  # a tau given as a double names the tangency point this close to it, in units of 1 + |tau|
 LEAST = Fraction(1, 2**4096)  # halving for a multiplier ends here
@@ -66,7 +66,8 @@ class Place:
             return Contact.of(self.model, self.tau_in(ring), self.j, order, ring)
 
     def restitution_in(self, ring: Any) -> Any:
-        """r = -rho'(0) in a ring."""
+        """r = -rho'(0) in a ring; the series in which it stands is one of a rho that is smooth at rest."""
+        require_smooth_rho(self.model, TASK)
         return evaluate(self.model.slope_at_rest(), {}, ring)
 
     def rho(self, order: int, ring: Any) -> dict[int, Any]:
@@ -75,9 +76,7 @@ class Place:
         if top < 2:
             return {}
         with precision_of(ring):
-            space = JetSpace(("v",), top, ring)
-            jet = space.evaluate(self.model.rho(), {"v": space.generators()[0]})
-            return {k: value for k in range(2, top + 1) if (value := jet.coefficient((k,))) != 0}
+            return {k: value for k, value in series_of_rho(self.model, top, ring).items() if k > 1}
 
 
 def place(model: Any, j: int, tau: Any) -> Place:

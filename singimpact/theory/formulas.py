@@ -19,6 +19,8 @@ from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.model import require_smooth_rho
+from singimpact.oscillator.rho_series import TASK
 from singimpact.theory.completion import leaves, symbolic_completion
 from singimpact.theory.contact_points import Place, ending_gamma, exact_contact, multiplier, place
 from singimpact.theory.digits import all_certified, all_digits, as_double, sympy_digits, with_digits
@@ -254,6 +256,7 @@ def chatter_limit(
     if tau is None:
         raise InputError("tau is needed: give the time at which the first flight starts")
     where = place(model, 0, tau)
+    require_smooth_rho(model, TASK)
     multiplier(0, model.slope_at_rest())
     further = {n: abs(c) for n, c in _completed(where, order + TRUST.further, DOUBLES).items() if n > order}
 
@@ -381,6 +384,7 @@ def curve_at(where: Place, order: int, ring: Any) -> InvariantCurve:
     """
     bits = ring.bits if isinstance(ring, Balls) else 64
     with precision_of(ring):
+        require_smooth_rho(where.model, TASK)
         found = multiplier(where.j, where.model.slope_at_rest(), bits)
         lambda_ = found if isinstance(ring, Balls) else float(found.mid())
         r = where.restitution_in(ring)
@@ -389,6 +393,7 @@ def curve_at(where: Place, order: int, ring: Any) -> InvariantCurve:
 
 def _exact_curve(where: Place, order: int, part: str) -> dict[int, Any] | None:
     """The coefficients as sympy numbers, when tau_* and lambda are exact."""
+    require_smooth_rho(where.model, TASK)
     lambda_ = multiplier(where.j, where.model.slope_at_rest())
     contact = exact_contact(where, order) if lambda_ is not None else None
     if contact is None or lambda_ is None:

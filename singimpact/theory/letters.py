@@ -19,7 +19,8 @@ from singimpact.algebra.rings import SYMBOLIC, to_sympy
 from singimpact.algebra.symbols import SymbolRing
 from singimpact.contact.contact import Contact, acceleration_jet, derivative_name, force_jet
 from singimpact.inputs import InputError, refuse, unknown
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_smooth_rho
+from singimpact.oscillator.rho_series import TASK
 from singimpact.theory.constants import contact_in_sympy
 
 TAKEN = re.compile(r"sigma|lambda|eta|a|a_d\d+|f_\d+|rho_\d+")
@@ -104,6 +105,7 @@ class LetteredModel:
     def _rho(self, order: int) -> dict[Any, Any]:
         import sympy
 
+        require_smooth_rho(self.model, TASK)
         space = JetSpace(("v",), order, SYMBOLIC)
         letters = {name: space.constant(SYMBOLIC.symbol(name)) for name in self.keep}
         jet = space.evaluate(self.model.rho(self.keep), {"v": space.generators()[0], **letters})

@@ -10,7 +10,7 @@ from singimpact.paper.figures.panel import Picture
 
 FIGURES = tuple(range(1, 18))
 """The numbers of the paper's figures."""
-BEYOND = ("B1", "B2", "B3", "B4", "B5", "B6", "B7", "B8")
+BEYOND = ("B1", "B2", "B3", "B4", "B5", "B6", "B7", "B8", "B9")
 """The names of figures of what the paper does not have."""
 
 
@@ -45,7 +45,7 @@ def _function(number: int | str) -> Callable[[], Picture]:
 
 
 def _beyond(name: str) -> Callable[[], Picture]:
-    from singimpact.paper.figures import corrections, loops, met
+    from singimpact.paper.figures import corrections, hertz, loops, met
 
     functions: dict[str, Callable[[], Picture]] = {
         "B1": corrections.figure_B1,
@@ -56,6 +56,7 @@ def _beyond(name: str) -> Callable[[], Picture]:
         "B6": loops.figure_B6,
         "B7": met.figure_B7,
         "B8": met.figure_B8,
+        "B9": hertz.figure_B9,
     }
     return functions[name]
 
@@ -73,7 +74,7 @@ def picture(number: Any) -> Picture:
 
 
 def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
-    """One of the paper's figures as a matplotlib figure, at the size of a printed page; "B1" to "B6" are beyond it.
+    """One of the paper's figures as a matplotlib figure, at the size of a printed page; "B1" to "B9" are beyond it.
 
     Parameters
     ----------

@@ -8,6 +8,8 @@ import sympy
 
 from singimpact.documents.arranging import in_powers
 from singimpact.documents.steps import Section, Step
+from singimpact.paper.claims.beyond import hertz
+from singimpact.paper.claims.beyond.every_order import j
 from singimpact.paper.claims.beyond.foot import FORMULA
 from singimpact.paper.claims.beyond.loops import inner, preimage, r
 from singimpact.paper.routes import first_order
@@ -30,6 +32,7 @@ def told() -> Section:
         *_every_order(),
         *_first_order(),
         *_threshold(),
+        *_hertz(),
         *_loops(),
         *_foot(),
         *_onset(),
@@ -153,6 +156,44 @@ def _threshold() -> tuple[Step, ...]:
             "b:holder-bounds",
             ("b:holder-bounds",),
             "figureB3",
+        ),
+    )
+
+
+def _hertz() -> tuple[Step, ...]:
+    found = tuple(sympy.factor(part) for part in (hertz.FACTOR, hertz.SECOND))
+    shown = (
+        3 * (1 - hertz.q) / (2 * (3 + (2 + hertz.q) * j)),
+        hertz.q * (3 + (2 + hertz.q) * j) * (3 + (1 + 2 * hertz.q) * j)
+        / (3 * (1 - hertz.q) * (3 + 2 * j + 2 * j * hertz.q - j * hertz.q**2)),
+    )  # fmt: skip
+    if any(sympy.cancel(one - other) != 0 for one, other in zip(found, shown, strict=True)):
+        raise ArithmeticError("a constant of gamma is not the one that is printed")
+    return (
+        Step(
+            "Materials lose less at lower speeds: $\\rho(-v) = v(1 - Cv^q + \\ldots)$ with $0 < q < 1$, $q = "
+            "\\frac15$ for viscoelastic spheres. Then $r = 1$, and neither $\\lambda$ nor $\\mu$ exists. An "
+            "elastic flight of length $e|\\sigma|$ keeps $v^3/|a_c|$ up to $O(e^3)$, for every $j$. So $I = "
+            "v/|a_c|^{1/3}$ falls by $\\frac C2I^q|a_c|^{(q+2)/3}$ a time, and it is used up at the contact point if",
+            r"v^{1-q} \sim \frac{3(1 - q)}{2(3 + (2 + q)j)}\,\frac{C|a_j|}{j!}\,|\sigma|^{j+1}",
+            "b:hertz",
+            ("b:hertz", "b:hertz-adiabatic", "b:hertz-chatter"),
+            "figureB9",
+        ),
+        Step(
+            "This is $\\gamma$. It is flatter than $|\\sigma|^{j+1}$, with the exponent $(j + 1)/(1 - q)$. The "
+            "ratio of $v$ to it falls below 1 and rises above 1, by distances that grow like $|\\sigma|^{-p}$, $p = "
+            "1 + \\frac13(2 + q)j$. Launches of both kinds form open sets, so over each $\\sigma$ some launch stays "
+            "between them. At $j = 0$ it is the time $2v^{1-q}/((1 - q)C|a_c|)$ of a chatter that is pressed by a "
+            "constant $a_c$. If the loss is $Cv^q$ alone and the acceleration $a_j\\sigma^j/j!$, then",
+            r"\frac{v\,j!}{|a_j||\sigma|^{j+1}} = P + \frac{q(3 + (2 + q)j)(3 + (1 + 2q)j)}"
+            r"{3(1 - q)(3 + 2j + 2jq - jq^2)}\,P^2 + O(P^3)",
+            "b:hertz-next",
+            ("b:hertz-next", "b:hertz-sides"),
+        ),
+        Step(
+            "where $P$ is the first term. Gamma of four oscillators, found by halving on true orbits at $q = "
+            "\\frac1{10}, \\frac15, \\frac3{10}, \\frac12$ and $j = 1, 2$, has both terms (claim b:hertz-measured)."
         ),
     )
 

@@ -5,5 +5,6 @@ Files: `true_orbits` (flights by scipy, chatter, return times), `surfaces` (V_c'
 (invariant arcs), `leaves` (of the stable foliation), `true_sheet` (v_c by differences at a point), `swans`,
 `unfolded` (the universal model), `enclosed_swan` (that model in balls), `crosscheck` (v_c of `theory` against flights
 in balls), `first_order` (feet of unfolded swans), `holder` (orbits beside gamma),
-`universal_foot` (X for all r in balls), `loop_heights` (of W^s(X)), `onset` (the orbit born at a swan).
+`universal_foot` (X for all r in balls), `loop_heights` (of W^s(X)), `onset` (the orbit born at a swan), `hertz`
+(gamma where impacts lose a power of the speed).
 """

@@ -53,12 +53,18 @@ KINDS = {
     "b:events-two": "proved",
     "b:events-first": "proved",
     "b:events-met": "supported",
+    "b:hertz-adiabatic": "proved",
+    "b:hertz": "proved",
+    "b:hertz-sides": "proved",
+    "b:hertz-next": "proved",
+    "b:hertz-chatter": "proved",
+    "b:hertz-measured": "supported",
 }
 OWN = {"proved in the model": "proved"}  # the kind of a verifier whose argument is about the universal model
 
 SECONDS = (  # those of enclosures and of true orbits
     "b:cascade", "b:homoclinic", "b:horseshoe", "b:first-order-measured", "b:holder", "b:holder-count", "b:loops",
-    "b:loops-law", "b:onset", "b:events-first", "b:events-met",
+    "b:loops-law", "b:onset", "b:events-first", "b:events-met", "b:hertz-next", "b:hertz-measured",
 )  # fmt: skip
 EACH = [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name for name in BEYOND]
 

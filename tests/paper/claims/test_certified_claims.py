@@ -289,7 +289,12 @@ MUTANTS = {
         "paper/claims/beyond/every_order.py",
         "CLOSED_Q = 1 - (j + 2) * ell * L",
         "CLOSED_Q = 1 - (j + 1) * ell * L",
-        "b:order-ray b:order-saddle b:order-expansion b:order-exponents b:holder-bounds"),
+        "b:order-ray b:order-saddle b:order-expansion b:order-exponents b:holder-bounds b:hertz-adiabatic b:hertz"),
+    "a landing with another factor of the length of the flight": (
+        "paper/claims/beyond/hertz.py",
+        "LANDING = sympy.Rational(1, 2) - j * e / 3",
+        "LANDING = sympy.Rational(1, 2) - j * e / 4",
+        "b:hertz-adiabatic b:hertz b:hertz-sides b:hertz-next"),
     "an image of a height by another power": (
         "paper/claims/beyond/loops.py",
         "(r * landing - w * ell**2)",

@@ -164,7 +164,7 @@ def test_the_command(tmp_path):
 
 @pytest.mark.parametrize("wrong", [0, 18, "x", True, 2.5])
 def test_no_such_figure(wrong):
-    with pytest.raises(InputError, match="a number from 1 to 17, or B1 to B8"):
+    with pytest.raises(InputError, match="a number from 1 to 17, or B1 to B9"):
         si.figure(wrong)
 
 
@@ -252,7 +252,7 @@ def test_the_command_takes_serif_and_dark(tmp_path):
     assert "#14181c" in written[2]
 
 
-SECONDS = ("B2", "B3", "B4", "B7", "B8")  # many true orbits
+SECONDS = ("B2", "B3", "B4", "B7", "B8", "B9")  # many true orbits
 
 
 @pytest.mark.parametrize(
@@ -272,8 +272,16 @@ def test_figures_beyond_the_paper_have_claims_and_data(name):
 
 def test_the_paper_has_none_of_them():
     assert not set(BEYOND) & set(FIGURES)
-    with pytest.raises(InputError, match="B1 to B8"):
-        picture("B9")
+    with pytest.raises(InputError, match="B1 to B9"):
+        picture("B10")
+
+
+@pytest.mark.slow
+def test_b9_slopes():
+    """Slopes of gamma between two points, beside (j+1)/(1-q); the second term raises them, most at q = 1/2."""
+    facts = made("B9").facts
+    assert len(facts) == 16
+    assert all(0 < off < (0.1 if name.endswith("1/2") else 0.003) for name, off in facts.items())
 
 
 def test_b1_the_ball_falls_freely():

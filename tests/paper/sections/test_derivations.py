@@ -35,7 +35,9 @@ LABELS = [
     "s6-front", "s6-model", "s6-launch",
     "s6-impact", "s6-horizon", "s6-zero-set", "s6-E", "s6n-corr", "s6n-cusp", "s6p-AB", "s6p-BE", "s6p-eps",
     "s6p-gamma", "s6-shadow", "s6n-maps", "s6-GA", "s6n-chatter", "s6n-X", "b:gauge", "b:order-ray",
-    "b:order-expansion", "b-rising", "b:first-order", "b-chi", "b:first-order-foot", "b:holder-bounds", "b:loops-map",
+    "b:order-expansion", "b-rising", "b:first-order", "b-chi", "b:first-order-foot", "b:holder-bounds",
+    "b:hertz", "b:hertz-next",
+    "b:loops-map",
     "b-loops-preimage", "b:foot", "b:foot-limit", "b:onset-hop", "b:events-front",
     "b:events-critical", "b:events-first", "b:cascade-contraction",
 ]  # fmt: skip
@@ -58,7 +60,8 @@ def test_what_is_beyond_the_paper_stands_by_itself(told):
     assert not [claim for other in told if other is not section for claim in claims_of([other]) if claim in BEYOND]
     words = " ".join(step.text for step in section.steps)
     named = {f"b:{name}" for name in re.findall(r"b:([a-z-]+)", words)}
-    measured = {"b:first-order-measured", "b:holder", "b:holder-count", "b:loops", "b:loops-law", "b:onset"}
+    measured = {"b:first-order-measured", "b:holder", "b:holder-count", "b:loops", "b:loops-law", "b:onset",
+                "b:hertz-measured"}  # fmt: skip
     assert named == measured | {"b:gamma-tangency", "b:gamma-swan", "b:gamma-interval", "b:gamma-nonlinear"}
     assert named <= set(BEYOND)
 

@@ -7,7 +7,7 @@ Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a cer
 points), `holder` (how the foot of a chatter leaves the end of gamma), `loops` (heights of the loops of W^s(X)), `foot`
 (X for every r, in balls), `onset` (what is born at a negative swan), `events` (what a swan meets:
 P as the preimage of a front), `events_harmonic` (all of it for one cosine), `events_met` (what is met first), `gamma`
-(gamma proved on one oscillator).
+(gamma proved on one oscillator), `hertz` (restitution that tends to 1 like a power of the speed).
 """
 
 from __future__ import annotations
@@ -101,6 +101,12 @@ def _gamma() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
+def _hertz() -> tuple[Claim, ...]:
+    from singimpact.paper.claims.beyond import hertz as section
+
+    return section.CLAIMS
+
+
 BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "cascade": _cascade,
     "horseshoe": _horseshoe,
@@ -116,4 +122,5 @@ BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "events_harmonic": _events_harmonic,
     "events_met": _events_met,
     "gamma": _gamma,
+    "hertz": _hertz,
 }

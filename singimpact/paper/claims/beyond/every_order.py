@@ -24,7 +24,7 @@ SHOWN = 12  # orders up to which a sign is decided one by one
 TURNED = 15  # orders up to which negative ratios are counted
 
 
-def _closed_forms() -> list[tuple[str, bool]]:
+def closed_forms() -> list[tuple[str, bool]]:
     """(1 - l)^2 P and (1 - l)^2 Q for every j.
 
     They follow from the motion x = v (s - 1) + (s^(j+2) - 1 - (j+2)(s - 1))/((j+1)(j+2)).
@@ -64,7 +64,7 @@ def _ray(count: int) -> Check:
     )
     return every(
         [
-            *_closed_forms(),
+            *closed_forms(),
             (
                 f"j Q - l Q' has the coefficients {spare} >= 0, P and Q positive ones: so l d/dl log(l^(j+1) P/Q) "
                 ">= 1 for l > 0",
@@ -82,7 +82,7 @@ def _saddle(power: int) -> Check:
     low = [order for order in (1, 2, 3) if not _positive((mu_of_lambda(order) - lambda_**-power) * lambda_**3)]
     return every(
         [
-            *_closed_forms(),
+            *closed_forms(),
             (
                 f"P - Q has the coefficients {difference}, odd under i -> j - i: it is sum (j - 2i)(l^i - l^(j-i)) "
                 "> 0, 2i < j",
