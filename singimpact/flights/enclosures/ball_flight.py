@@ -9,6 +9,7 @@ from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first
 from singimpact.flights.enclosures.tube import Tube, centre, divided
 
 SHORTER = 0.93  # of a step at whose end the root may lie
+SHORTEST = 0.05  # of a step: where its sign at the end is still open, the ball of the state is too wide for any step
 
 
 class Motion(Protocol):
@@ -52,12 +53,15 @@ def first_hit(motion: Motion, horizon: Any, steps: int) -> BallHit:
                 raise Refused("the launch velocity is not shown positive")
         else:
             inner = value, slope
+        shorter = length
         while True:
             try:
-                root = first_root(*inner, length, motion.bits)
+                root = first_root(*inner, shorter, motion.bits)
                 break
             except RootAtEnd:
-                length = centre(length * SHORTER)
+                shorter = centre(shorter * SHORTER)
+                if not shorter > length * SHORTEST:
+                    raise Refused("the ball of a state grew too wide to tell the sign of x - c") from None
             except NearGraze as graze:
                 after = float((motion.time + graze.at).mid())
                 raise Refused(f"x - c and x' both vanish {after:.6g} after the launch, as far as balls tell") from None
@@ -70,7 +74,7 @@ def first_hit(motion: Motion, horizon: Any, steps: int) -> BallHit:
             if time > horizon:
                 raise NoHit(f"no hit comes before {float(horizon.mid()):.6g}")
             return BallHit(time, velocity, derivatives, count)
-        if motion.time + length > horizon:
+        if motion.time + shorter > horizon:
             raise NoHit(f"no hit comes before {float(horizon.mid()):.6g}")
-        motion.advance(length)
+        motion.advance(shorter)
     raise TooLong(f"no hit comes before {float(motion.time.mid()):.6g}, and {steps} steps in balls do not go further")

@@ -19,6 +19,7 @@ from typing import Any
 
 from singimpact.algebra.analytic import Place, Program, Recorder
 from singimpact.algebra.precision import balls_at
+from singimpact.flights.enclosures.ball_flight import SHORTER, SHORTEST
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, box_of, working_at
 from singimpact.flights.enclosures.equation import Equation, NotAnalytic, Programs, Refused, programs_of, recorded
 from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
@@ -46,9 +47,6 @@ from singimpact.flights.enclosures.taylor_step import (
 )
 from singimpact.flights.enclosures.tube import Tube, ball, centre, divided, height, speed, upper
 from singimpact.oscillator.model import Oscillator
-
-SHORTER = 0.93
-"""Of a step at whose end the root may lie."""
 
 
 @dataclass(frozen=True)
@@ -262,13 +260,15 @@ class _JetFlight:
 
     def _root(self, inner: tuple[Tube, Tube], length: Any) -> tuple[Any, Any]:
         """The first root, or None, and the length of the step on which that is decided."""
-        while True:
+        shorter = length
+        while shorter > length * SHORTEST:
             try:
-                return first_root(*inner, length, self.bits), length
+                return first_root(*inner, shorter, self.bits), shorter
             except RootAtEnd:
-                length = centre(length * SHORTER)
+                shorter = centre(shorter * SHORTER)
             except NearGraze:
                 raise Refused("x - c and x' both vanish, as far as balls tell") from None
+        raise Refused("the ball of a state grew too wide to tell the sign of x - c")
 
     def _landed(self) -> JetHit:
         """The state after the hit: the jet N with z(T + N) = 0 by Taylor's formula, T the ball of the times."""

@@ -14,6 +14,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.bench.problems import states
 from singimpact.bench.steep_families import SMOOTH, STEEP
 from singimpact.bench.steep_states import drawn_of
+from singimpact.flights.enclosures import ball_flight
 from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
 from singimpact.flights.enclosures.equation import NoHit, Refused
 from singimpact.impact_oscillator import ImpactOscillator, linear
@@ -179,3 +180,26 @@ def test_certified_and_plain_answers_agree():
         step, plain = (osc.impact_map(problem.tau, problem.v, **given) for given in ({"digits": 20}, {}))
         assert step.certified is not None, problem
         assert abs(float(step.certified.flight_time.value) / plain.flight_time - 1) < 1e-9
+
+
+def test_a_ball_that_is_too_wide_for_any_step_is_refused_and_not_halved_for_ever():
+    """A fast launch of a stiff van der Pol oscillator: next to the hit the ball of the state is wider than x - c.
+
+    The end of the step was drawn in without end, in search of a sign that the ball cannot have.
+    """
+    osc = Oscillator("x - mu*(1 - x**2)*xdot", "A*cos(omega*t)", 0.1135627060726424, "1/2",
+                     {"mu": 3, "A": "1.5", "omega": 0.911900093013525})  # fmt: skip
+    launch = Launch(constant("tau", 17.926628581506485), constant("v", 6))
+    tried = []
+    honest = ball_flight.first_root
+
+    def counted(*given):
+        tried.append(given)
+        assert len(tried) < 1000
+        return honest(*given)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ball_flight, "first_root", counted)
+        hit = certified_hit(osc, launch, 20, Fraction(30), expected=(6.193177174171359, 1.0))
+    assert float(hit.flight_time) == pytest.approx(6.193177174171359, rel=1e-12)
+    assert hit.flight_time.rel_accuracy_bits() > 66
