@@ -20,7 +20,8 @@ SIGNS = {
 }  # fmt: skip
 
 
-SYMMETRIC = ("plus", "times", "zip", "max", "min", "same")  # pairs that `zip` makes are added, or compared
+# pairs that `zip` makes are added, or compared
+SYMMETRIC = ("plus", "times", "add", "multiply", "zip", "max", "min", "maximum", "minimum", "same")
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,7 @@ def _changes(tree: ast.AST, source: str, place) -> Iterator[tuple[int, int, int,
 
 def _symmetric(call: ast.Call) -> bool:
     """Whether exchanging two arguments is no change: of a symmetric function, or of arguments that are unpacked."""
-    name = call.func.id if isinstance(call.func, ast.Name) else ""
+    name = getattr(call.func, "id", None) or getattr(call.func, "attr", "")
     return name in SYMMETRIC or any(isinstance(each, ast.Starred) for each in call.args)
 
 
