@@ -317,7 +317,7 @@ def test_precisions_are_put_back_when_a_call_raises(monkeypatch):
     def raises(*_):
         raise RuntimeError("in the middle")
 
-    monkeypatch.setattr(taylor_step, "_widest_disc", raises)
+    monkeypatch.setattr(taylor_step, "widest_disc", raises)
     before = mpmath.mp.prec, flint.ctx.prec, precision._own_context().prec
     with pytest.raises(RuntimeError):
         CUBIC.impact_map("1.2", "0.1", digits=33)

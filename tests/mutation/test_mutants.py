@@ -50,7 +50,7 @@ def test_the_seed_draws_the_same_mutants_and_every_file_is_there(clone):
 
 def test_the_quickest_tests_that_run_the_line_come_first():
     mutant = next(each for each in mutants_of("demo.py", "def half(x):\n    return x / 2\n") if each.was == "/")
-    lines = {"demo.py": {"1": [("never", 0.1)], "2": [("slow", 50.0), ("quick", 1.0), ("middle", 30.0)]}}
+    lines = {"demo.py": {"1": [("never", 0.1)], "2": [("slow", 50.0), ("quick", 1.0), ("middle", 15.0)]}}
     assert mutate.nearest(mutant, lines) == ["quick", "middle"]
     assert mutate.nearest(mutant, {}) == []
 

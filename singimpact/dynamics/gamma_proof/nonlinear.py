@@ -121,7 +121,7 @@ def nonlinear_relation(osc: Oscillator, zero: ContactZero, reach: Fraction, bits
     ...     found = nonlinear_relation(osc, next_zero(osc, constant("tau", 2)).zero, Fraction(1, 8), 96)
     ...     hats = found.hats(arb("0.1"), arb("0.5"))
     >>> print(hats.W.str(8, radius=False), hats.U.str(8, radius=False))
-    0.79325735 0.63340498
+    0.81137948 0.64688503
     """
     j = zero.order
     series = _series(osc, zero, TERMS + j + 1)
