@@ -206,8 +206,6 @@ def compile_asked(request: Path) -> None:
     """What the other process does: compile the entries of a text and keep them."""
     if hasattr(os, "nice"):
         os.nice(10)
-    with suppress(OSError):  # Linux shares out processors by session first, and this process has one of its own
-        Path("/proc/self/autogroup").write_text("10", encoding="ascii")
     gc.disable()  # a tenth of the time: numba makes millions of objects, and the process ends when it is done
     flow, rows, rho = request.read_text(encoding="utf-8").split("\0")
     machine = Machine(Emitted(flow, int(rows), rho))
