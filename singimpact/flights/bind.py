@@ -2,7 +2,8 @@
 
 The kernels are ordinary modules.  Binding puts their functions into one namespace, where those that depend on the
 flow (`IN_STEPS`, coefficients, restart and bounds) and the rebound law are those of the model at hand.  Only the
-recurrence of f and g and an expression for rho are emitted as text.
+recurrence of f and g and an expression for rho are emitted as text.  Compiled kernels call rho at an address, so that a
+law of its own costs a model no kernels.
 """
 
 from __future__ import annotations
@@ -52,6 +53,7 @@ UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": Tru
 IN_STEPS = {"step_size": "step_size_of_discs", "singular_part": "singular_part_of_discs",
             "next_hit": "next_hit_in_steps", "placed": "placed_in_steps"}  # fmt: skip
 """Functions of linear models, and what stands in their places for models without a closed form."""
+LAW = "law"
 ADDRESSES = 8
 """Arguments of an entry: sizes, model, scratch, tau, v, w, out, status."""
 
@@ -63,7 +65,7 @@ class Emitted:
     Parameters
     ----------
     flow : of the recurrence of f and g, with its bounds; empty for a linear model. rows : of its work.
-    rho : of `rebound(velocity, w)`; empty for a constant restitution.
+    rho : of `law(velocity, w)`; empty for a constant restitution.
     """
 
     flow: str = ""
@@ -72,7 +74,9 @@ class Emitted:
 
     @property
     def entries(self) -> tuple[str, ...]:
-        """The entries that fly such models, in the order in which they are compiled."""
+        """The entries that fly such models, in the order in which they are compiled; a law alone is one of its own."""
+        if self.rho:
+            return (LAW,)
         return ("taylor_entry", "judge_entry") if self.flow else ("linear_entry", "batch_entry", "search_entry")
 
 
@@ -174,39 +178,49 @@ class Compiler:
 
         module = types.ModuleType("singimpact_kernels")
         self.space = vars(module)
-        self.space |= {**{name: getattr(math, name) for name in FUNCTIONS}, **constants(), **_of_addresses()}
+        self.space |= {**{name: getattr(math, name) for name in FUNCTIONS}, **constants()}
         # without wrappers for Python, compiling takes a third less
         inner: Any = numba.njit(error_model="numpy", **UNWRAPPED)
-        for name, part in _chosen(emitted).items():
+        for name, part in _chosen(emitted.flow).items():
             bound = types.FunctionType(part.__code__, self.space, name)
             self.space[name] = bound if name.endswith("_entry") else inner(bound)
+        self.space |= _of_addresses()
+        self.space |= _functions(emitted.rho, self.space)
 
     def text(self, entry: str) -> str:
         """An entry as text of LLVM; it takes seconds."""
         import numba
         from numba import types as kinds
 
-        address = kinds.CPointer(kinds.float64)
-        takes = kinds.int64(kinds.CPointer(kinds.int64), *[address] * (ADDRESSES - 2), kinds.CPointer(kinds.int8))
+        address, sizes = kinds.CPointer(kinds.float64), kinds.CPointer(kinds.int64)
+        takes = kinds.int64(sizes, *[address] * (ADDRESSES - 2), kinds.CPointer(kinds.int8))
+        if entry == LAW:
+            takes = kinds.float64(kinds.float64, address)
         text: str = numba.cfunc(takes, error_model="numpy")(self.space[entry]).inspect_llvm()
         return text
 
 
-def _chosen(emitted: Emitted) -> dict[str, Any]:
+def _chosen(flow: str) -> dict[str, Any]:
     """The functions of all kernels by name, those of the model in their places."""
-    own = {name: part for each in MODULES for name, part in _own(each).items() if name != "block"}
-    for text in (emitted.flow, emitted.rho):
-        made: dict[str, Any] = {}
-        exec(compile(text, "<emitted>", "exec"), made)
-        own |= {name: part for name, part in made.items() if isinstance(part, types.FunctionType)}
-    if emitted.flow:
+    own = {name: part for each in MODULES for name, part in _own(each).items() if name not in ("block", LAW)}
+    own |= _functions(flow, {})
+    if flow:
         own |= {"restart": own["state_kept"], **{name: own[other] for name, other in IN_STEPS.items()}}
     return own
 
 
+def _functions(text: str, space: dict[str, Any]) -> dict[str, Any]:
+    """The functions of an emitted text by name; they read their globals from a namespace."""
+    made: dict[str, Any] = {}
+    exec(compile(text, "<emitted>", "exec"), space, made)
+    return {name: part for name, part in made.items() if isinstance(part, types.FunctionType)}
+
+
 def _of_addresses() -> dict[str, Any]:
-    """`layout.block` over an address."""
+    """`layout.block` over an address, and `orbits.law` at an address."""
     import numba
+    from llvmlite import ir
+    from numba import types as kinds
     from numba.extending import intrinsic
 
     @intrinsic
@@ -219,5 +233,17 @@ def _of_addresses() -> dict[str, Any]:
     def block(flat: Any, at: Any, shape: Any) -> Any:
         return numba.carray(moved(flat, at), shape)  # type: ignore[call-arg]
 
+    @intrinsic
+    def law(_typing: Any, velocity: Any, w: Any) -> Any:
+        def emit(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+            numbers = context.make_array(signature.args[1])(context, builder, given[1])
+            last = builder.sub(builder.extract_value(numbers.shape, 0), ir.Constant(ir.IntType(64), 1))
+            at = builder.fptoui(builder.load(builder.gep(numbers.data, [last])), ir.IntType(64))
+            number = ir.DoubleType()
+            called = ir.FunctionType(number, [number, number.as_pointer()]).as_pointer()
+            return builder.call(builder.inttoptr(at, called), [given[0], numbers.data])
+
+        return kinds.float64(velocity, w), emit
+
     bound: Any = numba.njit(**UNWRAPPED)(block)
-    return {"block": bound}
+    return {"block": bound, LAW: law}

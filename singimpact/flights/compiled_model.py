@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import lru_cache
 from math import frexp, ldexp
 from threading import Lock
@@ -15,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import names_in, substitute
-from singimpact.algebra.numbers import as_float, rational_near
+from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.codegen.recurrence import Recurrence
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import counted
-from singimpact.flights.bind import Emitted
+from singimpact.flights.bind import LAW, Emitted
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
 from singimpact.flights.interruptible import LONG, interruptible
 from singimpact.flights.kernels import entries, layout
@@ -28,8 +27,9 @@ from singimpact.flights.kernels.chatter import NO_ROOM
 from singimpact.flights.kernels.hits import UNIT
 from singimpact.flights.kernels.lanes import LANES
 from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.machine import Machine, compilable, machine_of
+from singimpact.flights.machine import Entry, Machine, compilable, machine_of
 from singimpact.flights.model_numbers import (
+    batch_turn_of,
     fastest,
     has_table,
     horizon_of,
@@ -110,17 +110,18 @@ class CompiledModel:
         self.osc, self.allowance = osc, allowance
         self.form = linear_form(osc)
         self.linear = flow is None and has_table(osc)
-        text, trees = scalar(rho_of(osc.restitution), "v", "rebound")
+        text, trees = scalar(rho_of(osc.restitution), "v", LAW)
         self.constant_restitution = not names_in(osc.restitution)
         if self.constant_restitution:
             text, trees = "", (osc.restitution,)
-        self.rho = np.array([as_float(substitute(tree, osc.parameters)) for tree in trees])
+        # last, 0 for a constant, or the address of the compiled law
+        self.rho = np.array([*(as_float(substitute(tree, osc.parameters)) for tree in trees), float(bool(text))])
+        self.law = machine_of(Emitted(rho=text)) if text else None
         flow = None if self.linear else flow or recurrence_of(osc)
         self.flow = flow
         source, rows = ("", 0) if flow is None else (flow.source, flow.rows)
         self.machine: Machine = machine_of(Emitted(source, rows))
-        # only orbits call rho: the first hits of all linear models have one machine
-        self.orbits: Machine = machine_of(Emitted(source, rows, text))
+        self.emitted = Emitted(source, rows, text)
         self.main = self.machine.emitted.entries[0]
         self.sizes, self.flat = self._laid_out()
         self._sizes, self._flat_address = self.sizes.tolist(), _address(self.flat)
@@ -170,7 +171,7 @@ class CompiledModel:
                     rate, cosine, sine = values[5 + 3 * j : 8 + 3 * j]
                     part.waves[j] = rate, phase[j], cosine, sine
             turn = flat.size - 3
-            flat[turn:] = _batch_turn(osc)
+            flat[turn:] = batch_turn_of(osc)
         else:
             constants = numbers.size
             sizes[[layout.ROWS, layout.ROOM, layout.CONSTANTS]] = self.machine.emitted.rows, room, constants
@@ -186,16 +187,21 @@ class CompiledModel:
             return float(numbers_of(self.osc)[0][4])
         return 1.0 if self.osc.period is None else 2 * np.pi / as_float(self.osc.period)
 
-    def _entry(self, name: str, machine: Machine | None = None) -> Callable[..., int] | None:
+    def _entry(self, name: str) -> Callable[..., int] | None:
         """A compiled entry, with the tables that it needs filled."""
-        found = (machine or self.machine).entry(name)
+        found = self.machine.entry(name)
         return None if found is None else self._ready(name, found[0])
 
-    def _here(self, name: str, machine: Machine | None = None) -> Callable[..., int]:
-        """An entry compiled now, for work that Python's numbers refuse, or that takes too long."""
+    def _here(self, name: str, law: Machine | None = None) -> Callable[..., int]:
+        """An entry compiled now, and the law that it calls, for what Python's numbers refuse or what takes too long."""
         if not compilable():
             raise InputError("the flight leaves the range of Python's numbers: install numba, which compiles flights")
-        return self._ready(name, (machine or self.machine).compile_here(name)[0])
+        if law is not None:
+            self._bind_law(law.compile_here(LAW))
+        return self._ready(name, self.machine.compile_here(name)[0])
+
+    def _bind_law(self, found: Entry) -> None:
+        self.rho[-1] = ctypes.cast(found[0], ctypes.c_void_p).value or 1  # type: ignore[arg-type]
 
     def _ready(self, name: str, entry: Callable[..., int]) -> Callable[..., int]:
         kind = PREPARATIONS.get(name)
@@ -246,14 +252,31 @@ class CompiledModel:
         self._seconds[kind] = max(spent, 0.9 * known if kind in self._seconds else self._least)
         return found
 
-    def _compiled(self, name: str, seconds: float, machine: Machine | None = None) -> Callable[..., int] | None:
-        """An entry for work that takes so long when it is interpreted; None: interpret it."""
-        machine = machine or self.machine
-        found = self._entry(name, machine)
+    def _compiled(self, name: str, seconds: float, law: Machine | None = None) -> Callable[..., int] | None:
+        """An entry for work that takes so long when it is interpreted; None: interpret it.
+
+        Parameters
+        ----------
+        law : what the work calls beside.
+        """
+        if law is not None and self.rho[-1] == 1:
+            compiled = law.entry(LAW)
+            if compiled is None:
+                law.interpreted(seconds, LAW)
+                self._compiled(name, seconds)
+                return None
+            self._bind_law(compiled)
+        found = self._entry(name)
         if found is None:
-            machine.interpreted(seconds, name)
-            found = self._entry(name, machine)
+            self.machine.interpreted(seconds, name)
+            found = self._entry(name)
         return found
+
+    def _for_orbits(self, name: str, seconds: float) -> Callable[..., int] | None:
+        """The same for work that calls rho; it is waited for once flights have been interpreted for long."""
+        if self.machine.spent > LIMITS.patience and compilable():
+            return self._here(name, self.law)
+        return self._compiled(name, seconds, self.law)
 
     @kept_property
     def sometimes_kept(self) -> bool:
@@ -267,7 +290,7 @@ class CompiledModel:
     def interpreter(self) -> Interpreter:
         """The model over lists of floats."""
         if self._interpreter is None:
-            self._interpreter = Interpreter(self.orbits.emitted, self.flat, self.sizes)
+            self._interpreter = Interpreter(self.emitted, self.flat, self.sizes)
         return self._interpreter
 
     def forget_lists(self) -> None:
@@ -407,14 +430,14 @@ class CompiledModel:
     def segment(self, tau: float, v: float, count: int, near: float = 0.0) -> tuple[Array, int]:
         """Rows of the impacts of one orbit, see `kernels.orbits`, and the code of the flight that ended it."""
         out, status = np.empty((count, 11)), np.zeros(1, np.int8)
-        entry = self._compiled(self.main, self.price * count, self.orbits)
+        entry = self._for_orbits(self.main, self.price * count)
         if entry is None:
             try:
                 flown, code = self.interpreter.segment(tau, v, near, self.rho, out)
                 counted.add(flown)
                 return out[:flown], code
             except LEFT_OPEN:
-                entry = self._here(self.main, self.orbits)
+                entry = self._here(self.main, self.law)
         given = np.array([tau]), np.array([v]), np.concatenate([[near], self.rho])
         flown = self._call(entry, (entries.SEGMENT, count, 0), given, out, status)
         counted.add(flown)
@@ -427,15 +450,13 @@ class CompiledModel:
         status = np.where(speeds > 0, 0, entries.AT_REST).astype(np.int8)
         status[tau.size :] = entries.AT_REST
         name = "batch_entry" if self.linear else self.main
-        entry, begin = self._compiled(name, 0.0, self.orbits), 0
+        entry, begin = self._compiled(name, 0.0, self.law), 0
         while begin < size:
-            if entry is None and self.orbits.spent > LIMITS.patience and compilable():
-                entry = self._here(name, self.orbits)
             block = LANES if entry is None else max(LANES, TABLES.block // max(impacts, 1) // LANES * LANES)
             part = slice(begin, begin + block)
             codes = status[part]
             if entry is None:
-                entry = self._compiled(name, self.price * codes.size * impacts, self.orbits)
+                entry = self._for_orbits(name, self.price * codes.size * impacts)
             if entry is None:
                 self.interpreter.iterate(times[part], speeds[part], impacts, self.rho, codes)
             else:
@@ -463,9 +484,9 @@ class CompiledModel:
 
     def _search(self, seconds: float) -> Callable[..., int] | None:
         """The entry of searches along orbits; None where it is not compiled."""
-        if not self.linear or self._compiled(self.main, seconds, self.orbits) is None:
+        if not self.linear or self._compiled(self.main, seconds, self.law) is None:
             return None
-        return self._compiled("search_entry", 0.0, self.orbits)
+        return self._compiled("search_entry", 0.0, self.law)
 
     def limits(self, tau: Array, v: Array, settings: tuple[float, float, float]) -> tuple[Array, Array] | None:
         """Codes of chatters, and end, error and impacts, shape (3, n); None where no compiled entry flies them.
@@ -555,11 +576,6 @@ class CompiledModel:
         return out
 
 
-def codes_and_columns(model: CompiledModel, tau: Array, v: Array) -> tuple[Array, Array]:
-    """`CompiledModel.hits`, and nothing around it: the cost of the flights."""
-    return model.hits(tau, v)
-
-
 _SIZES = ctypes.c_int64 * 8
 
 
@@ -580,13 +596,3 @@ def _step(reach: float, rate: float) -> float:
     """reach/rate with few bits, so that multiples of it are exact."""
     fraction, exponent = frexp(reach / rate)
     return ldexp(int(ldexp(fraction, TABLES.bits)), exponent - TABLES.bits)
-
-
-def _batch_turn(osc: Oscillator) -> tuple[float, float, float]:
-    """The period in two parts, the first of 33 bits, and its inverse; zeros without a period."""
-    if osc.period is None:
-        return 0.0, 0.0, 0.0
-    exact = rational_near(osc.period, 256)
-    fraction, exponent = frexp(float(exact))
-    high = ldexp(int(ldexp(fraction, 33)), exponent - 33)
-    return high, float(exact - Fraction(high)), 1 / float(exact)

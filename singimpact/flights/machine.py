@@ -84,7 +84,8 @@ class Machine:
     def interpreted(self, seconds: float, name: str) -> None:
         """Count flights that were interpreted; after a while a process compiles the text, the entry `name` first."""
         self.spent += seconds
-        if self._asked == name or not compilable() or (self.emitted.flow and self.spent < SETTINGS.wait):
+        waits = self.emitted != Emitted() and self.spent < SETTINGS.wait
+        if self._asked == name or not compilable() or waits:
             return
         now = time.monotonic()
         if now - self._tried > SETTINGS.look:
@@ -142,7 +143,12 @@ class Machine:
 
     @property
     def _request(self) -> Path:
-        return cache_folder() / FOLDER / f"{self.digest}.asked"
+        return cache_folder() / FOLDER / f"{self.digest}{self._kind}"
+
+    @property
+    def _kind(self) -> str:
+        """How requests end of which one runs at a time: a law takes a second, so it does not wait for kernels."""
+        return ".law.asked" if self.emitted.rho else ".kernels.asked"
 
     def _compile_elsewhere(self, name: str) -> bool:
         """Start a process of low priority that compiles, unless one runs for this cache; returns whether it started."""
@@ -150,7 +156,9 @@ class Machine:
         try:
             folder(request.parent)
             write_text(request.with_suffix(FIRST), name)
-            if any(time.time() - each.stat().st_mtime < SETTINGS.dead for each in request.parent.glob("*.asked")):
+            if any(
+                time.time() - each.stat().st_mtime < SETTINGS.dead for each in request.parent.glob(f"*{self._kind}")
+            ):
                 return request.exists()
             write_text(request, "\0".join([self.emitted.flow, str(self.emitted.rows), self.emitted.rho]))
             command = [sys.executable, "-m", "singimpact.flights.machine", str(request)]

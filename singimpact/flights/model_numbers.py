@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import lru_cache
-from math import frexp
+from math import frexp, ldexp
 from typing import Any
 
 import numpy as np
@@ -140,6 +140,16 @@ def turn_of(osc: Oscillator) -> tuple[float, ...]:
         parts.append(float(round(left / unit) * unit))
         left -= round(left / unit) * unit
     return tuple(parts)
+
+
+def batch_turn_of(osc: Oscillator) -> tuple[float, float, float]:
+    """The period in two parts, the first of 33 bits, and its inverse; zeros without a period."""
+    if osc.period is None:
+        return 0.0, 0.0, 0.0
+    exact = rational_near(osc.period, 256)
+    fraction, exponent = frexp(float(exact))
+    high = ldexp(int(ldexp(fraction, 33)), exponent - 33)
+    return high, float(exact - Fraction(high)), 1 / float(exact)
 
 
 def horizon_of(osc: Oscillator, horizon: Any) -> float:

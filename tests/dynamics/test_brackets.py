@@ -28,7 +28,7 @@ def compiled():
     """What all linear models share."""
     model = compiled_model(MODELS["swan"][0])
     for name in (model.main, "search_entry"):
-        model.orbits.compile_here(name)
+        model.machine.compile_here(name)
 
 
 def halved_alone(monkeypatch):

@@ -36,7 +36,7 @@ def compiled():
     """What all linear models share; without it arrays are flown state by state."""
     model = compiled_model(MODELS["ball"])
     for name in (model.main, "search_entry"):
-        model.orbits.compile_here(name)
+        model.machine.compile_here(name)
 
 
 def plain(osc, tau, v, impacts=10**6):

@@ -53,7 +53,7 @@ def test_the_limit_is_the_same_from_every_impact_and_its_error_covers_it(rho, f)
 def test_the_sum_of_speeds_is_that_of_the_speeds(rho):
     osc, speeds = model(rho, "0", "-2"), [1e-9]
     flown = compiled_model(osc)
-    plain, w = over_floats("", flown.orbits.emitted.rho)["rebound"], flown.rho.tolist()
+    plain, w = over_floats("", flown.emitted.rho)["law"], flown.rho.tolist()
     while speeds[-1] > 1e-13 and len(speeds) < 3000:
         speeds.append(plain(-speeds[-1], w))
     terms = sum_of_speeds(osc)
@@ -109,10 +109,10 @@ def test_the_threshold_separates_complete_chatter_from_lift_off(rho):
 )  # fmt: skip
 def test_compiled_and_interpreted_laws_are_the_same_to_the_bit(rho):
     flown = compiled_model(model(rho))
-    text, w = flown.orbits.emitted.rho, flown.rho
+    text, w = flown.emitted.rho, flown.rho
     functions = {"exp": math.exp, "abs": abs}
     exec(text, functions)
-    fast, plain = numba.njit(error_model="numpy")(functions["rebound"]), over_floats("", text)["rebound"]
+    fast, plain = numba.njit(error_model="numpy")(functions["law"]), over_floats("", text)["law"]
     v = -np.concatenate([[0.0, -0.0, 5e-324, 1e-310], 10 ** np.random.default_rng(1).uniform(-300, 0, 3000)])
     slow = np.array([plain(speed, w.tolist()) for speed in v.tolist()])
     assert np.array_equal([fast(speed, w) for speed in v], slow)

@@ -16,7 +16,7 @@ import singimpact as si
 from singimpact import store
 from singimpact.codegen import object_code
 from singimpact.flights import interruptible, machine
-from singimpact.flights.bind import MODULES, Emitted, constants
+from singimpact.flights.bind import LAW, MODULES, Emitted, constants
 from singimpact.flights.compiled_model import Allowance, CompiledModel, compiled_model
 from singimpact.flights.counted import counted
 from singimpact.flights.kernels import entries
@@ -25,6 +25,7 @@ MODELS = {
     "linear": si.linear("2.8", 0, "0.8"),
     "two waves, damped": si.ImpactOscillator("x + xdot/5", "cos(2*t) + sin(3*t)/9", "0.3", "0.6"),
     "constant": si.ImpactOscillator("0", "-2", 0, "0.9"),
+    "a law": si.linear("2.8", 0, "-0.8*v - 0.1*(-v)**1.5"),
     "duffing": si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6"),
 }
 
@@ -36,13 +37,15 @@ def compiled():
         flown = compiled_model(model)
         for name in flown.machine.emitted.entries[:2]:
             flown.machine.compile_here(name)
+        if flown.law is not None:
+            flown.law.compile_here(LAW)
     return MODELS
 
 
 def interpreted(model):
     """A compiled model that finds no entry."""
     flown = CompiledModel(model, Allowance(compiled_model(model).allowance.horizon))
-    flown.machine = flown.orbits = Never(flown.machine.emitted)
+    flown.machine = Never(flown.machine.emitted)
     return flown
 
 
@@ -158,6 +161,20 @@ def test_a_rebound_law_may_have_any_number_of_constants():
     want = speed * (0.5 + speed**2 / 101 + speed**4 / 1007 + speed**6 / 10007) / (1 + speed**2 / 103 + speed**4 / 1009)
     assert step.v == pytest.approx(want, rel=1e-4)
     assert osc.orbit(0.3, 0.7, 3).v[1] == pytest.approx(step.v, rel=1e-12)
+
+
+def test_a_law_costs_its_models_no_kernels(compiled):
+    flown = compiled_model(compiled["a law"])
+    assert flown.machine is compiled_model(compiled["linear"]).machine
+    assert flown.law.emitted.entries == (LAW,)
+    flown.segment(0.3, 0.7, 3)
+    assert flown.rho[-1] > 1
+    without = interpreted(compiled["a law"])
+    without.law = Never(without.law.emitted)
+    rows, _ = flown.segment(0.3, 0.7, 20)
+    plain, _ = without.segment(0.3, 0.7, 20)
+    assert without.rho[-1] == 1
+    assert np.allclose(rows[:, :5], plain[:, :5], rtol=1e-9)
 
 
 def test_one_state_with_a_law_of_its_own_is_flown_once(compiled):

@@ -20,8 +20,15 @@ from singimpact.flights.kernels.waves import reduced_twice
 
 
 def rebound(velocity: float, w: Any) -> float:
-    """rho(velocity) of a constant restitution w[0]; `flights.bind` puts an emitted rho in its place."""
-    return float(abs(w[0] * velocity))
+    """rho(velocity) of a constant restitution w[0], where the last number of w is 0; else of a law."""
+    if w[len(w) - 1] == 0:
+        return float(abs(w[0] * velocity))
+    return law(velocity, w)
+
+
+def law(velocity: float, w: Any) -> float:
+    """rho(velocity) of an emitted law: `flights.bind` puts it in this place, or a call of the address w[-1]."""
+    raise NotImplementedError
 
 
 def orbit_segment(tau: float, v: float, near: float, w: Any, model: Any, work: Any, out: Any) -> Any:
