@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import Any
 
 from singimpact.flights.kernels.double_double import sum_twice
@@ -26,9 +27,9 @@ def rebound(velocity: float, w: Any) -> float:
     return law(velocity, w)
 
 
-def law(velocity: float, w: Any) -> float:
-    """rho(velocity) of an emitted law: `flights.bind` puts it in this place, or a call of the address w[-1]."""
-    raise NotImplementedError
+def law(velocity: float, w: Any) -> float:  # noqa: ARG001
+    """nan: `flights.bind` puts an emitted rho in this place, or a call of the address that is the last number of w."""
+    return nan
 
 
 def orbit_segment(tau: float, v: float, near: float, w: Any, model: Any, work: Any, out: Any) -> Any:
