@@ -13,6 +13,7 @@ from typing import Any
 
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.numbers import sign_of
+from singimpact.branches.border import BorderOrbit
 from singimpact.branches.enclosed_event import EnclosedEvent
 from singimpact.branches.enclosed_orbit import EnclosedOrbit
 from singimpact.branches.horseshoe import Horseshoe
@@ -76,9 +77,9 @@ class Certificate:
             raise InputError(f"the certificate is refused: {reason}")
 
     def __repr__(self) -> str:
-        if "kind" in self.content:
+        if "over" in self.content:
             over, value = self.content["over"], self.content["parameter"]["value"]
-            return f"<certificate of a {self.content['kind']}: {over} = {value}>"
+            return f"<certificate of a {self.content.get('kind', self.content['statement'])}: {over} = {value}>"
         if "states" in self.content:
             states, k = self.content["states"], self.content["periods"]
             shown = ", ".join(f"({each['tau']['value']}, {each['v']['value']})" for each in states)
@@ -107,8 +108,8 @@ def certify(result: Any) -> Certificate:
     ----------
     result : of `osc.impact_map` or `osc.first_hit` for one state with `digits`; a periodic orbit with impacts, of
         `osc.periodic`; or the `.certified` of one of these. `osc.chatter_limit` of one state with v > 0 and with
-        `digits`; `crossing.horseshoe()`; `event.certified()` over a parameter of g or f; or
-        `osc.certified_gamma()`.
+        `digits`; `crossing.horseshoe()`; `event.certified()` over a parameter of g or f; an orbit of
+        `si.border_orbits` with `digits`; or `osc.certified_gamma()`.
 
     Returns
     -------
@@ -134,6 +135,8 @@ def certify(result: Any) -> Certificate:
         return _sealed("horseshoe", result.oscillator, _of_horseshoe(result))
     if isinstance(result, EnclosedEvent):
         return _of_event(result)
+    if isinstance(result, BorderOrbit):
+        return _of_border(result)
     if isinstance(result, CertifiedGamma):
         return _sealed("invariant arc", result.oscillator, _of_gamma(result))
     orbit = result.certified() if isinstance(result, PeriodicOrbit) else result
@@ -200,6 +203,20 @@ def _of_event(event: EnclosedEvent) -> Certificate:
         states[0]["v"] = {"value": "0", "radius": event.tau[0].as_dict()["radius"]}
         told["unique_within"] = str(min(event.unique_within, UNIQUE))
     return _sealed("event", event.oscillator, told)
+
+
+def _of_border(orbit: BorderOrbit) -> Certificate:
+    """The certificate of a border orbit; clearance or restitution, where they are varied, are numbers by name."""
+    if orbit.certified is None:
+        raise InputError(f"the border orbit is not certified: {'; '.join(orbit.notes) or 'ask for digits='}")
+    told = {"over": orbit.over, "parameter": orbit.certified.as_dict(), "release": repr(float(orbit.release)),
+            "end": repr(float(orbit.end)), "impacts": str(orbit.returned.entry), "completes": orbit.side}  # fmt: skip
+    sealed = _sealed("border orbit", orbit.oscillator, told)
+    if orbit.over in orbit.oscillator.parameters:
+        return sealed
+    model = {**sealed.content["model"], orbit.over: orbit.over}
+    content = {name: part for name, part in sealed.content.items() if name != "digest"} | {"model": model}
+    return Certificate({**content, "digest": digest_of(content)})
 
 
 def _of_horseshoe(found: Horseshoe) -> dict[str, Any]:

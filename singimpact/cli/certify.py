@@ -32,6 +32,10 @@ EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact")
     "--event", type=(click.Choice(EVENTS), str, float, float), metavar="KIND OVER LOW HIGH",
     help=f"With --orbit: the first event of its branch over a parameter, of the kind {', '.join(EVENTS)}.",
 )  # fmt: skip
+@click.option(
+    "--border", type=(str, float, float), metavar="OVER LOW HIGH",
+    help="The first orbit between two values that is released at a zero of a_c and accumulates at the next one.",
+)  # fmt: skip
 @click.option("--chatter", is_flag=True, help="The chatter limit from --tau, --v.")
 @click.option(
     "--horseshoe",
@@ -48,8 +52,8 @@ EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact")
 @click.option("--digits", type=click.IntRange(1, 1000), default=30, show_default=True, help="Significant digits.")
 @click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
 def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
-    """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, an event of its branch or a horseshoe, and
-    write a certificate; or check FILE.json ...
+    """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, an event of its branch, a border orbit or
+    a horseshoe, and write a certificate; or check FILE.json ...
 
     `certify gamma MODEL.toml` (or the options of a linear model) proves gamma before the next zero of a_c after --tau:
     that it exists, is unique, and decides the fate of every launch; standard error says how far it got.
@@ -69,14 +73,14 @@ def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: A
             emit(f"{path}: {read_certificate(path)!r} holds", None)
         return
     near = None if tau is None or v is None else (tau, v)
-    kinds = [name for name in ("orbit", "chatter", "horseshoe") if options[name]]
+    kinds = [name for name in ("orbit", "border", "chatter", "horseshoe") if options[name]]
     if len(kinds) > 1:
         raise InputError(f"give one of --{kinds[0]} and --{kinds[1]}")
     if (options["event"] or options["doubling"]) and kinds != ["orbit"]:
         raise InputError("--event and --doubling are of an orbit: give --orbit N K")
     if near is None and kinds in ([], ["chatter"]):
-        raise InputError("give --tau and --v, or --orbit N K, or --horseshoe N K, for a new certificate; or the files "
-                         "to check")  # fmt: skip
+        raise InputError("give --tau and --v, or --orbit N K, --horseshoe N K or --border OVER LOW HIGH, for a new "
+                         "certificate; or the files to check")  # fmt: skip
     if options["output"] is not None:
         require_writable(options["output"])
     found = _made(take_model(options), kinds[0] if kinds else "", near, options)
@@ -88,7 +92,7 @@ def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> 
     """`certify gamma [MODEL]`."""
     from singimpact.certificates.certificate import certify
 
-    taken = [f"--{name}" for name in ("orbit", "chatter", "horseshoe", "event", "doubling") if options[name]]
+    taken = [f"--{name}" for name in ("orbit", "border", "chatter", "horseshoe", "event", "doubling") if options[name]]
     if len(files) > 1 or taken:
         raise InputError(f"certify gamma takes one model: {', '.join([*files[1:], *taken])} is not accepted")
     if files:
@@ -113,6 +117,8 @@ def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
         return certify(model.impact_map(*(near or ()), digits=digits))
     if kind == "chatter":
         return certify(model.chatter_limit(*(near or ()), digits=digits))
+    if kind == "border":
+        return certify(_border(model, options["border"], digits))
     if kind == "orbit":
         orbit = _orbit(model, kind, options[kind], near)
         wanted = options["event"] or (("period-doubling", *options["doubling"]) if options["doubling"] else None)
@@ -121,6 +127,17 @@ def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
     if not len(crossings):
         raise InputError("no homoclinic orbit of the saddle is found")
     return certify(crossings[0].horseshoe())
+
+
+def _border(model: Any, given: tuple[str, float, float], digits: int) -> Any:
+    """The first border orbit between two values."""
+    from singimpact.branches.border import border_orbits
+
+    over, low, high = given
+    found = border_orbits(model, over=over, between=(low, high), digits=digits)
+    if not found:
+        raise InputError(f"--border {over} {low:g} {high:g}: no border orbit is found there")
+    return found[0]
 
 
 def _event(orbit: Any, kind: str, over: str, low: float, high: float) -> Any:

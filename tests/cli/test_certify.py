@@ -83,6 +83,16 @@ def test_a_period_doubling(singimpact, tmp_path):
     assert "'cusp' is not one of" in singimpact("certify", *given, "--event", "cusp", "A", "0.9", "1.1").output
 
 
+@pytest.mark.slow
+def test_a_border_orbit(singimpact, tmp_path):
+    path, model = str(tmp_path / "border.json"), ["--omega", "2.8", "--clearance", "0.6", "--restitution", "1/2"]
+    made = singimpact("certify", *model, "--border", "clearance", "0.6", "0.61", "--digits", "16", "-o", path)
+    assert (made.exit_code, made.output) == (0, "")
+    assert "certificate of a border orbit: clearance = 0.6046031976977" in singimpact("certify", path).output
+    none = singimpact("certify", *model, "--border", "clearance", "0.61", "0.62", "--digits", "16")
+    assert "--border clearance 0.61 0.62: no border orbit is found there" in none.output
+
+
 def test_an_event_is_of_an_orbit(singimpact):
     none = singimpact("certify", *MODEL, "--chatter", "--tau", "1", "--v", "1", "--event", "fold", "A", "0", "1")
     assert "--event and --doubling are of an orbit: give --orbit N K" in none.output

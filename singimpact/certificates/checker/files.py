@@ -10,6 +10,7 @@ from typing import Any
 
 from flint import ctx
 
+from .border_orbit import border_orbit
 from .chatter_limit import chatter_limit
 from .event import event
 from .first_impact import first_impact
@@ -29,6 +30,7 @@ STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "chatter limit": chatter_limit,
     "horseshoe": horseshoe,
     "event": event,
+    "border orbit": border_orbit,
     "invariant arc": invariant_arc,
 }
 """What a certificate may say, and what shows it at so many bits."""

@@ -13,7 +13,7 @@ largest sum of sizes in a row of derivatives.
 
 A first hit is a change of sign of x - c on a piece on which x' < 0, with x - c > 0 on all pieces before; on the first
 step (x - c)/s takes the place of x - c, so that launches from the wall are decided however slow they are, and
-(x - c)/s^2 from rest.
+(x - c)/s^2 from rest, (x - c)/s^3 from rest at a zero of x''.
 
 A ball of launches round a centre is flown with the centre: at the end of a step the distance of x from that of the
 centre is at most the distance of the launches times a bound of the derivatives by them, by the mean value theorem.
@@ -281,10 +281,14 @@ class Flight:
 
 
 def flight(
-    model: Model, tau: Any, v: Any, bits: int, columns: int = 0, centre: tuple[Any, Any] | None = None
+    model: Model, tau: Any, v: Any, bits: int, columns: int = 0, centre: tuple[Any, Any] | None = None, removed: int = 0
 ) -> tuple[Any, Any, list[tuple[Any, Any]]]:
-    """The time of the first hit and x' there; and psi, psi' of the derivatives, see `Flight`."""
+    """The time of the first hit and x' there; and psi, psi' of the derivatives, see `Flight`.
+
+    `removed` : how many coefficients of x - c vanish at the launch, 3 for a release at a zero of x''.
+    """
     motion = Flight(model, tau, v, bits, columns, centre)
+    motion.removed = removed or motion.removed
     while True:
         U, h = motion.root(motion.step())
         if U is not None:
