@@ -246,7 +246,10 @@ def test_orbits_of_the_page_are_those_of_python(opened, model):
         assert found["kind"][:kept] == kinds[:kept]
         for name in ("tau", "v"):
             wanted = getattr(truth, name)[:kept]
-            assert np.abs(np.array(found[name][:kept]) / wanted - 1).max() < 1e-12
+            # each impact from the state of Python: along an orbit the last digits grow apart
+            ends = [flown(browser, model, float(truth.tau[k]), float(truth.v[k]), 1)[name][1] for k in range(kept - 1)]
+            assert np.abs(np.array(ends) / wanted[1:] - 1).max() < 1e-12
+            assert np.abs(np.array(found[name][:kept]) / wanted - 1).max() < 1e-10
         compared += kept - 1
         shifted = flown(browser, model.replace(clearance=float(str(model.clearance)) + 1e-9), tau, v, 12)
         assert np.abs(np.array(shifted["tau"][1:kept]) / truth.tau[1:kept] - 1).max() > 1e-12  # the comparison can fail
