@@ -52,8 +52,18 @@ def pytest_runtest_teardown(item):  # noqa: ARG001
         sys.modules["matplotlib.pyplot"].close("all")
 
 
-LONGEST = ("test_faults.py", "test_claims.py", "test_steep_layers.py", "test_threshold.py")
-"""Files that take a minute: handed out first, so that no worker is left with one at the end."""
+def pytest_sessionstart(session):
+    if not hasattr(session.config, "workerinput") and not session.config.option.collectonly:
+        import singimpact as si
+
+        si.linear(2, 0, "1/2").impact_map(1, "0.1")  # a process begins to compile the kernels of linear models
+
+
+WITHOUT_FLIGHTS = ("tests/paper/claims/", "tests/algebra/", "tests/theory/", "tests/contact/", "tests/architecture/",
+                   "tests/documents/", "tests/paper/", "tests/oscillator/")  # fmt: skip
+"""Tests that come first, while kernels are compiled: flights take a hundred times as long until they are."""
+LONGEST = ("test_faults.py", "test_steep_layers.py", "test_threshold.py")
+"""Files that take a minute: handed out next, so that no worker is left with one at the end."""
 
 
 TOGETHER = (
@@ -78,7 +88,7 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def pytest_collection_modifyitems(config, items):
-    items.sort(key=lambda item: item.path.name not in LONGEST)
+    items.sort(key=lambda item: (not item.nodeid.startswith(WITHOUT_FLIGHTS), item.path.name not in LONGEST))
     left_out = set() if config.getoption("--slow") else {"slow"}
     if os.environ.get("SLIPCOVER_ENABLED"):
         left_out.add("plain_code")
