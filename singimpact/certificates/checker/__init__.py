@@ -5,9 +5,9 @@ motion again with its own code.  It accepts a certificate when its enclosure lie
 
 Files: `formulas` (texts over balls, series and numbers with derivatives), `told` (numbers as they are written),
 `motion` (a flight in balls up to its first hit, and its derivatives); `periods` (that g has a period);
-`first_impact`, `periodic_orbit`, `chatter_limit`, `horseshoe`, `event`, `border_orbit`, `invariant_arc`: what each kind of
-certificate says; for an arc `gravity` (a linear model as a ball under gravity), `nonlinear` (others, by power series made by
-`growing`) and `after_contact`; `files` (reads one, chooses the precision, answers), `__main__`.
+`first_impact`, `periodic_orbit`, `chatter_limit`, `horseshoe`, `event`, `border_orbit`, `invariant_arc`: what each kind
+of certificate says; for an arc `gravity` (a linear model as a ball under gravity), `nonlinear` (others, by power series
+made by `growing`) and `after_contact`; `files` (reads one, chooses the precision, answers), `__main__`.
 """
 
 from .files import SCHEMA, check, digest_of, main
