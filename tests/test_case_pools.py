@@ -170,7 +170,13 @@ si.sweep({function}, [60.0] * 4{more})
 
 @pytest.mark.parametrize(
     ("function", "more"),
-    [("time.sleep", ""), ("wait", ""), ("time.sleep", ", output='kept.npz'"), ("time.sleep", ", output='kept.zarr'")],
+    [
+        ("wait", ""),
+        *(
+            pytest.param("time.sleep", each, marks=pytest.mark.slow)
+            for each in ("", ", output='kept.npz'", ", output='kept.zarr'")
+        ),
+    ],
 )
 def test_an_interruption_ends_a_sweep_and_its_workers(function, more, tmp_path):
     """Cases of a minute: whatever waits for one of them does not end in time."""

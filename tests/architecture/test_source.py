@@ -24,10 +24,10 @@ def sources(clone):
 
 def banned_uses(text):
     """Lines where a banned function of sympy is imported, named or called, as a function or as a method."""
-    tree = ast.parse(text)
-    aliases = {alias for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in sympy_aliases(node)}
-    sympy_here = bool(aliases) or any(from_sympy(node) for node in ast.walk(tree))
-    return sorted({node.lineno for node in ast.walk(tree) if banned(node, aliases, sympy_here)})
+    nodes = list(ast.walk(ast.parse(text)))
+    aliases = {alias for node in nodes if isinstance(node, ast.Import) for alias in sympy_aliases(node)}
+    sympy_here = bool(aliases) or any(from_sympy(node) for node in nodes)
+    return sorted({node.lineno for node in nodes if banned(node, aliases, sympy_here)})
 
 
 def sympy_aliases(node):

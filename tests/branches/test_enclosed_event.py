@@ -220,6 +220,7 @@ def over_b(doubling, text):
     return replace(event.orbit, oscillator=osc)
 
 
+@pytest.mark.slow
 def test_a_box_with_two_doublings_is_not_said_to_have_one(doubling, monkeypatch):
     """A = A_0 + B^2 - 1e-8: the doublings at B = 1e-4 and -1e-4 are on one curve; without the rate one is denied."""
     orbit = over_b(doubling, "B**2 - 1/10**8")
@@ -240,6 +241,7 @@ def test_three_doublings_next_to_one_another_are_not_one(doubling):
         assert isinstance(enclosed_event("period-doubling", over_b(doubling, text), "B", 0.0, 12), str)
 
 
+@pytest.mark.slow
 def test_the_curve_is_shown_to_stay_where_its_rate_is_bounded(doubling, monkeypatch):
     """In the box of the rate Krawczyk's operator is applied again: a curve of a wider box may leave it."""
     honest, shown = Krawczyk.image, []
@@ -260,6 +262,7 @@ def test_the_curve_is_shown_to_stay_where_its_rate_is_bounded(doubling, monkeypa
     assert doubling[0].certified(12).unique_within < alone
 
 
+@pytest.mark.slow
 def test_a_test_that_vanishes_at_no_rate_is_refused(doubling, monkeypatch):
     """The cube of the test has the same signs, and its rate vanishes where it does."""
     honest, rate = room.event_function, room.rate_over

@@ -270,6 +270,7 @@ def test_an_orbit_of_two_impacts_is_isolated_in_its_window() -> None:
     assert "the list lacks <(2, 2) orbit, unstable: (tau, v) = (0.198629, 0.344181), (1.95592, 0.354193)>" in doubt
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_derivatives_of_the_closing_conditions_over_a_box_contain_differences(n: int) -> None:
     """Next to an orbit: the miss at the middles of small boxes, against the derivatives over a large one."""

@@ -39,6 +39,7 @@ def test_a_parameter_of_a_nonlinear_model_has_one():
     assert certificate.content["model"]["parameters"]["A"] != certificate.content["over"]
 
 
+@pytest.mark.slow
 def test_a_later_impact_and_a_double_beside_the_zero_say_the_same(made):
     for name, value in (("impacts", "4"), ("end", "4.158872105390695")):
         checker.check(renewed(copied(made.content) | {name: value}))

@@ -79,7 +79,7 @@ def test_more_digits_stay_within():
     [
         (linear(2, "1", "0.5"), ("-0.3", "0.00569544108120008432191940558473226")),
         (linear("2.8", 0, "0.8"), ("0.9", "0.005")),
-        (ImpactOscillator("x + x**3", "cos(2*t)", "0.3", "0.5"), ("1", "0.02")),
+        pytest.param(ImpactOscillator("x + x**3", "cos(2*t)", "0.3", "0.5"), ("1", "0.02"), marks=pytest.mark.slow),
     ],
 )
 def test_impacts_are_not_flown_when_their_digits_are_lost(osc, state, monkeypatch):
@@ -216,6 +216,7 @@ def test_chatter_limit_of_an_analytic_model_contains_more_digits_and_the_complet
     assert abs(other - found.value) < mpmath.mpf(10) ** -14
 
 
+@pytest.mark.slow
 def test_what_is_left_of_a_chatter_lies_between_its_bounds():
     """The lemma of the tail: the sum of later flights of a model whose force varies on the way."""
     osc = ANALYTIC["cubic, damped"][0]
@@ -230,6 +231,7 @@ def test_what_is_left_of_a_chatter_lies_between_its_bounds():
     assert high - low < true / 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [pytest.param("cubic, damped", marks=pytest.mark.slow), "pendulum"])
 def test_threshold_of_an_analytic_model_is_certified(name):
     osc = ANALYTIC[name][0]

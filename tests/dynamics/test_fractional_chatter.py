@@ -33,7 +33,7 @@ def model(rho, f="x", g="sin(t)"):
 
 
 @pytest.mark.parametrize("rho", LAWS)
-@pytest.mark.parametrize("f", ["x", "x + 0.3*xdot + 0.2*x**2"])
+@pytest.mark.parametrize("f", ["x", pytest.param("x + 0.3*xdot + 0.2*x**2", marks=pytest.mark.slow)])
 def test_the_limit_is_the_same_from_every_impact_and_its_error_covers_it(rho, f):
     osc, tau, v = model(rho, f), -1.3, LAWS[rho]
     end = osc.chatter_limit(tau, v)

@@ -42,7 +42,9 @@ def test_the_threshold_of_a_swan_is_enclosed():
 
 
 # gamma of x'' = g(t) with one power of t is one power of sigma: what the series gives is exact
-@pytest.mark.parametrize(("j", "g"), [(1, "t"), (2, "-t**2"), (3, "t**3"), (4, "-t**4"), (5, "t**5")])
+@pytest.mark.parametrize(("j", "g"), [(1, "t"), *(
+    pytest.param(*case, marks=pytest.mark.slow) for case in ((2, "-t**2"), (3, "t**3"), (4, "-t**4"), (5, "t**5"))
+)])  # fmt: skip
 @pytest.mark.parametrize("tau", ["-1", pytest.param("-0.01", marks=pytest.mark.slow)])
 def test_homogeneous_models_have_the_threshold_of_their_series(j, g, tau):
     model = si.ImpactOscillator("0", g, 0, "1/2")
@@ -91,6 +93,7 @@ def test_a_zero_whose_order_is_not_decided_is_unresolved(c):
     assert si.threshold(si.linear("2.8", c, "0.5"), "-0.2").status == Status.unresolved
 
 
+@pytest.mark.slow
 def test_a_forcing_of_no_known_period_ends_undecided():
     assert si.threshold(si.ImpactOscillator("0", "-exp(-t)", 0, "0.5"), 1).status == Status.unresolved
     assert si.threshold(si.ImpactOscillator("x", "exp(t) - 2", 0, "0.5"), 0).status == Status.complete

@@ -28,7 +28,7 @@ def expanded(flow, tau, v):
     return flow.first_hit(tau, v)
 
 
-@pytest.mark.parametrize("bits", [100, 300, 900])
+@pytest.mark.parametrize("bits", [100, 300, pytest.param(900, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", MODELS)
 def test_hits_overlap_those_of_the_expansion(name, bits):
     random, short_ones = np.random.default_rng(bits), 0

@@ -18,7 +18,7 @@ from singimpact.theory.fixed_points import swan
 RUN = [sys.executable, str(Path(__file__).parent / "run.py"), "--workers", "1"]
 
 
-@pytest.mark.parametrize("inputs", [40, pytest.param(2000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("inputs", [20, pytest.param(2000, marks=pytest.mark.slow)])
 def test_no_input_is_a_fault(inputs):
     found = subprocess.run([*RUN, "--inputs", str(inputs)], capture_output=True, text=True, timeout=600)
     assert found.returncode == 0, found.stdout + found.stderr

@@ -12,6 +12,7 @@ import singimpact as si
 from singimpact.paper.trials import first_order, holder, loop_heights, onset, universal_foot
 
 
+@pytest.mark.slow
 def test_bounds_of_the_foot_hold_the_chatter_limit_in_balls():
     for rate in ("1/10", "3/10", "1/2", "4/5", "9/10"):
         low, high = universal_foot.foot(Fraction(rate), 1e-4)

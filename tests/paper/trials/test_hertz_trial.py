@@ -19,6 +19,7 @@ def test_one_exponent_by_halving():
     assert found.speeds[1] / (w * found.distances[1] ** 2.5) == pytest.approx(1, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_sides_and_refusals():
     osc = Oscillator("0", "t", 0, "-v*(1 - 3*(-v)**(1/5))")
     v, width = edge(osc, 1, 0.01, float(constant(1, Fraction(1, 5)) * 3) ** 1.25 * 1e-5, 1e-3)
