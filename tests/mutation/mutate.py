@@ -1,9 +1,9 @@
 """Change one place of the program at a time and see whether a test fails: `python tests/mutation/mutate.py`.
 
 Mutants are drawn by a seed over the files below, and the survivors of earlier runs, in `known.json`, are tried again.
-Each is applied in a copy of the checkout.  The tests that run its line are tried first, the quickest before the others
-(`--lines` keeps which they are), then the doctests of its file and all tests that guard it; the first failure ends the
-trial.  A mutant that no test notices is printed with its line.  Results are kept in a file, so that
+Each is applied in a copy of the checkout.  The doctests of its file are tried first, then the tests that run its line,
+the quickest before the others (`--lines` keeps which they are), then all tests that guard it; the first failure ends
+the trial.  A mutant that no test notices is printed with its line.  Results are kept in a file, so that
 an interrupted run goes on.  The exit code is 1 when more than 5 % survive.
 """
 
@@ -50,9 +50,20 @@ GUARDS = {
     "singimpact/flights/kernels/steps.py": ["tests/flights"],
     "singimpact/flights/no_return/barrier.py": ["tests/flights"],
 }
+KNOWN_ALONE = {
+    "singimpact/flights/no_return/linear.py": ["tests/flights"],
+    "singimpact/paper/claims/sections/section4a_arc.py": ["tests/paper/claims/test_statements_read_back.py", *CLAIMS],
+    "singimpact/paper/claims/sections/section6.py": CLAIMS,
+}
+"""Files that have survivors of earlier runs, and no mutants of a seed."""
 SECONDS = 400.0  # a mutant may make a loop endless: a trial that takes longer counts as noticed
 NEAR = 20.0  # seconds of tests that run the line of a mutant, before all tests that guard its file
 Lines = dict[str, dict[str, list[tuple[str, float]]]]  # file, line: tests with their seconds
+
+
+def guards_of(file: str) -> list[str]:
+    """The tests that guard a file."""
+    return GUARDS.get(file) or KNOWN_ALONE[file]
 
 
 def drawn(count: int, seed: int) -> list[Mutant]:
@@ -85,7 +96,7 @@ def lines_run(copy: Path, files: list[str]) -> Lines:
     with tempfile.TemporaryDirectory() as place:
         kept = Path(place) / "lines.json"
         told = {"MUTATION_FILES": json.dumps(files), "MUTATION_LINES": str(kept)}
-        targets = sorted({each for file in files for each in [file, *GUARDS[file]] if (copy / each).exists()})
+        targets = sorted({each for file in files for each in [file, *guards_of(file)] if (copy / each).exists()})
         done = _tests(copy, ["-p", "lines_run", *targets], told)
         if done.returncode:
             raise SystemExit("\n".join(["the tests fail before anything is changed", *done.stdout.splitlines()[-20:]]))
@@ -110,9 +121,9 @@ def noticed(mutant: Mutant, copy: Path, lines: Lines) -> str:
     whole = path.read_text()
     path.write_text(mutant.applied(whole))
     near = nearest(mutant, lines)
-    guards = [[each] for each in (mutant.file, *GUARDS[mutant.file]) if (copy / each).exists()]
+    guards = [[each] for each in guards_of(mutant.file) if (copy / each).exists()]
     try:
-        for targets in [near, *guards] if near else guards:
+        for targets in ([mutant.file], *([near] if near else []), *guards):
             try:
                 done = _tests(copy, ["-x", *targets])
             except subprocess.TimeoutExpired:
