@@ -3,8 +3,8 @@
 Mutants are drawn by a seed over the files below, and the survivors of earlier runs, in `known.json`, are tried again.
 Each is applied in a copy of the checkout.  The doctests of its file are tried first, then the tests that run its line,
 the quickest before the others (`--lines` keeps which they are), then all tests that guard it; the first failure ends
-the trial.  A mutant that no test notices is printed with its line.  Results are kept in a file, so that
-an interrupted run goes on.  The exit code is 1 when more than 5 % survive.
+the trial.  A mutant that no test notices is printed with its line.  Results are kept in a file, so that an interrupted
+run goes on.  The exit code is 1 when more than 5 % survive, or one survives that `explained.json` does not explain.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from single_changes import Mutant, mutants_of
 
 ROOT = Path(__file__).parents[2]
 KNOWN = Path(__file__).with_name("known.json")
+EXPLAINED = Path(__file__).with_name("explained.json")
 CLAIMS = ["tests/paper/claims/test_claims.py", "tests/paper/sections/test_derivations.py"]
 # files -> the tests that guard them, the quickest first; doctests of the file itself come before
 GUARDS = {
@@ -90,6 +91,14 @@ def known() -> list[Mutant]:
         else:
             print(f"not tried, {each['was']!r} is not once in {each['file']}")
     return found
+
+
+def reason(mutant: Mutant) -> str:
+    """Why a mutant survives: file, its line of code, what becomes of a part of it; or that nobody has said."""
+    line = (ROOT / mutant.file).read_text().splitlines()[mutant.line - 1].strip()
+    place = {"file": mutant.file, "line": line, "was": mutant.was, "text": mutant.text}
+    told = json.loads(EXPLAINED.read_text()) if EXPLAINED.exists() else []
+    return next((each["because"] for each in told if place.items() <= each.items()), "NOT EXPLAINED")
 
 
 def lines_run(copy: Path, files: list[str]) -> Lines:
@@ -183,10 +192,10 @@ def main() -> int:
             asked.results.write_text(json.dumps(results, indent=1) + "\n")
             told = results[str(mutant)] or "SURVIVES"
             print(f"{number}/{len(chosen)} {mutant}: {told} ({time.monotonic() - began:.0f} s)", flush=True)
-    survivors = [str(mutant) for mutant in chosen if not results[str(mutant)]]
+    survivors = {str(mutant): reason(mutant) for mutant in chosen if not results[str(mutant)]}
     print(f"{len(chosen)} mutants, {len(survivors)} survive ({100 * len(survivors) / max(1, len(chosen)):.1f} %)")
-    print(*survivors, sep="\n")
-    return int(len(survivors) > 0.05 * len(chosen))
+    print(*(f"{mutant}: {why}" for mutant, why in survivors.items()), sep="\n")
+    return int(len(survivors) > 0.05 * len(chosen) or "NOT EXPLAINED" in survivors.values())
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """The mutation command: changes that parse, that spare words, and a trial that sees a wrong formula."""
 
 import ast
+import json
 import sys
 from pathlib import Path
 
@@ -69,3 +70,14 @@ def test_a_wrong_formula_is_noticed_and_one_that_no_test_reads_is_not(tmp_path, 
         assert mutate.noticed(first, tmp_path, known) == "FAILED test_demo.py::test_half"
         assert mutate.noticed(second, tmp_path, known) == ""
     assert (tmp_path / "demo.py").read_text() == source
+
+
+def test_a_survivor_is_explained_by_its_line_and_its_change():
+    (told, *_) = json.loads(mutate.EXPLAINED.read_text())
+    source = (mutate.ROOT / told["file"]).read_text()
+    found = [each for each in mutants_of(told["file"], source) if (each.was, each.text) == (told["was"], told["text"])]
+    reasons = [mutate.reason(each) for each in found]
+    assert told["because"] in reasons
+    assert "NOT EXPLAINED" in reasons
+    for each in json.loads(mutate.EXPLAINED.read_text()):
+        assert each["line"] in (mutate.ROOT / each["file"]).read_text()
