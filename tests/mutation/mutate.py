@@ -28,7 +28,11 @@ from single_changes import Mutant, mutants_of
 ROOT = Path(__file__).parents[2]
 KNOWN = Path(__file__).with_name("known.json")
 EXPLAINED = Path(__file__).with_name("explained.json")
-CLAIMS = ["tests/paper/claims/test_claims.py", "tests/paper/sections/test_derivations.py"]
+CLAIMS = [
+    "tests/paper/claims/test_statements_read_back.py",
+    "tests/paper/claims/test_claims.py",
+    "tests/paper/sections/test_derivations.py",
+]
 # files -> the tests that guard them, the quickest first; doctests of the file itself come before
 GUARDS = {
     "singimpact/theory/sheet.py": ["tests/theory", *CLAIMS],
@@ -54,7 +58,7 @@ GUARDS = {
 }
 KNOWN_ALONE = {
     "singimpact/flights/no_return/linear.py": ["tests/flights"],
-    "singimpact/paper/claims/sections/section4a_arc.py": ["tests/paper/claims/test_statements_read_back.py", *CLAIMS],
+    "singimpact/paper/claims/sections/section4a_arc.py": CLAIMS,
     "singimpact/paper/claims/sections/section6.py": CLAIMS,
 }
 """Files that have survivors of earlier runs, and no mutants of a seed."""

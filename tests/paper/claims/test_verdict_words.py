@@ -1,8 +1,10 @@
 """The words of verdicts: their order, what a dependant inherits, and the theorems that go with them."""
 
+from fractions import Fraction
 from itertools import pairwise
 
 import pytest
+import sympy
 
 from singimpact.certificates import claims_checker
 from singimpact.documents.steps import Mark
@@ -22,7 +24,7 @@ from singimpact.paper.claims.claim import (
 from singimpact.paper.claims.deciding import effective
 from singimpact.paper.claims.graph import COLOURS, as_svg, colour_of
 from singimpact.paper.claims.verdicts import VerdictTable
-from singimpact.paper.claims.verifiers import every
+from singimpact.paper.claims.verifiers import every, sample
 
 STABLE, TAKENS = "the stable manifold theorem", "Takens' theorem"
 
@@ -176,3 +178,12 @@ def test_the_second_program_reads_the_words():
 def test_the_second_program_refuses_words_that_disagree(changes, why):
     with pytest.raises(claims_checker.Refused, match=why):
         claims_checker.check(written(**changes))
+
+
+def test_a_sample_names_its_point_and_fifteen_digits():
+    names = sympy.symbols("a:h")
+    told = sample(sum(n * letter for n, letter in enumerate(names, 1)), sympy.sqrt(2))
+    at = "a = 3/5, b = 7/4, c = 2/9, d = 11/6, e = 5/13, f = 17/8, g = 1/7, h = 19/12"
+    total = sum(n * Fraction(part.partition(" = ")[2]) for n, part in enumerate(at.split(", "), 1))
+    assert told == {"at": at, "stated": str(total), "derived": "1.41421356237310"}
+    assert sample(names[0] * 0 + 1, sympy.Integer(2))["at"] == "every point"
