@@ -21,6 +21,8 @@ MODELS = {
               lambda z, u: 3 * (z - 0.5) + (z - 0.5) ** 3 + 8 * u + u**3, (-0.5, 0.5)),
     "nearly free": (Oscillator("x/50 + x**3/50 + 9*xdot", "1/10 + cos(t)/20", 0, 1),
                     lambda z, u: z / 50 + z**3 / 50 + 9 * u, (0.05, 0.15)),
+    "slow": (Oscillator("x/200 + x**3/10**6 + 0.4*xdot", "1/10 + cos(t)/20", 0, 1),
+             lambda z, u: z / 200 + z**3 / 10**6 + 0.4 * u, (0.05, 0.15)),
 }  # fmt: skip
 
 
