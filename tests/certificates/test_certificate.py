@@ -18,7 +18,7 @@ from second_program import changed, places_of, refuses, renewed, weakened
 import singimpact as si
 from singimpact.certificates import checker
 from singimpact.certificates.certificate import CHECKER, Certificate
-from singimpact.certificates.checker import files, formulas, motion, periods
+from singimpact.certificates.checker import files, formulas, impacts, motion, periods
 from singimpact.certificates.checker.told import read
 from singimpact.inputs import InputError
 
@@ -134,7 +134,7 @@ def test_both_programs_enclose_the_same_impacts(name):
         flint.ctx.prec, flint.ctx.cap = 160, files.TERMS
         try:
             exact = (formulas.ball(Fraction(part)) for part in (tau, v))
-            time, velocity, _ = motion.flight(model, *exact, 100)
+            time, velocity, _ = motion.Flight(model, *exact, 100).first_hit()
             for ball, told in ((time, found.flight_time), (velocity, found.velocity)):
                 assert ball.overlaps(read(told.as_dict()))
                 assert ball.rad() < 1e-15
@@ -337,7 +337,7 @@ def test_derivatives_of_the_impact_map_contain_differences(name):
     osc, tau, v, h = MODELS[name], 1.4, 0.6, 1e-5
     flint.ctx.prec, flint.ctx.cap = 130, files.TERMS
     try:
-        rows = motion.impact(motion.Model(osc.to_dict()), flint.arb(tau, 1e-9), flint.arb(v, 1e-9), 96)
+        rows = impacts.impact(motion.Model(osc.to_dict()), flint.arb(tau, 1e-9), flint.arb(v, 1e-9), 96)
         known = [[(float(part.mid()), float(part.rad())) for part in row] for row in rows]
     finally:
         flint.ctx.prec, flint.ctx.cap = 53, 10

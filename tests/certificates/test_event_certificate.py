@@ -7,7 +7,7 @@ from second_program import changed, copied, is_read_back, no_number_may_change, 
 
 import singimpact as si
 from singimpact.certificates import checker
-from singimpact.certificates.checker import files, motion, periodic_orbit
+from singimpact.certificates.checker import files, impacts, motion, periodic_orbit
 from singimpact.inputs import InputError
 
 LINEAR = si.linear("2.8", 0, "0.8")
@@ -101,7 +101,8 @@ def test_a_touch_that_is_not_the_first_is_what_the_pieces_refuse(graze, monkeypa
     """With twice as many periods the orbit touches the wall half way; without the pieces that is accepted."""
     twice = {**copied(graze.content), "periods": "2"}
     refuses(twice)
-    monkeypatch.setattr(motion, "first_root", lambda *_: None)
+    for module in (motion, impacts):
+        monkeypatch.setattr(module, "first_root", lambda *_: None)
     monkeypatch.setattr(motion.Flight, "require_above", lambda _: None)
     checker.check(renewed(twice))
 

@@ -11,7 +11,7 @@ from second_program import copied, is_read_back, no_number_may_change, refuses, 
 
 import singimpact as si
 from singimpact.certificates import checker
-from singimpact.certificates.checker import files, motion
+from singimpact.certificates.checker import files, impacts, motion
 from singimpact.certificates.checker.horseshoe import Set, derivative
 
 OSC = si.linear("2.8", 0, "0.8")
@@ -138,8 +138,8 @@ def test_boxes_flown_beside_their_centre_are_enclosed():
     flint.ctx.prec, flint.ctx.cap = 100, files.TERMS
     try:
         box = [flint.arb(x, width) for x in centre]
-        rows = motion.impact(model, *box, 64, tuple(map(flint.arb, centre)))
-        plain = motion.impact(model, *box, 64)
+        rows = impacts.impact(model, *box, 64, tuple(map(flint.arb, centre)))
+        plain = impacts.impact(model, *box, 64)
         low, high = (np.array([[float(end(part)) for part in row] for row in rows])
                      for end in (flint.arb.lower, flint.arb.upper))  # fmt: skip
         assert (high - low < 1.6 * np.array([[float(part.rad()) for part in row] for row in plain])).all()

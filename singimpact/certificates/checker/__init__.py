@@ -3,11 +3,12 @@
 This folder stands alone.  It imports python-flint and the standard library, reads the model as text, and encloses the
 motion again with its own code.  It accepts a certificate when its enclosure lies within what the certificate says.
 
-Files: `formulas` (texts over balls, series and numbers with derivatives), `told` (numbers as they are written),
-`motion` (a flight in balls up to its first hit, and its derivatives); `periods` (that g has a period);
-`first_impact`, `periodic_orbit`, `chatter_limit`, `horseshoe`, `event`, `border_orbit`, `invariant_arc`: what each kind
-of certificate says; for an arc `gravity` (a linear model as a ball under gravity), `nonlinear` (others, by power series
-made by `growing`) and `after_contact`; `files` (reads one, chooses the precision, answers), `__main__`.
+A first impact needs `files` (reads a certificate, chooses the precision, answers), `formulas` (texts over balls, series
+and numbers with derivatives), `told` (numbers as they are written), `motion` (a flight in balls up to its first hit)
+and `first_impact`.  What else a certificate may say: `periodic_orbit`, `event` and `horseshoe` by `impacts` (the
+derivative of the impact map) and `periods` (that g has a period); `chatter_limit`; `border_orbit`; `invariant_arc` by
+`gravity` (a linear model as a ball under gravity) or `nonlinear` (others, by power series made by `growing`), and
+`after_contact`.  `__main__` runs the program.
 """
 
 from .files import SCHEMA, check, digest_of, main

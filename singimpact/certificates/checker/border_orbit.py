@@ -15,7 +15,7 @@ from flint import arb
 
 from .chatter_limit import IMPACTS, rest
 from .formulas import Dual, Refused, Wrong, ball
-from .motion import Model, flight, next_state
+from .motion import Flight, Model, next_state
 from .told import read
 
 AROUND = Fraction(1, 2**30)  # of the time that is written, in which a zero of a_c lies
@@ -41,7 +41,7 @@ def came_back(model: Model, told: dict[str, Any], bits: int) -> tuple[Any, Any, 
     tau, end = (rising_zero(model, Fraction(told[name])) for name in ("release", "end"))
     v, removed = arb(0), 3
     for _ in range(int(told["impacts"])):
-        time, velocity, _ = flight(model, tau, v, bits, removed=removed)
+        time, velocity, _ = Flight(model, tau, v, bits, removed=removed).first_hit()
         tau, v, removed = tau + time, model.rebound(velocity), 0
     if not tau < end:
         raise Refused("that the orbit comes back before the end is not shown")

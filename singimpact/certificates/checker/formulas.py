@@ -94,65 +94,23 @@ class Formula:
         """The names in the text, or in a part of it."""
         return {part.id for part in ast.walk(node or self.tree) if isinstance(part, ast.Name)}
 
-    def _exact(self, node: ast.expr) -> Fraction | None:
+    def exact(self, node: ast.expr) -> Fraction | None:
         """The rational that a part is, if it is one: decimals are exact."""
         match node:
             case ast.Constant(int() | float()):
                 return Fraction(ast.get_source_segment(self.text, node) or "")
-            case ast.UnaryOp(ast.USub(), part) if (value := self._exact(part)) is not None:
+            case ast.UnaryOp(ast.USub(), part) if (value := self.exact(part)) is not None:
                 return -value
             case ast.BinOp(left, op, right):
-                one, other = self._exact(left), self._exact(right)
+                one, other = self.exact(left), self.exact(right)
                 if one is not None and other is not None and not (isinstance(op, ast.Div) and not other):
                     made = {ast.Add: Fraction.__add__, ast.Sub: Fraction.__sub__, ast.Mult: Fraction.__mul__,
                             ast.Div: Fraction.__truediv__}.get(type(op))  # fmt: skip
                     return None if made is None else made(one, other)
         return None
 
-    def monomial(self, node: ast.expr) -> tuple[Fraction, int] | None:
-        """(q, k) of a part that is q pi^k, q rational."""
-        if (known := self._exact(node)) is not None:
-            return known, 0
-        match node:
-            case ast.Name("pi"):
-                return Fraction(1), 1
-            case ast.Name(name) if name in self.parameters:
-                inner = Formula(self.parameters[name], {})
-                return inner.monomial(inner.tree)
-            case ast.UnaryOp(ast.USub(), part) if (found := self.monomial(part)) is not None:
-                return -found[0], found[1]
-            case ast.BinOp(left, ast.Mult() | ast.Div() as op, right):
-                one, other = self.monomial(left), self.monomial(right)
-                if one is not None and other is not None and other[0]:
-                    sign = 1 if isinstance(op, ast.Mult) else -1
-                    return one[0] * other[0] ** sign, one[1] + sign * other[1]
-        return None
-
-    def rate(self, node: ast.expr) -> tuple[Fraction, int] | None:
-        """(q, k) of a part that is q pi^k t + a constant; q = 0 where it is constant."""
-        if "t" not in self.names(node):
-            return Fraction(0), 0
-        match node:
-            case ast.Name():
-                return Fraction(1), 0
-            case ast.UnaryOp(ast.USub(), part) if (found := self.rate(part)) is not None:
-                return -found[0], found[1]
-            case ast.BinOp(left, ast.Add() | ast.Sub() as op, right):
-                one, other = self.rate(left), self.rate(right)
-                if one is None or other is None or (one[0] and other[0]):
-                    return None
-                return one if one[0] else (other[0] * (1 if isinstance(op, ast.Add) else -1), other[1])
-            case ast.BinOp(left, ast.Mult() | ast.Div() as op, right):
-                inner, factor = self.rate(left), self.monomial(right)
-                if isinstance(op, ast.Mult) and factor is None:
-                    inner, factor = self.rate(right), self.monomial(left)
-                if inner is not None and factor is not None and factor[0]:
-                    sign = 1 if isinstance(op, ast.Mult) else -1
-                    return inner[0] * factor[0] ** sign, inner[1] + sign * factor[1]
-        return None
-
     def _at(self, node: ast.expr, values: dict[str, Any]) -> Any:
-        known = self._exact(node)
+        known = self.exact(node)
         if known is not None:
             return ball(known)
         minus = ball(Fraction(-1))
@@ -174,7 +132,7 @@ class Formula:
                 return self._at(left, values) * self._at(right, values)
             case ast.BinOp(left, ast.Div(), right):
                 return self._at(left, values) * reciprocal(self._at(right, values))
-            case ast.BinOp(base, ast.Pow(), exponent) if (value := self._exact(exponent)) is not None:
+            case ast.BinOp(base, ast.Pow(), exponent) if (value := self.exact(exponent)) is not None:
                 return power(self._at(base, values), value)
             case ast.Call(ast.Name(name), [part], []) if name in self.FUNCTIONS:
                 x = self._at(part, values)

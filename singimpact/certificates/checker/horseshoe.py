@@ -21,7 +21,8 @@ from typing import Any
 from flint import arb, arb_mat
 
 from .formulas import Formula, Refused, Wrong, ball
-from .motion import Model, impact, next_state, within
+from .impacts import impact
+from .motion import Model, next_state, within
 from .periods import require_period
 
 PIECES = (1, 4)  # along u and along s, into which a set is cut

@@ -14,9 +14,6 @@ largest sum of sizes in a row of derivatives.
 A first hit is a change of sign of x - c on a piece on which x' < 0, with x - c > 0 on all pieces before; on the first
 step (x - c)/s takes the place of x - c, so that launches from the wall are decided however slow they are, and
 (x - c)/s^2 from rest, (x - c)/s^3 from rest at a zero of x''.
-
-A ball of launches round a centre is flown with the centre: at the end of a step the distance of x from that of the
-centre is at most the distance of the launches times a bound of the derivatives by them, by the mean value theorem.
 """
 
 from __future__ import annotations
@@ -234,24 +231,22 @@ def above(X: Sequence[Any], K: Any, c: Any, removed: int) -> tuple[Callable[[Any
 class Flight:
     """A motion from the wall, step after step: x, x' and their derivatives by x and x' at the launch, and a number.
 
-    `columns` derivatives are carried.  `centre` is a launch within the balls tau and v, beside which they are flown.
+    `columns` derivatives are carried.  `removed` : how many coefficients of x - c vanish at the launch, 3 for a release
+    at a zero of x''; where it is 0, 1 for a launch and 2 from rest.
     """
 
-    def __init__(
-        self, model: Model, tau: Any, v: Any, bits: int, columns: int = 0, centre: tuple[Any, Any] | None = None
-    ) -> None:
+    def __init__(self, model: Model, tau: Any, v: Any, bits: int, columns: int = 0, removed: int = 0) -> None:
         if not (v > 0 or v == 0):
             raise Refused("the launch velocity is not shown to be positive")
         self.model, self.tau, self.bits, self.c, self.passed = model, tau, bits, model.c(), arb(0)
         self.x, self.speed = [self.c, arb(1), arb(0), arb(0)][: 1 + columns], [v, arb(0), arb(1), arb(0)][: 1 + columns]
-        self.removed = 1 if v > 0 else 2
-        self.beside = None if centre is None else Beside(model, (tau, v), centre)
+        self.removed = removed or (1 if v > 0 else 2)
 
     def step(self) -> Any:
         """The polynomials of the next step, and its length."""
         self.X, h, self.K = step(self.model, self.tau + self.passed, self.x, self.speed, self.bits)
         self.y, self.slope = above(self.X, self.K, self.c, self.removed)
-        return h if self.beside is None else min(h, self.beside.step(self.passed, self.bits), key=float)
+        return h
 
     def root(self, h: Any) -> tuple[Any, Any]:
         """The first root on the step, or None; and the length up to which that is shown."""
@@ -264,12 +259,14 @@ class Flight:
                 why = reason
         raise why
 
-    def advance(self, s: Any) -> None:
-        """To the end of a step, at which x > c."""
+    def move(self, s: Any) -> None:
+        """To a time of the step."""
         self.x, self.speed = ends(self.X, self.K, s)
         self.passed, self.removed = self.passed + s, 0
-        if self.beside is not None:
-            self.x[0], self.speed[0] = self.beside.narrowed(self.x, self.speed, self.passed, s)
+
+    def advance(self, s: Any) -> None:
+        """To the end of a step, at which x > c."""
+        self.move(s)
         self.require_above()
         if not self.passed < HORIZON:
             raise Refused(f"no hit before {HORIZON:g}")
@@ -279,49 +276,15 @@ class Flight:
         if not self.x[0] - self.c > 0:
             raise Refused("x - c is lost at the end of a step")
 
-
-def flight(
-    model: Model, tau: Any, v: Any, bits: int, columns: int = 0, centre: tuple[Any, Any] | None = None, removed: int = 0
-) -> tuple[Any, Any, list[tuple[Any, Any]]]:
-    """The time of the first hit and x' there; and psi, psi' of the derivatives, see `Flight`.
-
-    `removed` : how many coefficients of x - c vanish at the launch, 3 for a release at a zero of x''.
-    """
-    motion = Flight(model, tau, v, bits, columns, centre)
-    motion.removed = removed or motion.removed
-    while True:
-        U, h = motion.root(motion.step())
-        if U is not None:
-            x, speed = ends(motion.X, motion.K, U)
-            there = speed[0].intersection(U**motion.removed * motion.slope(U)) if motion.removed else speed[0]
-            return motion.passed + U, there, list(zip(x[1:], speed[1:], strict=True))
-        motion.advance(h)
-
-
-def touching(model: Model, launch: tuple[Any, Any], time: Any, bits: int, columns: int) -> list[tuple[Any, Any]]:
-    """x - c, x' and the derivatives of x, x' at a time before which x > c is shown, if x - c = x' = 0 then.
-
-    Up to a last piece x > c; on it x'' > 0.
-    """
-    motion = Flight(model, *launch, bits, columns)
-    while True:
-        h, left = motion.step(), time - motion.passed
-        if not left.upper() <= h:
-            h = arb(min(h, left * arb(0.8), key=float).mid())
-            U, h = motion.root(h)
+    def first_hit(self) -> tuple[Any, Any, list[tuple[Any, Any]]]:
+        """The time of the first hit, x' there, and psi, psi' of the derivatives."""
+        while True:
+            U, h = self.root(self.step())
             if U is not None:
-                raise Refused("the motion meets the wall before it touches it")
-            motion.advance(h)
-            continue
-        for k in range(1, 30):
-            last = arb((left * (1 - arb(2) ** -k)).mid())
-            x, speed = ends(motion.X, motion.K, last.union(left))
-            if model.push(launch[0] + motion.passed + last.union(left), speed[0], x[0]) > 0:
-                if last > 0 and first_root(motion.y, motion.slope, last, tiny(last, bits)) is not None:
-                    raise Refused("the motion meets the wall before it touches it")
-                x, speed = ends(motion.X, motion.K, left)
-                return [(x[0] - motion.c, speed[0]), *zip(x[1:], speed[1:], strict=True)]
-        raise Refused("that the mass is driven off the wall where it touches it is not shown")
+                x, speed = ends(self.X, self.K, U)
+                there = speed[0].intersection(U**self.removed * self.slope(U)) if self.removed else speed[0]
+                return self.passed + U, there, list(zip(x[1:], speed[1:], strict=True))
+            self.advance(h)
 
 
 def ends(X: Sequence[Any], K: Any, s: Any) -> tuple[list[Any], list[Any]]:
@@ -331,52 +294,7 @@ def ends(X: Sequence[Any], K: Any, s: Any) -> tuple[list[Any], list[Any]]:
     return x, [arb_poly(derived(part))(s) + within(K * size(s) ** n) for part in X]
 
 
-class Beside:
-    """The motion of the centre of a ball of launches, which is flown at the same times after the launch."""
-
-    def __init__(self, model: Model, launch: tuple[Any, Any], centre: tuple[Any, Any]) -> None:
-        self.model, self.tau, self.launch = model, centre[0], launch
-        self.x, self.speed = [model.c()], [centre[1]]
-        self.push = model.push(*launch)
-        self.off = [ball_ - point for ball_, point in zip(launch, centre, strict=True)]
-
-    def step(self, passed: Any, bits: int) -> Any:
-        """Prepare a step, and its length."""
-        self.X, h, self.K = step(self.model, self.tau + passed, self.x, self.speed, bits)
-        return h
-
-    def narrowed(self, x: Sequence[Any], speed: Sequence[Any], passed: Any, s: Any) -> list[Any]:
-        """x and x' of the ball at the end of the step, by the mean value theorem."""
-        self.x, self.speed = ends(self.X, self.K, s)
-        bend = self.model.g(t=self.launch[0] + passed) - self.model.f(x=x[0], xdot=speed[0])
-        found = []
-        for part, rate, own in ((x, speed[0], self.x[0]), (speed, bend, self.speed[0])):
-            # a later launch is, at its own time, later along the motion, and less by v and by x'' at the start
-            by_tau = rate - self.launch[1] * part[1] - self.push * part[2]
-            found.append(part[0].intersection(own + by_tau * self.off[0] + part[2] * self.off[1]))
-        return found
-
-
-def by_launch(model: Model, tau: Any, v: Any, columns: Sequence[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
-    """The derivatives of x and x' by tau, v and a number, from those by x, x' at the launch and the number."""
-    (p, p_dot), (q, q_dot), *rest = columns
-    start = model.push(tau, v)
-    # a later launch is, at its time, a launch with x less by v and x' less by x''
-    return [(-v * p - start * q, -v * p_dot - start * q_dot), (q, q_dot), *rest]
-
-
-def impact(model: Model, tau: Any, v: Any, bits: int, centre: tuple[Any, Any] | None = None) -> list[list[Any]]:
-    """The derivative of the impact map over a ball of states: rows of the next tau and v, columns of tau, v, number."""
-    time, speed, columns = flight(model, tau, v, bits, 3 if model.over else 2, centre)
-    rebound = model.rebound(Dual(speed, [1, 0]), **model.moved(0, 1))
-    end = model.push(tau + time, speed)
-    late = [-x / speed for x, _ in by_launch(model, tau, v, columns)]
-    faster = [w + end * part for (_, w), part in zip(by_launch(model, tau, v, columns), late, strict=True)]
-    after = [rebound.slopes[0] * part for part in faster]
-    return [late, [*after[:2], *(part + rebound.slopes[1] for part in after[2:])]]
-
-
 def next_state(model: Model, tau: Any, v: Any, bits: int) -> tuple[Any, Any]:
     """tau and v just after the next impact."""
-    time, velocity, _ = flight(model, tau, v, bits)
+    time, velocity, _ = Flight(model, tau, v, bits).first_hit()
     return tau + time, model.rebound(velocity)

@@ -18,7 +18,8 @@ from typing import Any, NamedTuple
 from flint import arb, arb_mat
 
 from .formulas import Formula, Refused, Wrong, ball
-from .motion import Model, by_launch, impact, next_state, size, touching, within
+from .impacts import by_launch, impact, touching
+from .motion import Model, next_state, size, within
 from .periods import require_period
 from .told import compared
 
