@@ -21,7 +21,7 @@ SIGNS = {
 
 
 # pairs that `zip` makes are added, or compared
-SYMMETRIC = ("plus", "times", "add", "multiply", "zip", "max", "min", "maximum", "minimum", "same")
+SYMMETRIC = ("plus", "times", "add", "multiply", "zip", "max", "min", "maximum", "minimum", "same", "substitution")
 
 
 @dataclass(frozen=True)

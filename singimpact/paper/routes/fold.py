@@ -31,14 +31,14 @@ def in_k(expression: Any) -> Any:
 def p() -> tuple[Any, Any]:
     """p at a tangency point, to second order in (sigma, t) [e:pnew]."""
     first, second = p_c(2)
-    return in_k(at_contact(first, 1)), in_k(at_contact(second, 1))
+    return first, in_k(at_contact(second, 1))  # the first component, sigma + t, has no coefficient of a_c
 
 
 @equation("e:phinew")
 def phi() -> tuple[Any, Any]:
     """phi at a tangency point, to second order in (sigma, t) [e:phinew]."""
     first, second = phi_c(2)
-    found = in_k(at_contact(first, 1)), in_k(at_contact(second, 1))
+    found = first, in_k(at_contact(second, 1))
     substitution(At(p()[1], {sigma: sigma + t, t: -t}), found[1])
     return found
 
