@@ -73,6 +73,7 @@ def test_it_is_the_orbit_of_newtons_method(found, proved):
     assert max(proved.slopes) < Fraction(1, 10**8)
 
 
+@pytest.mark.slow
 def test_flights_in_60_digits_come_to_the_saddle_from_the_point_and_not_from_one_beside_it(saddle, proved):
     """After k impacts the distance is that of W^s; from 1e-20 beside it an unstable part of 1e-20 2.958^k is there."""
     turns = 26

@@ -276,6 +276,7 @@ def test_a_test_that_vanishes_at_no_rate_is_refused(doubling, monkeypatch):
         doubling[0].certified(12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["fold", "period-doubling", "torus"])
 def test_the_rate_is_that_of_differences(kind, duffing):
     """Along the curve of orbits through the doubling, for each of the three tests."""
@@ -320,6 +321,7 @@ def test_a_parameter_off_by_one_in_the_eighth_digit_is_refused(duffing, monkeypa
             event.certified(15)
 
 
+@pytest.mark.slow
 def test_a_curve_that_misses_its_ends_is_refused(duffing, monkeypatch):
     """The ends are proved orbits next to a doubling, of which one lies on no curve through the box."""
     honest = room._Curve._end
@@ -334,6 +336,7 @@ def test_a_curve_that_misses_its_ends_is_refused(duffing, monkeypatch):
         event.certified(15)
 
 
+@pytest.mark.slow
 def test_the_event_of_another_kind_is_refused(duffing):
     fold, doubling = (next(each for each in events(duffing, kind) if each.orbit.visible)
                       for kind in ("fold", "period-doubling"))  # fmt: skip
@@ -391,6 +394,7 @@ def test_a_graze_of_two_touches_is_refused(duffing):
     assert "both vanish" in found
 
 
+@pytest.mark.slow
 def test_events_of_orbits_without_impact_are_refused(duffing):
     event = duffing.events[0]
     free = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.36").periodic(0, 1)[0]

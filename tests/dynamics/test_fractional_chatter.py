@@ -93,7 +93,7 @@ def test_the_time_left_under_constant_acceleration():
 @pytest.mark.parametrize("rho", ["-v*(1 - 0.3*(-v)**0.1)", "-v*(1 - 2*(-v)**0.2)", "-0.8*v - 0.3*(-v)**1.5"])
 def test_the_threshold_separates_complete_chatter_from_lift_off(rho):
     osc = model(rho)
-    found = si.threshold(osc, -0.05)
+    found = si.threshold(osc, -0.05, impacts=20_000)
     assert found.status == Status.complete
     assert found.error < 1e-3 * found.v
     below = osc.chatter_limit(-0.05, found.v * (1 - 1e-3))

@@ -230,7 +230,10 @@ def flown(browser, model, tau, v, impacts):
 
 @pytest.mark.parametrize(
     "model",
-    [NEGATIVE.replace(clearance="0.15"), DUFFING.replace(clearance="0.15"), pytest.param(BENT, marks=pytest.mark.slow)],
+    [
+        NEGATIVE.replace(clearance="0.15"),
+        *(pytest.param(each, marks=pytest.mark.slow) for each in (DUFFING.replace(clearance="0.15"), BENT)),
+    ],
 )
 def test_orbits_of_the_page_are_those_of_python(opened, model):
     browser = opened(model.replace(clearance="0.15"))

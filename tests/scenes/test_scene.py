@@ -80,13 +80,19 @@ NEAR_SWAN = {"tau": (-1.2, 1), "t": (-2, 2), "v": (0, 0.3)}
 @pytest.mark.parametrize(
     ("layers", "clearance", "window"),
     [
-        *((layers, "0.3", WIDE) for layers in (("horizon", "zero-set"), ("outline",), ("visible",), ("shadow",))),
-        (("gamma",), "0.3", WIDE),
+        (("horizon", "zero-set"), "0.3", WIDE),
+        (("discontinuities",), "0.7", NEAR_SWAN),
         (("stable-manifolds",), "0.3", {"tau": (0, 2.5), "v": (0, 0.5), "feet": ("1.5", "1.8")}),
-        *((layers, "0.7", NEAR_SWAN) for layers in (("gamma",), ("foliation",), ("discontinuities",))),
-        *((("outline",), clearance, NEAR_SWAN) for clearance in ("0.97", "0.99")),
-        (("zero-set",), "0.95", {"tau": (-1, 5), "t": (-3, 3)}),
-        (("discontinuities", "gamma", "foliation"), "0.7", NEAR_SWAN),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in (
+                *(((layer,), "0.3", WIDE) for layer in ("outline", "visible", "shadow", "gamma")),
+                *(((layer,), "0.7", NEAR_SWAN) for layer in ("gamma", "foliation")),
+                *((("outline",), clearance, NEAR_SWAN) for clearance in ("0.97", "0.99")),
+                (("zero-set",), "0.95", {"tau": (-1, 5), "t": (-3, 3)}),
+                (("discontinuities", "gamma", "foliation"), "0.7", NEAR_SWAN),
+            )
+        ),
     ],
 )
 def test_a_coarse_picture_costs_a_third_of_a_fine_one(layers, clearance, window, monkeypatch, tmp_path):

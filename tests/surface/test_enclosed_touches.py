@@ -41,6 +41,7 @@ def flown(tau, t, clearance):
     return end[0] - clearance, end[1]
 
 
+@pytest.mark.slow
 def test_lips_and_beaks_of_a_duffing_oscillator_are_all():
     found = transitions(DUFFING, "clearance", *WINDOW, OUTLINE)
     assert sorted(each.kind for each in found) == ["beaks", "lips"]

@@ -48,6 +48,7 @@ def test_a_double_zero_that_stays_is_said():
     assert any("double ones that stay, for omega from 1.2 to 1.3" in note for note in found.notes)
 
 
+@pytest.mark.slow
 def test_lips_and_beaks_agree_with_the_closed_form_to_ten_digits():
     """x'' + x'/10 + x = cos wt: a = 0, x = c, x' = 0 in (tau, t, w), by mpmath from the written solution."""
     damped = si.ImpactOscillator("x + 0.1*xdot", "cos(w*t)", "0.3", "0.6", parameters={"w": "1.7"})

@@ -136,7 +136,9 @@ def test_radius_is_honest(model, tolerance):
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
-@pytest.mark.parametrize("model", [linear(), linear("0.3", "0.9"), si.ImpactOscillator(*DUFFING)])
+@pytest.mark.parametrize(
+    "model", [linear(), linear("0.3", "0.9"), pytest.param(si.ImpactOscillator(*DUFFING), marks=pytest.mark.slow)]
+)
 def test_radius_is_honest_under_the_true_map(model, tolerance):
     """Against the velocity that separates complete from incomplete chatter, found by flights alone."""
     series = si.theory.gamma(order=8, model=model)

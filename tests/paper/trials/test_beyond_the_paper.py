@@ -83,6 +83,7 @@ def test_heights_are_ordered_about_their_tears():
         assert falling[-1] > (1 - rate) * (2 + rate) / 6
 
 
+@pytest.mark.slow
 def test_heights_on_true_orbits_agree_with_the_known_ones():
     """r = 1/2 in the universal model: (true - limit)/h at the first crossings, to four digits."""
     found = loop_heights.heights(loop_heights.SWANS[0], "1/2")
