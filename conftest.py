@@ -118,6 +118,6 @@ def few_compilers():
 
     from singimpact.flights import machine
 
-    usual, machine.SETTINGS = machine.SETTINGS, replace(machine.SETTINGS, wait=4.0)
+    usual, machine.SETTINGS = machine.SETTINGS, replace(machine.SETTINGS, wait=2.0)
     yield
     machine.SETTINGS = usual

@@ -2,8 +2,8 @@
 
 The kernels are ordinary modules.  Binding puts their functions into one namespace, where those that depend on the
 flow (`IN_STEPS`, coefficients, restart and bounds) and the rebound law are those of the model at hand.  Only the
-recurrence of f and g and an expression for rho are emitted as text.  Compiled kernels call rho at an address, so that a
-law of its own costs a model no kernels.
+recurrence of f and g and an expression for rho are emitted as text.  Compiled kernels call both at an address, so that
+they are compiled once for all models: those of linear ones, and those of models that are flown in Taylor steps.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ from singimpact.flights.kernels import (
     layout,
     linear,
     orbits,
+    recurrence,
     refine,
     roots,
     state,
@@ -45,39 +46,41 @@ from singimpact.flights.kernels import (
 from singimpact.generated import completion
 
 MODULES = (radii, state, lanes, double_double, waves, roots, linear, steps, taylor, tables, tabulated, variational,
-           refine, hits, orbits, gamma, completion, chatter, batch_isolate, batch_refine, batch, layout,
+           recurrence, refine, hits, orbits, gamma, completion, chatter, batch_isolate, batch_refine, batch, layout,
            entries)  # fmt: skip
-COMPILED = (lanes, batch_isolate, batch_refine, batch)
+COMPILED = (lanes, batch_isolate, batch_refine, batch, recurrence)
 """Modules that are never run over lists."""
 UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 IN_STEPS = {"step_size": "step_size_of_discs", "singular_part": "singular_part_of_discs",
             "next_hit": "next_hit_in_steps", "placed": "placed_in_steps"}  # fmt: skip
 """Functions of linear models, and what stands in their places for models without a closed form."""
-LAW = "law"
+LAW, RECURRENCE = "law", "recurrence_entry"
+"""What kernels call at an address."""
 ADDRESSES = 8
 """Arguments of an entry: sizes, model, scratch, tau, v, w, out, status."""
 
 
 @dataclass(frozen=True)
 class Emitted:
-    """The text that a model adds to the kernels.
+    """The text that a model adds to the kernels; what is compiled together is one text, or kernels without any.
 
     Parameters
     ----------
-    flow : of the recurrence of f and g, with its bounds; empty for a linear model. rows : of its work.
+    flow : of the recurrence of f and g, with its bounds; empty for a linear model.
     rho : of `law(velocity, w)`; empty for a constant restitution.
+    steps : kernels alone, of models that are flown in Taylor steps.
     """
 
     flow: str = ""
-    rows: int = 0
     rho: str = ""
+    steps: bool = False
 
     @property
     def entries(self) -> tuple[str, ...]:
-        """The entries that fly such models, in the order in which they are compiled; a law alone is one of its own."""
-        if self.rho:
-            return (LAW,)
-        return ("taylor_entry", "judge_entry") if self.flow else ("linear_entry", "batch_entry", "search_entry")
+        """What is compiled, in this order."""
+        if self.rho or self.flow:
+            return (LAW,) if self.rho else (RECURRENCE,)
+        return ("taylor_entry", "judge_entry") if self.steps else ("linear_entry", "batch_entry", "search_entry")
 
 
 def _own(module: types.ModuleType) -> dict[str, Callable[..., Any]]:
@@ -171,7 +174,7 @@ def _nested_code(module: types.ModuleType) -> Any:
 
 
 class Compiler:
-    """numba's view of the kernels of a model; its inner functions are compiled once for all entries."""
+    """numba's view of the kernels or of a text; its inner functions are compiled once for all entries."""
 
     def __init__(self, emitted: Emitted) -> None:
         import numba
@@ -181,7 +184,7 @@ class Compiler:
         self.space |= {**{name: getattr(math, name) for name in FUNCTIONS}, **constants()}
         # without wrappers for Python, compiling takes a third less
         inner: Any = numba.njit(error_model="numpy", **UNWRAPPED)
-        for name, part in _chosen(emitted.flow).items():
+        for name, part in _chosen(emitted).items():
             bound = types.FunctionType(part.__code__, self.space, name)
             self.space[name] = bound if name.endswith("_entry") else inner(bound)
         self.space |= _of_addresses()
@@ -193,19 +196,21 @@ class Compiler:
         from numba import types as kinds
 
         address, sizes = kinds.CPointer(kinds.float64), kinds.CPointer(kinds.int64)
-        takes = kinds.int64(sizes, *[address] * (ADDRESSES - 2), kinds.CPointer(kinds.int8))
-        if entry == LAW:
-            takes = kinds.float64(kinds.float64, address)
+        takes = {
+            LAW: kinds.float64(kinds.float64, address),
+            RECURRENCE: kinds.void(sizes, *[address] * 6),
+        }.get(entry, kinds.int64(sizes, *[address] * (ADDRESSES - 2), kinds.CPointer(kinds.int8)))
         text: str = numba.cfunc(takes, error_model="numpy")(self.space[entry]).inspect_llvm()
         return text
 
 
-def _chosen(flow: str) -> dict[str, Any]:
+def _chosen(emitted: Emitted) -> dict[str, Any]:
     """The functions of all kernels by name, those of the model in their places."""
-    own = {name: part for each in MODULES for name, part in _own(each).items() if name not in ("block", LAW)}
-    own |= _functions(flow, {})
-    if flow:
+    own = {name: part for each in MODULES for name, part in _own(each).items() if name not in ("block", "called", LAW)}
+    own |= _functions(emitted.flow, {})
+    if emitted.steps:
         own |= {"restart": own["state_kept"], **{name: own[other] for name, other in IN_STEPS.items()}}
+        own |= {name: own[f"called_{name}"] for name in recurrence.PARTS}
     return own
 
 
@@ -217,11 +222,14 @@ def _functions(text: str, space: dict[str, Any]) -> dict[str, Any]:
 
 
 def _of_addresses() -> dict[str, Any]:
-    """`layout.block` over an address, and `orbits.law` at an address."""
+    """`layout.block` over an address; `orbits.law` and `recurrence.called` at an address."""
     import numba
     from llvmlite import ir
     from numba import types as kinds
+    from numba.core import cgutils
     from numba.extending import intrinsic
+
+    whole, number = ir.IntType(64), ir.DoubleType()
 
     @intrinsic
     def moved(_typing: Any, address: Any, count: Any) -> Any:
@@ -233,17 +241,45 @@ def _of_addresses() -> dict[str, Any]:
     def block(flat: Any, at: Any, shape: Any) -> Any:
         return numba.carray(moved(flat, at), shape)  # type: ignore[call-arg]
 
+    def last_address(builder: Any, numbers: Any, called: Any) -> Any:
+        """The function at the address that an array of numbers ends with."""
+        last = builder.sub(builder.extract_value(numbers.shape, 0), ir.Constant(whole, 1))
+        at = builder.fptoui(builder.load(builder.gep(numbers.data, [last])), whole)
+        return builder.inttoptr(at, called.as_pointer())
+
     @intrinsic
     def law(_typing: Any, velocity: Any, w: Any) -> Any:
         def emit(context: Any, builder: Any, signature: Any, given: Any) -> Any:
             numbers = context.make_array(signature.args[1])(context, builder, given[1])
-            last = builder.sub(builder.extract_value(numbers.shape, 0), ir.Constant(ir.IntType(64), 1))
-            at = builder.fptoui(builder.load(builder.gep(numbers.data, [last])), ir.IntType(64))
-            number = ir.DoubleType()
-            called = ir.FunctionType(number, [number, number.as_pointer()]).as_pointer()
-            return builder.call(builder.inttoptr(at, called), [given[0], numbers.data])
+            called = ir.FunctionType(number, [number, number.as_pointer()])
+            return builder.call(last_address(builder, numbers, called), [given[0], numbers.data])
 
         return kinds.float64(velocity, w), emit
 
+    @intrinsic
+    def called(_typing: Any, _job: Any, _numbers: Any, p: Any, launch: Any, X: Any, W: Any, A: Any) -> Any:
+        def emit(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+            arrays = [context.make_array(kind)(context, builder, each)
+                      for kind, each in zip(signature.args[2:], given[2:], strict=True)]  # fmt: skip
+            rows = [builder.extract_value(arrays[3].shape, axis) for axis in (0, 1)]
+            sizes = written(builder, whole, [*cgutils.unpack_tuple(builder, given[0], 2), *rows])
+            numbers = written(builder, number, cgutils.unpack_tuple(builder, given[1], 4))
+            takes = ir.FunctionType(ir.VoidType(), [whole.as_pointer(), *[number.as_pointer()] * 6])
+            builder.call(
+                last_address(builder, arrays[0], takes), [sizes[0], numbers[0], *(each.data for each in arrays)]
+            )
+            return cgutils.pack_array(builder, [builder.load(place) for place in numbers])
+
+        four, two = kinds.UniTuple(kinds.float64, 4), kinds.UniTuple(kinds.int64, 2)
+        return four(two, four, p, launch, X, W, A), emit
+
+    def written(builder: Any, kind: Any, values: Any) -> Any:
+        """Places of values in memory, one after the other."""
+        memory = cgutils.alloca_once(builder, kind, len(values))
+        places = [builder.gep(memory, [ir.Constant(whole, at)]) for at in range(len(values))]
+        for place, value in zip(places, values, strict=True):
+            builder.store(value, place)
+        return places
+
     bound: Any = numba.njit(**UNWRAPPED)(block)
-    return {"block": bound, LAW: law}
+    return {"block": bound, LAW: law, "called": called}

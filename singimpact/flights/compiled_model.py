@@ -27,7 +27,7 @@ from singimpact.flights.kernels.chatter import NO_ROOM
 from singimpact.flights.kernels.hits import UNIT
 from singimpact.flights.kernels.lanes import LANES
 from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.machine import Entry, Machine, compilable, machine_of
+from singimpact.flights.machine import Called, Machine, compilable, machine_of
 from singimpact.flights.model_numbers import (
     batch_turn_of,
     fastest,
@@ -116,14 +116,13 @@ class CompiledModel:
             text, trees = "", (osc.restitution,)
         # last, 0 for a constant, or the address of the compiled law
         self.rho = np.array([*(as_float(substitute(tree, osc.parameters)) for tree in trees), float(bool(text))])
-        self.law = machine_of(Emitted(rho=text)) if text else None
-        flow = None if self.linear else flow or recurrence_of(osc)
-        self.flow = flow
-        source, rows = ("", 0) if flow is None else (flow.source, flow.rows)
-        self.machine: Machine = machine_of(Emitted(source, rows))
-        self.emitted = Emitted(source, rows, text)
+        self.flow = None if self.linear else flow or recurrence_of(osc)
+        self.emitted = Emitted("" if self.flow is None else self.flow.source, text)
+        self.machine: Machine = machine_of(Emitted(steps=not self.linear))
         self.main = self.machine.emitted.entries[0]
         self.sizes, self.flat = self._laid_out()
+        self.recurrence = Called(machine_of(Emitted(self.emitted.flow)), self.flat) if self.flow else None
+        self.law = Called(machine_of(Emitted(rho=text)), self.rho) if text else None
         self._sizes, self._flat_address = self.sizes.tolist(), _address(self.flat)
         self._room = layout.scratch_length(self.sizes)
         self.r = float(self.rho[0]) if self.constant_restitution else np.nan
@@ -173,10 +172,11 @@ class CompiledModel:
             turn = flat.size - 3
             flat[turn:] = batch_turn_of(osc)
         else:
-            constants = numbers.size
-            sizes[[layout.ROWS, layout.ROOM, layout.CONSTANTS]] = self.machine.emitted.rows, room, constants
-            flat = np.zeros(layout.SCALARS + constants)
-            flat[layout.SCALARS :] = numbers
+            assert self.flow is not None
+            constants = numbers.size + 1  # last, the address of the compiled recurrence
+            sizes[[layout.ROWS, layout.ROOM, layout.CONSTANTS]] = self.flow.rows, room, constants
+            flat = np.ones(layout.SCALARS + constants)
+            flat[layout.SCALARS : -1] = numbers
         flat[:10] = rules
         flat[layout.TURN : layout.TURN + 5] = turn_of(osc)
         return sizes, flat
@@ -192,16 +192,17 @@ class CompiledModel:
         found = self.machine.entry(name)
         return None if found is None else self._ready(name, found[0])
 
-    def _here(self, name: str, law: Machine | None = None) -> Callable[..., int]:
-        """An entry compiled now, and the law that it calls, for what Python's numbers refuse or what takes too long."""
+    def _here(self, name: str, law: Called | None = None) -> Callable[..., int]:
+        """An entry compiled now, and what it calls, for what Python's numbers refuse or what takes too long."""
         if not compilable():
             raise InputError("the flight leaves the range of Python's numbers: install numba, which compiles flights")
-        if law is not None:
-            self._bind_law(law.compile_here(LAW))
-        return self._ready(name, self.machine.compile_here(name)[0])
+        entry = self.machine.compile_here(name)[0]
+        for each in self._called(law):
+            each.compile_here()
+        return self._ready(name, entry)
 
-    def _bind_law(self, found: Entry) -> None:
-        self.rho[-1] = ctypes.cast(found[0], ctypes.c_void_p).value or 1  # type: ignore[arg-type]
+    def _called(self, law: Called | None) -> list[Called]:
+        return [each for each in (self.recurrence, law) if each is not None]
 
     def _ready(self, name: str, entry: Callable[..., int]) -> Callable[..., int]:
         kind = PREPARATIONS.get(name)
@@ -252,29 +253,23 @@ class CompiledModel:
         self._seconds[kind] = max(spent, 0.9 * known if kind in self._seconds else self._least)
         return found
 
-    def _compiled(self, name: str, seconds: float, law: Machine | None = None) -> Callable[..., int] | None:
+    def _compiled(self, name: str, seconds: float, law: Called | None = None) -> Callable[..., int] | None:
         """An entry for work that takes so long when it is interpreted; None: interpret it.
 
         Parameters
         ----------
         law : what the work calls beside.
         """
-        if law is not None and self.rho[-1] == 1:
-            compiled = law.entry(LAW)
-            if compiled is None:
-                law.interpreted(seconds, LAW)
-                self._compiled(name, seconds)
-                return None
-            self._bind_law(compiled)
         found = self._entry(name)
         if found is None:
             self.machine.interpreted(seconds, name)
             found = self._entry(name)
-        return found
+        missing = [each for each in self._called(law) if not each.is_bound(seconds)]
+        return None if missing else found
 
     def _for_orbits(self, name: str, seconds: float) -> Callable[..., int] | None:
         """The same for work that calls rho; it is waited for once flights have been interpreted for long."""
-        if self.machine.spent > LIMITS.patience and compilable():
+        if (self.recurrence.machine if self.recurrence else self.machine).spent > LIMITS.patience and compilable():
             return self._here(name, self.law)
         return self._compiled(name, seconds, self.law)
 
@@ -364,7 +359,7 @@ class CompiledModel:
         """
         if self._quick is None:
             found = self.machine.entry(self.main)
-            if found is None:
+            if found is None or (self.recurrence and not self.recurrence.is_bound()):
                 return self._one
             self._ready(self.main, found[0])
             self._quick = self._bound(found[1])

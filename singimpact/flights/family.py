@@ -277,7 +277,7 @@ class SteppedFamily(Family):
             return
         for model, trees in zip(self.models, self._trees, strict=True):
             clearance = values.get(CLEARANCE, as_float(self.osc.clearance))
-            model.flat[layout.SCALARS :] = [clearance, *(_float(tree, values) for tree in trees)]
+            model.flat[layout.SCALARS : -1] = [clearance, *(_float(tree, values) for tree in trees)]
             model.forget_lists()
         self._at = at
 

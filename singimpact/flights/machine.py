@@ -7,6 +7,7 @@ cache; nothing waits for it.
 from __future__ import annotations
 
 import atexit
+import ctypes
 import gc
 import hashlib
 import os
@@ -137,7 +138,7 @@ class Machine:
     def digest(self) -> str:
         """Of everything that object code depends on."""
         digest = hashlib.sha256(_digest_of_sources())
-        for text in (self.emitted.flow, self.emitted.rho):
+        for text in (self.emitted.flow, self.emitted.rho, "steps" if self.emitted.steps else ""):
             digest.update(hashlib.sha256(text.encode()).digest())
         return digest.hexdigest()[:32]
 
@@ -147,8 +148,8 @@ class Machine:
 
     @property
     def _kind(self) -> str:
-        """How requests end of which one runs at a time: a law takes a second, so it does not wait for kernels."""
-        return ".law.asked" if self.emitted.rho else ".kernels.asked"
+        """How requests end of which one runs at a time: a text takes seconds, so it does not wait for kernels."""
+        return ".text.asked" if self.emitted.flow or self.emitted.rho else ".kernels.asked"
 
     def _compile_elsewhere(self, name: str) -> bool:
         """Start a process of low priority that compiles, unless one runs for this cache; returns whether it started."""
@@ -160,12 +161,44 @@ class Machine:
                 time.time() - each.stat().st_mtime < SETTINGS.dead for each in request.parent.glob(f"*{self._kind}")
             ):
                 return request.exists()
-            write_text(request, "\0".join([self.emitted.flow, str(self.emitted.rows), self.emitted.rho]))
+            write_text(request, "\0".join([self.emitted.flow, self.emitted.rho, "steps" if self.emitted.steps else ""]))
             command = [sys.executable, "-m", "singimpact.flights.machine", str(request)]
             _outliving(command)
         except (InputError, OSError) as error:
             cache.not_kept(error)
         return True
+
+
+@dataclass(frozen=True)
+class Called:
+    """A text that kernels call at an address.
+
+    Parameters
+    ----------
+    numbers : what is given to the kernels; the last is the address, 1 before the text is compiled.
+    """
+
+    machine: Machine
+    numbers: Any
+
+    def is_bound(self, seconds: float = 0.0) -> bool:
+        """Whether kernels can call it; if not, it is asked for, for work that takes so long when it is interpreted."""
+        (name,) = self.machine.emitted.entries
+        if self.numbers[-1] == 1:
+            found = self.machine.entry(name)
+            if found is None:
+                self.machine.interpreted(seconds, name)
+                return False
+            self._bind(found)
+        return True
+
+    def compile_here(self) -> None:
+        """As `Machine.compile_here`."""
+        (name,) = self.machine.emitted.entries
+        self._bind(self.machine.compile_here(name))
+
+    def _bind(self, found: Entry) -> None:
+        self.numbers[-1] = ctypes.cast(found[0], ctypes.c_void_p).value or 1  # type: ignore[arg-type]
 
 
 @lru_cache(maxsize=1)
@@ -215,8 +248,8 @@ def compile_asked(request: Path) -> None:
     if hasattr(os, "nice"):
         os.nice(10)
     gc.disable()  # a tenth of the time: numba makes millions of objects, and the process ends when it is done
-    flow, rows, rho = request.read_text(encoding="utf-8").split("\0")
-    machine = Machine(Emitted(flow, int(rows), rho))
+    flow, rho, steps = request.read_text(encoding="utf-8").split("\0")
+    machine = Machine(Emitted(flow, rho, bool(steps)))
     from singimpact.codegen import object_code
 
     try:

@@ -37,8 +37,9 @@ def compiled():
         flown = compiled_model(model)
         for name in flown.machine.emitted.entries[:2]:
             flown.machine.compile_here(name)
-        if flown.law is not None:
-            flown.law.compile_here(LAW)
+        for text in (flown.law, flown.recurrence):
+            if text is not None:
+                text.compile_here()
     return MODELS
 
 
@@ -166,11 +167,11 @@ def test_a_rebound_law_may_have_any_number_of_constants():
 def test_a_law_costs_its_models_no_kernels(compiled):
     flown = compiled_model(compiled["a law"])
     assert flown.machine is compiled_model(compiled["linear"]).machine
-    assert flown.law.emitted.entries == (LAW,)
+    assert flown.law.machine.emitted.entries == (LAW,)
     flown.segment(0.3, 0.7, 3)
     assert flown.rho[-1] > 1
     without = interpreted(compiled["a law"])
-    without.law = Never(without.law.emitted)
+    without.law = machine.Called(Never(without.law.machine.emitted), without.rho)
     rows, _ = flown.segment(0.3, 0.7, 20)
     plain, _ = without.segment(0.3, 0.7, 20)
     assert without.rho[-1] == 1
@@ -214,6 +215,18 @@ def test_linear_models_share_their_machine():
     assert compiled_model(si.linear(2, 0, 1)).machine is compiled_model(MODELS["linear"]).machine
     assert compiled_model(si.linear(2, 0, "-0.8*v + v**2/10")).machine is compiled_model(MODELS["linear"]).machine
     assert compiled_model(MODELS["duffing"]).machine is not compiled_model(MODELS["linear"]).machine
+
+
+def test_models_in_taylor_steps_share_their_kernels(compiled):
+    """One has its own recurrence, which kernels call."""
+    duffing, other = compiled["duffing"], si.ImpactOscillator("sin(x)", "cos(2*t)", "0.3", "0.6")
+    assert compiled_model(duffing).machine is compiled_model(other).machine
+    assert compiled_model(duffing).recurrence.machine is not compiled_model(other).recurrence.machine
+    compiled_model(other).recurrence.compile_here()
+    assert compiled_model(other).flat[-1] > 1
+    tau, v = np.linspace(0, 3, 40), np.linspace(0.01, 1, 40)
+    kept = interpreted(other)
+    assert np.allclose(compiled_model(other).hits(tau, v)[1][:2], kept.hits(tau, v)[1][:2], rtol=1e-12, equal_nan=True)
 
 
 def test_a_name_means_one_thing_in_all_kernels():
