@@ -3,6 +3,7 @@
 It stands at the root so that it serves the doctests of the package too.
 """
 
+import gc
 import os
 import shutil
 import sys
@@ -14,6 +15,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent / "tests"))  # tests/fakes.py
 os.environ["MPLBACKEND"] = "Agg"
+gc.set_threshold(200_000, 50, 50)  # an eighth of the time: sympy makes millions of objects that stay
 
 
 def pytest_addoption(parser):

@@ -372,7 +372,7 @@ def slow(log, case):
     return [case, 0.5 * case]
 
 
-@pytest.mark.parametrize("name", ["kept.npz", "kept.zarr"])
+@pytest.mark.parametrize("name", ["kept.npz", pytest.param("kept.zarr", marks=pytest.mark.slow)])
 def test_a_sweep_that_is_killed_goes_on_where_it_was(name, tmp_path):
     """Nothing that was kept is lost or computed again; beyond that at most a chunk a worker is."""
     require(name)

@@ -134,7 +134,8 @@ def test_peer_that_is_not_installed_is_named(monkeypatch, singimpact):
 
 
 @pytest.mark.parametrize("task", [pytest.param(series._symbols(5), marks=pytest.mark.slow),
-                                  series._model(5), series._curve(5, "EXACT"), series._curve(5, "Balls(256)"),
+                                  pytest.param(series._model(5), marks=pytest.mark.slow),
+                                  series._curve(5, "EXACT"), series._curve(5, "Balls(256)"),
                                   series._curve(5, "DOUBLES"), series._plain(series.MODEL, 2), series._implicit(3)],
                          ids=lambda task: f"{task.case}, {task.method}")  # fmt: skip
 def test_series_gains_a_digit_and_more_by_orders(task):

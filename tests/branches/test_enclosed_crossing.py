@@ -94,6 +94,7 @@ def test_flights_in_60_digits_come_to_the_saddle_from_the_point_and_not_from_one
     assert distance(mpmath.mpf(10) ** -20) > 1e3 * on
 
 
+@pytest.mark.slow
 def test_a_lower_precision_contains_a_higher_one(found, proved):
     rough = found[0].certified(8)
     for one, other in ((rough.tau, proved.tau), (rough.v, proved.v), (rough.angle, proved.angle)):
@@ -173,6 +174,7 @@ def test_a_forged_miss_does_not_pass(monkeypatch, found):
     assert isinstance(enclosed_crossing((orbit.unstable, orbit.unstable), moved, orbit.index, 12), str)
 
 
+@pytest.mark.slow
 def test_the_wedges_are_in_the_radius(monkeypatch, found):
     """Wedges that are said to be wider make the proved states wider."""
     honest, orbit = Cones.wedge, found[0]

@@ -53,6 +53,7 @@ def coco() -> OrbitTransitions:
     return found
 
 
+@pytest.mark.slow
 def test_orbits_that_graze_do_so_at_their_own_value(coco: OrbitTransitions) -> None:
     (graze,) = coco  # a transition that an orbit makes
     assert (graze.kind, graze.value) == ("periodic graze", pytest.approx(GRAZE, rel=1e-12))
@@ -132,6 +133,7 @@ def test_no_orbit_changes_at_the_transition_itself() -> None:
             assert np.abs(one.multipliers - other.multipliers).max() < 1e-3
 
 
+@pytest.mark.slow
 def test_the_forcing_may_vanish_at_an_end() -> None:
     """At amplitude 0 there is no period; the swan at c = A is found all the same."""
     found = si.transitions(si.linear(2, "0.5", "0.5"), "amplitude", (0, 1), t=(-1, 1))

@@ -185,7 +185,7 @@ def test_orbits_that_close_sooner_are_left_out() -> None:
     assert osc.periodic(2, 2) == []
 
 
-@pytest.mark.parametrize(("damping", "k", "orbits"), [("0", 2, 0), ("0.1", 2, 1)])
+@pytest.mark.parametrize(("damping", "k", "orbits"), [pytest.param("0", 2, 0, marks=pytest.mark.slow), ("0.1", 2, 1)])
 def test_two_impacts_of_a_linear_model_are_complete(damping: str, k: int, orbits: int) -> None:
     osc = linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45") if damping != "0" else linear("2.8", "0.1", "0.8")
     found = osc.periodic(2, k)

@@ -63,6 +63,7 @@ def test_it_is_accepted_from_its_file(made, tmp_path):
     assert repr(made).startswith("<certificate of a period-doubling: A = ")
 
 
+@pytest.mark.slow
 def test_a_fold_is_accepted_and_no_other_number(branch, tmp_path):
     fold = si.certify(event_of(branch, "fold").certified(10))
     is_read_back(fold, tmp_path / "fold.json")
@@ -97,6 +98,7 @@ def test_krawczyk_is_what_refuses_another_graze(graze, monkeypatch):
     refuses(off)
 
 
+@pytest.mark.slow
 def test_a_touch_that_is_not_the_first_is_what_the_pieces_refuse(graze, monkeypatch):
     """With twice as many periods the orbit touches the wall half way; without the pieces that is accepted."""
     twice = {**copied(graze.content), "periods": "2"}
@@ -153,6 +155,7 @@ def test_a_number_off_by_many_radii_is_refused(part, made):
     refuses(shifted(made.content, part if part == "parameter" else (0, part), 1e4))
 
 
+@pytest.mark.slow
 def test_a_model_with_another_number_is_refused(made):
     content = copied(made.content)
     content["model"]["restitution"] = "0.81"

@@ -39,7 +39,7 @@ def made():
 
 
 @pytest.mark.parametrize(
-    "name", [each if each != "pendulum" else pytest.param(each, marks=pytest.mark.slow) for each in CASES]
+    "name", [pytest.param(each, marks=pytest.mark.slow) if each in ("pendulum", "Duffing") else each for each in CASES]
 )
 def test_it_is_accepted_from_its_file(name, made, tmp_path):
     is_read_back(made[name], tmp_path / "gamma.json")
@@ -65,7 +65,7 @@ def nudged(content, n, by):
     return found
 
 
-@pytest.mark.parametrize("name", ["tangency", "swan"])
+@pytest.mark.parametrize("name", ["tangency", pytest.param("swan", marks=pytest.mark.slow)])
 def test_false_statements_are_refused(name, made):
     content, true = made[name].content, made[name].content["boxes"][0]
     refuses(nudged(content, 2, 1e-6), "L_2 is")
@@ -97,6 +97,7 @@ def test_another_order_or_model_is_refused(made):
     refuses(wrong, "not linear")
 
 
+@pytest.mark.slow
 def test_of_a_nonlinear_model_more_is_refused(made):
     """Faster launches, what comes after tau, another model of the same contact point, and a linear proof of it."""
     content, true = made["Duffing"].content, made["Duffing"].content["boxes"][0]
@@ -142,6 +143,7 @@ def test_a_growing_series_is_that_of_flint():
         assert all(found.at(n)[0].overlaps(true[n]) for n in range(6))
 
 
+@pytest.mark.slow
 def test_what_comes_after_is_checked(made):
     content = made["tangency"].content
     refuses({**copied(content), "after": {**content["after"], "time": "1.27"}}, "a_c > 0 for so long")

@@ -24,7 +24,7 @@ SEEN = ["a negative part", "another polynomial", "a sign unproved", "ends out of
 """Of the conditions of a relation about one in 16 000 damaged certificates meets one: `false_certificates` has them all."""
 
 
-@pytest.mark.parametrize("name", SEEN[:2] + [pytest.param(each, marks=pytest.mark.slow) for each in SEEN[2:]])
+@pytest.mark.parametrize("name", SEEN[:1] + [pytest.param(each, marks=pytest.mark.slow) for each in SEEN[1:]])
 def test_the_fuzzer_sees_a_weakened_checker(name):
     file = "checking" if name in false.WEAKENED else "checked_identities"
     condition, instead, _ = (false.WEAKENED | false.IN_IDENTITIES)[name]

@@ -51,6 +51,7 @@ def test_lips_and_beaks_of_a_duffing_oscillator_are_all():
     assert found.complete
 
 
+@pytest.mark.slow
 def test_one_that_the_search_by_doubles_loses_is_said(monkeypatch):
     search = transitions_room._touches
 
@@ -90,6 +91,7 @@ def test_boxes_of_a_linear_model_give_what_the_closed_form_gives():
         assert any(all(a.overlaps(b) for a, b in zip(zero, other, strict=True)) for other in boxes.found)
 
 
+@pytest.mark.slow
 def test_next_to_the_launch_boxes_are_decided_by_the_third_and_fourth_derivative_alone(monkeypatch):
     """At t = 0 every tangency point solves the equations: without Rolle's theorem the boxes there stay open."""
     flights, short = EnclosedTouches(DUFFING, "clearance"), ((0.1, 0.14), (-0.5, 0.5))
@@ -99,6 +101,7 @@ def test_next_to_the_launch_boxes_are_decided_by_the_third_and_fourth_derivative
     assert not blind.complete
 
 
+@pytest.mark.slow
 def test_what_balls_cannot_decide_ends_soon_and_is_said():
     """Without damping both ends of the flight from rest are tangency points: the equations are not independent."""
     undamped = si.ImpactOscillator("x + x**3/10", "cos(2.8*t)", 0, "0.8")

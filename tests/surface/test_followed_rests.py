@@ -16,6 +16,7 @@ LIGHT = si.ImpactOscillator("x + 0.04*xdot", "cos(2.8*t) + 0.5*cos(5.6*t + 2)", 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + x**3/10", "cos(2.8*t)", 0, "0.8")
 
 
+@pytest.mark.slow
 def test_tacnodes_and_grazes_of_a_linear_model_are_those_of_the_elimination():
     """Flights met on a grid, without the closed form."""
     family, ends = Family(LIGHT, "clearance"), (-0.2, 0.2)

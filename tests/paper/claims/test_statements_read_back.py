@@ -58,7 +58,13 @@ STATEMENTS = {(name, at): each for at, (name, each) in enumerate(statements()) i
 READ = [key for key in STATEMENTS if key[0] not in {name for name, _ in WORDS}]
 
 
-@pytest.mark.parametrize("key", READ, ids=[name for name, _ in READ])
+@pytest.mark.parametrize(
+    "key",
+    [
+        pytest.param(key, marks=pytest.mark.slow if key[0].endswith("eigenvalue-limit") else (), id=key[0])
+        for key in READ
+    ],
+)
 def test_text_holds_the_formulas_that_are_verified(key):
     assert missing(key[0], STATEMENTS[key].latex, STATEMENTS[key].value) == []
 
