@@ -29,7 +29,7 @@ MODELS = {
 }
 
 
-LONG = ("friction", "no graze", "linear", "Duffing", "swan")  # 2 to 20 s each
+LONG = ("friction", "no graze", "linear", "Duffing", "swan", "elastic, rarely back")  # 2 to 20 s each
 
 
 @pytest.mark.parametrize(

@@ -190,6 +190,7 @@ def test_the_wedges_are_in_the_radius(monkeypatch, found):
     assert wide.tau.radius > 10 * narrow.tau.radius
 
 
+@pytest.mark.slow
 def test_drawn_over_its_manifolds(found, proved):
     axes = si.plot(list(found.manifolds))
     limits = axes.get_xlim(), axes.get_ylim()

@@ -78,6 +78,7 @@ def test_swallowtails_on_both_sides_of_the_launch_are_all(monkeypatch):
     assert "lacks a swallowtail at clearance = 0.829051381194, t = -4.42443" in doubt
 
 
+@pytest.mark.slow
 def test_boxes_of_a_linear_model_give_what_the_closed_form_gives():
     """Both sides of the launch; the same zeros from two programs that share no motion."""
     window = (0.03, 0.05), (-4.0, 4.0)

@@ -38,6 +38,7 @@ def test_one_that_the_list_lacks_is_said(four, left_out):
     assert f"lacks lips or beaks at clearance = {missing.value:.12g}" in doubt
 
 
+@pytest.mark.slow
 def test_all_three_kinds_of_figure_2():
     """Lips and beaks over the rate, a swallowtail over the clearance; the same window with one of them left out."""
     over_rate = transitions(damped(), "w", (1.9, 2.3), (0, 8), OUTLINE)

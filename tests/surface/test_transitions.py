@@ -85,6 +85,7 @@ def test_swallowtails_are_the_crossings_of_the_flight_from_the_swan():
     assert all(abs(float(model.flight(swan.tau, 0, each.t).x) - swan.value) < 1e-9 for each in tails)
 
 
+@pytest.mark.slow
 def test_a_piece_of_z_is_born_in_the_lips_that_are_found():
     (lips,) = [each for each in transitions(DUFFING, "w", ("1.9", "2.2")) if each.kind in ("lips", "beaks")]
     assert lips.kind == "lips"
