@@ -290,7 +290,8 @@ def squared(log, case):
     return np.array([case, case * case])
 
 
-@pytest.mark.parametrize("kind", ["client", pytest.param("executor", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["client", "executor"])
 def test_a_cluster_that_loses_a_worker(kind, cluster, tmp_path):
     """Four workers, one of them killed in the middle: every case is in the result, once."""
     log, output, killed = tmp_path / "log", tmp_path / "kept.npz", []

@@ -79,6 +79,7 @@ def test_map_shows_every_way_to_call_it():
 
 
 def test_aims_are_judged_by_what_was_measured():
+    pytest.importorskip("heyoka")
     rows = measured("map", SMALL).rows
     ours = [row for row in rows if row.method == "singimpact, impact_map" and not row.setting.startswith("tolerance")]
     assert [row.aim.microseconds for row in ours] == [each.microseconds for each in impact_map.CALLS]

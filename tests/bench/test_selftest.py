@@ -29,7 +29,15 @@ MODELS = {
 }
 
 
-LONG = ("friction", "no graze", "linear", "Duffing", "swan", "elastic, rarely back")  # 2 to 20 s each
+LONG = (
+    "friction",
+    "no graze",
+    "linear",
+    "Duffing",
+    "swan",
+    "elastic, rarely back",
+    "rebound by an expression",
+)  # 2 to 20 s each
 
 
 @pytest.mark.parametrize(

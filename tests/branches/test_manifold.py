@@ -316,6 +316,7 @@ def test_a_virtual_orbit_is_refused() -> None:
         si.manifold(replace(saddle_of(CHAOTIC, 1, 1), visible=False))
 
 
+@pytest.mark.slow
 def test_drawn_alone_and_over_basins(found: si.basins, bounding: Manifold) -> None:
     alone = si.plot(bounding)
     assert alone.get_xlim() == (0.0, pytest.approx(PERIOD))

@@ -115,7 +115,7 @@ def test_true_flights_satisfy_the_relation(name):
     raise AssertionError(f"{hits} flights")
 
 
-@pytest.mark.parametrize("name", ["tangency", "Duffing", pytest.param("cubic, swan", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["tangency", *(pytest.param(name, marks=pytest.mark.slow) for name in NONLINEAR)])
 def test_derivative_columns_are_differences(name):
     with balls_at(200):
         relation, _ = prepared(*MODELS[name], 200)

@@ -33,6 +33,7 @@ def test_the_sum_is_the_mean_shrinking_of_areas(osc, r, damping, impacts):
     assert found.per_impact == pytest.approx(found.exponents * found.time / impacts, rel=1e-15)
 
 
+@pytest.mark.slow
 def test_the_sum_with_a_law_of_restitution_and_a_damping_that_varies():
     osc = si.ImpactOscillator("x + xdot**3/5", "cos(2*t)", 0, "-0.8*v + 0.1*v**2")
     found = si.lyapunov(osc, 0.1, 0.5, 40)

@@ -130,6 +130,7 @@ def test_orbits_without_impact(branch) -> None:
     assert [text.get_text() for text in together.texts] == ["doubling", "graze"]  # both branches name one graze
 
 
+@pytest.mark.slow
 def test_event_curves_and_their_special_points(curves) -> None:
     axes = si.plot(curves)
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("amplitude", "omega")
@@ -140,6 +141,7 @@ def test_event_curves_and_their_special_points(curves) -> None:
     assert [text.get_text() for text in one.get_legend().get_texts()] == ["graze"]
 
 
+@pytest.mark.slow
 def test_what_cannot_be_drawn_together(branch, closed, curves) -> None:
     with pytest.raises(InputError, match="over one number"):
         si.plot([branch, closed])

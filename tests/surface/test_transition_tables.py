@@ -75,7 +75,7 @@ def found():
     return of
 
 
-EACH = ["two", "fast", *(pytest.param(name, marks=pytest.mark.slow) for name in ("light", "heavy"))]
+EACH = ["two", *(pytest.param(name, marks=pytest.mark.slow) for name in ("fast", "light", "heavy"))]
 
 
 @pytest.mark.parametrize("name", EACH)

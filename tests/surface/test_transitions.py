@@ -75,6 +75,7 @@ def test_lips_and_beaks_agree_with_the_closed_form_to_ten_digits():
         assert 1.9 <= each.value <= 2.3
 
 
+@pytest.mark.slow
 def test_swallowtails_are_the_crossings_of_the_flight_from_the_swan():
     found = transitions(DUFFING, "clearance", ("0.7", "0.95"))
     swan = next(each for each in found if each.kind.startswith("swan"))

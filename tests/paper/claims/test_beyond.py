@@ -106,6 +106,7 @@ def test_verifier_rejects_every_mutant(name):
         assert not claim.verify(mutant).holds, f"{name} accepts {mutant}"
 
 
+@pytest.mark.slow
 def test_contraction_for_all_r_rests_on_positive_coefficients(verdicts):
     kinds = [certificate["kind"] for certificate in verdicts("b:cascade-contraction").certificates]
     assert "positive" in kinds

@@ -21,7 +21,8 @@ def completes(rate, sigma):
     return found.status == Status.complete and float(found.tau) < 1
 
 
-@pytest.mark.parametrize("rate", [*(pytest.param(rate, marks=pytest.mark.slow) for rate in RATES[:2]), RATES[2]])
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", RATES)
 def test_orbits_on_both_sides_are_flown_as_proved(rate):
     found = bracket(rate)
     assert found.high - found.low < Fraction(1, 100)
