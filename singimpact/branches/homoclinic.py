@@ -115,8 +115,8 @@ class Crossing:
         --------
         >>> from singimpact.impact_oscillator import linear
         >>> (saddle,) = linear("2.8", 0, "0.8").periodic(1, 1)
-        >>> homoclinic_points(saddle)[0].certified(20)
-        <certified homoclinic point (1.7728431768964407999, 0.42819799134690829201), angle 1.29636, 37 impacts>
+        >>> homoclinic_points(saddle)[0].certified(12)
+        <certified homoclinic point (1.77284317690, 0.428197991347), angle 1.29636, 28 impacts>
         """
         from singimpact.branches.enclosed_crossing import enclosed_crossing
 

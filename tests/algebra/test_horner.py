@@ -37,7 +37,7 @@ def test_relative_error_near_contact():
     assert worst < 4 * 2.0**-52
 
 
-@pytest.mark.parametrize("size", [0.3, 1e-6])
+@pytest.mark.parametrize("size", [0.3, pytest.param(1e-6, marks=pytest.mark.slow)])
 def test_compensated_next_to_z(size):
     """At doubles next to roots of v_c/t plain Horner keeps no digit; with two doubles all but a few units are kept."""
     terms = duffing_sheet().v.terms

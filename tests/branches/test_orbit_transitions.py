@@ -75,6 +75,7 @@ def test_orbits_that_graze_do_so_at_their_own_value(coco: OrbitTransitions) -> N
     assert "orbits are looked for at 5 values" in text
 
 
+@pytest.mark.slow
 def test_multipliers_jump_at_a_graze(coco: OrbitTransitions) -> None:
     """With the impact one tends to infinity like 1/v; the orbit without it has finite ones there."""
     once = next(change for change in coco.changes if (change.kind, change.n) == ("graze", 1))

@@ -56,7 +56,9 @@ def test_two_waves():
                 assert not known.contains(truth + mpmath.mpf(10) ** -25)
 
 
-@pytest.mark.parametrize(("f", "g"), [DUFFING, TWO_WAVES, ("2*x + 1", "cos(2.8*t + 1)")])
+@pytest.mark.parametrize(
+    ("f", "g"), [DUFFING, pytest.param(*TWO_WAVES, marks=pytest.mark.slow), ("2*x + 1", "cos(2.8*t + 1)")]
+)
 def test_model_at_the_swan_knows_its_double_zero(f, g):
     for swan in si.swan_points(f, g):
         osc = swan.oscillator("0.6")

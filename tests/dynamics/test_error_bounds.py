@@ -15,7 +15,7 @@ from singimpact.flights.states import States
 EPSILON = 2.0**-52
 
 
-@pytest.mark.parametrize("r", ["0.5", pytest.param("0.9", marks=pytest.mark.slow), "0.1"])
+@pytest.mark.parametrize("r", ["0.5", *(pytest.param(r, marks=pytest.mark.slow) for r in ("0.9", "0.1"))])
 def test_the_error_of_a_chatter_limit_holds_the_rounding_of_the_speed(r):
     """From tau = 0 the time is exact and nearly all of the error is that of v, carried to the end: 2 v/(|a|(1 - r))."""
     model = si.ImpactOscillator("0", "-2 + t/1000", 0, r)

@@ -136,7 +136,7 @@ def test_derivative_columns_are_differences(name):
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=pytest.mark.slow if "cubic" in name else ())
+        pytest.param(name, marks=pytest.mark.slow if name in NONLINEAR else ())
         for name in ("tangency", "swan", *NONLINEAR)
     ],
 )

@@ -107,6 +107,7 @@ def test_all_of_two_are_proved_to_be_all(found):
     assert {each.value for each in below} == {each.value for each in found("two")}
 
 
+@pytest.mark.slow
 def test_all_of_fast(found):
     """Both senses of c, of which a half is never seen; 42 triples of rests within half a period of the flights."""
     wanted = {
