@@ -120,6 +120,6 @@ def few_compilers():
 
     from singimpact.flights import machine
 
-    usual, machine.SETTINGS = machine.SETTINGS, replace(machine.SETTINGS, wait=2.0)
+    usual, machine.SETTINGS = machine.SETTINGS, replace(machine.SETTINGS, wait=3.0)
     yield
     machine.SETTINGS = usual

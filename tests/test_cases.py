@@ -117,6 +117,7 @@ def test_a_killed_worker_is_replaced_and_nothing_is_lost_or_doubled(tmp_path):
         assert kept["result"].tolist() == found.tolist()
 
 
+@pytest.mark.slow
 def test_a_case_that_ends_its_process_each_time_is_named(tmp_path):
     output = tmp_path / "kept.npz"
     with pytest.raises(Unfinished, match="1 of 12 cases ended their process each time, the first is case 7 = 7"):

@@ -79,6 +79,7 @@ def test_wrong_status_fails_and_no_trial_too():
     assert worst("f", "v -> 0", lambda _: iter([]), 1).failed
 
 
+@pytest.mark.slow
 def test_vertices_keep_their_digits():
     cells = stressed(chosen(["zero_set", "outline"], "t -> 0"), QUICK)
     assert [cell.failed for cell in cells] == [False, False]

@@ -150,6 +150,7 @@ def test_another_statement_is_refused(change, why, made):
     refuses({**copied(made.content), **change}, why)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", ["parameter", "tau", "v"])
 def test_a_number_off_by_many_radii_is_refused(part, made):
     refuses(shifted(made.content, part if part == "parameter" else (0, part), 1e4))

@@ -34,6 +34,7 @@ def test_branch(singimpact, tmp_path):
     assert "graze            -0.36878177829" in plain
 
 
+@pytest.mark.slow
 def test_orbits_of_one_branch_are_followed_once(singimpact):
     told = json.loads(
         singimpact("branch", *TORN, "--orbit", "3", "3", "--from", "-0.2", "--to", "0.3", "--json").output
@@ -78,6 +79,7 @@ def test_the_graze_of_an_orbit_without_impact(singimpact):
     assert pytest.approx(np.hypot(1 - w * w, 0.1 * w), rel=1e-12) == -A
 
 
+@pytest.mark.slow
 def test_an_event_of_a_curve_is_known():
     from singimpact.cli.events import on_curve
 

@@ -67,6 +67,7 @@ def test_a_chatter_limit_and_a_horseshoe(singimpact, tmp_path):
                                                "--horseshoe", "1", "2").output  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_period_doubling(singimpact, tmp_path):
     path, model = tmp_path / "model.toml", tmp_path / "doubling.json"
     path.write_text(

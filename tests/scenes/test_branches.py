@@ -79,6 +79,7 @@ def test_names_are_clear_of_curves_and_of_one_another(branch, curves) -> None:
     assert overlapped(si.plot(curves)) == []
 
 
+@pytest.mark.slow
 def test_impacts_of_a_closed_branch_keep_together(closed) -> None:
     axes = si.plot(closed)
     # a graze has one marker, a fold one an impact

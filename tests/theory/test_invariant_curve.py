@@ -94,7 +94,9 @@ def test_one_solver_for_every_ring():
                 assert not isinstance(ring, Balls) or gap.contains(0)
 
 
-@pytest.mark.parametrize(("j", "order"), [(0, 4), (1, 5), pytest.param(2, 6, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("j", "order"), [(0, 4), *(pytest.param(*case, marks=pytest.mark.slow) for case in ((1, 5), (2, 6)))]
+)
 def test_symbols_with_numbers_put_in_are_the_numbers(j, order):
     """At a lambda that was not a node, for symbols for all jets, r and rho."""
     symbolic = symbolic_curve(j, order)

@@ -73,6 +73,7 @@ def test_chatter_limit_in_jets():
     assert sympy.cancel(series[2] - expected) == 0
 
 
+@pytest.mark.slow
 def test_chatter_limit_of_a_model(reference):
     """From (1.2, 0.01); the series converges slowly, with the distance of the tangency."""
     series = si.theory.chatter_limit(order=20, model=linear(), tau="1.2", digits=40)
