@@ -252,6 +252,7 @@ def compile_asked(request: Path) -> None:
     machine = Machine(Emitted(flow, rho, bool(steps)))
     from singimpact.codegen import object_code
 
+    object_code.without_machine_code()
     try:
         compiler = bind.Compiler(machine.emitted)
         for name in _first_wanted(request, machine.emitted.entries):
