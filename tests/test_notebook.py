@@ -68,7 +68,9 @@ def test_a_long_table_counts_what_it_leaves_out():
 
 def test_long_work_shows_progress_under_its_cell():
     """A real kernel runs a cell; what it displayed on the way comes back as updates of one output."""
-    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
+    nbformat, nbclient = (
+        pytest.importorskip(name, reason="needs the extra check") for name in ("nbformat", "nbclient")
+    )
     shown = "with ProgressLine(delay=0) as line:\n    line.show(3, 7, 'a < b')"
     cell = nbformat.v4.new_code_cell(f"from singimpact.progress import ProgressLine\n{shown}")
     seen = []
