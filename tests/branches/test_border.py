@@ -295,7 +295,9 @@ def test_a_restitution_that_is_a_law_is_not_certified_and_says_so():
 # ---- the cascade
 
 
-@pytest.mark.parametrize("name", ["3/10", "1/2", SLOW, "duffing"])
+@pytest.mark.parametrize(
+    "name", ["3/10", SLOW, *(pytest.param(name, marks=pytest.mark.slow) for name in ("1/2", "duffing"))]
+)
 def test_edges_shrink_by_mu_to_six_digits(name):
     found = doubles(name).cascade
     mu = float(si.fixed_points.tangency("1/2" if name == "duffing" else name).mu.value)

@@ -118,6 +118,7 @@ def test_a_branch_that_closes() -> None:
             assert not orbit.visible
 
 
+@pytest.mark.slow
 def test_a_torus_needs_negative_damping() -> None:
     osc = si.ImpactOscillator("x - mu*(1 - x**2)*xdot", "A*cos(w*t)", 0, "0.9", {"mu": "0.2", "A": "1.5", "w": "2.2"})
     (orbit,) = osc.periodic(1, 1, start=(2.64089, 2.19428))
@@ -128,6 +129,7 @@ def test_a_torus_needs_negative_damping() -> None:
     assert np.linalg.det(slope) == pytest.approx(1, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_doubled_branch_meets_the_one_that_it_left() -> None:
     (orbit,) = coco(0.8, 0.45 / grazing_amplitude(0.8)).periodic(1, 1)
     (doubling,) = (event for event in si.branch(orbit, "amplitude", (-0.6, -0.3)).events if "doubling" in event.kind)

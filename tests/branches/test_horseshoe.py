@@ -47,6 +47,7 @@ def flown(states: np.ndarray) -> np.ndarray:
     return np.stack([step.tau, step.v], axis=1)
 
 
+@pytest.mark.slow
 def test_loops_and_entropy(found):
     assert found.loops == (1, 17)
     assert len(found.sets) == 17

@@ -11,6 +11,8 @@ import singimpact as si
 from singimpact.certificates import checker
 from singimpact.inputs import InputError
 
+pytestmark = pytest.mark.slow  # a guard of the second program, which has quicker ones
+
 
 @pytest.fixture(scope="module")
 def orbit():

@@ -331,7 +331,7 @@ def test_a_period_is_shown_exactly(g, period, holds):
         periods.require_period(formula, period)
 
 
-@pytest.mark.parametrize("name", ["duffing", "layer", "law"])
+@pytest.mark.parametrize("name", ["duffing", "law", pytest.param("layer", marks=pytest.mark.slow)])
 def test_derivatives_of_the_impact_map_contain_differences(name):
     """D G of the second program over a ball of states, against difference quotients of first impacts in doubles."""
     osc, tau, v, h = MODELS[name], 1.4, 0.6, 1e-5

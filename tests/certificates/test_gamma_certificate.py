@@ -39,7 +39,11 @@ def made():
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(each, marks=pytest.mark.slow) if each in ("pendulum", "Duffing") else each for each in CASES]
+    "name",
+    [
+        pytest.param(each, marks=pytest.mark.slow) if each in ("pendulum", "Duffing", "swan", "interval") else each
+        for each in CASES
+    ],
 )
 def test_it_is_accepted_from_its_file(name, made, tmp_path):
     is_read_back(made[name], tmp_path / "gamma.json")

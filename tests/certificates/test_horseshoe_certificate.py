@@ -14,6 +14,8 @@ from singimpact.certificates import checker
 from singimpact.certificates.checker import files, impacts, motion
 from singimpact.certificates.checker.horseshoe import Set, derivative
 
+pytestmark = pytest.mark.slow  # a guard of the second program, which has quicker ones
+
 OSC = si.linear("2.8", 0, "0.8")
 
 

@@ -11,7 +11,7 @@ import certificates
 import false_certificates as false
 
 
-@pytest.mark.parametrize("count", [4000, pytest.param(100_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [1500, pytest.param(100_000, marks=pytest.mark.slow)])
 def test_no_false_certificate_is_accepted(count):
     told, wrong = certificates.fuzzed(count, 20261121)
     assert wrong == []
@@ -24,7 +24,7 @@ SEEN = ["a negative part", "another polynomial", "a sign unproved", "ends out of
 """Of the conditions of a relation about one in 16 000 damaged certificates meets one: `false_certificates` has them all."""
 
 
-@pytest.mark.parametrize("name", SEEN[:1] + [pytest.param(each, marks=pytest.mark.slow) for each in SEEN[1:]])
+@pytest.mark.parametrize("name", [pytest.param(each, marks=pytest.mark.slow) for each in SEEN])
 def test_the_fuzzer_sees_a_weakened_checker(name):
     file = "checking" if name in false.WEAKENED else "checked_identities"
     condition, instead, _ = (false.WEAKENED | false.IN_IDENTITIES)[name]

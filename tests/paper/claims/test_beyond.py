@@ -66,6 +66,7 @@ SECONDS = (  # those of enclosures and of true orbits
     "b:cascade", "b:homoclinic", "b:horseshoe", "b:first-order-measured", "b:holder", "b:holder-count", "b:loops",
     "b:loops-law", "b:onset", "b:events-first", "b:events-met", "b:hertz-next", "b:hertz-measured",
     "b:gamma-nonlinear", "b:gamma-swan", "b:cascade-contraction", "b:cascade-contraction-r", "b:ratio-bound",
+    "b:order-exponents", "b:first-order-foot",
 )  # fmt: skip
 EACH = [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name for name in BEYOND]
 

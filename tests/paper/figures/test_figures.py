@@ -39,7 +39,9 @@ def test_there_are_seventeen():
     assert list(FIGURES) == list(range(1, 18))
 
 
-@pytest.mark.parametrize("number", FIGURES)
+@pytest.mark.parametrize(
+    "number", [pytest.param(each, marks=pytest.mark.slow) if each in (2, 5) else each for each in FIGURES]
+)
 def test_claims_letters_and_data(number):
     found = made(number)
     assert found.number == number
@@ -146,7 +148,7 @@ def test_17_loops_close_around_delta_and_accumulate_on_gamma():
     assert facts["gap 6 right"] / facts["gap 5 right"] == pytest.approx(shrunk, rel=0.02)
 
 
-@pytest.mark.parametrize("number", [2, 11, 16])
+@pytest.mark.parametrize("number", [pytest.param(2, marks=pytest.mark.slow), 11, 16])
 def test_drawn_without_a_warning(number):
     si.figure(number).canvas.draw()
 
