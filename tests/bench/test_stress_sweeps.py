@@ -86,7 +86,7 @@ def test_vertices_keep_their_digits():
     assert all(cell.trials > QUICK for cell in cells)
 
 
-@pytest.mark.parametrize("name", ["impact_map", "derivative"])
+@pytest.mark.parametrize("name", ["impact_map", pytest.param("derivative", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     "place",
     [

@@ -31,6 +31,7 @@ def test_grazes_of_the_linear_oscillator() -> None:
     assert "closed" not in str(curve.notes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", [("clearance", "damping"), ("stiffness", "omega"), ("clearance", "omega")])
 def test_the_same_grazes_in_other_pairs_of_numbers(over) -> None:
     osc = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.37")
@@ -48,6 +49,7 @@ def test_the_same_grazes_in_other_pairs_of_numbers(over) -> None:
 # ---- Budd and Dux 1994
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("w", "r", "k"),
     [("2.8", "0.8", 1), ("4.3", "0.6", 2)]

@@ -13,6 +13,8 @@ from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.swan_families import Family
 from singimpact.surface.transitions import Transitions, transitions
 
+pytestmark = pytest.mark.slow  # pages and examples have quicker ones
+
 DAMPED = si.ImpactOscillator("x + 0.1*xdot", "cos(2.8*t)", 0, "0.8")
 WINDOW = ((-0.14, 0.14), (-6.0, 6.0))
 OUTLINE = ("swan", "swallowtail", "tangency")

@@ -15,6 +15,8 @@ from singimpact.flights.inverse_map import backwards
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.surface.transitions import Transitions, transitions
 
+pytestmark = pytest.mark.slow  # pages and examples have quicker ones
+
 TWO, FAST = (si.linear(rate, 0, "0.8") for rate in (2, "2.8"))
 LIGHT = si.ImpactOscillator("x + 0.04*xdot", "cos(2.8*t) + 0.5*cos(5.6*t + 2)", 0, "0.8")
 HEAVY = si.ImpactOscillator("x + 0.1*xdot", "cos(3.6*t) + 0.5*cos(7.2*t + 2)", 0, "0.8")

@@ -47,7 +47,10 @@ def test_reference_states_are_certified_to_thirty_digits():
             assert found.radius <= abs(found.value) * mpmath.mpf(10) ** -30
 
 
-@pytest.mark.parametrize("family", SMOOTH, ids=lambda family: family.name)
+@pytest.mark.parametrize(
+    "family",
+    [pytest.param(each, marks=pytest.mark.slow if i % 2 else (), id=each.name) for i, each in enumerate(SMOOTH)],
+)
 def test_twenty_digits_contain_forty(family):
     case = drawn_of(family, np.random.default_rng(3), 4)
     osc = case.oscillator()
