@@ -37,6 +37,7 @@ LONG = (
     "swan",
     "elastic, rarely back",
     "rebound by an expression",
+    "constant force",
 )  # 2 to 20 s each
 
 
@@ -123,6 +124,7 @@ def test_orbits_and_chatter_that_are_off_are_wrong():
     assert orbits.limits(states).wrong > 5
 
 
+@pytest.mark.slow
 def test_pixels_of_a_wrong_class_are_wrong(monkeypatch):
     states, true = flown(si.linear(2, "0.3", "0.5"), 3, 0), basins.basins
     assert basin_pixels.row(states).agree == 16

@@ -16,6 +16,8 @@ from singimpact.bench.stress.judging import LIMITS, Function, Trial, moved, wors
 from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch
 from singimpact.bench.stress.table import FUNCTIONS, QUICK, chosen, stressed
 
+pytestmark = pytest.mark.slow  # the room has quicker ones
+
 NO_NUMBER = {"to_toml", "linear", "universal", "read_model", "sweep", "release"}  # models, and work for others
 NO_NUMBER |= {
     "shaken_wall",

@@ -124,6 +124,7 @@ def test_each_orbit_once_and_more_with_the_length(found: Crossings) -> None:
     assert any(note.startswith("W^u ends after") for note in found.notes)
 
 
+@pytest.mark.slow
 def test_heteroclinic_orbits_join_two_saddles() -> None:
     one, other = saddle_of(CHAOTIC, 1), saddle_of(CHAOTIC, 2)
     there = si.homoclinic_points(one, other, length=5)
@@ -149,6 +150,7 @@ def test_of_a_saddle_of_three_impacts() -> None:
         assert np.abs(gap).max() < 1e-13
 
 
+@pytest.mark.slow
 def test_a_saddle_whose_unstable_sides_end_in_attractors_has_none() -> None:
     none = si.homoclinic_points(saddle_of(TWO_BASINS, 3), v=1, length=20)
     assert list(none) == []

@@ -10,6 +10,8 @@ from singimpact.certificates import checker
 from singimpact.certificates.checker import files, impacts, motion, periodic_orbit
 from singimpact.inputs import InputError
 
+pytestmark = pytest.mark.slow  # the room has quicker ones
+
 LINEAR = si.linear("2.8", 0, "0.8")
 
 

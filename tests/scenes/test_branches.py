@@ -34,6 +34,7 @@ def stretches(axes, n: int, k: int):
     return [line for line in axes.lines if line.get_color() == orbit_color(n, k) and line.get_marker() == "None"]
 
 
+@pytest.mark.slow
 def test_each_stretch_has_its_style_and_ends_at_an_event(branch) -> None:
     axes = si.plot(branch)
     stable, unstable, virtual = stretches(axes, 1, 1)
@@ -118,6 +119,7 @@ def test_branches_over_a_bifurcation_diagram(branch) -> None:
     assert [text.get_text() for text in axes.texts] == ["doubling"]  # the graze is outside
 
 
+@pytest.mark.slow
 def test_orbits_without_impact(branch) -> None:
     osc = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.3")
     free = si.branch(osc.periodic(0, 1)[0], "amplitude", (-0.6, -0.2))
