@@ -76,6 +76,11 @@ class Emitted:
     steps: bool = False
 
     @property
+    def texts(self) -> tuple[str, str, str]:
+        """What tells it from others, as texts."""
+        return self.flow, self.rho, "steps" if self.steps else ""
+
+    @property
     def entries(self) -> tuple[str, ...]:
         """What is compiled, in this order."""
         if self.rho or self.flow:

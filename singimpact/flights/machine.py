@@ -138,7 +138,7 @@ class Machine:
     def digest(self) -> str:
         """Of everything that object code depends on."""
         digest = hashlib.sha256(_digest_of_sources())
-        for text in (self.emitted.flow, self.emitted.rho, "steps" if self.emitted.steps else ""):
+        for text in self.emitted.texts:
             digest.update(hashlib.sha256(text.encode()).digest())
         return digest.hexdigest()[:32]
 
@@ -161,7 +161,7 @@ class Machine:
                 time.time() - each.stat().st_mtime < SETTINGS.dead for each in request.parent.glob(f"*{self._kind}")
             ):
                 return request.exists()
-            write_text(request, "\0".join([self.emitted.flow, self.emitted.rho, "steps" if self.emitted.steps else ""]))
+            write_text(request, "\0".join(self.emitted.texts))
             command = [sys.executable, "-m", "singimpact.flights.machine", str(request)]
             _outliving(command)
         except (InputError, OSError) as error:

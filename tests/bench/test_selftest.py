@@ -29,21 +29,8 @@ MODELS = {
 }
 
 
-LONG = (
-    "friction",
-    "no graze",
-    "linear",
-    "Duffing",
-    "swan",
-    "elastic, rarely back",
-    "rebound by an expression",
-    "constant force",
-)  # 2 to 20 s each
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(each, marks=pytest.mark.slow) if each in LONG else each for each in MODELS]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MODELS)
 def test_nothing_is_wrong(name):
     found = si.selftest(MODELS[name], states=30, seed=1)
     assert found.wrong == 0, str(found)

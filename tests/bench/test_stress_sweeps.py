@@ -16,7 +16,7 @@ from singimpact.bench.stress.judging import LIMITS, Function, Trial, moved, wors
 from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch
 from singimpact.bench.stress.table import FUNCTIONS, QUICK, chosen, stressed
 
-pytestmark = pytest.mark.slow  # the room has quicker ones
+pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 
 NO_NUMBER = {"to_toml", "linear", "universal", "read_model", "sweep", "release"}  # models, and work for others
 NO_NUMBER |= {
@@ -81,21 +81,14 @@ def test_wrong_status_fails_and_no_trial_too():
     assert worst("f", "v -> 0", lambda _: iter([]), 1).failed
 
 
-@pytest.mark.slow
 def test_vertices_keep_their_digits():
     cells = stressed(chosen(["zero_set", "outline"], "t -> 0"), QUICK)
     assert [cell.failed for cell in cells] == [False, False]
     assert all(cell.trials > QUICK for cell in cells)
 
 
-@pytest.mark.parametrize("name", ["impact_map", pytest.param("derivative", marks=pytest.mark.slow)])
-@pytest.mark.parametrize(
-    "place",
-    [
-        pytest.param(each, marks=pytest.mark.slow if each.startswith(("steep", "next to", "omega", "long")) else ())
-        for each in PLACES
-    ],
-)
+@pytest.mark.parametrize("name", ["impact_map", "derivative"])
+@pytest.mark.parametrize("place", PLACES)
 def test_impact_map_and_its_derivative_keep_their_digits(name, place):
     assert [cell for cell in stressed(chosen([name], place), QUICK) if cell.failed] == []
 

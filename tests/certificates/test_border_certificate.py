@@ -11,7 +11,7 @@ import singimpact as si
 from singimpact.certificates import checker
 from singimpact.inputs import InputError
 
-pytestmark = pytest.mark.slow  # a guard of the second program, which has quicker ones
+pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,6 @@ def test_it_is_accepted_from_its_file(made, tmp_path):
     no_number_may_change(made, 7)
 
 
-@pytest.mark.slow
 def test_a_parameter_of_a_nonlinear_model_has_one():
     model = si.ImpactOscillator("x + 0.1*x**3", "A*cos(2.8*t)", "0.6", "0.5", {"A": "1"})
     (found,) = si.border_orbits(model, over="A", between=("1.03", "1.035"), points=3, digits=16)
@@ -41,7 +40,6 @@ def test_a_parameter_of_a_nonlinear_model_has_one():
     assert certificate.content["model"]["parameters"]["A"] != certificate.content["over"]
 
 
-@pytest.mark.slow
 def test_a_later_impact_and_a_double_beside_the_zero_say_the_same(made):
     for name, value in (("impacts", "4"), ("end", "4.158872105390695")):
         checker.check(renewed(copied(made.content) | {name: value}))

@@ -10,7 +10,7 @@ from singimpact.certificates import checker
 from singimpact.certificates.checker import files, impacts, motion, periodic_orbit
 from singimpact.inputs import InputError
 
-pytestmark = pytest.mark.slow  # the room has quicker ones
+pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 
 LINEAR = si.linear("2.8", 0, "0.8")
 
@@ -65,7 +65,6 @@ def test_it_is_accepted_from_its_file(made, tmp_path):
     assert repr(made).startswith("<certificate of a period-doubling: A = ")
 
 
-@pytest.mark.slow
 def test_a_fold_is_accepted_and_no_other_number(branch, tmp_path):
     fold = si.certify(event_of(branch, "fold").certified(10))
     is_read_back(fold, tmp_path / "fold.json")
@@ -84,7 +83,6 @@ def test_a_graze_is_accepted_and_no_other_number(graze, tmp_path):
     refuses(moving, "v is not 0")
 
 
-@pytest.mark.slow
 def test_grazes_that_are_none(graze):
     refuses({**graze.content, "unique_within": "1/2"})
     pressed = copied(graze.content)  # the mirror image: the mass is below the wall but where it touches it
@@ -100,7 +98,6 @@ def test_krawczyk_is_what_refuses_another_graze(graze, monkeypatch):
     refuses(off)
 
 
-@pytest.mark.slow
 def test_a_touch_that_is_not_the_first_is_what_the_pieces_refuse(graze, monkeypatch):
     """With twice as many periods the orbit touches the wall half way; without the pieces that is accepted."""
     twice = {**copied(graze.content), "periods": "2"}
@@ -111,7 +108,6 @@ def test_a_touch_that_is_not_the_first_is_what_the_pieces_refuse(graze, monkeypa
     checker.check(renewed(twice))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["fold", "period-doubling", "graze", "hidden impact"])
 def test_events_of_two_impacts(kind, duffing, tmp_path):
     event = si.certify(event_of(duffing, kind).certified(10))
@@ -124,7 +120,6 @@ def test_events_of_two_impacts(kind, duffing, tmp_path):
     refuses(shifted(event.content, "parameter", 1e4))
 
 
-@pytest.mark.slow
 def test_a_torus(torus, tmp_path):
     is_read_back(torus, tmp_path / "torus.json")
     no_number_may_change(torus, 13)
@@ -139,8 +134,8 @@ def test_any_changed_number_is_refused(made):
     ("change", "why"),
     [
         ({"kind": "cusp"}, "an event is a fold or a period-doubling"),
-        pytest.param({"kind": "torus"}, "complex", marks=pytest.mark.slow),
-        pytest.param({"kind": "fold"}, None, marks=pytest.mark.slow),
+        ({"kind": "torus"}, "complex"),
+        ({"kind": "fold"}, None),
         ({"kind": "graze"}, "v is not 0"),
         ({"over": "omega"}, "no parameter"),
         ({"period": "pi"}, "is not shown to have the period"),
@@ -152,13 +147,11 @@ def test_another_statement_is_refused(change, why, made):
     refuses({**copied(made.content), **change}, why)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("part", ["parameter", "tau", "v"])
 def test_a_number_off_by_many_radii_is_refused(part, made):
     refuses(shifted(made.content, part if part == "parameter" else (0, part), 1e4))
 
 
-@pytest.mark.slow
 def test_a_model_with_another_number_is_refused(made):
     content = copied(made.content)
     content["model"]["restitution"] = "0.81"
@@ -172,7 +165,6 @@ def test_a_number_that_moves_the_period_is_refused(made):
     refuses(content, "is not shown to have the period")
 
 
-@pytest.mark.slow
 def test_without_the_change_of_sign_an_orbit_beside_the_event_passes(made, monkeypatch):
     """At another number of the same curve: its orbit is there, and its test does not vanish."""
     model = si.ImpactOscillator(**{**made.content["model"], "parameters": {"A": "0.9"}})
@@ -196,7 +188,6 @@ def test_others_have_no_file(branch):
         si.certify(replace(ball, over="clearance"))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["fold", "graze"])
 def test_any_other_number_with_a_digest_of_its_own_is_refused(kind, branch, graze):
     """But for the number's value in the model, which is not used, and a restitution without an impact."""

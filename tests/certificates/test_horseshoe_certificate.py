@@ -14,7 +14,7 @@ from singimpact.certificates import checker
 from singimpact.certificates.checker import files, impacts, motion
 from singimpact.certificates.checker.horseshoe import Set, derivative
 
-pytestmark = pytest.mark.slow  # a guard of the second program, which has quicker ones
+pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 
 OSC = si.linear("2.8", 0, "0.8")
 
@@ -55,21 +55,16 @@ def test_another_statement_is_refused(change, why, made):
         (5, ("radii", 1)),
         (16, ("centre", 0)),
         (0, ("frame", 1)),
-        *(
-            pytest.param(which, place, marks=pytest.mark.slow)
-            for which, place in [
-                (0, ("radii", 0)),
-                (5, ("radii", 0)),
-                (16, ("radii", 0)),
-                (1, ("radii", 1)),
-                (0, ("centre", 0)),
-                (1, ("centre", 1)),
-                (5, ("centre", 0)),
-                (16, ("centre", 1)),
-                (5, ("frame", 1)),
-                (16, ("frame", 1)),
-            ]
-        ),
+        (0, ("radii", 0)),
+        (5, ("radii", 0)),
+        (16, ("radii", 0)),
+        (1, ("radii", 1)),
+        (0, ("centre", 0)),
+        (1, ("centre", 1)),
+        (5, ("centre", 0)),
+        (16, ("centre", 1)),
+        (5, ("frame", 1)),
+        (16, ("frame", 1)),
     ],
 )
 def test_sets_that_are_not_crossed_are_refused(which, place, made):
@@ -186,7 +181,6 @@ def test_two_impacts_of_a_box():
     assert (high - low < 0.2).all()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "osc", [OSC, si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(2.8*t)", 0, "0.9")], ids=["linear", "Duffing"]
 )

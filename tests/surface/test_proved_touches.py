@@ -13,7 +13,7 @@ from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.swan_families import Family
 from singimpact.surface.transitions import Transitions, transitions
 
-pytestmark = pytest.mark.slow  # pages and examples have quicker ones
+pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 
 DAMPED = si.ImpactOscillator("x + 0.1*xdot", "cos(2.8*t)", 0, "0.8")
 WINDOW = ((-0.14, 0.14), (-6.0, 6.0))
@@ -40,7 +40,6 @@ def test_one_that_the_list_lacks_is_said(four, left_out):
     assert f"lacks lips or beaks at clearance = {missing.value:.12g}" in doubt
 
 
-@pytest.mark.slow
 def test_all_three_kinds_of_figure_2():
     """Lips and beaks over the rate, a swallowtail over the clearance; the same window with one of them left out."""
     over_rate = transitions(damped(), "w", (1.9, 2.3), (0, 8), OUTLINE)
@@ -75,7 +74,6 @@ def test_the_closed_form_is_the_motion(f, g):
         assert np.abs(np.array(found) - wanted).max() < 1e-11 * (1 + np.abs(wanted).max())
 
 
-@pytest.mark.slow
 def test_next_to_the_launch_boxes_are_decided_by_the_third_and_fourth_derivative_alone():
     """At t = 0 every tangency point solves the equations: without Rolle's theorem the boxes there stay open."""
     flight = rest_flight(Family(DAMPED, "clearance"))
@@ -85,7 +83,6 @@ def test_next_to_the_launch_boxes_are_decided_by_the_third_and_fourth_derivative
     assert not blind.touches(period, (0.1, 0.14), (-1.0, 1.0)).complete
 
 
-@pytest.mark.slow
 def test_what_is_not_proved_is_said():
     # a forcing without a period has transitions too, and nothing is proved of them
     polynomial = transitions(si.ImpactOscillator("x", "t**2 - t**3/3", 0, "0.5"), "clearance", (-0.2, 0.2), (-1, 1))

@@ -15,7 +15,7 @@ from singimpact.flights.inverse_map import backwards
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.surface.transitions import Transitions, transitions
 
-pytestmark = pytest.mark.slow  # pages and examples have quicker ones
+pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 
 TWO, FAST = (si.linear(rate, 0, "0.8") for rate in (2, "2.8"))
 LIGHT = si.ImpactOscillator("x + 0.04*xdot", "cos(2.8*t) + 0.5*cos(5.6*t + 2)", 0, "0.8")
@@ -77,7 +77,7 @@ def found():
     return of
 
 
-EACH = ["two", *(pytest.param(name, marks=pytest.mark.slow) for name in ("fast", "light", "heavy"))]
+EACH = ["two", "fast", "light", "heavy"]
 
 
 @pytest.mark.parametrize("name", EACH)
@@ -102,14 +102,12 @@ def test_all_of_two(found):
     assert not transitions(TWO, "clearance", (0.4, 0.9), (-3, 3))
 
 
-@pytest.mark.slow
 def test_all_of_two_are_proved_to_be_all(found):
     below = transitions(TWO, "clearance", (-2, 2), (-6.2, 6.2))
     assert below.complete
     assert {each.value for each in below} == {each.value for each in found("two")}
 
 
-@pytest.mark.slow
 def test_all_of_fast(found):
     """Both senses of c, of which a half is never seen; 42 triples of rests within half a period of the flights."""
     wanted = {
@@ -126,7 +124,6 @@ def test_all_of_fast(found):
     assert "triple points are met on a grid of step 0.02" in doubt
 
 
-@pytest.mark.slow
 def test_triples_of_fast():
     """Quadruples of rests taken three at a time, over the whole period 10 pi of the flights."""
     made = transitions(FAST, "clearance", (-2, 2), (0, 31.4), kinds="triple point")
@@ -195,7 +192,6 @@ def exact_value(exact, each):
         return mpmath.findroot(exact.system(each), unknowns)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["light", "heavy"])
 def test_all_against_square_systems_in_thirty_digits(name, found):
     """Every event, seen or not: value and times of rest; the closed form here is complex, that of the search real."""
@@ -234,7 +230,6 @@ def cuts(model, count=3000):
     return int((far & (ring[1:] >= 0) & (ring[:-1] >= 0)).sum())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "graze"), [("light", -0.143255), ("heavy", -0.0821299)])
 def test_cuts_are_counted_without_the_list(name, graze):
     """N(c) changes at visible transitions alone, and by the number that belongs to each; at a graze by several."""
