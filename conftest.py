@@ -29,8 +29,10 @@ def pytest_configure(config):
     if not hasattr(config, "workerinput"):  # workers of one run share the cache of the first
         config.singimpact_cache = tempfile.mkdtemp(prefix="singimpact-suite-")
         os.environ["SINGIMPACT_CACHE"] = config.singimpact_cache
+        from left_behind import SUITE
+
+        os.environ[SUITE] = config.singimpact_cache
         Path(config.singimpact_cache, "kernels").symlink_to(_kept_kernels(config.rootpath), target_is_directory=True)
-        os.environ["NUMBA_OPT"] = "0"  # as in the process that compiles models
         os.environ["NUMBA_CACHE_DIR"] = str(Path(config.singimpact_cache) / "numba")
 
 
@@ -47,6 +49,20 @@ def _kept_kernels(root):
 def pytest_unconfigure(config):
     if hasattr(config, "singimpact_cache"):
         shutil.rmtree(config.singimpact_cache, ignore_errors=True)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish(session):
+    """No process of the suite outlives it: one that does is named, and the run fails."""
+    if not hasattr(session.config, "singimpact_cache"):
+        return
+    from left_behind import left_behind
+
+    left = left_behind(session.config.singimpact_cache)
+    for pid, command in left.items():
+        print(f"\nERROR: the suite has left process {pid} behind: {command}")
+    if left:
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
 
 
 def pytest_runtest_teardown(item):  # noqa: ARG001

@@ -1,4 +1,4 @@
-"""Entries of the user's cache, each stored with a digest of its content; a damaged entry is named and made again.
+"""Entries of the user's cache, each with a digest of its name and content; a damaged entry is named and made again.
 
 A cache is a convenience: when it cannot be read or written, one line says so and the work goes on without it.
 """
@@ -48,7 +48,7 @@ def keep(place: Path, content: bytes) -> None:
         if place.is_symlink():
             place.unlink()  # an entry is a regular file: a link is removed, its target is not written to
         with written(place) as draft:
-            draft.write_bytes(_seal(content) + content)
+            draft.write_bytes(_seal(place, content) + content)
     except (InputError, OSError) as error:
         not_kept(error)
 
@@ -76,11 +76,17 @@ def recall(place: Path) -> bytes | None:
     except OSError as error:
         damaged(place, error.strerror or str(error))
         return None
-    seal, content = found[: len(_seal(b""))], found[len(_seal(b"")) :]
-    if seal != _seal(content):
-        damaged(place, "its content is not what was written")
-        return None
+    content = unsealed(place, found)
+    if content is None and not found.startswith(OLD_SEAL):
+        damaged(place, "its content is not what was written under this name")
     return content
+
+
+def unsealed(place: Path, sealed: bytes) -> bytes | None:
+    """The content of the bytes of an entry; None if they are not those that were written under its name."""
+    length = len(_seal(place, b""))
+    content = sealed[length:]
+    return content if sealed[:length] == _seal(place, content) else None
 
 
 def packed(thing: Any) -> bytes:
@@ -155,6 +161,7 @@ def _changeable(place: Path) -> str | None:
     return None
 
 
+OLD_SEAL = b"sha256 "  # of an earlier version, without the name: not used, and no damage
 SOURCES = (".py", ".js", ".css", ".html")
 
 
@@ -212,8 +219,10 @@ def not_kept(error: Exception) -> None:
         tell(f"cache: {reason}; results are not stored; the work goes on (SINGIMPACT_CACHE names another folder)")
 
 
-def _seal(content: bytes) -> bytes:
-    return b"sha256 " + hashlib.sha256(content).hexdigest().encode() + b"\n"
+def _seal(place: Path, content: bytes) -> bytes:
+    """The digest of the name and the content, so that no entry passes for another one."""
+    digest = hashlib.sha256(place.name.encode("utf-8", "surrogateescape") + b"\0" + content)
+    return b"sealed " + digest.hexdigest().encode() + b"\n"
 
 
 @lru_cache(maxsize=64)

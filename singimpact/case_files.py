@@ -109,7 +109,17 @@ class NpzFile(InMemory):
         self.written = self.done
         self.journal = Journal(path.with_name(path.name + ".part"), key, path)
         for record, content in self.journal.read():
-            InMemory.add(self, record, np.lib.format.read_array(BytesIO(content), allow_pickle=False))
+            InMemory.add(self, record, self._read(record, content))
+
+    def _read(self, record: Record, content: bytes) -> Array:
+        try:
+            values: Array = np.lib.format.read_array(BytesIO(content), allow_pickle=False)
+            if values.shape[:1] != (record.count,) or values.dtype.kind not in NUMBERS:
+                raise ValueError(f"{values.shape} results of {values.dtype} for {record.count} cases")
+        except (ValueError, EOFError, OSError, MemoryError, OverflowError) as error:
+            self.journal.close()
+            raise InputError(f"{shown(str(self.journal.path))} is damaged ({error}): remove it") from None
+        return values
 
     def add(self, record: Record, values: Array) -> None:
         """As of any store, and into the journal."""
@@ -170,6 +180,9 @@ class NpzFile(InMemory):
 def _check(result: Array, chunks: Array, cases: Array) -> None:
     if chunks.ndim != 2 or chunks.shape[1:] != (2,) or chunks.dtype.kind not in "iu" or (chunks[:, 1] < 1).any():
         raise ValueError(f"chunks of shape {chunks.shape}")
+    order = chunks[np.argsort(chunks[:, 0])].astype(float)
+    if (chunks[:, 0] < 0).any() or (order[1:, 0] < order[:-1].sum(axis=1)).any():
+        raise ValueError("chunks that overlap or begin before the first case")
     if result.ndim < 1 or len(result) != chunks[:, 1].sum() or cases.shape != chunks.shape[:1]:
         raise ValueError(f"results of shape {result.shape} for {chunks[:, 1].sum()} cases")
     if result.dtype.kind not in NUMBERS:

@@ -14,8 +14,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from singimpact.file_lock import lock
 from singimpact.inputs import InputError, shown
 
+MOST = 1 << 62  # cases of a sweep; an index of numpy holds no more
 HEAD = b"singimpact sweep 1 "
 OTHERS = "holds results of other cases, another function or version"
 
@@ -90,7 +92,7 @@ class Journal:
                 )
             except OSError as error:
                 raise unwritable(self.output, error) from None
-            if not _locked(stream):
+            if not lock(stream.fileno()):
                 stream.close()
                 raise InputError(
                     f"output = {shown(str(self.output))} is being written by another process: name another file"
@@ -109,24 +111,15 @@ def _record(stream: BinaryIO) -> tuple[Record, bytes] | None:
         start, count, size, check = int(cells[0]), int(cells[1]), int(cells[3]), int(cells[4], 16)
     except ValueError:
         return None
+    here = stream.tell()
+    if min(start, count, size) < 0 or max(start, count) >= MOST or size > stream.seek(0, os.SEEK_END) - here:
+        return None
+    stream.seek(here)
     content = stream.read(size)
     head = line[: line.rindex(b" ") + 1]
     if len(content) != size or zlib.crc32(content, zlib.crc32(head)) != check:
         return None
     return Record(start, count, cells[2].decode("ascii", "replace")), content
-
-
-def _locked(stream: BinaryIO) -> bool:
-    """Take the lock that ends with this process; where there is none of that kind, do without."""
-    try:
-        import fcntl
-    except ImportError:
-        return True
-    try:
-        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    return True
 
 
 def unwritable(path: Path, error: OSError) -> InputError:

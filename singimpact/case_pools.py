@@ -323,7 +323,7 @@ class WorkerPool(ProcessPoolExecutor):
     def __init__(self, workers: int | None = None, script: bool = False) -> None:
         self.script = script
         # a forked child shares locks of threads that it does not have
-        start = get_context("spawn") if script else _WithoutScript()
+        start = _WithScript() if script else _WithoutScript()
         super().__init__(workers, mp_context=start, initializer=_begin)
 
     def __exit__(self, kind: Any, *rest: Any) -> bool | None:
@@ -340,7 +340,28 @@ class WorkerPool(ProcessPoolExecutor):
         return None
 
 
-class _BareProcess(context.SpawnProcess):
+class _Process(context.SpawnProcess):
+    """A process that hears no Ctrl-C while it starts: only later it can ignore the signal."""
+
+    def start(self) -> None:
+        """Start the process with the signal blocked."""
+        import signal
+
+        if not hasattr(signal, "pthread_sigmask"):
+            super().start()
+            return
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            super().start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+class _WithScript(context.SpawnContext):
+    Process = _Process
+
+
+class _BareProcess(_Process):
     """A process that does not import the script that is running."""
 
     def start(self) -> None:
@@ -374,6 +395,8 @@ def _begin() -> None:
 
     _OURS.append(True)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     parent = parent_process()
     if parent is not None:
         sentinel = parent.sentinel

@@ -77,8 +77,10 @@ def sweep(
 
     Raises
     ------
-    InputError : a function that cannot be sent to other processes; an output that holds results of other cases, of a
-        function with other code or other values closed over, or of another version.
+    InputError : a function that cannot be sent to other processes; an output that holds results of other cases, of
+        another version, or of a function that differs in its code or in anything that it names (models, containers,
+        objects and their classes, functions and numbers of modules that are not installed packages); with `output`, a
+        function that names something without a lasting text, such as a lock or an open file.
     Unfinished : some cases end their process. A worker killed from outside is no error: its chunk is computed again in
         a new pool.
 

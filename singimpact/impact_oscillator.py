@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from singimpact.algebra.numbers import compare, constant, float_array
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
@@ -50,7 +48,7 @@ class ImpactOscillator(Oscillator):
         tau : launch times. v : launch velocities >= 0; they broadcast. A float is its binary value, the text "0.3" is
             exactly 3/10.
         digits : decimal digits of the result, which then holds mpmath numbers. horizon : flight time at which the
-            search ends (1000 periods).
+            search ends; without it 1000 periods of the forcing, or more where the motion is slow beside it.
         tolerance : relative error of a step of a nonlinear flight. steps : Taylor steps at most (16000). out : arrays
             to write the results to, by field.
 
@@ -143,12 +141,14 @@ class ImpactOscillator(Oscillator):
         >>> linear(2, 0, 1).acceleration([0, 1e3], order=1).tolist()
         [0.0, -1.860079008832274]
         """
+        from singimpact.flights.states import States
         from singimpact.oscillator.acceleration import acceleration
 
         if isinstance(order, bool) or not isinstance(order, int) or not 0 <= order <= 60:
             raise refuse("order", order, "a whole number from 0 to 60")
-        times = float_array("tau", tau)
-        return acceleration(self, np.atleast_1d(times).ravel(), order).reshape(times.shape)[()]
+        states = States.read(tau, 0.0).in_period(self)
+        times = states.tau
+        return acceleration(self, times, order).reshape(states.shape)[()]
 
     def iterate(self, tau: Any, v: Any, impacts: int = 100, *, keep: bool = False) -> Iterates:
         """Many impacts of each of many states: iterates of the impact map G.

@@ -72,6 +72,39 @@ def write_table(path: str | Path, columns: Mapping[str, Iterable[Any]]) -> None:
         lines.writerows(zip(*columns.values(), strict=True))
 
 
+def read_bounded(path: str | Path, what: str, most: int = 1_000_000, seconds: float = 10.0) -> bytes:
+    """The bytes of a file that a user names; a device without end and a pipe that nobody writes to are refused.
+
+    Raises
+    ------
+    InputError : it cannot be read, has more than `most` bytes, or gives none for so many seconds.
+
+    Examples
+    --------
+    >>> read_bounded("/dev/zero", "model file")
+    Traceback (most recent call last):
+    singimpact.inputs.InputError: model file '/dev/zero' has more than 1000000 bytes: at most 1000000 are accepted
+    """
+    import select
+
+    content = b""
+    try:
+        # a pipe that nobody writes to would not even open
+        with open(
+            os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)), "rb", 0
+        ) as file:
+            while len(content) <= most:
+                block = file.read(most + 1 - len(content))
+                if block is None and not select.select([file], [], [], seconds)[0]:
+                    raise InputError(f"{what} {shown(str(path))} gives nothing for {seconds:g} s: give a file")
+                if block == b"":
+                    return content
+                content += block or b""
+    except OSError as error:
+        raise InputError(f"{what} {shown(str(path))} cannot be read: {error.strerror}") from None
+    raise InputError(f"{what} {shown(str(path))} has more than {most} bytes: at most {most} are accepted")
+
+
 def require_writable(path: str | Path) -> None:
     """Check that a file can be written at a path.
 

@@ -78,13 +78,17 @@ def clearances(between: Any) -> tuple[Fraction, Fraction]:
     return low, high
 
 
-def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: Any = None, output: Any = None) -> Basins:
+def basins(
+    osc: Oscillator, window: Any = None, size: int = 600, *, impacts: int = 20_000, executor: Any = None,
+    output: Any = None,
+) -> Basins:  # fmt: skip
     """Basins of attraction: the attractor of each state of a grid: an (n, k) orbit, repeated chatter, rest, chaos.
 
     Parameters
     ----------
     osc : a model with a period. window : ((tau_low, tau_high), (v_low, v_high)); one period and (0, 2) without it.
-    size : states on a side, from 2 to 10000. executor, output : as for `sweep`; a case is some rows of the grid.
+    size : states on a side, from 2 to 10000. impacts : at most, of an orbit that does not settle; its class then says
+        so. executor, output : as for `sweep`; a case is some rows of the grid.
         The default executor is one thread for each core.
 
     Returns
@@ -106,7 +110,7 @@ def basins(osc: Oscillator, window: Any = None, size: int = 600, *, executor: An
 
     whole("size", size, 2, 10_000)
     tau, v = (None, (0, 2)) if window is None else _two_ends(window, "((tau_low, tau_high), (v_low, v_high))")
-    return basins(osc, tau, v, size, executor, output)
+    return basins(osc, tau, v, size, executor, output, impacts)
 
 
 def bifurcation(
@@ -120,13 +124,16 @@ def bifurcation(
     osc : a model with a period. over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or
         "phase" (also if the model does not name them). between : its interval. points : values, evenly spaced.
     start : the first state (tau, v) of each orbit. impacts : number for each value.
-    kept : last events of each orbit that are returned. sweeping : `executor` and `output` of `sweep`.
+    kept : last events of each orbit that are returned.
+    sweeping : `settle`, the impacts at most of an orbit whose events do not repeat (20000); `executor` and `output` of
+        `sweep`.
     direction : "up", "down", "both": each orbit starts from the last state of the one before, so hysteresis shows.
 
     Returns
     -------
     Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v and 1 where chatter has
-        ended; nan where an orbit had fewer. `si.plot` draws it, `.to_csv(file)` writes it.
+        ended; nan where an orbit had fewer. `.settled`, shape (points,): whether the events repeat. `si.plot` draws it,
+        `.to_csv(file)` writes it.
 
     Raises
     ------
@@ -144,9 +151,11 @@ def bifurcation(
     from singimpact.dynamics.bifurcation import bifurcation
 
     for name in sweeping:
-        if name not in ("executor", "output"):
+        if name not in ("executor", "output", "settle"):
             raise unknown(
-                "argument of bifurcation", name, ["executor", "output", "start", "impacts", "kept", "direction"]
+                "argument of bifurcation",
+                name,
+                ["executor", "output", "start", "impacts", "kept", "direction", "settle"],
             )
     return bifurcation(osc, over, between, points, start, impacts, kept, direction, **sweeping)
 

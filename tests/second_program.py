@@ -1,4 +1,4 @@
-"""The second program with a condition taken out, and certificates with a number changed."""
+"""The second program with conditions taken out, and certificates with a number changed."""
 
 import json
 import re
@@ -8,6 +8,7 @@ import pytest
 
 import singimpact as si
 from singimpact.certificates import checker
+from singimpact.certificates.checker import formulas
 
 FOLDER = Path(checker.__file__).parent
 
@@ -20,6 +21,12 @@ def weakened(name, condition, instead=None):
     instead = ("True" if "<" in condition else "0") if instead is None else instead
     exec(compile(text.replace(condition, instead), "weak", "exec"), weak)
     return weak[name]
+
+
+def dropped(monkeypatch, *names):
+    """The second program without these of its conditions."""
+    true = formulas.refuse
+    monkeypatch.setattr(formulas, "refuse", lambda name, error: None if name in names else true(name, error))
 
 
 def copied(content):

@@ -161,10 +161,16 @@ def test_a_process_without_a_script_cannot_import_it():
     assert script_can_be_imported() in (True, False)
 
 
+WAITING = """
+def wait(x):
+    import os, time
+    open(f"at-work-{os.getpid()}", "w").close()
+    time.sleep(x)
+"""
 INTERRUPTED = """
-import sys, time, threading, singimpact as si
-print("ready", flush=True)
-si.sweep({function}, [60.0] * 4{more})
+import singimpact as si
+from waiting import wait as other
+si.sweep({function}, [3600.0] * 4{more})
 """
 
 
@@ -173,33 +179,45 @@ si.sweep({function}, [60.0] * 4{more})
     [
         ("wait", ""),
         *(
-            pytest.param("time.sleep", each, marks=pytest.mark.slow)
+            pytest.param("other", each, marks=pytest.mark.slow)
             for each in ("", ", output='kept.npz'", ", output='kept.zarr'")
         ),
     ],
 )
 def test_an_interruption_ends_a_sweep_and_its_workers(function, more, tmp_path):
-    """Cases of a minute: whatever waits for one of them does not end in time."""
+    """Cases of an hour: whatever waits for one of them does not end in time."""
     if "zarr" in more:
         pytest.importorskip("zarr", reason="needs zarr, of the extra `cluster`")
     script = tmp_path / "script.py"
-    script.write_text("def wait(x):\n    import time; time.sleep(x)" + INTERRUPTED.format(function=function, more=more))
+    (tmp_path / "waiting.py").write_text(WAITING)
+    script.write_text(WAITING + INTERRUPTED.format(function=function, more=more))
     child = subprocess.Popen(
         [sys.executable, script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path,
         start_new_session=True,
     )  # fmt: skip
-    child.stdout.readline()
-    time.sleep(1.5)  # the workers are at work
-    os.killpg(child.pid, signal.SIGINT)  # as a terminal does
-    _, errors = child.communicate(timeout=30)
+    try:
+        while not list(tmp_path.glob("at-work-*")):
+            assert child.poll() is None
+            time.sleep(0.01)
+        os.killpg(child.pid, signal.SIGINT)  # as a terminal does
+        _, errors = child.communicate()  # ends when the last process that writes to it has ended
+    finally:
+        if alive(child.pid):
+            os.killpg(child.pid, signal.SIGKILL)
     assert child.returncode != 0
     assert errors.count("Traceback") == 1
     assert errors.rstrip().endswith("KeyboardInterrupt")
-    for _ in range(100):
-        if not alive(child.pid):
-            break
-        time.sleep(0.1)
-    assert not alive(child.pid)
+
+
+def test_workers_do_not_hear_an_interruption_before_they_ignore_it():
+    """Ctrl-C in a terminal reaches them while they start, too."""
+    with WorkerPool(1) as pool:
+        pool.submit(abs, 1)  # starts the process
+        (worker,) = pool._processes.values()
+        os.kill(worker.pid, signal.SIGINT)
+        assert pool.submit(abs, -2).result() == 2
+        assert pool.submit(signal.getsignal, signal.SIGINT).result() == signal.SIG_IGN
+        assert pool.submit(signal.pthread_sigmask, signal.SIG_BLOCK, ()).result() == set()
 
 
 def alive(group):

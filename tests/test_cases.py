@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+import zlib
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from multiprocessing import get_context
@@ -16,7 +17,7 @@ import pytest
 
 from singimpact import cases
 from singimpact.case_files import InMemory, NpzFile
-from singimpact.case_journal import Journal, Record
+from singimpact.case_journal import HEAD, Journal, Record
 from singimpact.case_keys import cases_key, function_key
 from singimpact.case_pools import Place, computed
 from singimpact.cases import POOL, _Source, _Work, sweep
@@ -24,7 +25,15 @@ from singimpact.impact_oscillator import linear
 from singimpact.inputs import InputError, Unfinished
 from singimpact.progress import ProgressLine
 
-CALLS = []
+
+class Log(list):
+    """A list that is pickled by its name, so that what was logged is not part of a key."""
+
+    def __reduce_ex__(self, _protocol):
+        return "CALLS"
+
+
+CALLS = Log()
 
 
 def landing(case):
@@ -235,7 +244,7 @@ def test_what_has_no_key_is_refused_with_the_way_out(tmp_path):
 
 def archive(path, key, chunks, result):
     """A file of results with one chunk of cases."""
-    np.savez(path, key=key, chunks=chunks, result=result, cases=np.array([cases_key([1.0])]))
+    np.savez(path, key=key, chunks=chunks, result=result, cases=np.array([cases_key([1.0])] * np.shape(chunks)[0]))
 
 
 def plain_array():
@@ -254,7 +263,9 @@ def plain_array():
      lambda path, key: archive(path, key, np.array([[0, 1]]), np.array(3)),
      lambda path, key: archive(path, key, np.array([[0, 0]]), np.zeros(0)),
      lambda path, key: archive(path, key, np.array([[0, 1]]), np.array(["a"])),
-     lambda path, key: archive(path, key, np.array([[0, 2]]), np.arange(3))],
+     lambda path, key: archive(path, key, np.array([[0, 2]]), np.arange(3)),
+     lambda path, key: archive(path, key, np.array([[-3, 2]]), np.arange(2)),
+     lambda path, key: archive(path, key, np.array([[0, 2], [1, 2]]), np.arange(4))],
 )  # fmt: skip
 def test_files_of_another_make_are_refused(made, tmp_path):
     output = tmp_path / "kept.npz"
@@ -419,6 +430,26 @@ def test_a_journal_that_was_not_written_whole_is_cut_where_it_ends(cut, tmp_path
         assert sweep(fails_late, range(12), pool, output).tolist() == list(range(12))
     assert sorted(CALLS) in [list(range(first, 12)) for first in (0, 4, 8)]
     assert not journal.path.exists()
+
+
+STRANGE = [(0, 2, 10**18), (0, 2, 10**30), (10**30, 2, -1), (0, 10**30, 5), (-1, 1, 5)]
+
+
+@pytest.mark.parametrize("numbers", [*STRANGE, (0, 7, 5)])
+def test_a_journal_of_a_stranger_is_cut_or_refused(numbers, tmp_path):
+    """Its checksums are right and its lengths are not; a record of the right length has no results."""
+    output = tmp_path / "kept.npz"
+    start, count, size = numbers
+    head = f"{start} {count} {'0' * 64} {size} ".encode()
+    content = b"abcde"
+    line = head + f"{zlib.crc32(content, zlib.crc32(head)):08x}\n".encode()
+    (tmp_path / "kept.npz.part").write_bytes(HEAD + function_key(abs).encode() + b"\n" + line + content)
+    with ThreadPoolExecutor(1) as pool:
+        if numbers in STRANGE:
+            assert sweep(abs, [-1.0, 2.0], pool, output).tolist() == [1, 2]
+            return
+        with pytest.raises(InputError, match="is damaged"):
+            sweep(abs, [-1.0, 2.0], pool, output)
 
 
 def test_a_changed_byte_in_a_journal_is_not_taken_for_a_result(tmp_path):

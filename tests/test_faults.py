@@ -212,7 +212,10 @@ def test_an_interrupted_scene_keeps_its_curves(number, tmp_path):
 def test_an_interrupted_picture_of_a_sweep_resumes(asked, tmp_path, tmp_path_factory):
     output, cached = tmp_path / "picture.png", tmp_path_factory.getbasetemp()  # both compile the same
     given = ["--omega", "2.8", "--clearance", "0", "--restitution", "0.8", "--workers", "1"]
-    given += {"basins": ["--size", "280"], "bifurcation": ["--from", "0.1", "--to", "0.3", "--points", "700"]}[asked]
+    given += {
+        "basins": ["--size", "280", "--impacts", "300"],
+        "bifurcation": ["--from", "0.1", "--to", "0.3", "--points", "700"],
+    }[asked]
     given += ["--keep", tmp_path / "kept.npz", "-o", output]
     run = command(cached, asked, *given)
     wait_for(lambda: begun(tmp_path / "kept.npz"))

@@ -1,7 +1,10 @@
 """What is held is not changed, and what cannot be used ends in one clear sentence."""
 
+import os
 import pickle
+import threading
 
+import numpy as np
 import pytest
 
 import singimpact as si
@@ -123,3 +126,46 @@ def test_a_plot_is_a_figure_that_pyplot_shows():
     axes = si.plot(si.linear("2.8", 0, "0.8").orbit(0.9, 0.3, impacts=5))
     assert plt.get_fignums() == [axes.figure.number]
     plt.close("all")
+
+
+@pytest.mark.parametrize("name", ["pi\u0113", "\u03c9", "caf\u00e9", "x\u0661"])
+def test_names_of_parameters_have_the_letters_of_f(name):
+    """One rule: what f could not name is no parameter."""
+    with pytest.raises(InputError, match=r"parameter name = .* is not accepted: give a name of letters a to z"):
+        si.ImpactOscillator("x", "cos(2*t)", 0, "0.5", parameters={name: 1})
+
+
+def test_files_without_an_end_are_refused(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for path, reason in (("/dev/zero", "more than 1000000 bytes"), (tmp_path / "pipe", "has no f")):
+        with pytest.raises(InputError, match=reason):
+            si.read_model(path)
+
+
+def test_a_pipe_that_somebody_writes_to_is_a_model_file(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    text = si.linear(2, 0, "0.5").to_toml().encode()
+    reading = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)  # so that writing does not wait
+    writing = os.open(tmp_path / "pipe", os.O_WRONLY)
+    os.write(writing, text)
+    threading.Timer(0.1, os.close, (writing,)).start()
+    assert si.read_model(tmp_path / "pipe") == si.linear(2, 0, "0.5")
+    os.close(reading)
+
+
+@pytest.mark.parametrize("omega", [1e150, 1e300, "1e300", 1e-300])
+def test_any_frequency_is_flown(omega):
+    """The forcing of a frequency beyond all measure moves nothing, and takes too many steps; a tiny one is constant."""
+    step = si.linear(omega, 0, "0.5").impact_map(0.3, 0.25)
+    turn = np.pi if float(omega) > 1 else 2 * np.pi - 2 * np.arctan(0.25)
+    if step.status == Status.unresolved:
+        assert float(omega) > 1
+        assert np.isnan(step.v)
+    else:
+        assert step.flight_time == pytest.approx(turn, rel=1e-13)
+        assert step.v == pytest.approx(0.125, rel=1e-13)
+
+
+def test_states_that_no_memory_holds_are_refused():
+    with pytest.raises(InputError, match="10000000000 states, whose results need 340 GB of"):
+        si.linear(2, 0, "0.5").impact_map(np.zeros((100_000, 1)), np.ones(100_000))

@@ -56,6 +56,12 @@ class Balls:
         with balls_at(self.bits):
             return self.rational(low).union(self.rational(high))
 
+    def unknown(self) -> Any:
+        """The ball of all numbers."""
+        import flint
+
+        return flint.arb("nan")
+
     def pi(self) -> Any:
         import flint
 

@@ -218,6 +218,17 @@ def compare(left: Expression, right: Expression | int) -> int:
     return 0 if left == other else sign_of(subtract(left, other))
 
 
+def require_unmasked(name: str, values: Any) -> None:
+    """Refuse an array in which numbers are masked: numpy drops the mask, and hidden numbers would be flown.
+
+    Examples
+    --------
+    >>> require_unmasked("tau", np.ma.array([1.0, 2.0], mask=[0, 0]))
+    """
+    if isinstance(values, np.ma.MaskedArray) and np.ma.getmaskarray(values).any():
+        raise refuse(name, values.tolist(), "an array without masked numbers: give .compressed() or .filled(number)")
+
+
 def float_array(name: str, values: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """An array of doubles from numbers, text, or arrays of them; nan and inf are refused.
 
@@ -226,6 +237,7 @@ def float_array(name: str, values: Any) -> np.ndarray[Any, np.dtype[np.float64]]
     >>> float_array("tau", ["pi/2", 1]).tolist()
     [1.5707963267948966, 1.0]
     """
+    require_unmasked(name, values)
     raw = np.asarray(values)
     if raw.dtype.kind not in "iuf":
         flat = [as_float(constant(name, item)) for item in raw.ravel().tolist()]

@@ -12,6 +12,7 @@ from fractions import Fraction
 from singimpact.algebra.balls import BITS, Balls, Zero, derivatives, sign_at
 from singimpact.algebra.expressions import BOUND, Expression, Root
 from singimpact.algebra.precision import balls_at
+from singimpact.algebra.taylor import NotSmooth
 from singimpact.inputs import InputError, shown
 
 LEAST_WIDTH = Fraction(1, 2**26)  # of the window: below it a double zero is suspected and handed on as undecided
@@ -25,6 +26,7 @@ def isolate(
     Raises
     ------
     InputError : more than `pieces` pieces were looked at, when a number of them is given.
+    NotSmooth : the function has no Taylor series somewhere in the window, to within the least width of a piece.
 
     Examples
     --------
@@ -44,7 +46,13 @@ def isolate(
                 if pieces < 0:
                     raise InputError(f"the zeros of {shown(str(tree))} cost too much to tell apart: give closer ends")
             window = balls.interval(left, right)
-            value, slope = derivatives(tree, variable, window, order + 1, balls)[order : order + 2]
+            try:
+                value, slope = derivatives(tree, variable, window, order + 1, balls)[order : order + 2]
+            except NotSmooth:
+                # a ball over a long piece may hold a 0 of a denominator that none of its points has
+                if right - left < least:
+                    raise
+                value = slope = balls.unknown()
             if value > 0 or value < 0:
                 continue
             if slope > 0 or slope < 0:

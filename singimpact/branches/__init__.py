@@ -9,11 +9,13 @@ isolated by balls), `starts` (Newton's method from many starts), `resting` (orbi
 `digits`, `krawczyk` (Krawczyk's operator), `enclosed_map` (G over boxes), `ball_closing` (the conditions in balls),
 `enclosed_orbit` (that an orbit exists), `enclosed_event` (that an event does, and no other), `event_function` (what
 vanishes there, and its rate along the curve of orbits), `periodic` (the search for all orbits), `continuation`
-(pseudo-arclength), `events`, `switching` (the other branches at an event), `branch`, `kept` (on disk), `event_curve`
-(events in two parameters); `saddle_arcs` (W^s and W^u next to a saddle), `manifold` (grown from there), `cylinder`
-(polylines of phases and velocities), `homoclinic` (where W^u and W^s cross), `saddle_cones` (wedges that hold W^u and
-W^s), `enclosed_crossing` (that an orbit between saddles exists), `horseshoe` (sets whose images cross one another:
-chaos); `border` (released orbits that return onto gamma), `released` (that orbit), `border_digits`, `cascade` (the
-edges beside it), `settled` (the periodic orbit to which an orbit converges), `transitions` (those of P with the
-orbits between them).
+(pseudo-arclength), `events`, `switching` (the other branches at an event), `branch`, `branch_walk` (while it is
+followed), `event_tests` (what vanishes at events, in doubles), `step_search` (its zeros within a step),
+`branch_points` (pitchforks, transcritical points), `kept` (on disk), `event_curve` (events in two parameters);
+`saddle_arcs` (W^s and W^u next to a saddle), `manifold` (grown from there), `cylinder` (polylines of phases and
+velocities), `homoclinic` (where W^u and W^s cross), `saddle_cones` (wedges that hold W^u and W^s),
+`enclosed_crossing` (that an orbit between saddles exists), `horseshoe` (sets whose images cross one another: chaos);
+`border` (released orbits that return onto gamma), `released` (that orbit), `border_digits`, `cascade` (the edges
+beside it), `settled` (the periodic orbit to which an orbit converges), `transitions` (those of P with the orbits
+between them).
 """

@@ -20,7 +20,7 @@ from singimpact.branches.enclosed_map import SPARE
 from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
 from singimpact.flights.enclosures.jet_flight import JetHit, jet_hit
 from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
-from singimpact.flights.model_numbers import horizon_of
+from singimpact.flights.horizons import horizon_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import common_period
 

@@ -8,16 +8,25 @@ root.  A solution with some v_i < 0, or with a flight that is below the wall som
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from math import sqrt
 from typing import Any
 
 import numpy as np
 
+from singimpact.flights.determinant import log_determinant
 from singimpact.flights.family import Family
 
 Array = np.ndarray[Any, Any]
 NEAR = 0.1
-"""A minimum of x - c is refined when its sample is below this part of the largest height."""
+"""A minimum of x - c is refined when it is below this part of the largest height."""
+CANCELLED = 1e-6
+"""A determinant that is smaller beside its terms has lost six digits of the product of the multipliers."""
+SETTLED = 1e-9
+"""The last step of Newton's method for the time of a minimum, of that time."""
+Turn = tuple[float, float]
+"""A local minimum of x - c in a flight: its time after the launch, and x - c there."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +56,13 @@ class Loop:
         zero, plus, minus = (self.determinant(mu) for mu in (0.0, 1.0, -1.0))
         return zero, (plus - minus) / 2, (plus + minus) / 2 - zero
 
-    def multipliers(self) -> Array:
-        """The two multipliers, the larger first; inf at a graze."""
+    def multipliers(self, product: Callable[[], float] | None = None) -> Array:
+        """The two multipliers, the larger first; inf at a graze.
+
+        Parameters
+        ----------
+        product : gives their product by Liouville's formula, where the determinant has lost it.
+        """
         zero, one, two = self.characteristic()
         size = max(abs(zero), abs(one), abs(two))
         if not np.isfinite(size):
@@ -62,6 +76,9 @@ class Loop:
         )  # the sum without cancellation; the other root follows from the product
         first = far / (2 * two)
         second = 2 * zero / far if far else first
+        if product is not None and abs(zero) < CANCELLED * size:
+            known = product()
+            second = known / first if np.isfinite(known) and abs(first) > 0 else second
         return np.array([first, second])
 
 
@@ -120,6 +137,19 @@ class Closing:
                 slope[2 * i + 1, 2 * n :] += by_law
         return Loop(miss, slope, wrap)
 
+    def product(self, point: Array) -> float:
+        """The product of the multipliers, det D G over all impacts; nan at a graze."""
+        launches, _, speeds, times = np.array(self.flights(point)).T
+        values = self.values(point)
+        ends = [self.family.end(values, tau, v, time).place[1]
+                for tau, v, time in zip(launches, speeds, times, strict=True)]  # fmt: skip
+        velocities = np.array(ends)
+        if not (velocities < 0).all() or not (speeds != 0).all():
+            return float("nan")
+        osc = self.family.oscillator(values)
+        sizes = log_determinant(osc, launches, np.abs(speeds), times, velocities)
+        return float(np.prod(np.sign(speeds)) * np.exp(sizes.sum()))
+
     def newton(self, point: Array, rounds: int = 30, tolerance: float = 4e-15) -> tuple[Array, Loop] | None:
         """The orbit near a point at its numbers; None if Newton's method does not converge."""
         at, size, n = point.copy(), np.inf, 2 * self.n
@@ -153,42 +183,91 @@ class Closing:
 
         A flight that has none, for it falls all the way after its rise, gives (nan, inf).
         """
-        found = []
+        return [min(turns, key=_height, default=(np.nan, np.inf)) for turns in self.minima(point)]
+
+    def minima(self, point: Array) -> list[list[Turn]]:
+        """All local minima between launch and hit of each flight, as `minima_of` gives them."""
         values = self.values(point)
-        for launch, _before, v, time in self.flights(point):
-            found.append(lowest(self.family, values, (launch, v, time)))
-        return found
+        return [minima_of(self.family, values, (launch, v, time)) for launch, _, v, time in self.flights(point)]
+
+    def rise(self, point: Array, direction: Array, flight: int, time: float) -> float:
+        """The rate at which x - c, at a time after the launch of a flight, changes as the point moves.
+
+        Parameters
+        ----------
+        direction : in which the point moves, shape (2n + numbers,). flight : index. time : after its launch. At a local
+            minimum it is the rate of the height of that minimum, because x' = 0 there.
+        """
+        n, values = self.n, self.values(point)
+        launch, before, v, _ = self.flights(point)[flight]
+        end = self.family.end(values, launch, v, time)
+        numbers = direction[2 * n :]
+        # launches in the first period move with the period
+        moved = direction[flight] - before * float(np.dot(self.family.period(values).slopes, numbers))
+        return float(end.by_tau[0] * moved + end.by_v[0] * direction[n + flight] + numbers @ end.by_numbers[:, 0])
+
+    def span(self, point: Array, flight: int) -> float:
+        """The time of a flight."""
+        return self.flights(point)[flight][3]
+
+
+def _height(turn: Turn) -> float:
+    return turn[1]
 
 
 def lowest(family: Family, values: dict[str, float], flight: tuple[float, float, float]) -> tuple[float, float]:
     """The lowest local minimum of x - c inside a flight, refined; (nan, inf) where there is none."""
+    return min(minima_of(family, values, flight), key=_height, default=(np.nan, np.inf))
+
+
+def minima_of(family: Family, values: dict[str, float], flight: tuple[float, float, float]) -> list[Turn]:
+    """The local minima of x - c inside a flight, in order.
+
+    Those near the wall are refined; the others are those of the cubics through the samples. Of a flight that leaves
+    the domain of f or g the list is [(nan, -inf)].
+    """
     launch, v, time = flight
     if not time > 0:
-        return np.nan, np.inf
+        return []
     rows = family.path(values, launch, v, time)
     if not np.isfinite(rows).all():
-        return np.nan, -np.inf
-    times = np.linspace(0.0, time, len(rows) + 1)
+        return [(np.nan, -np.inf)]
     slopes = np.concatenate([[v], rows[:, 1]])
     turns = np.flatnonzero((slopes[:-1] < 0) & (slopes[1:] >= 0))
-    best, near = (np.nan, np.inf), NEAR * float(np.abs(rows[:, 0]).max())
+    near, width = NEAR * float(np.abs(rows[:, 0]).max()), time / len(rows)
+    minima = []
     for index in turns.tolist():
-        between = float(times[index]), float(times[index + 1])
-        at, height = between[1], float(rows[index, 0])
+        ends = (float(rows[index - 1, 0]) if index else 0.0, float(rows[index, 0]))
+        share, height = _cubic_minimum(ends, (float(slopes[index]) * width, float(slopes[index + 1]) * width))
+        at = (index + share) * width
         if height < near:
-            at = _turning_point(family, values, launch, v, between)
-            height = float(family.end(values, launch, v, at).place[0])
-        if height < best[1]:
-            best = at, height
-    return best
+            at, height = _turning_point(family, values, (launch, v, at), (index * width, (index + 1) * width))
+        minima.append((at, height))
+    return minima
+
+
+def _cubic_minimum(ends: tuple[float, float], slopes: tuple[float, float]) -> tuple[float, float]:
+    """Where the cubic with these values and slopes (the first negative) at 0 and 1 is least between, and its value."""
+    rise = ends[1] - ends[0]
+    square, cube = 3 * rise - 2 * slopes[0] - slopes[1], slopes[0] + slopes[1] - 2 * rise
+    # slopes[0] + 2 square s + 3 cube s^2 = 0, the root at which it rises
+    root = sqrt(max(square * square - 3 * cube * slopes[0], 0.0))
+    share = -slopes[0] / (square + root) if square + root > 0 else 1.0
+    share = min(max(share, 0.0), 1.0)
+    return share, ends[0] + share * (slopes[0] + share * (square + share * cube))
 
 
 def _turning_point(
-    family: Family, values: dict[str, float], launch: float, v: float, between: tuple[float, float]
-) -> float:
-    """Where x' = 0 between two times, by Newton's method kept inside."""
+    family: Family, values: dict[str, float], flight: tuple[float, float, float], between: tuple[float, float]
+) -> tuple[float, float]:
+    """Where x' = 0 between two times, by Newton's method kept inside, and x - c there.
+
+    Parameters
+    ----------
+    flight : launch, v and a first guess of the time.
+    """
+    launch, v, at = flight
     low, high = between
-    at = (low + high) / 2
     for _ in range(60):
         end = family.end(values, launch, v, at)
         speed, bend = end.by_time.tolist()
@@ -197,8 +276,10 @@ def _turning_point(
         else:
             high = at
         step = at - speed / bend if bend else np.nan
-        after = step if low < step < high else (low + high) / 2
-        if abs(after - at) <= 1e-15 * abs(at) or high - low <= 1e-15 * high:
-            return after
+        inside = low < step < high
+        after = step if inside else (low + high) / 2
+        # Newton's method squares the error; there x - c differs by the square of the last step
+        if (inside and abs(after - at) <= SETTLED * abs(at)) or high - low <= 1e-15 * high:
+            return after, float(end.place[0]) + speed * (after - at) / 2
         at = after
-    return at
+    return at, float(family.end(values, launch, v, at).place[0])

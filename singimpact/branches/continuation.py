@@ -226,6 +226,20 @@ def null_vector(slopes: Array) -> Array:
     return np.asarray(np.linalg.svd(slopes)[2][-1])
 
 
+def null_plane(slopes: Array, tangent: Array) -> Array:
+    """At a branch point, where a matrix takes a plane to zero, the unit vector of that plane across a tangent in it.
+
+    Examples
+    --------
+    >>> null_plane(np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]]), np.array([1.0, 0.0, 0.0])).round(9).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    plane = np.linalg.svd(slopes)[2][-2:]
+    shares = plane @ tangent
+    across = plane.T @ np.array([-shares[1], shares[0]])
+    return np.asarray(across / np.linalg.norm(across) * (1.0 if across[np.argmax(np.abs(across))] > 0 else -1.0))
+
+
 def root_between(test: Callable[[float], float], low: float, high: float, ends: tuple[float, float]) -> float:
     """Where a test changes sign between two lengths, by Brent's method.
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate, number
 from singimpact.flights.enclosures.certified_hit import Launch, ProvedImpact, certified_hit
-from singimpact.flights.model_numbers import horizon_of
+from singimpact.flights.horizons import horizon_of
 from singimpact.oscillator.model import Oscillator
 
 SPARE = 6

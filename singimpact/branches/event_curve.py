@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.branches.branch import SETTINGS, interval
+from singimpact.branches.branch import interval
+from singimpact.branches.branch_walk import SETTINGS
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.events import Event
@@ -21,6 +22,8 @@ from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of
 from singimpact.store import write_text
 
 Array = np.ndarray[Any, Any]
+FOLLOWED = ("fold", "period-doubling", "graze", "hidden impact")
+"""Kinds of events with a curve; a pitchfork lies on that of the doublings of the orbits of half as many impacts."""
 NUDGE = 1e-6
 """Half the width of a central difference, in scaled unknowns: the derivative then has a relative error of 1e-10."""
 
@@ -113,7 +116,7 @@ def event_curve(
     True
     """
     over = tuple(over)
-    if not isinstance(event, Event) or event.kind == "torus":
+    if not isinstance(event, Event) or event.kind not in FOLLOWED:
         raise refuse("event", event, "a fold, doubling, graze or hidden impact among the events of a branch")
     if len(over) != 2 or over[0] == over[1]:
         raise refuse("over", over, "two different numbers of the model")

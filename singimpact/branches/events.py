@@ -27,10 +27,15 @@ class Event:
     Parameters
     ----------
     kind : "fold" (two orbits meet), "period-doubling" (multiplier -1), "torus" (two multipliers on the unit circle),
-        "graze" (an impact of the orbit has no velocity), "hidden impact" (a flight touches the wall on its way).
-    parameter : the value of the parameter. orbit : the orbit. index : it lies after this point of the branch.
+        "graze" (an impact of the orbit has no velocity), "hidden impact" (a flight touches the wall on its way);
+        "pitchfork" (two branches of orbits of so many impacts and periods cross, one of which turns back there: such as
+        doubled orbits at the doubling that they begin at), "transcritical" (they cross and neither turns back),
+        "branch point" (they cross, and the other one was not reached).
+    parameter : the value of the parameter. orbit : the orbit. index : it lies after this point of the branch; the next
+        point is the event itself where that is no graze or hidden impact.
     impact : which impact grazes, or after which one the flight does, from 0: a column of `tau` and `v` of the branch
         (an orbit itself begins at its least phase). time : of a hidden impact after its launch.
+    other : at a pitchfork or transcritical point an orbit of the branch that is crossed.
     """
 
     kind: str
@@ -40,6 +45,7 @@ class Event:
     impact: int = 0
     time: float = np.nan
     over: str = ""
+    other: PeriodicOrbit | None = None
 
     def others(self) -> list[PeriodicOrbit]:
         """Orbits of the other branches that meet this one here, to be followed by `branch`.
@@ -47,8 +53,11 @@ class Event:
         Returns
         -------
         list : at a doubling the orbit of 2n impacts in 2k periods next to it; at a graze the orbit without that impact;
-            at a hidden impact the orbit with an impact there. Empty at folds and tori.
+            at a hidden impact the orbit with an impact there; at a pitchfork of a doubled branch the orbit of half as
+            many impacts, at other branch points one of the branch that is crossed. Empty at folds and tori.
         """
+        if self.other is not None:
+            return [self.other]
         return others(self.kind, self.orbit, self.over, self.parameter)
 
     @property
@@ -87,8 +96,12 @@ class Event:
         0.3687817782917154924000910
         """
         from singimpact.branches.enclosed_event import enclosed_event
+        from singimpact.branches.event_function import SIGNS
 
         touches = self.kind in ("graze", "hidden impact")
+        if self.kind not in (*SIGNS, "graze", "hidden impact"):
+            raise InputError(f"{self!r} is not certified: no proof covers a {self.kind}, only a fold, period-doubling, "
+                             f"torus, graze or hidden impact{self._instead()}")  # fmt: skip
         if not (touches or self.orbit.n):
             raise InputError(f"{self!r} is not accepted: of orbits without impact a graze alone can be certified")
         at = self.orbit if not touches or (self.kind == "graze" and self.orbit.n) else self.others()[0]
@@ -99,6 +112,13 @@ class Event:
         if not abs(found.parameter.value - self.parameter) <= NEAR * max(1.0, abs(self.parameter)):
             raise InputError(f"{self!r} is not certified: Newton's method leaves for {found.parameter}")
         return replace(found, kind=self.kind)
+
+    def _instead(self) -> str:
+        half = self.other
+        if half is None or half.k == self.orbit.k:
+            return ""
+        name = f"({half.n:.0f}, {half.k})"
+        return f"; the period doubling of the {name} orbits here has one: si.branch(event.others()[0], {self.over!r})"
 
     def __repr__(self) -> str:
         which = f" of impact {self.impact + 1}" if self.kind == "graze" and self.orbit.n else ""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.branches.closing import Loop, lowest
+from singimpact.branches.closing import Loop, Turn, minima_of
 from singimpact.flights.family import Family
 from singimpact.oscillator.moving_number import CLEARANCE
 
@@ -54,11 +54,30 @@ class FreeClosing:
 
     def heights(self, point: Array) -> list[tuple[float, float]]:
         """The lowest place of the orbit: its time, and x - c there."""
+        return [min(self.minima(point)[0], key=lambda turn: turn[1], default=(np.nan, np.inf))]
+
+    def minima(self, point: Array) -> list[list[Turn]]:
+        """All local minima of the orbit: time and x - c, each once."""
         values = self.launch(point)
-        span = self.k * self.family.period(values).value
+        span = self.span(point)
         wall = self.values(point).get(CLEARANCE, self.family.start[CLEARANCE])
-        time, height = lowest(self.family, values, (0.0, float(point[1]), 1.5 * span))
-        return [(time, height + float(point[0]) - wall)]
+        rise = float(point[0]) - wall
+        turns = minima_of(self.family, values, (0.0, float(point[1]), 1.5 * span))
+        # one span that begins away from 0: a minimum at time 0 is not between two samples
+        turns = [turn for turn in turns if not turn[0] < span / 4 and not turn[0] >= 5 * span / 4]
+        return [[(time, height + rise) for time, height in turns]]
+
+    def rise(self, point: Array, direction: Array, flight: int, time: float) -> float:  # noqa: ARG002
+        """The rate at which x - c at a time changes as the point moves: see `Closing.rise`."""
+        end = self.family.end(self.launch(point), 0.0, float(point[1]), time)
+        moved = dict(zip(self.over, direction[2:].tolist(), strict=True))
+        wall = moved.get(CLEARANCE, 0.0)
+        rates = [float(direction[0]) if name == CLEARANCE else moved.get(name, 0.0) for name in self.family.over]
+        return float(np.dot(rates, end.by_numbers[:, 0]) + end.by_v[0] * direction[1] + direction[0] - wall)
+
+    def span(self, point: Array, flight: int = 0) -> float:  # noqa: ARG002
+        """The time of k periods."""
+        return self.k * self.family.period(self.launch(point)).value
 
     def scales(self, point: Array) -> Array:
         """Sizes of the parts of a point."""

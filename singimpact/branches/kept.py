@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from singimpact import cache
+from singimpact.branches.event_tests import Test, Tests
 from singimpact.store import cache_folder
 
 Array = np.ndarray[Any, Any]
-Tests = dict[tuple[str, int], float]
 ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/")
 """Sub-packages that no branch depends on."""
 EVERY = 1.0
@@ -26,7 +26,7 @@ class KeptPoint:
     Parameters
     ----------
     following : length of the next step. multipliers, visible : of the orbit.
-    tests : numbers that change sign at events.
+    tests : of events, by kind, impact and number: value, rate and share of `event_tests.Test`.
     """
 
     at: Array
@@ -34,11 +34,15 @@ class KeptPoint:
     following: float
     multipliers: Array
     visible: bool
-    tests: dict[str, float]
+    tests: dict[str, tuple[float, ...]]
 
     def named_tests(self) -> Tests:
-        """The test functions of events, by kind and impact."""
-        return {(name.rpartition(" ")[0], int(name.rpartition(" ")[2])): value for name, value in self.tests.items()}
+        """The test functions of events."""
+        named = {}
+        for name, numbers in self.tests.items():
+            kind, impact, number = name.rsplit(" ", 2)
+            named[kind, int(impact), int(number)] = Test(*numbers)
+        return named
 
 
 class KeptSide:
@@ -63,7 +67,7 @@ class KeptSide:
         """Keep one point more: `at`, tangent and next step; `row` with multipliers and whether it is visible."""
         if self.place is None:
             return
-        named = {f"{kind} {impact}": value for (kind, impact), value in tests.items()}
+        named = {f"{kind} {impact} {number}": tuple(test) for (kind, impact, number), test in tests.items()}
         self.points.append(KeptPoint(*at, row[1], bool(row[2]), named))
         self._new = True
         if time.monotonic() - self._written > EVERY:

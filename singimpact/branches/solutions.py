@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -70,7 +71,15 @@ def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None, seen
     seen = visible(closing, point, osc) if seen is None else seen
     miss = float(np.abs(loop.miss).max())
     return PeriodicOrbit(
-        tau, speeds[order], _plain(loop.multipliers()), miss, np.int8(Status.hit), osc, n, k, visible=seen
+        tau,
+        speeds[order],
+        _plain(loop.multipliers(partial(closing.product, point))),
+        miss,
+        np.int8(Status.hit),
+        osc,
+        n,
+        k,
+        visible=seen,
     )
 
 

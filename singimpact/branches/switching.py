@@ -113,18 +113,21 @@ def _doubled(orbit: PeriodicOrbit, over: str, parameter: float) -> list[Periodic
     moved = np.concatenate([vector[:n], -vector[:n], vector[n:], -vector[n:], [0.0]])
     scales = twice.scales(point)
     scales[-1] = max(abs(parameter), 1e-3)
-    curve = Curve(_Equations(twice), scales, 10 * APART)
+    curve = Curve(Equations(twice), scales, 10 * APART)
     tangent = moved / scales
     start = Point(point, tangent / np.linalg.norm(tangent))
     found = curve.beyond(start, APART)
     return [] if found is None else [orbit_of(twice, found[0].at)]
 
 
-class _Equations:
+class Equations:
+    """Closing conditions as equations of a curve."""
+
     def __init__(self, closing: AnyClosing) -> None:
         self.closing = closing
 
     def equations(self, point: Array) -> tuple[Array, Array]:
+        """Values and derivatives."""
         loop = self.closing.at(point)
         return loop.miss, loop.slope
 

@@ -62,7 +62,8 @@ class OrbitChange:
 
     Parameters
     ----------
-    kind : "graze", "hidden impact", "fold", "period-doubling", "torus". value : of the number.
+    kind : "graze", "hidden impact", "fold", "period-doubling", "torus", "pitchfork", "transcritical". value : of the
+        number.
     n, k : of the orbits. event : with the orbit there; its `.others()` are those of the branches that meet it.
     below, above : what the orbits are for smaller and for larger values: "stable", "neutral" (the larger multiplier is
         1 in size: without impact and damping), "unstable", "virtual" (the solution goes through the wall: no orbit of
@@ -215,7 +216,7 @@ def transitions(
         says whether it is proved that none is missing, `.doubts` why one may be. With `orbits` an `OrbitTransitions`:
         `.intervals` between transitions (of tacnodes and triple points the visible ones; at a periodic graze an orbit
         changes), with the orbits in the middle of each and `.changes`: grazes, hidden impacts, folds, period
-        doublings and tori at their own values. Its `.both_sides(index)` is drawn by `si.plot`.
+        doublings, tori and pitchforks at their own values. Its `.both_sides(index)` is drawn by `si.plot`.
 
     Raises
     ------
@@ -364,10 +365,10 @@ def _sides(followed: Branch, event: Event) -> tuple[tuple[str, ...], tuple[str, 
     """What the orbits of a branch are next to an event, for smaller and for larger values."""
     below: list[str] = []
     above: list[str] = []
-    for i in (event.index, event.index + 1):
-        if 0 <= i < len(followed):
-            word = _word(followed.multipliers[i]) if followed.visible[i] else WORDS[3]
-            (below if followed.parameter[i] < event.parameter else above).append(word)
+    plain = np.flatnonzero(~followed.at_event)
+    for i in (*plain[plain <= event.index][-1:].tolist(), *plain[plain > event.index][:1].tolist()):
+        word = _word(followed.multipliers[i]) if followed.visible[i] else WORDS[3]
+        (below if followed.parameter[i] < event.parameter else above).append(word)
     return tuple(below), tuple(above)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,9 +18,7 @@ from singimpact.branches.enclosed_event import EnclosedEvent
 from singimpact.branches.enclosed_orbit import EnclosedOrbit
 from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.certificates.checker import SCHEMA, digest_of
-from singimpact.certificates.checker.event import KINDS, TOUCHING
-from singimpact.certificates.checker.first_impact import PARTS
+from singimpact.certificates.checker import KINDS, SCHEMA, TOUCHING, Refused, digest_of, read, sentence
 from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
 from singimpact.flights.results import CertifiedImpact, Flight
@@ -33,8 +31,10 @@ CHECKER = Path(__file__).with_name("checker")
 """The second program: `python checker FILE.json`."""
 UNIQUE = Fraction(1, 10**8)
 """Distance, at most, within which an orbit is certified to be alone: the second program has no frames for boxes."""
+DIGITS = 12  # of a state, at least
 SERIES_DIGITS, LOOSER = 18, 1.01  # digits of the coefficients of gamma; factor by which bounds are written larger
 FREER = 1.2  # that of the residual of nonlinear models, whose series the second program cuts on a disc of its own
+IMPACT = ("flight_time", "velocity", "tau", "v")
 LOST, LOOSE = 6, 1000
 """Digits that are left out of a multiplier, and factor of its radius."""
 
@@ -77,28 +77,7 @@ class Certificate:
             raise InputError(f"the certificate is refused: {reason}")
 
     def __repr__(self) -> str:
-        if "over" in self.content:
-            over, value = self.content["over"], self.content["parameter"]["value"]
-            return f"<certificate of a {self.content.get('kind', self.content['statement'])}: {over} = {value}>"
-        if "states" in self.content:
-            states, k = self.content["states"], self.content["periods"]
-            shown = ", ".join(f"({each['tau']['value']}, {each['v']['value']})" for each in states)
-            return f"<certificate of the ({len(states)}, {k}) {self.content['statement']}: (tau, v) = {shown}>"
-        if "boxes" in self.content:
-            between = self.content["restitution"]
-            which = f"r = {self.content['model']['restitution']}" if between == "model" else f"all r in {between}"
-            tau, reach = self.content["tau"]["value"], self.content["reach"]
-            return f"<certificate of gamma before tau_* = {tau}: {which}, S <= {reach}>"
-        if "sets" in self.content:
-            short, long = self.content["loops"]
-            entropy = self.content["entropy"]["value"]
-            return f"<certificate of a horseshoe: loops of {short} and {long} impacts, entropy >= {entropy}>"
-        launch = self.content["launch"]
-        if "ends" in self.content:
-            end = f"{self.content['ends']} at tau = {self.content['tau']['value']}"
-            return f"<certificate of the chatter limit from ({launch['tau']}, {launch['v']}): {end}>"
-        shown = ", ".join(f"{name} = {self.content[name]['value']}" for name in PARTS[2:])
-        return f"<certificate of the {self.content['statement']} from ({launch['tau']}, {launch['v']}): {shown}>"
+        return f"<certificate of {sentence(self.content)}>"
 
 
 def certify(result: Any) -> Certificate:
@@ -122,12 +101,12 @@ def certify(result: Any) -> Certificate:
     Examples
     --------
     >>> from singimpact.impact_oscillator import linear
-    >>> found = certify(linear("2.8", 0, "0.8").impact_map("0.9", "0.3", digits=20))
+    >>> found = certify(linear("2.8", 0, "0.8").impact_map("0.9", "0.3", digits=5))
     >>> found
-    <certificate of the first impact from (0.9, 0.3): tau = 1.533939680393141763696, v = 0.2033385063288414561421>
+    <certificate of the first impact from (0.9, 0.3): tau = 1.533940 +- 1.55e-6, v = 0.2033385 +- 2.05e-7>
     >>> found.check()
-    >>> certify(linear(4, 0, "0.5").periodic(1, 2)[0].certified(15))
-    <certificate of the (1, 2) periodic orbit: (tau, v) = (1.1780972450961725, 0.53333333333333333)>
+    >>> certify(linear(4, 0, "0.5").periodic(1, 2)[0].certified(15)).content["states"][0]["tau"]
+    {'value': '1.1780972450961725', 'radius': '1.19e-16'}
     """
     if isinstance(result, ChatterLimit):
         return _of_limit(result)
@@ -153,7 +132,7 @@ def certify(result: Any) -> Certificate:
             "what osc.impact_map(tau, v, digits=30) or osc.chatter_limit(tau, v, digits=30) gives "
             "for one state, a periodic orbit, or a horseshoe",
         )
-    numbers = {name: getattr(impact, name).as_dict() for name in PARTS}
+    numbers = {name: getattr(impact, name).as_dict() for name in IMPACT}
     launch = {name: str(part) for name, part in zip(("tau", "v"), impact.launch, strict=True)}
     return _sealed("first impact", impact.oscillator, {"launch": launch, **numbers})
 
@@ -166,12 +145,20 @@ def _sealed(statement: str, model: Oscillator, numbers: dict[str, Any]) -> Certi
 def _of_orbit(orbit: EnclosedOrbit) -> dict[str, Any]:
     """What is said of a periodic orbit, as text."""
     assert orbit.oscillator is not None
-    states = [{"tau": tau.as_dict(), "v": v.as_dict()} for tau, v in zip(orbit.tau, orbit.v, strict=True)]
-    multipliers = [
-        {"real": _wider(real), "imaginary": _wider(imaginary)} for real, imaginary in orbit.multipliers or ()
+    states = [
+        {"tau": _narrow(tau).as_dict(), "v": _narrow(v).as_dict()} for tau, v in zip(orbit.tau, orbit.v, strict=True)
     ]
+    widest = max(Fraction(number["radius"]) for state in states for number in state.values())
+    precise = [pair for pair in orbit.multipliers or () if pair[0].digits > 2 * LOST]  # others say next to nothing
+    multipliers = [{"real": _wider(real), "imaginary": _wider(imaginary)} for real, imaginary in precise]
+    unique = min(orbit.unique_within, max(UNIQUE, 4 * widest))
     return {"period": str(orbit.oscillator.period), "periods": str(orbit.k), "states": states,
-            "unique_within": str(min(orbit.unique_within, UNIQUE)), "multipliers": multipliers}  # fmt: skip
+            "unique_within": str(unique), "multipliers": multipliers}  # fmt: skip
+
+
+def _narrow(number: Certified) -> Certified:
+    """A number with enough digits for its radius to be within the box in which the orbit is alone."""
+    return replace(number, digits=max(number.digits, DIGITS))
 
 
 def _of_limit(limit: ChatterLimit) -> Certificate:
@@ -284,11 +271,11 @@ def read_certificate(path: Any) -> Certificate:
     2.05e-22
     """
     try:
-        content = json.loads(Path(path).read_text(encoding="utf-8"))
+        content = read(path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
-    except ValueError:
-        raise InputError(f"{path} is no certificate: it is not JSON") from None
+    except Refused as reason:
+        raise InputError(f"{path} is no certificate: {reason}") from None
     found = Certificate(content if isinstance(content, dict) else {})
     found.check()
     return found

@@ -18,6 +18,13 @@ from singimpact.store import require_writable
 @click.option("--tau", nargs=2, metavar="LOW HIGH", help="Window of launch phases.  [default: one period]")
 @click.option("--v", nargs=2, metavar="LOW HIGH", default=("0", "2"), show_default=True, help="Window of velocities.")
 @click.option("--size", type=click.IntRange(2, 10_000), default=600, show_default=True, help="States a side.")
+@click.option(
+    "--impacts",
+    type=click.IntRange(1, 10**7),
+    default=20_000,
+    show_default=True,
+    help="Of an orbit that does not settle.",
+)
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: threads, one for each core]")
 @click.option(
     "--layer",
@@ -30,8 +37,8 @@ from singimpact.store import require_writable
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
 def command(
-    tau: tuple[str, str] | None, v: tuple[str, str], size: int, workers: int | None, layer: str, output: str,
-    as_json: bool, **options: Any,
+    tau: tuple[str, str] | None, v: tuple[str, str], size: int, impacts: int, workers: int | None, layer: str,
+    output: str, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
     """Basins of attraction on a grid of launches: (n, k) orbits, repeated chatter, rest, chaos.
 
@@ -50,14 +57,14 @@ def command(
         from singimpact.scenes.basins import draw_basins, draw_first_chatter
 
         with nullcontext() if workers is None else WorkerPool(workers) as pool:
-            found = basins(model, tau, v, size, pool, keep)
+            found = basins(model, tau, v, size, pool, keep, impacts)
         draw = draw_basins if layer == "for-ever" else draw_first_chatter
         classes = [{"class": name, "share": share} for _, name, share in found.classes]
         first = float(found.first_chatter_completes.mean())
         return draw(found).figure, {"classes": classes, "first_chatter_completes": first}
 
     if keep is None:
-        told = save_once(("basins", model, tau, v, size, layer), output, make)
+        told = save_once(("basins", model, tau, v, size, impacts, layer), output, make)
     else:
         figure, told = make()
         save(figure, output)

@@ -79,4 +79,6 @@ def command(
         rows = zip(found.values.tolist(), found.events.tolist(), strict=True)
         click.echo(as_json_text({"over": over, "cases": [{"value": value, "events": each} for value, each in rows]}))
     else:
-        click.echo(f"{output}: {points} values of {over}, {kept} events of each")
+        left = int((~found.settled).sum())
+        open_ = f"; no period in {found.settle} impacts at {left} of them" if left else ""
+        click.echo(f"{output}: {points} values of {over}, {kept} events of each{open_}")

@@ -45,7 +45,7 @@ def command(
 ) -> None:  # fmt: skip
     """Follow orbits of N impacts in K periods as a parameter changes.
 
-    Prints folds, period doublings, tori, grazes and hidden impacts, and the end of each branch.
+    Prints folds, period doublings, tori, pitchforks, grazes and hidden impacts, and the end of each branch.
     """
     for path in (output, csv):
         if path is not None:

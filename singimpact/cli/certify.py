@@ -12,7 +12,7 @@ from singimpact.inputs import InputError
 from singimpact.store import require_writable
 
 State = tuple[str, str] | None
-EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact")
+EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact", "pitchfork", "transcritical")
 """Kinds of events that have certificates; a test compares them with those of the checker."""
 
 

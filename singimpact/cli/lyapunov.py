@@ -17,11 +17,11 @@ from singimpact.status import Status
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
 @click.option("--impacts", type=click.IntRange(1, 100_000_000), default=10_000, show_default=True, help="Impacts used.")
 @click.option(
-    "--transient", type=click.IntRange(0, 100_000_000), default=0, show_default=True, help="Impacts flown before."
+    "--transient", type=click.IntRange(0, 100_000_000), help="Impacts flown before.  [default: until the orbit settles]"
 )
 @output_options
 def command(
-    tau: str, v: str, impacts: int, transient: int, as_json: bool, output: str | None, **options: Any
+    tau: str, v: str, impacts: int, transient: int | None, as_json: bool, output: str | None, **options: Any
 ) -> None:  # fmt: skip
     """Lyapunov exponents per unit of time and per impact, with standard errors.
 
@@ -35,12 +35,15 @@ def command(
     rows = {"exponents": found.exponents, "error": found.error, "per impact": found.per_impact}
     if as_json:
         told = {name.replace(" ", "_"): values.tolist() for name, values in rows.items()}
-        told |= {"impacts": found.impacts, "time": found.time, "superstable": found.superstable, "status": status.name}
+        told |= {"impacts": found.impacts, "time": found.time, "superstable": found.superstable, "status": status.name,
+                 "transient": found.transient, "converged": found.converged}  # fmt: skip
         emit(as_json_text({"model": osc.to_dict(), **told}), output)
         return
     lines = [f"{name:11} {'  '.join(f'{value:.9g}' for value in values.tolist())}" for name, values in rows.items()]
     lines += [
-        f"impacts     {found.impacts} in a time of {found.time:.9g}",
+        f"impacts     {found.impacts} in a time of {found.time:.9g}, after {found.transient}",
         f"status      {status.name}: {status.sentence}",
     ]
+    if not found.converged:
+        lines.append("not converged: the exponents of both halves differ, give more --impacts or a --transient")
     emit("\n".join([*lines, *(["superstable"] if found.superstable else [])]), output)

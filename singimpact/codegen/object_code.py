@@ -90,27 +90,46 @@ def _machine() -> Any:
     )  # fmt: skip
 
 
+WITHOUT_EFFECT = {"NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "NUMBA_NUM_THREADS", "NUMBA_OPT", "NUMBA_THREADING_LAYER"}
+"""Settings of numba that change no code, or that are set anew for each text."""
+
+
 def processor() -> str:
     """What object code depends on beside its sources."""
+    import os
+    from importlib.metadata import version
+
     import llvmlite
     import llvmlite.binding as llvm
 
-    return f"{llvmlite.__version__} {llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}"
+    names = sorted(name for name in os.environ if name.startswith("NUMBA_") and name not in WITHOUT_EFFECT)
+    settings = [(name, os.environ[name]) for name in names]
+    features = llvm.get_host_cpu_features().flatten()
+    return f"{settings} {version('numba')} {llvmlite.__version__} {llvm.get_host_cpu_name()} {features}"
 
 
 _LOADED: list[Any] = []  # engines own the code: they live as long as the process
 
 
 def loaded(code: bytes, entry: str, addresses: int) -> tuple[Callable[..., int], Callable[..., int]]:
-    """The function `entry` of object code, of so many addresses: without the interpreter's lock, and with it."""
+    """The function `entry` of object code, of so many addresses: without the interpreter's lock, and with it.
+
+    Raises
+    ------
+    ValueError : it is not object code, or it has no function of this name.
+    """
     import llvmlite.binding as llvm
 
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
     held = llvm.ObjectFileRef.from_data(code)
+    if not getattr(held, "_ptr", True):  # LLVM cannot read it; adding it would end the process
+        raise ValueError("it is not object code")
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
+    _LOADED.append((engine, held))  # before anything is refused: the end of an engine would end the machine of all
     engine.add_object_file(held)
     engine.finalize_object()
-    _LOADED.append((engine, held))
     address = engine.get_function_address(entry)
+    if not address:
+        raise ValueError(f"it has no function {entry}")
     takes = [ctypes.c_void_p] * addresses
     free = ctypes.CFUNCTYPE(ctypes.c_int64, *takes)(address)
     holding = ctypes.PYFUNCTYPE(ctypes.c_int64, *takes)(address)

@@ -13,7 +13,7 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls, Zero, as_rational, derivatives, refined, sign_at
 from singimpact.algebra.certified import Certified, as_certified
-from singimpact.algebra.expressions import Call, Expression, Power, children, evaluate, names_in, walk
+from singimpact.algebra.expressions import Call, Expression, Number, Power, children, evaluate, names_in, walk
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at, digits_at, for_user, kept_property
 from singimpact.algebra.zeros import isolate
@@ -151,10 +151,29 @@ def window(oscillator: Oscillator, function: Expression) -> tuple[Fraction, Frac
     if oscillator.period is not None:
         period = Fraction(as_float(oscillator.period))
         return -period * Fraction(1, 97), period * Fraction(98, 97)
-    if any(isinstance(part, Call) or (isinstance(part, Power) and names_in(part.exponent)) for part in walk(function)):
+    if not is_polynomial(function):
         raise InputError(f"g = {oscillator.g} is not seen to be periodic: give period=")
     bound = _root_bound(function)
     return -bound, bound
+
+
+def is_polynomial(tree: Expression) -> bool:
+    """Whether a tree is written as a polynomial in the names in it.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> is_polynomial(parse("t**3 - t/2", ["t"])), is_polynomial(parse("t/(1 + t**2)", ["t"]))
+    (True, False)
+    """
+    for part in walk(tree):
+        if isinstance(part, Call) and names_in(part):
+            return False
+        if isinstance(part, Power) and names_in(part):
+            power = part.exponent
+            if not isinstance(power, Number) or power.value.denominator != 1 or power.value < 0:
+                return False
+    return True
 
 
 def _root_bound(function: Expression) -> Fraction:

@@ -13,7 +13,6 @@ from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.double_zeros import double_zeros
 from singimpact.algebra.expressions import (
     BOUND,
-    Call,
     Expression,
     Name,
     Number,
@@ -31,7 +30,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC, ExactAtAngles
 from singimpact.algebra.zeros import is_one_root, isolate
-from singimpact.contact.points import enclosed, window
+from singimpact.contact.points import enclosed, is_polynomial, window
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 
@@ -243,7 +242,7 @@ def _named_place(shifted: Expression, piece: Zero) -> Expression:
 
 def _all_clearances(rest: Expression, level: Expression) -> tuple[Fraction, Fraction]:
     """A window with every solution: Cauchy's bound, for a polynomial."""
-    if any(isinstance(part, Call) or (isinstance(part, Power) and names_in(part.exponent)) for part in walk(rest)):
+    if not is_polynomial(rest):
         raise InputError(f"between is needed: f(x, 0) = {rest} is not a polynomial in x; give between=(low, high)")
     degree = sum(int(abs(part.exponent.value)) for part in walk(rest) if isinstance(part, Power) and
                  isinstance(part.exponent, Number)) + sum(isinstance(part, Name) for part in walk(rest))  # fmt: skip

@@ -2,6 +2,6 @@
 
 Not here: pictures (`scenes`), the mathematics that is shown (`theory`), the words about the paper (`paper.sections`).
 Files: `steps` (what a document is: sections of steps), `series` (the series of the theory as data and as steps),
-`arranging` (an expression laid out as a sum), `breaking` (long lines of LaTeX), `escape`, `rendering` (templates),
-`formats` (as one text or as files), `compiling` (LaTeX into a PDF).
+`sympy_source` (expressions as a Python file), `arranging` (an expression laid out as a sum), `breaking` (long lines
+of LaTeX), `escape`, `rendering` (templates), `formats` (as one text or as files), `compiling` (LaTeX into a PDF).
 """

@@ -9,11 +9,13 @@ from fractions import Fraction
 from typing import Any
 
 import sympy
+from mpmath.libmp import to_str
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.precision import balls_at
-from singimpact.codegen.formulas import Coefficient, Exponents, function_source, module_source
+from singimpact.codegen.formulas import RATIO_SOURCE, Coefficient, Exponents, function_source, module_source
 from singimpact.documents.steps import Section, Step
+from singimpact.documents.sympy_source import sympy_source
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory import chatter_limit, dynamics_on_gamma, fibre, gamma, normal_form, v_c
@@ -181,11 +183,11 @@ def _outline(request: SeriesRequest, top: int) -> Any:
 
 
 def series_text(request: SeriesRequest, form: str) -> str:
-    """All series as ``sympy`` assignments, as ``numpy`` source that runs by itself, or as ``json``.
+    """All series as a file of ``sympy`` assignments, as ``numpy`` source that runs by itself, or as ``json``.
 
     Examples
     --------
-    >>> print(series_text(SeriesRequest(3), "sympy").splitlines()[3][:56])
+    >>> print(series_text(SeriesRequest(3), "sympy").splitlines()[-7][:56])
     v_c_tangency = -a_d1*sigma*t/2 - a_d1*t**2/6 - a_d2*sigm
     """
     if form == "numpy" and request.model is None:
@@ -193,12 +195,13 @@ def series_text(request: SeriesRequest, form: str) -> str:
         return module_source(f"Series to order {request.order} in jets.", COMMAND, [*sheets, *curves])
     found = list(series(request))
     if form == "numpy":
-        head = [_points_source(request), _valid_source(found)]
+        head = [_points_source(request), _valid_source(found), RATIO_SOURCE]
         return module_source(_title(request), "singimpact derive", [*head, *(_function(each) for each in found)])
     if form == "json":
         data = {"order": request.order, "tau_star": _points(request), "series": [_as_data(each) for each in found]}
         return json.dumps(data, indent=2) + "\n"
-    return "".join(f"{each.name} = {each.expression}\n" for each in found)
+    return sympy_source(f"Series to order {request.order}, in sympy.", "singimpact derive",
+                        {each.name: each.expression for each in found})  # fmt: skip
 
 
 def _points(request: SeriesRequest) -> dict[str, str]:
@@ -303,11 +306,13 @@ def _function(each: Series) -> str:
     terms: dict[Exponents, Coefficient] = {key: {(): _ratio(c)} for key, c in each.terms.items()}
     words = each.says.replace("$", "").replace("\\", "")
     says = f"{words}: to order {each.order}; coefficients exact or to 30 digits."
-    return function_source(each.name, list(each.variables), (), terms, says)
+    return function_source(each.name, list(each.variables), (), terms, says, "ratio")
 
 
 def _ratio(value: Any) -> Fraction:
     """A coefficient as a rational: a decimal of its digits when it is not one."""
+    if hasattr(value, "_mpf_"):  # sympy would round it to the precision of mpmath at this moment
+        return Fraction(to_str(value._mpf_, 30))
     exact = sympy.sympify(value)
     if exact.free_symbols:
         raise InputError("numpy source needs numbers: a coefficient of this series has symbols")

@@ -12,7 +12,9 @@ from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
-OTHER, CHATTER, CHAOS, GONE = 0, 1, 2, 3
+OTHER, CHATTER, CHAOS, GONE, AWAY, STUCK, SENSITIVE = range(7)
+"""Classes of states that reach no periodic orbit: not settled, chatter that completes, no period and neighbours that
+separate, proved never to return, no impact before the horizon, a flight that is unresolved, decided by rounding."""
 PLACES = 1000  # a class (n, k) is coded n * PLACES + k
 
 
@@ -21,7 +23,7 @@ class AttractorSettings:
     """most_impacts : largest n of an (n, k) orbit that is recognised. close : relative distance of equal states.
     catch : how near to an attractor an orbit is looked upon as caught, relative, when the corners of that neighbourhood
         are seen to come in; a tenth of it is tried next, down to `close`.
-    turns : of the attractor, in which they must come into half of it.
+    turns : of the attractor, in which they must come into half of it; the later ones where multipliers are near 1.
     spiral : turns of an orbit of several impacts after which it is looked again whether fewer close it. A state that
         still spirals in comes back nearer after two turns than after one, where a multiplier is near +-i.
     """
@@ -29,7 +31,7 @@ class AttractorSettings:
     most_impacts: int = 8
     close: float = 1e-6
     catch: float = 1e-2
-    turns: int = 6
+    turns: tuple[int, ...] = (6, 30, 150)
     spiral: int = 30
 
 
@@ -46,28 +48,28 @@ class Attractor:
     catch: float
 
 
-def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
+def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float, most: int = SETTINGS.most_impacts) -> Array:
     """(n, k) of states that return to themselves, else OTHER; of the orbit they converge to, if its n is smaller."""
-    codes = _returns(model, tau, v, fast)
+    codes = _returns(model, tau, v, fast, most)
     several = np.flatnonzero(codes // PLACES > 1)
     if several.size:
         impacts = SETTINGS.spiral * int(codes[several].max() // PLACES)
         ends = iterate(model, tau[several], v[several], impacts)
-        later = _returns(model, ends.tau, ends.v, fast)
+        later = _returns(model, ends.tau, ends.v, fast, most)
         (n, k), (of, around) = divmod(codes[several], PLACES), divmod(later, PLACES)
         fewer = (ends.status == 0) & (later != OTHER) & (of < n) & (of * k == n * around)
         codes[several[fewer]] = later[fewer]
     return codes
 
 
-def _returns(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
+def _returns(model: Oscillator, tau: Array, v: Array, fast: float, most: int) -> Array:
     """(n, k) of states that return to themselves, else OTHER."""
     assert model.period is not None
     period = as_float(model.period)
     codes = np.full(tau.size, OTHER, dtype=np.int32)
     home = tau - period * np.floor(tau / period)
     at, speed, turns = home, v, np.zeros(tau.size)
-    for n in range(1, SETTINGS.most_impacts + 1):
+    for n in range(1, most + 1):
         if (codes != OTHER).all():
             break
         ends = iterate(model, at, speed, 1)
@@ -101,10 +103,12 @@ def within(attractor: Attractor, model: Oscillator, tau: Array, v: Array, fast: 
     return near
 
 
-def new_attractors(model: Oscillator, tau: Array, v: Array, fast: float) -> list[Attractor]:
+def new_attractors(
+    model: Oscillator, tau: Array, v: Array, fast: float, most: int = SETTINGS.most_impacts
+) -> list[Attractor]:
     """The attractors that some of these states have reached."""
     found: list[Attractor] = []
-    codes = periodic_codes(model, tau, v, fast)
+    codes = periodic_codes(model, tau, v, fast, most)
     for index in np.flatnonzero(codes != OTHER).tolist():
         if caught(found, model, tau[index : index + 1], v[index : index + 1], fast)[0] < 0:
             found.append(_surrounded(model, int(codes[index]), tau[index], v[index], fast))
@@ -134,8 +138,13 @@ def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float)
             times[:, None] + period * edge[:, 0],
             np.maximum(speeds[:, None] + fast * edge[:, 1], 1e-3 * speeds[:, None]),
         )
-        ends = iterate(model, start[0].ravel(), start[1].ravel(), SETTINGS.turns * count)
-        if (ends.status == 0).all() and within(made, model, ends.tau, ends.v, fast, size / 2).all():
-            return made
+        at, speed, turned = start[0].ravel(), start[1].ravel(), 0
+        for turns in SETTINGS.turns:
+            ends = iterate(model, at, speed, (turns - turned) * count)
+            if not (ends.status == 0).all() or not within(made, model, ends.tau, ends.v, fast, 2 * size).all():
+                break
+            if within(made, model, ends.tau, ends.v, fast, size / 2).all():
+                return made
+            at, speed, turned = ends.tau, ends.v, turns
         size /= 10
     return Attractor(code, times, speeds, SETTINGS.close)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
-from math import ceil, log
 from typing import Any
 
 import numpy as np
@@ -15,25 +13,25 @@ from singimpact.algebra.numbers import as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
 from singimpact.dynamics.attractors import (
+    AWAY,
     CHAOS,
     CHATTER,
     GONE,
     OTHER,
     PLACES,
+    SENSITIVE,
+    STUCK,
     Attractor,
-    caught,
-    new_attractors,
-    periodic_codes,
     states_of,
     within,
 )
-from singimpact.dynamics.fractional_chatter import rest_after
-from singimpact.dynamics.long_run import chaotic, futures, lift_offs, next_lift_off, settled
+from singimpact.dynamics.long_run import futures, lift_offs, settled
+from singimpact.dynamics.settling import SETTINGS as SETTLING
+from singimpact.dynamics.settling import Study, classified, classify, parted, settles
+from singimpact.flights.horizons import horizon_of
 from singimpact.flights.orbits import iterate
-from singimpact.inputs import refuse
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Status
 from singimpact.store import write_table
 from singimpact.surface.curve import window_ends
 
@@ -42,25 +40,16 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class BasinSettings:
-    """When the class of an orbit is decided, and sizes of blocks."""
+    """Sizes of blocks, and when two orbits are one."""
 
-    # v of an impact in complete chatter where a_c < 0, as a share of the largest v of the window
-    rest: float = 1e-7
-    # the same if the remaining chatter is shorter than `lasting` and a_c stays negative until then
-    slow: float = 1e-2
-    lasting: float = 0.02  # periods of the forcing
-    # impacts before the first test, in addition to those that chatter needs to become so slow
-    transient: int = 40
-    block: int = 6  # impacts between two tests
-    sample: int = 24  # undecided orbits that are tested for a new attractor after each block
-    # of a Taylor step: at 1e-6 no class of 18 000 states changes; a flight costs a quarter less than at full accuracy
-    tolerance: float = 1e-10
     rows: int = 10  # of the grid in a case; a call costs 3 ms before its first flight
-    limit: int = 3000  # impacts at most; r = 0.99 needs 2000
     same: float = 1e-3  # relative distance below which two periodic orbits are one
+    impacts: int = 20_000  # at most, of an orbit that does not settle
 
 
 SETTINGS = BasinSettings()
+KINDS = {OTHER: "not decided", CHAOS: "chaotic", GONE: "never returns", AWAY: "no impact", STUCK: "unresolved",
+         SENSITIVE: "sensitive"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -69,7 +58,10 @@ class LongRun:
 
     Attributes
     ----------
-    kind : "orbit", "chatter" (it completes again and again), "rest", "chaotic", "not decided", "never returns".
+    kind : "orbit"; "chatter" (it completes again and again); "rest"; "chaotic" (no period within `impacts`, and
+        neighbours separate); "not decided" (no period, and they do not); "sensitive" (there are several attractors, and
+        a neighbour 1e-15 away parts from the orbit: more than doubles would decide); "no impact" (none within
+        `horizon`); "never returns" (proved); "unresolved" (a flight is: `osc.orbit` says which).
     n, k : impacts (inf for chatter) in k periods, of an orbit or of chatter; 0 otherwise.
     tau, v : the states of an orbit; of chatter the phase at which the mass lifts off, and 0.
     """
@@ -79,13 +71,25 @@ class LongRun:
     k: int
     tau: Array
     v: Array
+    impacts: int = 0
+    horizon: float = 0.0
 
     @property
     def name(self) -> str:
-        """The name in the legend of the picture."""
+        """The name in the legend of the picture, and what would decide a class that is not decided."""
         if self.kind == "orbit":
             return f"({self.n:.0f}, {self.k}) orbit"
-        return {"chatter": f"(inf, {self.k}) chatter for ever", "rest": "rest for ever"}.get(self.kind, self.kind)
+        count = f"{self.impacts:,}".replace(",", " ")
+        names = {
+            "chatter": f"(inf, {self.k}) chatter for ever",
+            "rest": "rest for ever",
+            "chaotic": f"no period in {count} impacts, neighbours separate",
+            "not decided": f"not settled in {count} impacts: larger impacts= may decide",
+            "sensitive": "rounding decides: neighbours 1e-15 away part",
+            "no impact": f"no impact within {self.horizon:.4g}",
+            "unresolved": "a flight is unresolved: osc.orbit says which",
+        }
+        return names.get(self.kind, self.kind)
 
 
 @dataclass(frozen=True)
@@ -143,7 +147,7 @@ class Basins:
 
 def basins(
     model: Oscillator, tau: Any = None, v: Any = (0, 2), size: int = 600, executor: Any = None,
-    output: Any = None,
+    output: Any = None, impacts: int = SETTINGS.impacts,
 ) -> Basins:  # fmt: skip
     """Classes of size x size states.
 
@@ -151,7 +155,7 @@ def basins(
     ----------
     model : periodic. tau, v : ends of the window; one period of tau when it is not given; v > 0 is looked at.
     size : states a side. executor, output : as for `sweep`, where some rows are a case; threads without it, for flights
-        of arrays run side by side in one process.
+        of arrays run side by side in one process. impacts : at most, of an orbit that does not settle.
 
     Raises
     ------
@@ -177,125 +181,57 @@ def basins(
         raise refuse("window of v", v, "two numbers >= 0, the lower end first")
     times = low + (np.arange(size) + 0.5) * (high - low) / size
     speeds = slow + (np.arange(size) + 0.5) * (fast - slow) / size
-    rows = SETTINGS.rows if size % SETTINGS.rows == 0 else 1
-    blocks = [tuple(speeds[i : i + rows].tolist()) for i in range(0, size, rows)]
     iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
-    phases = lift_offs(model)
-    work = partial(classified, dict(model.to_dict()), phases, tuple(times.tolist()), fast)
+    study = Study(model, lift_offs(model), fast, whole("impacts", impacts, 1, 10**7))
+    tau, v = (part.ravel() for part in np.meshgrid(times, speeds))
     with ThreadPool() if executor is None else nullcontext(executor) as pool:
-        table = np.array(sweep(work, blocks, pool, output)).reshape(-1, 3)
+        table = _classes(study, (tau, v), size, pool, output)
+    flown, table = table[:, 3], table[:, :3]
     first = table[:, 0] == CHATTER
-    follows = futures(model, phases, partial(classify, model, phases, fast))
-    for place in range(len(phases)):
+    follows = futures(model, study.phases, lambda tau, v: classify(study, tau, v)[:, :3])
+    for place in range(len(study.phases)):
         table[first & (table[:, 1] == place)] = settled(follows, place, as_float(model.period))
-    attractors, codes = _named(model, table, phases, fast)
+    late = _open_to_rounding(study, table, flown)
+    table[late[parted(study, tau[late], v[late], flown[late])]] = SENSITIVE, 0.0, 0.0
+    attractors, codes = _named(study, table)
     return Basins(model, times, speeds, attractors, codes.reshape(size, size), first.reshape(size, size))
 
 
-def _named(model: Oscillator, rows: Array, phases: tuple[float, ...], fast: float) -> tuple[tuple[LongRun, ...], Array]:
+def _classes(study: Study, states: tuple[Array, Array], size: int, pool: Any, output: Any) -> Array:
+    """The rows of `classify` of states, some rows of the grid in a case."""
+    tau, v = states
+    long = size * (SETTINGS.rows if size % SETTINGS.rows == 0 else 1)
+    cases = [(tuple(tau[i : i + long].tolist()), tuple(v[i : i + long].tolist())) for i in range(0, tau.size, long)]
+    work = partial(classified, dict(study.model.to_dict()), (study.phases, study.fast, study.impacts))
+    return np.concatenate([np.asarray(part) for part in sweep(work, cases, pool, output)])
+
+
+def _open_to_rounding(study: Study, table: Array, flown: Array) -> Array:
+    """Indices of states that settle late, where there is more than one attractor to settle on."""
+    settled = settles(table)
+    if np.unique(_named(study, table[settled])[1]).size < 2:
+        return np.zeros(0, dtype=np.int64)
+    return np.flatnonzero(settled & (flown > SETTLING.sensitive))
+
+
+def _named(study: Study, rows: Array) -> tuple[tuple[LongRun, ...], Array]:
     """The classes that occur, and the index of each row among them; rows near one orbit are one class."""
-    found, codes, left = list[LongRun](), np.full(len(rows), -1), np.ones(len(rows), dtype=bool)
-    none = np.zeros(0)
+    model, phases = study.model, study.phases
+    classes, codes, left = list[LongRun](), np.full(len(rows), -1), np.ones(len(rows), dtype=bool)
+    none, horizon = np.zeros(0), horizon_of(model, None)
     while left.any():
         code, tau, v = rows[np.flatnonzero(left)[0]].tolist()
         same = left & (rows[:, 0] == code)
         if code >= PLACES:
             orbit = Attractor(int(code), *states_of(model, int(code), tau, v), SETTINGS.same)
-            same &= within(orbit, model, rows[:, 1], rows[:, 2], fast, SETTINGS.same)
+            same &= within(orbit, model, rows[:, 1], rows[:, 2], study.fast, SETTINGS.same)
             same[np.flatnonzero(left)[0]] = True
-            found.append(LongRun("orbit", int(code) // PLACES, int(code) % PLACES, orbit.tau, orbit.v))
+            classes.append(LongRun("orbit", int(code) // PLACES, int(code) % PLACES, orbit.tau, orbit.v))
         elif code == CHATTER:
             same &= rows[:, 1] == tau
             at = np.array([phases[int(tau)]]) if tau >= 0 else none
-            found.append(LongRun("chatter" if tau >= 0 else "rest", np.inf, int(v), at, 0 * at))
+            classes.append(LongRun("chatter" if tau >= 0 else "rest", np.inf, int(v), at, 0 * at))
         else:
-            found.append(
-                LongRun({CHAOS: "chaotic", GONE: "never returns"}.get(int(code), "not decided"), 0, 0, none, none)
-            )
-        codes[same], left = len(found) - 1, left & ~same
-    return tuple(found), codes
-
-
-def classified(
-    fields: Mapping[str, Any], phases: tuple[float, ...], times: tuple[float, ...], fast: float,
-    speeds: tuple[float, ...],
-) -> Array:  # fmt: skip
-    """The classes of some rows of states. A module-level function, so that it can be pickled."""
-    tau, v = np.tile(times, len(speeds)), np.repeat(speeds, len(times))
-    return classify(Oscillator(**fields), phases, fast, tau, v)
-
-
-def classify(model: Oscillator, phases: tuple[float, ...], fast: float, tau: Array, v: Array) -> Array:
-    """Rows (code, tau, v), shape (n, 3): of a periodic orbit n * PLACES + k and one of its states; CHATTER and the
-    place of the lift-off that follows; CHAOS, GONE or OTHER.
-    """
-    assert model.period is not None
-    period = as_float(model.period)
-    tau, v = np.array(tau, dtype=float), np.array(v, dtype=float)
-    rows, open_ = np.zeros((tau.size, 3)), np.arange(tau.size)
-    r = as_float(model.slope_at_rest())
-    most = min(SETTINGS.transient + (ceil(log(SETTINGS.rest) / log(r)) if r < 1 else 0), SETTINGS.limit)
-    known: list[Attractor] = []
-    flown, block = 0, SETTINGS.block
-    while open_.size and flown < most:
-        block = min(block, most - flown)
-        ends = iterate(model, tau[open_], v[open_], block, SETTINGS.tolerance)
-        flown += block
-        # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
-        tau[open_], v[open_] = ends.tau - period * np.floor(ends.tau / period), ends.v
-        rests = _chattering(model, tau[open_], ends.v, fast) == CHATTER
-        gone = np.isin(ends.status, (Status.no_return, Status.escaped)) & ~rests
-        rows[open_[rests], 0], rows[open_[gone], 0] = CHATTER, GONE
-        rows[open_[rests], 1] = next_lift_off(phases, _at_rest(model, tau[open_[rests]], v[open_[rests]]))
-        open_ = open_[~rests & (ends.status == 0) & np.isfinite(ends.tau) & (ends.v > 0)]
-        if open_.size and flown < most:
-            places = _caught(known, model, tau[open_], v[open_], fast)
-            for place in np.unique(places[places >= 0]).tolist():
-                orbit = known[place]
-                rows[open_[places == place]] = orbit.code, orbit.tau[0], orbit.v[0]
-            block *= 1 if (places >= 0).any() else 2  # a search in vain is dear, and the next one more so
-            open_ = open_[places < 0]
-    if open_.size:
-        rows[open_] = np.stack([periodic_codes(model, tau[open_], v[open_], fast), tau[open_], v[open_]], axis=1)
-        open_ = open_[rows[open_, 0] == OTHER]
-        rows[open_] = 0.0
-        rows[open_[chaotic(model, tau[open_], v[open_], fast)], 0] = CHAOS
-    return rows
-
-
-def _at_rest(model: Oscillator, tau: Array, v: Array) -> Array:
-    """The phase, within a period, at which the remaining chatter ends, to first order."""
-    assert model.period is not None
-    left = rest_after(model, v, acceleration(model, tau))
-    period = as_float(model.period)
-    return np.asarray((tau + left) - period * np.floor((tau + left) / period))
-
-
-def _caught(known: list[Attractor], model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """Places of attractors near states, else -1; those that a sample of the others has reached are added to `known`."""
-    places = caught(known, model, tau, v, fast)
-    left = np.flatnonzero(places < 0)
-    sample = left[:: max(left.size // SETTINGS.sample, 1)]
-    before = len(known)
-    known += new_attractors(model, tau[sample], v[sample], fast)
-    again = caught(known[before:], model, tau[left], v[left], fast)
-    places[left] = np.where(again < 0, -1, again + before)
-    return places
-
-
-def _chattering(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """CHATTER where an orbit is slow, a_c < 0, and the mass comes to rest before a_c can become positive.
-
-    What is left of chatter lasts about 2 v/((1 - r)|a|), see `rest_after`; over eight times that, a_c must keep its
-    sign.
-    """
-    codes = np.full(tau.size, OTHER, dtype=np.int32)
-    found = np.flatnonzero(np.isfinite(tau) & np.isfinite(v) & (np.nan_to_num(v) <= SETTINGS.slow * fast))
-    now, speed = acceleration(model, tau[found]), v[found]
-    with np.errstate(all="ignore"):
-        rest = np.where(now < 0, rest_after(model, speed, now), np.inf)
-    short = (now < 0) & (rest < SETTINGS.lasting * as_float(model.period)) if model.period is not None else now < 0
-    pressed = [acceleration(model, tau[found] + np.where(short, k * rest, 0.0)) < now / 2 for k in (2, 4, 8)]
-    settled = (now < 0) & (speed <= SETTINGS.rest * fast)
-    codes[found[settled | (short & np.all(pressed, axis=0))]] = CHATTER
-    return codes
+            classes.append(LongRun(KINDS[int(code)], 0, 0, none, none, study.impacts, horizon))
+        codes[same], left = len(classes) - 1, left & ~same
+    return tuple(classes), codes

@@ -27,14 +27,19 @@ FEW = 200_000
 
 
 @dataclass(frozen=True)
-class CarrySettings:
-    """How the last state of an orbit becomes the first of the next one."""
+class BifurcationSettings:
+    """When an orbit is taken as settled."""
 
     # periods after which a motion without impact is taken as settled
     free: int = 200
+    # impacts at most, of an orbit that does not settle
+    settle: int = 20_000
+    # events of the longest period that is looked for, and relative distance of events that repeat
+    period: int = 64
+    close: float = 1e-6
 
 
-SETTINGS = CarrySettings()
+SETTINGS = BifurcationSettings()
 WAYS = {"up": ("up",), "down": ("down",), "both": ("up", "down")}
 
 
@@ -48,7 +53,8 @@ class Bifurcation:
         3): phase, v, 1 where chatter ended; nan where an orbit had fewer.
     direction : "up", "down" or "both" where each orbit starts from the last state of the one before: with "both" the
         values go up, then down. Empty where each starts from one state.
-    periods : of the forcing at each of the values.
+    periods : of the forcing at each of the values. settled : bool of each value: the events repeat, or no more come.
+    settle : impacts after which an orbit that has not settled was left.
     """
 
     over: str
@@ -56,12 +62,16 @@ class Bifurcation:
     events: Array
     direction: str = ""
     periods: Array = field(default_factory=lambda: np.ones(1), repr=False)
+    settled: Array = field(default_factory=lambda: np.ones(1, dtype=bool), repr=False)
+    settle: int = 0
 
     def __repr__(self) -> str:
         count, kept = self.events.shape[:2]
         ends = f"{self.values.min():.6g} to {self.values.max():.6g}"
         carried = {"": "", "both": ", up and down"}.get(self.direction, f", {self.direction}")
-        return f"Bifurcation(over {self.over}: {count} values from {ends}{carried}, {kept} events of each)"
+        left = np.count_nonzero(~self.settled)
+        open_ = f"; {left} without a period in {self.settle} impacts" if left else ""
+        return f"Bifurcation(over {self.over}: {count} values from {ends}{carried}, {kept} events of each{open_})"
 
     def to_csv(self, path: Any) -> None:
         """Write one line for each event: value, phase, v, and 1 for an end of chatter."""
@@ -81,9 +91,10 @@ def bifurcation(
     Parameters
     ----------
     over : clearance, restitution, a parameter, or another number that `with_number` puts in. between : its ends.
-    points : values. start : the state (tau, v). impacts : flown for each value. kept : events of its end.
+    points : values. start : the state (tau, v). impacts : flown for each value; more until the events repeat, at most
+        `settle`. kept : events of its end.
     direction : "up", "down" or "both": each orbit starts from the last state of the value before, in a row, so that a
-        branch is followed to where it ends. sweeping : `executor` and `output` of `sweep`, without a direction;
+        branch is followed to its end. sweeping : `settle`; `executor` and `output` of `sweep`, not with a direction;
         without an executor a few values are flown here, which takes less time than to start processes.
 
     Examples
@@ -103,6 +114,7 @@ def bifurcation(
     for name, value, least in (("points", points, 2), ("impacts", impacts, 1), ("kept", kept, 1)):
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise refuse(name, value, f"a whole number from {least}")
+    settle = sweeping.pop("settle", SETTINGS.settle)
     low, high = window_ends(over, between)
     values = np.linspace(low, high, points)
     periods = _periods(model, over, values)
@@ -114,13 +126,18 @@ def bifurcation(
         values, periods = (
             np.concatenate([part[:: 1 if way == "up" else -1] for way in WAYS[direction]]) for part in (values, periods)
         )
-        events = _carried(model, over, values, start, (impacts, kept))
-        return Bifurcation(over, values, events, direction, periods)
-    ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), impacts, kept)
+        events = _carried(model, over, values, start, (impacts, kept, settle))
+        return _made(over, values, events, direction, periods, settle)
+    ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), (impacts, kept, settle))
     few = sweeping.get("executor") is None and points * impacts <= FEW
     with ThreadPool(1) if few else nullcontext(sweeping.get("executor")) as pool:
         events = sweep(ask, values.tolist(), **(sweeping | {"executor": pool}))
-    return Bifurcation(over, values, np.array(events), periods=periods)
+    return _made(over, values, np.array(events), "", periods, settle)
+
+
+def _made(over: str, values: Array, events: Array, direction: str, periods: Array, settle: int) -> Bifurcation:
+    """The result; the last row of each value's events says whether it has settled."""
+    return Bifurcation(over, values, events[:, :-1], direction, periods, events[:, -1, 0] == 1, settle)
 
 
 def _periods(model: Oscillator, over: str, values: Array) -> Array:
@@ -133,26 +150,60 @@ def _periods(model: Oscillator, over: str, values: Array) -> Array:
 
 
 def settled(
-    fields: Mapping[str, Any], over: str, start: tuple[str, ...], impacts: int, kept: int, value: float
+    fields: Mapping[str, Any], over: str, start: tuple[str, ...], flown: tuple[int, int, int], value: float
 ) -> Array:
     """The last events of one orbit. A module-level function, so that it can be pickled."""
     model = Oscillator(**fields).replace(**{over: value})
-    return _last_events(orbit(model, start[0], start[1], impacts), impacts, kept)
+    return _last_events(*_followed(orbit(model, start[0], start[1], flown[0]), flown), flown)
 
 
-def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tuple[int, int]) -> Array:
+def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, bool]:
+    """An orbit, or its continuation until the events repeat; and whether they do.
+
+    Parameters
+    ----------
+    flown : impacts of the first orbit, events of the end that are shown, impacts at most.
+    """
+    last, count, block = first, flown[0], flown[0]
+    while not (repeats := _repeats(last)) and count < flown[2]:
+        block = min(2 * block, flown[2] - count)
+        period = as_float(last.oscillator.period)  # type: ignore[arg-type]
+        last = orbit(last.oscillator, float(np.mod(last.tau[-1], period)), float(last.v[-1]), block)
+        count += block
+    return last, repeats
+
+
+def _repeats(found: Orbit) -> bool:
+    """Whether the last events are those of a period before, or no other follows."""
+    if found.phases and found.phases[-1][0] in ("no_return", "unresolved"):
+        return True
+    if found.phases and found.phases[-1][0] == "sticking" and not np.isfinite(found.phases[-1][2]):
+        return True
+    shown = np.isin(found.kind, ("impact", "graze", "complete"))
+    tau, v = found.tau[shown] / as_float(found.oscillator.period), found.v[shown]  # type: ignore[arg-type]
+    fast = max(float(v.max(initial=0.0)), 1e-300)
+    for n in range(1, min(SETTINGS.period, tau.size // 2) + 1):
+        turns = tau[-n:] - tau[-2 * n : -n]
+        away = np.maximum(np.abs(turns - np.rint(turns)), np.abs(v[-n:] - v[-2 * n : -n]) / fast)
+        if away.max() < SETTINGS.close:
+            return True
+    return False
+
+
+def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tuple[int, int, int]) -> Array:
     """The last events of orbits each of which starts from the last state of the one before.
 
     Parameters
     ----------
-    flown : impacts of an orbit, and events of its end.
+    flown : impacts of an orbit, events of its end, impacts at most.
     """
     rows: list[Array] = []
     last: Orbit | None = None
     for value in values.tolist():
         moved = model.replace(**{over: value})
-        last = orbit(moved, start[0], start[1], flown[0]) if last is None else _continued(moved, last, flown[0])
-        rows.append(_last_events(last, *flown))
+        first = orbit(moved, start[0], start[1], flown[0]) if last is None else _continued(moved, last, flown[0])
+        last, repeats = _followed(first, flown)
+        rows.append(_last_events(last, repeats, flown))
     return np.array(rows)
 
 
@@ -171,12 +222,15 @@ def _continued(moved: Oscillator, last: Orbit, impacts: int) -> Orbit:
     return dropped_orbit(moved, (x, float(place.xdot), tau), impacts)
 
 
-def _last_events(found: Orbit, impacts: int, kept: int) -> Array:
-    """Impacts, grazes and ends of chatter (1 in the last column) of the end of an orbit, shape (kept, 3)."""
+def _last_events(found: Orbit, repeats: bool, flown: tuple[int, int, int]) -> Array:
+    """Impacts, grazes and ends of chatter (1 in the last column) of the end of an orbit, and whether it has settled.
+
+    Shape (kept + 1, 3): the first number of the last row is 1 where the events repeat.
+    """
     assert found.oscillator.period is not None
-    shown = np.isin(found.kind, ("impact", "graze", "complete"))
-    flown = np.stack([found.tau, found.v, found.kind == "complete"], axis=1)[shown]
-    last = flown[max(impacts - kept, 0) :][-kept:]
-    events = last if len(last) else flown[-1:]  # one that has come to rest for ever shows only that
+    shown, kept = np.isin(found.kind, ("impact", "graze", "complete")), flown[1]
+    rows = np.stack([found.tau, found.v, found.kind == "complete"], axis=1)[shown]
+    last = rows[max(flown[0] - kept, 0) :][-kept:]
+    events = last if len(last) else rows[-1:]  # one that has come to rest for ever shows only that
     events[:, 0] = np.mod(events[:, 0], as_float(found.oscillator.period))
-    return np.vstack([events, np.full((kept - len(events), 3), np.nan)])
+    return np.vstack([events, np.full((kept - len(events), 3), np.nan), [[float(repeats), 0.0, 0.0]]])

@@ -151,6 +151,9 @@ def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
     codes = np.full(count, NO_ROOM, np.int8)
     if compiled is not None:
         codes[at], (tau[at], error[at], impacts[at]) = compiled
+        if not isinstance(states.turns, float):
+            tau += states.turns
+            error += np.where(states.turns == 0, 0.0, np.abs(tau) * EPSILON / 2)
     status, cause = decoded(codes)
     for code, (ended, why) in ENDED.items():
         status[codes == code], cause[codes == code] = ended, why
@@ -217,6 +220,7 @@ class _Flown:
 
     def __init__(self, osc: Oscillator, states: States, most: int, index: int = 0) -> None:
         self.osc, self.given, self.most = osc, states.given(index), most
+        self.turns = float(np.broadcast_to(states.turns, states.tau.shape)[index])
         self.times, self.speeds, self.cause = [float(states.tau[index])], [float(states.v[index])], Cause.decided
         self.slopes: list[list[float]] = []
         self.short = False  # whether the rest is summed up from the last impact
@@ -256,7 +260,7 @@ class _Flown:
             return Status.hit
         step = impact_map(self.osc, *self.given)
         if step.status == Status.hit:
-            self.times.append(float(step.tau))
+            self.times.append(float(step.tau) - self.turns)
             self.speeds.append(float(step.v))
         self.cause = Cause(int(step.cause))
         return Status(int(step.status))
@@ -281,6 +285,8 @@ class _Flown:
 
     def _ended(self, tau: float, error: float, status: Status) -> ChatterLimit:
         total = ENDING.trust * error + self.rounding(tau, status)
+        if self.turns:
+            tau, total = tau + self.turns, total + EPSILON / 2 * abs(tau + self.turns)
         return ChatterLimit(np.float64(tau), len(self.times) - 1, np.float64(total), np.int8(status))
 
     def rounding(self, end: float, status: Status) -> float:

@@ -2,8 +2,9 @@
 
     det D G = -rho'(u) (v/|u|) exp(-int f_v dt) = r^2 (v/v') exp(-int f_v dt)   for rho = -r u
 
-so both exponents together are the mean rate at which areas shrink. D G comes with the flights of linear models and
-from the variational equation of others.
+so both exponents together are the mean rate at which areas shrink; the second one is this rate less the first one, for
+the entries of D G keep too few digits of a strong contraction. D G comes with the flights of linear models and from the
+variational equation of others.
 """
 
 from __future__ import annotations
@@ -13,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import compare
+from singimpact.algebra.numbers import as_float, compare
 from singimpact.dynamics.chatter import ENDING, chatter_limit
 from singimpact.dynamics.fractional_chatter import chatter_completes
 from singimpact.dynamics.release import periods_between, release
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
+from singimpact.flights.determinant import log_determinant
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.rebound_law import rebound_slope
@@ -40,9 +42,22 @@ class LyapunovSettings:
     stretches: int = 256
     # groups of stretches whose spread gives the standard error
     groups: int = 32
+    # impacts of a transient at most: a chaotic one of x'' + x = cos 3.3t, c = 0.03, r = 0.95 lasts 3800 (median)
+    transient: int = 20_000
+    # impacts between two looks whether the orbit has settled, doubled each time
+    look: int = 500
+    # longest period, and relative distance of states that repeat
+    period: int = 64
+    close: float = 1e-9
+    # impacts in which the vector that is followed turns into its direction
+    turn: int = 100
+    # how often the impacts are flown anew when their halves differ by more than so many standard errors
+    again: int = 3
+    apart: float = 4.0
 
 
 SETTINGS = LyapunovSettings()
+SMALLEST = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +74,8 @@ class Lyapunov:
     status : `hit` where all impacts were flown, `sticks` of an orbit that comes to rest, else the status of the flight
         that ended the orbit. The exponents are those of the impacts before it.
     superstable : whether the orbit lifts off twice at one phase of the forcing, or rests for ever.
+    transient : impacts flown before. converged : whether the larger exponents of both halves of the impacts agree
+        within their errors; where they do not, the orbit has not settled: give more impacts or a longer transient.
     """
 
     exponents: Array
@@ -69,6 +86,8 @@ class Lyapunov:
     last: tuple[float, float]
     status: Any
     superstable: bool
+    transient: int = 0
+    converged: bool = True
 
     @property
     def per_impact(self) -> Array:
@@ -80,19 +99,23 @@ class Lyapunov:
             return f"Lyapunov(superstable: the orbit comes to rest, {self.impacts} impacts)"
         each = ", ".join(f"{value:.6g} +- {error:.2g}" for value, error in zip(self.exponents, self.error, strict=True))
         ended = "" if self.status == Status.hit else f", ended by {Status(int(self.status)).name}"
-        return f"Lyapunov({each} per unit of time, {self.impacts} impacts{ended})"
+        doubt = "" if self.converged else ", not converged: the halves differ, give more impacts"
+        return f"Lyapunov({each} per unit of time, {self.impacts} impacts after {self.transient}{ended}{doubt})"
 
 
-def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int = 0) -> Lyapunov:
+def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int | None = None) -> Lyapunov:
     """The Lyapunov exponents of the orbit of a state.
 
     Parameters
     ----------
-    osc : the model. tau, v : the state, v >= 0. impacts : flown, with D G, after `transient` others.
+    osc : the model. tau, v : the state, v >= 0. impacts : flown, with D G, after `transient` others. Without a
+        transient the orbit is followed until it repeats, at most 20 000 impacts, then flown anew while both halves
+        differ.
 
     Returns
     -------
-    Lyapunov : `.exponents` per unit of time, `.per_impact`, `.error`, `.status`, `.superstable`.
+    Lyapunov : `.exponents` per unit of time, `.per_impact`, `.error`, `.status`, `.superstable`, `.transient`,
+        `.converged`.
 
     Notes
     -----
@@ -107,12 +130,14 @@ def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transi
     """
     if not isinstance(osc, Oscillator):
         raise refuse("osc", osc, "an ImpactOscillator")
-    states = States.read(tau, v)
+    states = States.read(tau, v).in_period(osc)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
-    flown, before = whole("impacts", impacts, 1, 10**8), whole("transient", transient, 0, 10**8)
+    flown = whole("impacts", impacts, 1, 10**8)
     run = _Run(osc, states)
-    run.fly(before, keep=False)
+    if transient is None:
+        return run.settled(flown)
+    run.fly(whole("transient", transient, 0, 10**8), keep=False)
     run.begin()
     run.fly(flown, keep=True)
     return run.result()
@@ -125,8 +150,8 @@ class _Sums:
     direction: Array = field(default_factory=lambda: np.array([1.0, 0.0]))
     rows: list[Array] = field(default_factory=list)
 
-    def add(self, matrices: Array, times: Array) -> None:
-        """D G of impacts, shape (n, 2, 2), and their flight times."""
+    def add(self, matrices: Array, times: Array, areas: Array) -> None:
+        """D G of impacts, shape (n, 2, 2), their flight times, and ln |det D G|."""
         n = times.size
         length = -(-n // SETTINGS.stretches)
         count = -(-n // length)
@@ -134,8 +159,6 @@ class _Sums:
         padded[:n] = matrices
         # entry by entry, a row of stretches each: products of 2 x 2 matrices as sums of arrays
         a, b, c, d = (np.ascontiguousarray(padded[:, i, j].reshape(count, length).T) for i in (0, 1) for j in (0, 1))
-        with np.errstate(divide="ignore"):
-            areas = np.log(np.abs(a * d - b * c)).sum(axis=0)
         p, q, r, s, size = np.ones(count), np.zeros(count), np.zeros(count), np.ones(count), np.zeros(count)
         for k in range(length):
             p, q, r, s = a[k] * p + b[k] * r, a[k] * q + b[k] * s, c[k] * p + d[k] * r, c[k] * q + d[k] * s
@@ -143,12 +166,12 @@ class _Sums:
             p, q, r, s = p / scale, q / scale, r / scale, s / scale
             size += np.log(scale)
         starts = np.arange(0, n, length)
-        lasting = np.add.reduceat(times, starts)
+        lasting, shrunk = np.add.reduceat(times, starts), np.add.reduceat(areas, starts)
         for k, product in enumerate(np.stack([p, q, r, s], axis=1).reshape(-1, 2, 2)):
             moved = product @ self.direction
-            length_of = float(np.hypot(*moved))
+            length_of = max(float(np.hypot(*moved)), SMALLEST)  # 0 where roundings cancel
             self.direction = moved / length_of
-            row = min(length, n - starts[k]), lasting[k], size[k] + np.log(length_of), areas[k]
+            row = min(length, n - starts[k]), lasting[k], size[k] + np.log(length_of), shrunk[k]
             self.rows.append(np.array(row))
 
 
@@ -158,6 +181,7 @@ class _Run:
     def __init__(self, osc: Oscillator, states: States) -> None:
         self.osc, self.given = osc, states.given(0)
         self.tau, self.v = float(states.tau[0]), float(states.v[0])
+        self.before = 0  # impacts of the transient
         self.first, self.lifted, self.status = True, list[float](), Status.hit
         self.near = 0.0 if compare(osc.slope_at_rest(), 1) == 0 else ENDING.near
         if not self.near and chatter_completes(osc):
@@ -167,9 +191,38 @@ class _Run:
             )
         self.begin()
 
-    def begin(self) -> None:
+    def begin(self, direction: Array | None = None) -> None:
         """Sums from the present state on."""
-        self.sums, self.start, self.flown = _Sums(), (self.tau, self.v), 0
+        self.sums = _Sums() if direction is None else _Sums(direction)
+        self.start, self.flown = (self.tau, self.v), 0
+
+    def settled(self, impacts: int) -> Lyapunov:
+        """The exponents of what the orbit settles to."""
+        block = SETTINGS.look
+        while self.before < SETTINGS.transient and self.status == Status.hit and not self._repeats():
+            block = min(block, SETTINGS.transient - self.before)
+            self.fly(block, keep=False)
+            self.before, block = self.before + block, 2 * block
+        for _ in range(SETTINGS.again):
+            self.begin()
+            self.fly(min(SETTINGS.turn, impacts), keep=True)
+            if self.status == Status.hit:
+                self.begin(self.sums.direction)
+                self.fly(impacts, keep=True)
+            result = self.result()
+            if result.converged or self.status != Status.hit:
+                return result
+            self.before += impacts
+        return result
+
+    def _repeats(self) -> bool:
+        """Whether the state comes back after some impacts."""
+        if not self.v > 0 or not self.before or self.osc.period is None:
+            return False
+        ahead = orbit_segment(self.osc, self.tau, self.v, SETTINGS.period)
+        turns = (ahead.tau - self.tau) / as_float(self.osc.period)
+        away = np.maximum(np.abs(turns - np.rint(turns)), np.abs(ahead.v / self.v - 1))
+        return bool((away < SETTINGS.close).any())
 
     def fly(self, most: int, keep: bool) -> None:
         """So many impacts, fewer where the orbit ends or is seen to come to rest again and again."""
@@ -200,7 +253,8 @@ class _Run:
         self.tau, self.v, self.first = float(found.tau[-1]), float(found.v[-1]), False
         if not keep:
             return count
-        self.sums.add(_matrices(self.osc, found, *launches), found.flight_time)
+        shrunk = log_determinant(self.osc, *launches, found.flight_time, found.velocity)
+        self.sums.add(_matrices(self.osc, found, *launches), found.flight_time, shrunk)
         self.flown += count
         return count
 
@@ -220,7 +274,10 @@ class _Run:
         if rest:  # the impact after a lift-off does not depend on the orbit before: the sums begin there
             self.begin()
         elif keep:
-            self.sums.add(derivative(self.osc, *before).matrix[None], np.array([float(step.flight_time)]))
+            launch = np.array([before[0]]), np.array([before[1]])
+            flight = np.array([float(step.flight_time)]), np.array([float(step.velocity)])
+            shrunk = log_determinant(self.osc, *launch, *flight)
+            self.sums.add(derivative(self.osc, *before).matrix[None], flight[0], shrunk)
             self.flown += 1
         return 1
 
@@ -238,10 +295,29 @@ class _Run:
         superstable = self.status == Status.sticks
         time, last = self.tau - self.start[0], (self.tau, self.v)
         nothing = np.full(2, -np.inf if superstable else np.nan)
-        exponents, error = nothing, np.full(2, 0.0 if superstable else np.nan)
+        exponents, error, converged = nothing, np.full(2, 0.0 if superstable else np.nan), True
         if self.sums.rows and not superstable:
-            exponents, error = _exponents(np.array(self.sums.rows), time)
-        return Lyapunov(exponents, error, self.flown, time, self.start, last, np.int8(self.status), superstable)
+            rows = np.array(self.sums.rows)
+            exponents, error = _exponents(rows, time)
+            converged = _halves_agree(rows)
+        return Lyapunov(exponents, error, self.flown, time, self.start, last, np.int8(self.status), superstable,
+                        self.before, converged)  # fmt: skip
+
+
+def _halves_agree(rows: Array) -> bool:
+    """Whether the larger exponents of both halves differ by no more than their errors, and than a turn of the vector.
+
+    A periodic orbit has no spread; the vector that is followed turns there by a bounded angle, which moves the mean by
+    the inverse of the time.
+    """
+    middle = len(rows) // 2
+    if middle < 2:
+        return True
+    halves = [_exponents(part, float(part[:, 1].sum())) for part in (rows[:middle], rows[middle:])]
+    times = rows[:middle, 1].sum(), rows[middle:, 1].sum()
+    (one, error), (other, spread) = halves
+    allowed = SETTINGS.apart * np.hypot(error[0], spread[0]) + 1 / min(times)
+    return bool(abs(one[0] - other[0]) <= allowed)
 
 
 def _matrices(osc: Oscillator, found: Segment, tau: Array, v: Array) -> Array:

@@ -14,9 +14,9 @@ from singimpact.algebra.numbers import as_float, constant, float_array
 from singimpact.dynamics.chatter import ENDING, chatter_left, impacts_until
 from singimpact.dynamics.release import periods_between, release
 from singimpact.dynamics.sampling import Section, sampled
+from singimpact.flights.horizons import horizon_of
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.limits import LIMITS
-from singimpact.flights.model_numbers import horizon_of
 from singimpact.flights.off_wall import Launched, launch
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.path import Path
@@ -43,7 +43,6 @@ SETTINGS = OrbitSettings()
 ENDINGS = {
     "": "all flights asked for were flown",
     "sticking": "at rest from there on",
-    "no_return": "no impact follows",
     "unresolved": "the next flight is not resolved",
 }
 """What follows the last event, by the kind of the phase after it."""
@@ -138,16 +137,29 @@ class Orbit:
         """Write the events, a line each: tau, v, kind. The file appears when it is complete."""
         write_table(path, {"tau": self.tau.tolist(), "v": self.v.tolist(), "kind": self.kind.tolist()})
 
+    def _later(self, time: float) -> Orbit:
+        """The orbit with all times moved on by whole periods."""
+        phases = [(kind, begin + time, end + time) for kind, begin, end in self.phases]
+        return replace(self, tau=self.tau + time, phases=phases, end=self.end + time)
+
     @property
     def _last_kind(self) -> str:
         """The kind of the phase after the last event; empty where there is none."""
         return self.phases[-1][0] if len(self.phases) == self.tau.size else ""
 
+    @property
+    def _ending(self) -> str:
+        """What follows the last event."""
+        if self._last_kind != "no_return":
+            return ENDINGS[self._last_kind]
+        proved = np.isinf(self.end)
+        return "the mass never returns" if proved else f"no impact within {self.end - float(self.tau[-1]):.6g}"
+
     def __repr__(self) -> str:
         names = {"impact": "impacts", "graze": "grazes", "complete": "chatters that end", "release": "lift-offs"}
         counts = {word: int(np.count_nonzero(self.kind == name)) for name, word in names.items()}
         told = ", ".join(f"{count} {word}" for word, count in counts.items() if count or word == "impacts")
-        last = f"tau = {self.tau[-1]:.17g}, v = {self.v[-1]:.17g}; {ENDINGS[self._last_kind]}"
+        last = f"tau = {self.tau[-1]:.17g}, v = {self.v[-1]:.17g}; {self._ending}"
         return f"Orbit from tau = {self.tau[0]:.9g} to {self.tau[-1]:.9g}: {told}\n  last state {last}"
 
 
@@ -178,9 +190,15 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     states = States.read(tau, v)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
-    run = _Run(osc, (float(states.tau[0]), float(states.v[0])), horizon, whole("impacts", impacts, 0, 10**7))
-    run.given = states.given(0)
-    return run.orbit()
+    most = whole("impacts", impacts, 0, 10**7)
+    if states.v[0] > 0:
+        states = states.in_period(osc)
+    start = float(states.tau[0]), float(states.v[0])
+    run = _Run(osc, start, horizon, most)
+    if isinstance(states.turns, float):
+        run.given = states.given(0)
+        return run.orbit()
+    return run.orbit()._later(float(states.turns[0]))
 
 
 def dropped_orbit(osc: Oscillator, start: tuple[Any, Any, Any], impacts: int = 200, *, horizon: Any = None) -> Orbit:

@@ -20,6 +20,7 @@ from singimpact.codegen.recurrence import Recurrence
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import counted
 from singimpact.flights.bind import LAW, Emitted
+from singimpact.flights.horizons import Allowance, horizon_of, reach_of
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
 from singimpact.flights.interruptible import LONG, interruptible
 from singimpact.flights.kernels import entries, layout
@@ -32,7 +33,6 @@ from singimpact.flights.model_numbers import (
     batch_turn_of,
     fastest,
     has_table,
-    horizon_of,
     numbers_of,
     numbers_of_flow,
     phases_of,
@@ -40,6 +40,7 @@ from singimpact.flights.model_numbers import (
     turn_of,
 )
 from singimpact.flights.phase import reduced
+from singimpact.flights.states import FAR
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
@@ -78,19 +79,10 @@ PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_
 """Kinds of work that fill the tables which an entry reads."""
 
 
-@dataclass(frozen=True)
-class Allowance:
-    """When a flight is given up, and how accurate it is."""
-
-    horizon: float
-    epsilon: float = EPSILON
-    steps: int = LIMITS.steps
-
-
 @lru_cache(maxsize=256)
 def compiled_model(osc: Oscillator) -> CompiledModel:
     """The compiled model of an oscillator with the default horizon, accuracy and number of steps."""
-    return allowed(osc, Allowance(horizon_of(osc, None)))
+    return allowed(osc, Allowance(horizon_of(osc, None), reach=reach_of(osc)))
 
 
 @lru_cache(maxsize=64)
@@ -128,7 +120,7 @@ class CompiledModel:
         self.r = float(self.rho[0]) if self.constant_restitution else np.nan
         self.price = LIMITS.interpreted_linear if self.linear else LIMITS.interpreted_taylor
         # launch times beyond are reduced by exact arithmetic first
-        self.nearest = 2.0**25 * as_float(osc.period) if osc.period is not None else np.inf
+        self.nearest = FAR * as_float(osc.period) if osc.period is not None else np.inf
         self._spare: list[tuple[Array, int]] = []
         self._prepared: set[str] = set()
         self._quick: Callable[..., Any] | None = None
@@ -149,7 +141,7 @@ class CompiledModel:
         rules = (allowance.horizon, LIMITS.longest if self.linear else allowance.steps, order, short,
                  LIMITS.safety * (EPSILON if self.linear else allowance.epsilon), LIMITS.likely,
                  max(LIMITS.rough[0], coarse), max(LIMITS.rough[1], coarse), self._pace(),
-                 1 - as_float(osc.slope_at_rest()))  # fmt: skip
+                 1 - as_float(osc.slope_at_rest()), allowance.reach)  # fmt: skip
         numbers, rest = numbers_of(osc) if self.flow is None else (numbers_of_flow(osc, self.flow), np.zeros(0))
         room = max(order, degree_for(LIMITS.judging)) + 2 + LIMITS.derivatives_at_rest
         sizes = np.zeros(8, dtype=np.int64)
@@ -177,7 +169,7 @@ class CompiledModel:
             sizes[[layout.ROWS, layout.ROOM, layout.CONSTANTS]] = self.flow.rows, room, constants
             flat = np.ones(layout.SCALARS + constants)
             flat[layout.SCALARS : -1] = numbers
-        flat[:10] = rules
+        flat[: len(rules)] = rules
         flat[layout.TURN : layout.TURN + 5] = turn_of(osc)
         return sizes, flat
 
@@ -268,9 +260,11 @@ class CompiledModel:
         return None if missing else found
 
     def _for_orbits(self, name: str, seconds: float) -> Callable[..., int] | None:
-        """The same for work that calls rho; it is waited for once flights have been interpreted for long."""
+        """The same for work that calls rho; waited for after long interpreted flights, unless its compiler dies."""
         if (self.recurrence.machine if self.recurrence else self.machine).spent > LIMITS.patience and compilable():
-            return self._here(name, self.law)
+            self.machine.awaited(name)
+            if not (self.machine.is_killed() or any(each.is_killed() for each in self._called(self.law))):
+                return self._here(name, self.law)
         return self._compiled(name, seconds, self.law)
 
     @kept_property

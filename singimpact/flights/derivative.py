@@ -9,9 +9,9 @@ import numpy as np
 
 from singimpact.algebra.expressions import names_in
 from singimpact.flights.blocks import in_blocks, many
-from singimpact.flights.compiled_model import Allowance, allowed, compiled_model
+from singimpact.flights.compiled_model import allowed, compiled_model
+from singimpact.flights.horizons import Allowance, horizon_of
 from singimpact.flights.kernels.state import TIME_BY_TAU, VELOCITY_BY_V
-from singimpact.flights.model_numbers import horizon_of
 from singimpact.flights.rebound_law import rebound, rebound_slope
 from singimpact.flights.response import response, touching
 from singimpact.flights.results import Derivative

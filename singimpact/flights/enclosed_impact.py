@@ -12,8 +12,8 @@ from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_fraction, constant, rational_near, sign_of
 from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
 from singimpact.flights.enclosures.equation import NoHit, Refused
+from singimpact.flights.horizons import horizon_of
 from singimpact.flights.impact_map import checked_digits
-from singimpact.flights.model_numbers import horizon_of
 from singimpact.inputs import InputError, refuse, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION

@@ -96,6 +96,8 @@ class Family(ABC):
         self.fastest = fastest_rate(osc)
         self._period = self._tree(common_period(osc.g) if _moves(osc.g, over) else osc.period)
         self._rho = [self._tree(tree) for tree in _rebound(osc, over)]
+        # flights of one orbit have the same numbers: those of the last call are remembered
+        self._last_period: tuple[Values, Number] | None = None
 
     # ---- numbers
 
@@ -114,8 +116,14 @@ class Family(ABC):
         """The period of the forcing; of a model without one nan."""
         if self._period is None:
             return Number(np.nan, (np.nan,) * len(self.over))
+        last = self._last_period
+        if last is not None and last[0] == values:
+            return last[1]
         found = self._number(self._period, values)
-        return found if found.value >= 0 else Number(-found.value, tuple(-slope for slope in found.slopes))
+        if found.value < 0:
+            found = Number(-found.value, tuple(-slope for slope in found.slopes))
+        self._last_period = dict(values), found
+        return found
 
     def rebound(self, velocity: float, values: Values) -> tuple[float, float, tuple[float, ...]]:
         """rho at x' before an impact, its derivative, and its derivatives by the numbers."""
@@ -185,11 +193,17 @@ class LinearFamily(Family):
         self._known = [self._number(each, {}) if each is not None and not _moves(each[0], over) else None
                        for each in self._trees]  # fmt: skip
         self.waves = len(form.harmonics)
+        self._last: tuple[Values, list[Number]] | None = None
 
     def numbers(self, values: Values) -> list[Number]:
         """Damping, stiffness, constant part of a_c; rate, phase, cosine, sine of every wave."""
-        return [known or self._number(trees, values)  # type: ignore[arg-type]
-                for known, trees in zip(self._known, self._trees, strict=True)]  # fmt: skip
+        last = self._last
+        if last is not None and last[0] == values:
+            return last[1]
+        numbers = [known or self._number(trees, values)  # type: ignore[arg-type]
+                   for known, trees in zip(self._known, self._trees, strict=True)]  # fmt: skip
+        self._last = dict(values), numbers
+        return numbers
 
     def end(self, values: Values, tau: float, v: float, time: float) -> End:
         p, count = self.numbers(values), len(self.over)

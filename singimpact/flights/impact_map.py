@@ -16,11 +16,12 @@ import numpy as np
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.flights import undecided
 from singimpact.flights.blocks import in_blocks, many
-from singimpact.flights.compiled_model import EPSILON, Allowance, CompiledModel, allowed, compiled_model
+from singimpact.flights.compiled_model import EPSILON, CompiledModel, allowed, compiled_model
+from singimpact.flights.horizons import Allowance, horizon_of, reach_of
 from singimpact.flights.kernels.hits import CANCELS
 from singimpact.flights.limits import LIMITS
-from singimpact.flights.model_numbers import horizon_of
 from singimpact.flights.rebound_law import rebound
+from singimpact.flights.response import response
 from singimpact.flights.results import SCALAR_STATUS, Flight, Step
 from singimpact.flights.states import States
 from singimpact.inputs import refuse
@@ -45,8 +46,9 @@ def first_hit(
     tau : launch times, any finite numbers. v : launch velocities >= 0; they broadcast.
     digits : decimal digits; the result then holds mpmath numbers, and `certified` the same with proved radii.
     tolerance : relative error allowed in a step of a Taylor flow, and, times ten, of a hit before it is refined.
-    horizon : time after which a flight is given up; 1000 periods of g if not given, or 2e5 radians of the fastest
-        motion where those come first. At most 1e7 radians.
+    horizon : time after which a flight is given up. Without it at least 1000 periods of g (1e4 without a period, at
+        most 2e5 radians of the fastest motion), 2 periods of a slow g, 64 half turns of the free motion (4 if f is not
+        linear), and 8 v over the mean force. At most 1e7 radians.
     steps : Taylor steps after which a flight of a model without a closed form is given up, 16000 if not given.
     out : arrays that take the results, by field: {"flight_time": a, "velocity": b}, memory maps too. Of the shape of
         the states, doubles (`status` and `cause`: int8). Other fields than these, `status` and `cause` are not kept.
@@ -111,7 +113,7 @@ def impact_map(
 
 def landed(osc: Oscillator, states: States, hit: Flight) -> Step:
     """The states just after first hits."""
-    tau = states.tau.reshape(states.shape) + hit.flight_time
+    tau = landing_times(states, hit.flight_time)
     fields = {name: value for name, value in vars(hit).items() if name != "_later"}
     later, model = vars(hit).get("_later"), compiled_model(osc)
     if model.constant_restitution:
@@ -120,6 +122,12 @@ def landed(osc: Oscillator, states: States, hit: Flight) -> Step:
     dead = (np.asarray(hit.status) == Status.hit) & np.isnan(bounce)
     fields["status"] = status_array(np.where(dead, np.int8(Status.no_rebound), hit.status).astype(np.int8))[()]
     return Step.made(later, **fields, tau=tau[()], v=bounce[()])
+
+
+def landing_times(states: States, times: Any) -> Any:
+    """Launch times plus flight times, in the shape of the states."""
+    landed = states.tau.reshape(states.shape) + times
+    return landed if isinstance(states.turns, float) else landed + states.turns.reshape(states.shape)
 
 
 def _quickly(model: CompiledModel, tau: float, v: float) -> dict[str, Any] | None:
@@ -147,14 +155,28 @@ def _flights(osc: Oscillator, states: States, digits: int | None, allowance: All
         allowance = allowance or compiled_model(osc).allowance
         return shaped(in_digits.flights(osc, states, checked_digits(digits), allowance), states.shape)
     model = compiled_model(osc) if allowance is None else allowed(osc, allowance)
-    return shaped(undecided.flights(osc, model, states), states.shape)
+    return shaped(_with_rounded_launches(osc, states, undecided.flights(osc, model, states)), states.shape)
+
+
+def _with_rounded_launches(osc: Oscillator, states: States, flight: Flight) -> Flight:
+    """Errors with what a launch time lost when it became a double, where no period takes it in."""
+    if osc.period is not None or states.written[0].dtype.kind == "f":
+        return flight
+    time, velocity, low = flight.flight_time, flight.velocity, np.abs(states.below_doubles())
+    late = np.flatnonzero((np.asarray(flight.status) == Status.hit) & (low > EPSILON * np.abs(time)))
+    if late.size:
+        moved = response(osc, states.tau[late], states.v[late], time[late], velocity[late])
+        flight.time_error[late] += np.abs(moved.time_by_tau) * low[late] / time[late]
+        flight.velocity_error[late] += np.abs(moved.velocity_by_tau) * low[late] / np.abs(velocity[late])
+    return flight
 
 
 def _allowance(osc: Oscillator, tolerance: Any, horizon: Any, steps: Any) -> Allowance | None:
     """The options of one call; None stands for a default."""
     if tolerance is horizon is steps is None:
         return None
-    return Allowance(horizon_of(osc, horizon), _tolerance(tolerance), checked_steps(steps))
+    reach = reach_of(osc) if horizon is None else 0.0
+    return Allowance(horizon_of(osc, horizon), _tolerance(tolerance), checked_steps(steps), reach)
 
 
 def checked_digits(digits: Any) -> int:

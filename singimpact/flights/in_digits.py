@@ -13,7 +13,8 @@ from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights import undecided
 from singimpact.flights.causes import decoded
 from singimpact.flights.certified_flights import Proof, proof
-from singimpact.flights.compiled_model import Allowance, allowed
+from singimpact.flights.compiled_model import allowed
+from singimpact.flights.horizons import Allowance
 from singimpact.flights.multiprecision import found
 from singimpact.flights.rebound_law import rebound_in_digits
 from singimpact.flights.results import Flight, Step
@@ -45,7 +46,8 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     if open_ones.any():
         kappas = np.where(open_ones, undecided.conditions(osc, states, open_ones, roughs[0], roughs[1])[:2], kappas)
     for index in range(size):
-        proved = first or _proof(osc, states, index, digits, allowance.horizon, known, (*roughs[:2], kappas[1]))
+        limit = float(allowance.until(states.v[index]))
+        proved = first or _proof(osc, states, index, digits, limit, known, (*roughs[:2], kappas[1]))
         certified[index] = proved.impact
         if proved.reason:
             reasons[index] = proved.reason
@@ -59,7 +61,7 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
         elif proved.missed:
             codes[index], numbers = Status.no_return, (inf, nan, nan, nan)
         else:
-            codes[index], numbers = found(osc, states, index, digits, allowance.horizon, int(budgets[index]))
+            codes[index], numbers = found(osc, states, index, digits, limit, int(budgets[index]))
         if index not in known:
             rows[:4, index] = [float(part) for part in numbers]
         status = int(codes[index]) if codes[index] < 20 else int(Status.unresolved)
@@ -96,7 +98,7 @@ def _plain_hit(osc: Oscillator, states: States, digits: int, allowance: Allowanc
     if code != 0:
         return None
     kappas = model.judged(states.tau, states.v, np.ones(1))[2:4, 0]
-    proved = proof(osc, states, 0, digits, allowance.horizon, (hit[0], float(kappas[1])))
+    proved = proof(osc, states, 0, digits, float(allowance.until(v)), (hit[0], float(kappas[1])))
     if proved.impact is None:
         return proved
     with digits_at(digits) as mp:

@@ -11,7 +11,7 @@ from singimpact.algebra.expressions import Name, multiply, names_in, number, sub
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights.blocks import in_blocks, many
-from singimpact.flights.impact_map import first_hit
+from singimpact.flights.impact_map import first_hit, landing_times
 from singimpact.flights.rebound_law import sharpened, speed_before
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
@@ -52,7 +52,7 @@ def inverse_map(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None,
     """
     if many(tau, v, digits=digits):
         return in_blocks(partial(inverse_map, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
-    states = States.read(tau, v)
+    states = States.read(tau, v).in_period(osc)
     if digits is None:
         return _in_doubles(osc, states, horizon)
     speeds = _speeds(osc, states, digits)
@@ -68,7 +68,7 @@ def _in_doubles(osc: Oscillator, states: States, horizon: Any) -> Step:
     dead = np.isnan(speeds)
     times = -states.tau if states.v.all() else _turned(states)
     hit = first_hit(backwards(osc), times, np.where(dead, 0.0, speeds), horizon=horizon)
-    fields = {"tau": states.tau - hit.flight_time, "v": -hit.velocity + 0, "velocity": -speeds}
+    fields = {"tau": landing_times(states, -hit.flight_time), "v": -hit.velocity + 0, "velocity": -speeds}
     return _step(states, hit, fields, dead)
 
 

@@ -1,19 +1,18 @@
 """Compiled entries of a model's kernels: from memory, from the cache, or from a process that compiles them meanwhile.
 
 Until they are there, flights are interpreted.  Compiling takes seconds, so one process of low priority does it, once a
-cache; nothing waits for it.
+cache.  It holds a lock of the cache as long as it lives; only who finds the lock held, or has started it, waits for it.
 """
 
 from __future__ import annotations
 
 import atexit
 import ctypes
-import gc
 import hashlib
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -22,10 +21,12 @@ from threading import Lock
 from typing import Any
 
 from singimpact import cache
+from singimpact.file_lock import FileLock
 from singimpact.flights import bind
 from singimpact.flights.bind import Emitted
 from singimpact.inputs import InputError
-from singimpact.store import cache_folder, folder, write_text
+from singimpact.progress import ProgressLine
+from singimpact.store import cache_folder, folder, tell, write_text
 
 
 @dataclass(frozen=True)
@@ -36,12 +37,19 @@ class CompilingSettings:
     wait: float = 0.25
     # seconds between two reads of the cache while a process compiles
     look: float = 0.2
-    # seconds after which a process that compiles is taken for dead
-    dead: float = 300.0
+    # seconds for which a new process waits for the lock, which others hold for an instant when they look at it
+    lock: float = 2.0
+    # seconds of waiting for a process of another program, and for one of this program, after which a line says so; on
+    # a terminal a line of progress does after one second
+    silent: tuple[float, float] = (1.0, 30.0)
+    # seconds after which the request of a process that was killed is removed
+    stale: float = 86_400.0
 
 
 SETTINGS = CompilingSettings()
 FOLDER = "kernels"
+ASKED = ".asked"
+BUSY = 75  # exit code of a process that finds the lock held for another text
 FIRST = ".first"  # beside a request: the entry that somebody waits for
 Entry = tuple[Callable[..., int], Callable[..., int]]
 
@@ -62,6 +70,8 @@ class Machine:
         self._lock = Lock()
         self._looked: dict[str, float] = {}
         self._asked, self._tried = "", -1e9
+        self._killed = False  # the process that compiled it, as where memory is short
+        self._given_up = False  # that process has ended without an entry: nothing waits for another one
 
     def entry(self, name: str) -> Entry | None:
         """An entry, if it is compiled: without the interpreter's lock, and with it."""
@@ -76,16 +86,21 @@ class Machine:
         if not place.is_file():
             return None
         code = cache.recall(place)
-        if code is None:  # damaged, and told so once: whoever waits for this entry waits for another file
-            with suppress(OSError):
-                place.unlink()
-            return None
-        return self._load(name, code)
+        if code is not None:
+            try:
+                return self._load(name, code)
+            except ValueError as error:
+                cache.damaged(place, str(error))
+        with suppress(OSError):  # damaged, and said so once: who waits for this entry waits for another file
+            place.unlink()
+        return None
 
     def interpreted(self, seconds: float, name: str) -> None:
         """Count flights that were interpreted; after a while a process compiles the text, the entry `name` first."""
         self.spent += seconds
         waits = self.emitted != Emitted() and self.spent < SETTINGS.wait
+        if self._asked == name and _ended_with(self._request, BUSY):
+            self._asked = ""
         if self._asked == name or not compilable() or waits:
             return
         now = time.monotonic()
@@ -94,33 +109,54 @@ class Machine:
             self._asked = name if self._compile_elsewhere(name) else ""
 
     def compile_here(self, name: str) -> Entry:
-        """An entry that is waited for: from the process that compiles for this cache, or compiled in this one."""
+        """An entry that nothing can do without: from the process that compiles for this cache, or compiled here."""
         from singimpact.codegen import object_code
 
-        found = self.entry(name) or self._awaited(name)
-        if found is None:
+        entry = self.awaited(name)
+        if entry is None:
             code = object_code.emitted(bind.Compiler(self.emitted).text(name), name)
             cache.keep(self.place(name), code)
-            found = self._load(name, code)
-        return found
+            entry = self._load(name, code)
+        return entry
 
-    def _awaited(self, name: str) -> Entry | None:
-        """An entry from that process, started unless it runs; None when it is busy with another text, or fails."""
-        self._compile_elsewhere(name)
-        while self._is_compiled_now() and not self.place(name).is_file():
-            time.sleep(SETTINGS.look / 10)
+    def awaited(self, name: str) -> Entry | None:
+        """An entry from that process, started unless it runs; None when it is busy with another text, or has ended."""
+        entry = self.entry(name)
+        if entry is not None or self._given_up:
+            return entry
+        self._note_end()
+        if not self._killed:
+            self._compile_elsewhere(name)
+        place, begun, silent = self.place(name), time.monotonic(), True
+        with ProgressLine() as line:
+            while self._is_compiled_now() and not place.is_file():
+                time.sleep(SETTINGS.look / 10)
+                line.show(0, None, "another process compiles the model's flights")
+                if silent and time.monotonic() - begun > SETTINGS.silent[_runs(self._request)]:
+                    silent = False
+                    tell("waiting for a process that compiles the model's flights, usually for less than a minute")
         self._looked.pop(name, None)
-        return self.entry(name)
+        entry = self.entry(name)
+        self._given_up = entry is None
+        return entry
+
+    def is_killed(self) -> bool:
+        """Whether the process that compiled the text was ended from outside; compiling here may end this one too."""
+        return self._killed
 
     def _is_compiled_now(self) -> bool:
-        """Whether a process compiles this text: one that this process has started, or another's that is not dead."""
-        try:
-            asked = self._request.stat().st_mtime
-        except OSError:
-            return False
-        return any(process.poll() is None for process in _STARTED) or (
-            not _STARTED and time.time() - asked < SETTINGS.dead
-        )
+        """Whether a living process compiles this text: one of this program, or one that holds the lock."""
+        self._note_end()
+        if self._request in _STARTED:
+            return True
+        return not self._killed and self.lock_of_cache.holder() == self._request.name
+
+    def _note_end(self) -> None:
+        """Forget the process that this program has started, if it has ended."""
+        process = _STARTED.get(self._request)
+        if process is not None and process.poll() is not None:
+            self._killed = process.returncode < 0
+            _STARTED.pop(self._request, None)
 
     def _load(self, name: str, code: bytes) -> Entry:
         from singimpact.codegen import object_code
@@ -144,29 +180,70 @@ class Machine:
 
     @property
     def _request(self) -> Path:
-        return cache_folder() / FOLDER / f"{self.digest}{self._kind}"
+        return cache_folder() / FOLDER / f"{self.digest}.{self._kind}{ASKED}"
 
     @property
     def _kind(self) -> str:
-        """How requests end of which one runs at a time: a text takes seconds, so it does not wait for kernels."""
-        return ".text.asked" if self.emitted.flow or self.emitted.rho else ".kernels.asked"
+        """Of each kind one request runs at a time: a text takes seconds, so it does not wait for kernels."""
+        return "text" if self.emitted.flow or self.emitted.rho else "kernels"
+
+    @property
+    def lock_of_cache(self) -> FileLock:
+        """Held by the one process that compiles texts of this kind for the cache."""
+        return FileLock(cache_folder() / FOLDER / f".{self._kind}.lock")
 
     def _compile_elsewhere(self, name: str) -> bool:
-        """Start a process of low priority that compiles, unless one runs for this cache; returns whether it started."""
-        request = self._request
+        """Start a process of low priority that compiles, unless one runs for this cache; whether it compiles this text.
+
+        Where no process can be started, one line says so and flights stay interpreted.
+        """
+        if not _STARTING.acquire(timeout=SETTINGS.lock):
+            return False
         try:
-            folder(request.parent)
-            write_text(request.with_suffix(FIRST), name)
-            if any(
-                time.time() - each.stat().st_mtime < SETTINGS.dead for each in request.parent.glob(f"*{self._kind}")
-            ):
-                return request.exists()
-            write_text(request, "\0".join(self.emitted.texts))
-            command = [sys.executable, "-m", "singimpact.flights.machine", str(request)]
-            _outliving(command)
+            return self._asked_elsewhere(self._request, name)
         except (InputError, OSError) as error:
             cache.not_kept(error)
+            return True
+        finally:
+            _STARTING.release()
+
+    def _asked_elsewhere(self, request: Path, name: str) -> bool:
+        folder(request.parent)
+        running = [other.name for other in _STARTED if _runs(other) and other.name.endswith(f".{self._kind}{ASKED}")]
+        holder = running[0] if running else self.lock_of_cache.holder()
+        if holder is not None and holder != request.name:
+            return False
+        write_text(request.with_suffix(FIRST), name)
+        if holder is None:
+            write_text(request, "\0".join(self.emitted.texts))
+            try:
+                _STARTED[request] = _outliving(request, quick=not self.emitted.passes)
+            except (OSError, ValueError) as error:
+                withdraw(request)
+                _not_started(str(error))
         return True
+
+
+def _runs(request: Path) -> bool:
+    """Whether the process that this one has started for a request is alive."""
+    return request in _STARTED and _STARTED[request].poll() is None
+
+
+def _ended_with(request: Path, code: int) -> bool:
+    process = _STARTED.get(request)
+    return process is not None and process.poll() == code
+
+
+def withdraw(request: Path) -> None:
+    """Remove a request, whose process ends then."""
+    for path in (request, request.with_suffix(FIRST)):
+        with suppress(OSError):
+            path.unlink()
+
+
+@lru_cache(maxsize=1)
+def _not_started(reason: str) -> None:
+    tell(f"no process can be started that compiles the model's flights ({reason}): they are slower; the work goes on")
 
 
 @dataclass(frozen=True)
@@ -192,6 +269,11 @@ class Called:
             self._bind(found)
         return True
 
+    def is_killed(self) -> bool:
+        """Whether the process that compiled the text was ended from outside, after a wait for it."""
+        (name,) = self.machine.emitted.entries
+        return self.machine.awaited(name) is None and self.machine.is_killed()
+
     def compile_here(self) -> None:
         """As `Machine.compile_here`."""
         (name,) = self.machine.emitted.entries
@@ -210,25 +292,27 @@ def _digest_of_sources() -> bytes:
     return hashlib.sha256(b"".join(hashlib.sha256(part).digest() for part in parts)).digest()
 
 
-_STARTED: list[Any] = []
+_STARTED: dict[Path, Any] = {}  # processes by their requests
+_STARTING = Lock()  # so that two threads do not start two
 
 
-def _outliving(command: list[str]) -> None:
-    """Start a process that goes on when this one ends."""
+def _outliving(request: Path, quick: bool) -> Any:
+    """Start a process that goes on when this one ends; a quick one leaves out numba's own passes."""
     import subprocess  # 7 ms, and most processes find all compiled
 
-    _STARTED.append(subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        start_new_session=True, cwd=Path(__file__).parents[2],
-        # the passes of `object_code` do all that numba's own would, which take a third of the time
-        env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder()), "NUMBA_OPT": "0"},
-    ))  # fmt: skip
-    if len(_STARTED) == 1:
-        atexit.register(_left_alone)
+    if not sys.executable:
+        raise OSError("Python does not know its own program")
+    return subprocess.Popen(
+        [sys.executable, "-m", "singimpact.flights.compiler_process", str(request)], stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True, cwd=Path(__file__).parents[2],
+        # numba's passes take a third of the time; without them batches of states take three times as long
+        env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder()), "NUMBA_OPT": "0" if quick else "3"},
+    )  # fmt: skip
 
 
+@atexit.register
 def _left_alone() -> None:
-    for process in _STARTED:
+    for process in _STARTED.values():
         if process.poll() is None:
             process.returncode = 0  # else Python warns that it is still running
 
@@ -241,38 +325,3 @@ def compilable() -> bool:
     except ImportError:
         return False
     return os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
-
-
-def compile_asked(request: Path) -> None:
-    """What the other process does: compile the entries of a text and keep them."""
-    if hasattr(os, "nice"):
-        os.nice(10)
-    gc.disable()  # a tenth of the time: numba makes millions of objects, and the process ends when it is done
-    flow, rho, steps = request.read_text(encoding="utf-8").split("\0")
-    machine = Machine(Emitted(flow, rho, bool(steps)))
-    from singimpact.codegen import object_code
-
-    object_code.without_machine_code()
-    try:
-        compiler = bind.Compiler(machine.emitted)
-        for name in _first_wanted(request, machine.emitted.entries):
-            if cache.recall(machine.place(name)) is None:
-                code = object_code.emitted(compiler.text(name), name)
-                if request.exists():  # else the cache was removed or emptied meanwhile
-                    cache.keep(machine.place(name), code)
-    finally:
-        request.unlink(missing_ok=True)
-        request.with_suffix(FIRST).unlink(missing_ok=True)
-
-
-def _first_wanted(request: Path, names: tuple[str, ...]) -> Iterator[str]:
-    """Entries in their order, but always the one next that somebody waits for now."""
-    left = list(names)
-    while left:
-        with suppress(OSError):
-            left.sort(key=request.with_suffix(FIRST).read_text(encoding="utf-8").__ne__)
-        yield left.pop(0)
-
-
-if __name__ == "__main__":
-    compile_asked(Path(sys.argv[1]))

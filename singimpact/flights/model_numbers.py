@@ -11,12 +11,11 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power, substitute
-from singimpact.algebra.numbers import as_float, constant, rational_near, sign_of
+from singimpact.algebra.numbers import as_float, rational_near, sign_of
 from singimpact.codegen.recurrence import Recurrence, recurrence
 from singimpact.flights.kernels.state import Linear
-from singimpact.flights.limits import LIMITS
 from singimpact.flights.phase import reduced
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError
 from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 
@@ -150,21 +149,6 @@ def batch_turn_of(osc: Oscillator) -> tuple[float, float, float]:
     fraction, exponent = frexp(float(exact))
     high = ldexp(int(ldexp(fraction, 33)), exponent - 33)
     return high, float(exact - Fraction(high)), 1 / float(exact)
-
-
-def horizon_of(osc: Oscillator, horizon: Any) -> float:
-    """The time at which a flight is given up."""
-    if horizon is not None:
-        tree = constant("horizon", horizon)
-        if sign_of(tree) <= 0:
-            raise refuse("horizon", horizon, "a positive time")
-        longest = LIMITS.longest_radians / fastest_rate(osc)
-        if as_float(tree) > longest:
-            raise refuse("horizon", horizon, f"at most {longest:.3g}, 1e7 radians of the model's fastest motion")
-        return as_float(tree)
-    if osc.period is None:
-        return LIMITS.horizon_time
-    return min(LIMITS.horizon_periods * as_float(osc.period), LIMITS.horizon_radians / fastest_rate(osc))
 
 
 @lru_cache(maxsize=256)

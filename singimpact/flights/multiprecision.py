@@ -160,7 +160,7 @@ def _march(
     space = over_mpmath(mp, _flow(osc), exact_restart=False)
     order = degree_for(float(mp.eps)) if mp.prec < 1000 else int(mp.prec / 2.15)
     order += removed - 1
-    rules = Rules(mp.mpf(limits[0]), limits[1], order, order, 8 * mp.eps, 0, 0, 0, 0, 0)
+    rules = Rules(mp.mpf(limits[0]), limits[1], order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0)
     if linear_form(osc) is None:
         space["coefficients"] = _in_balls(osc, mp.prec + 32, mp)
         p: Any = [as_mpf(tree, mp) for tree in constants_of(osc)]
@@ -215,7 +215,8 @@ def centre_of(ball: Any, mp: Any) -> Any:
 
 def forcing_phases(osc: Oscillator, states: States, index: int, mp: Any) -> list[Any]:
     """Cosine and sine of every wave at a launch, or its reduced time, at the precision of a context for any tau."""
-    extra = max(int(mp.log(abs(states.tau[index]) + 1, 2)), 0) + 10
+    size = abs(float(np.broadcast_to(states.tau + states.turns, states.tau.shape)[index]))
+    extra = max(int(mp.log(size + 1, 2)), 0) + 10
     with bits_at(mp.prec + extra):
         tau = as_mpf(states.exact_tau(index), mp)
         if linear_form(osc) is None:

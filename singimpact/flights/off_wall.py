@@ -19,12 +19,13 @@ from singimpact.algebra.numbers import as_float, as_mpf, constant, float_array
 from singimpact.algebra.precision import digits_at
 from singimpact.flights.bind import over_mpmath
 from singimpact.flights.causes import decoded, where
-from singimpact.flights.compiled_model import Allowance, CompiledModel, allowed
+from singimpact.flights.compiled_model import CompiledModel, allowed
+from singimpact.flights.horizons import Allowance, horizon_of, reach_of
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.state import Rules
 from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.model_numbers import constants_of, has_table, horizon_of, recurrence_of
+from singimpact.flights.model_numbers import constants_of, has_table, recurrence_of
 from singimpact.flights.path import off_wall_places
 from singimpact.flights.rebound_law import rebound
 from singimpact.flights.states import States
@@ -110,9 +111,9 @@ def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -
         shapes = ", ".join(str(part.shape) for part in parts)
         raise InputError(f"x, xdot and t have shapes {shapes}: give shapes that broadcast") from None
     shape = places.shape
-    u, tau = (float_array(name, part.ravel()) for name, part in (("xdot", speeds), ("t", times)))
+    u, starts = float_array("xdot", speeds.ravel()), States.read(times.ravel(), 0.0).in_period(osc)
     heights = _heights(osc, places.ravel())
-    flown = _Flown(osc, horizon, tau, u)
+    flown = _Flown(osc, horizon, starts, u)
     flown.above(np.flatnonzero(heights > 0), heights, (times.ravel(), speeds.ravel(), places.ravel()))
     flown.at_wall(np.flatnonzero((heights == 0) & (u >= 0)), times.ravel(), speeds.ravel())
     flown.into_wall(np.flatnonzero((heights == 0) & (u < 0)))
@@ -146,17 +147,18 @@ def _heights(osc: Oscillator, places: Array) -> Array:
 
 
 @lru_cache(maxsize=64)
-def stepped(osc: Oscillator, horizon: float) -> CompiledModel:
+def stepped(osc: Oscillator, horizon: float, reach: float) -> CompiledModel:
     """A model as Taylor steps fly it, a linear one too."""
-    allowance = Allowance(horizon)
+    allowance = Allowance(horizon, reach=reach)
     return CompiledModel(osc, allowance, recurrence_of(osc)) if has_table(osc) else allowed(osc, allowance)
 
 
 class _Flown:
     """Flights as they are flown, flat."""
 
-    def __init__(self, osc: Oscillator, horizon: Any, tau: Array, u: Array) -> None:
-        self.osc, self.horizon, self.tau, self.u = osc, horizon, tau, u
+    def __init__(self, osc: Oscillator, horizon: Any, starts: States, u: Array) -> None:
+        self.osc, self.horizon, self.tau, self.turns, self.u = osc, horizon, starts.tau, starts.turns, u
+        tau = starts.tau
         self.time, self.velocity, self.after = (np.full(tau.size, np.nan) for _ in range(3))
         self.status, self.cause = np.zeros(tau.size, np.int8), np.zeros(tau.size, np.int8)
         self.notes: dict[int, str] = {}
@@ -165,7 +167,8 @@ class _Flown:
         """Starts off the wall."""
         if not at.size:
             return
-        model = stepped(self.osc, horizon_of(self.osc, self.horizon))
+        reach = reach_of(self.osc) if self.horizon is None else 0.0
+        model = stepped(self.osc, horizon_of(self.osc, self.horizon), reach)
         tau, u = self.tau[at], self.u[at]
         codes, rows = model.drops(model.near(tau), u, heights[at])
         fates = Fates(*decoded(codes), rows)
@@ -234,7 +237,7 @@ class _Flown:
 
     def result(self, shape: tuple[int, ...]) -> Launched:
         """All flights in their shape."""
-        parts = self.tau + self.time, self.after, self.time, self.velocity
+        parts = self.tau + self.time + self.turns, self.after, self.time, self.velocity
         tau, after, time, velocity, cause = (part.reshape(shape)[()] for part in (*parts, self.cause))
         return Launched(tau, after, time, velocity, status_array(self.status.reshape(shape)), cause, self.notes)
 
@@ -244,7 +247,7 @@ def _in_digits(osc: Oscillator, exact: list[Expression], digits: int, limit: flo
     flow = recurrence_of(osc)
     with digits_at(digits) as mp:
         space, order = over_mpmath(mp, flow.source), degree_for(float(mp.eps))
-        rules = Rules(mp.mpf(limit), LIMITS.settling_steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0)
+        rules = Rules(mp.mpf(limit), LIMITS.settling_steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0)
         p, work = [as_mpf(tree, mp) for tree in constants_of(osc, linear=False)], workspace(mp.mpf(0), order, flow.rows)
         t, v, work.q[0] = (as_mpf(tree, mp) for tree in (*exact[:2], subtract(exact[2], osc.clearance)))
         try:

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import as_float
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.causes import decoded
-from singimpact.flights.compiled_model import EPSILON, Allowance, allowed, compiled_model
+from singimpact.flights.compiled_model import EPSILON, allowed, compiled_model
 from singimpact.flights.kernels.entries import AT_REST
 from singimpact.flights.kernels.hits import PRESSED
 from singimpact.flights.phase import reduced
 from singimpact.flights.states import States
+from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status, status_array
 from singimpact.words import in_words
 
 Array = np.ndarray[Any, Any]
+SLOW = 1e-6
+"""Impacts below this velocity may be those of a chatter that is over, for a_c up to 1e10 times tau."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +93,8 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
 
     Parameters
     ----------
-    osc : the model. tau, v : states that broadcast. impacts : flown.
+    osc : the model. tau, v : states that broadcast. impacts : flown. A chatter whose rest is below the last bit of tau
+        ends as `complete`, with v = 0.
     tolerance : relative error of a Taylor step; closed forms keep to roundings.
 
     Examples
@@ -100,18 +105,34 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
     """
     if many(tau, v):
         return in_blocks(partial(iterate, osc, impacts=impacts, tolerance=tolerance), tau, v)  # type: ignore[no-any-return]
-    states = States.read(tau, v)
+    states = States.read(tau, v).in_period(osc)
     model = compiled_model(osc)
     if tolerance > EPSILON and not model.linear:
-        model = allowed(osc, Allowance(model.allowance.horizon, tolerance))
+        model = allowed(osc, replace(model.allowance, epsilon=tolerance))
     start = model.near(states.tau)
     times, speeds, codes = model.iterate(start, states.v, impacts)
     if tolerance > EPSILON and (left := codes == Status.unresolved).any():
         # a graze that a coarse flight does not decide: one more impact, accurately
         times[left], speeds[left], codes[left] = compiled_model(osc).iterate(times[left], speeds[left], 1)
     codes = np.where(codes == AT_REST, np.int8(Status.sticks), codes)
-    parts = times + (states.tau - start), speeds, decoded(codes)[0]
+    over = _completed(osc, times, speeds, codes)
+    codes[over], speeds[over] = Status.complete, 0.0
+    parts = times + (states.tau - start + states.turns), speeds, decoded(codes)[0]
     return Ends(*(part.reshape(states.shape)[()] for part in parts))
+
+
+def _completed(osc: Oscillator, tau: Array, v: Array, codes: Array) -> Array:
+    """Where a chatter is over: a_c < 0, and all that is left of it does not change the double tau, or v underflowed.
+
+    What is left of a chatter lasts about 2 v/(|a_c| (1 - r)).
+    """
+    over = np.zeros(tau.size, dtype=bool)
+    r = as_float(osc.slope_at_rest())
+    slow = np.flatnonzero(((codes == Status.hit) & (v < SLOW) & (r < 1)) | ((codes == Status.no_rebound) & (v == 0)))
+    if slow.size and r > 0:
+        a = acceleration(osc, tau[slow])
+        over[slow] = (a < 0) & (2 * v[slow] <= EPSILON / 4 * np.abs(tau[slow]) * np.abs(a) * (1 - r))
+    return over
 
 
 def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool) -> Ends:
@@ -119,11 +140,14 @@ def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool) -> End
     if not keep:
         found = iterate(osc, tau, v, impacts)
         return Ends(found.tau, found.v, status_array(found.status))
-    states = States.read(tau, v)
-    rows = [Ends(states.tau.reshape(states.shape), states.v.reshape(states.shape), np.zeros(states.shape, np.int8))]
+    states = States.read(tau, v).in_period(osc)
+    start = compiled_model(osc).near(states.tau)
+    rows = [Ends(start, states.v, np.zeros(states.v.size, np.int8))]
     for _ in range(impacts):
         last = rows[-1]
         found = iterate(osc, last.tau, last.v, 1)
         rows.append(Ends(found.tau, found.v, np.where(last.status != 0, last.status, found.status)))
     times, speeds = np.stack([row.tau for row in rows]), np.stack([row.v for row in rows])
-    return Ends(times, speeds, status_array(rows[-1].status))
+    times += states.tau - start + states.turns
+    shape = (impacts + 1, *states.shape)
+    return Ends(times.reshape(shape), speeds.reshape(shape), status_array(rows[-1].status.reshape(states.shape)))

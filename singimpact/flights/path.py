@@ -49,7 +49,7 @@ def path(osc: Oscillator, tau: Any, v: Any, t: Any) -> Path:
     >>> place.x.tolist(), place.xdot.tolist()
     ([0.5, 2.5, 0.5], [3.0, 1.0, -3.0])
     """
-    states = States.read(tau, v)
+    states = States.read(tau, v).in_period(osc)
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: one launch at a time has a path, give two numbers")
     times = float_array("t", t)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 from functools import lru_cache
-from math import frexp
 from typing import Any
 
 import numpy as np
@@ -33,15 +32,26 @@ def reduced(tau: np.ndarray[Any, Any], period: Expression) -> np.ndarray[Any, An
         size = math.inf
     result = np.array(tau, dtype=float)
     for index in np.flatnonzero(np.abs(result) > size):
-        result[index] = _reduced(float(result[index]), period)
+        result[index] = phase_of(Fraction(float(result[index])), period)
     return result
 
 
-def _reduced(tau: float, period: Expression) -> float:
-    bits = 64 * (3 + max(frexp(tau)[1], 0) // 64) + 64
-    scaled, exact = _scaled(period, bits), int(Fraction(tau) * 2**bits) if bits > 1074 else Fraction(tau) * 2**bits
-    turns = round(Fraction(exact) / scaled)
-    return float(Fraction(exact - turns * scaled) / 2**bits)
+def phase_of(tau: Fraction, period: Expression) -> float:
+    """An exact time minus the nearest multiple of the period, to half a unit in the last place.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.numbers import constant
+    >>> phase_of(Fraction(10**20 + 1, 10), constant("period", "3/10"))
+    -0.1
+    """
+    # digits before the binary point, and for a result as small as the least distance of doubles from a multiple
+    bits = 64 * (3 + max(math.ceil(tau).bit_length(), 0) // 64) + 64
+    while abs(_scaled(period, bits)) < 2**192:  # a short period needs more digits behind the binary point
+        bits *= 2
+    scaled, exact = _scaled(period, bits), tau * 2**bits
+    turns = round(exact / scaled)
+    return float((exact - turns * scaled) / 2**bits)
 
 
 @lru_cache(maxsize=1024)

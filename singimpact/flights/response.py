@@ -120,7 +120,7 @@ def precise(osc: Oscillator, tau: Any, v: Any, time: Any, velocity: Any, mp: Any
     p = [as_mpf(tree, mp) for tree in constants_of(osc, linear=False)]
     rows = [[mp.mpf(0)] * (order + 2) for _ in range(flow.rows + 5)]
     work, columns = Work(rows[0], rows[5:], rows[1]), Columns(*rows[2:5])
-    rules = Rules(mp.inf, LIMITS.steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0)
+    rules = Rules(mp.inf, LIMITS.steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0)
     *parts, _ = space["derivatives_at"]([tau], v, time, p, rules, work, columns)
     ring = Multiprecision(mp)
     values = {"x": as_mpf(osc.clearance, mp), "xdot": velocity}

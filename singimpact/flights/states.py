@@ -4,22 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.expressions import Expression
-from singimpact.algebra.numbers import constant, float_array, sign_of
+from singimpact.algebra.numbers import (
+    as_float,
+    as_fraction,
+    constant,
+    float_array,
+    rational_near,
+    require_unmasked,
+    sign_of,
+)
 from singimpact.flights.limits import LIMITS
+from singimpact.flights.phase import phase_of
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import sign_of_acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.nearest_zero import Zero, zero_beside
 
+FAR = 2.0**25
+"""Periods from which on launch times are reduced exactly: kernels reduce those before, to twice a double's bits."""
+
 
 @dataclass(frozen=True)
 class States:
     """Launch states, flat, with the shape they came in; `exact_tau`, `exact_v` give what was written.
+
+    tau holds the doubles that flights start from: of a launch time that no double holds, such as "1000000000000000.3",
+    the phase within a period; `turns` is what it lies before the launch time, whole periods.
 
     `rest` gives, for each launch at rest, its exact time with sign and order of the first derivative of a_c that is not
     zero (sign 0: none was found).
@@ -36,11 +52,12 @@ class States:
     shape: tuple[int, ...]
     written: tuple[Any, Any]
     rest: Mapping[int, Zero] = field(default_factory=dict)
+    turns: Any = 0.0
 
     @staticmethod
     def of(osc: Oscillator, tau: Any, v: Any, digits: int | None = None) -> States:
         """`read`, and what a model does with a mass at rest: next to a zero of a_c, a double is that zero."""
-        states = States.read(tau, v)
+        states = States.read(tau, v).in_period(osc)
         if states.v.all():
             return states
         resting = np.flatnonzero(states.v == 0)
@@ -73,6 +90,51 @@ class States:
             raise refuse("v", float(speeds[speeds < 0][0]), "velocities >= 0, just after an impact")
         return States(times, speeds, shape, (written[0].ravel(), written[1].ravel()))
 
+    def in_period(self, osc: Oscillator) -> States:
+        """The same launches; those beyond a period that no double holds, and late ones, start from their phase.
+
+        Examples
+        --------
+        >>> states = States.read([2**53 + 1, "0.3", 7.0], 1).in_period(Oscillator("x", "cos(2*t)", 0, 1))
+        >>> states.tau.tolist(), (states.tau + states.turns).tolist()
+        ([-1.1276428765770465, 0.3, 7.0], [9007199254740992.0, 0.3, 7.0])
+        """
+        if osc.period is None or not self.tau.size:
+            return self
+        period, rough = as_float(osc.period), self._rough()
+        far = np.flatnonzero(np.abs(self.tau) >= FAR * period)
+        if not rough.size and not far.size:
+            return self
+        tau, turns = self.tau.copy(), np.zeros(self.tau.size)
+        for index in np.union1d(rough[np.abs(self.tau[rough]) > period], far).tolist():
+            exact, double = self._exactly(index), Fraction(float(tau[index]))
+            if exact != double or abs(double) >= FAR * period:
+                tau[index] = phase_of(exact, osc.period)
+                turns[index] = float(exact - Fraction(float(tau[index])))
+        return replace(self, tau=tau, turns=turns) if turns.any() else self
+
+    def below_doubles(self) -> np.ndarray[Any, Any]:
+        """What the doubles leave out of each launch time."""
+        low = np.zeros(self.tau.size)
+        for index in self._rough().tolist():
+            low[index] = float(self._exactly(index) - Fraction(float(self.tau[index])))
+        return low
+
+    def _rough(self) -> np.ndarray[Any, Any]:
+        """Launches whose time is not given as a double, nor as an integer that is one."""
+        times = self.written[0]
+        if times.dtype.kind == "f":
+            return np.zeros(0, dtype=np.int64)
+        if times.dtype.kind in "iu":
+            return np.flatnonzero(np.abs(self.tau) >= 2.0**53)
+        inexact = [not isinstance(time, float | np.floating) for time in times.tolist()]
+        return np.flatnonzero(np.array(inexact, dtype=bool))
+
+    def _exactly(self, index: int) -> Fraction:
+        tree = constant("tau", self.written[0][index])
+        exact = as_fraction(tree)
+        return rational_near(tree, 256) if exact is None else exact
+
     def exact_tau(self, index: int) -> Expression:
         """tau as it was written, or the zero of a_c that it stands for."""
         if index in self.rest:
@@ -99,6 +161,7 @@ def _zero_beside(osc: Oscillator, written: Any, digits: int | None) -> Zero | No
 
 
 def _raw(name: str, value: Any) -> np.ndarray[Any, Any]:
+    require_unmasked(name, value)
     if isinstance(value, Expression):
         boxed = np.empty((), dtype=object)
         boxed[()] = value

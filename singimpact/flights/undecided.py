@@ -164,7 +164,7 @@ def _decided_at_launch(osc: Oscillator, model: CompiledModel, states: States, fa
     moving = states.v > 0
     up = moving & kept_up(osc, states.v)
     fates.status[up], fates.cause[up] = Status.escaped, Cause.decided
-    stays = moving & stays_up(osc, states.v, model.allowance.horizon)
+    stays = moving & stays_up(osc, states.v, model.allowance.until(states.v))
     fates.status[stays], fates.cause[stays] = Status.no_return, Cause.decided
 
 
@@ -183,7 +183,7 @@ def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array
         found = refined_hit(osc, states, index, float(fates.rows[0, index]))
         if found is None and left:
             left -= 1
-            settled = settle(osc, states, index, model.allowance.horizon)
+            settled = settle(osc, states, index, float(model.allowance.until(states.v[index])))
             found = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
         if found is not None:
             fates.rows[:2, index] = found
@@ -209,7 +209,7 @@ def _settled(osc: Oscillator, model: CompiledModel, states: States, fates: Fates
     if open_ones.size:
         from singimpact.flights.multiprecision import settle  # 8 ms that few calls need
     for index in open_ones:
-        settled = settle(osc, states, int(index), model.allowance.horizon)
+        settled = settle(osc, states, int(index), float(model.allowance.until(states.v[index])))
         if settled is not None:
             fates.status[index], fates.rows[:4, index] = settled
             fates.rows[4:, index] = np.nan

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from singimpact.inputs import InputError, shown, unknown
+from singimpact.store import read_bounded
 
 FIELDS = ("f", "g", "clearance", "restitution", "parameters", "period")
 REQUIRED = ("f", "g", "clearance", "restitution")
@@ -39,12 +40,7 @@ def fields_of(text: str, source: str = "model file") -> dict[str, Any]:
 
 def read_fields(path: str | Path) -> dict[str, Any]:
     """The fields of a model file."""
-    try:
-        raw = Path(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"model file {shown(str(path))} cannot be read: {error.strerror}") from None
-    if len(raw) > 1_000_000:
-        raise InputError(f"model file {shown(str(path))} has {len(raw)} bytes: at most 1000000 are accepted")
+    raw = read_bounded(path, "model file")
     try:
         return fields_of(raw.decode("utf-8"), f"model file {shown(str(path))}")
     except UnicodeDecodeError:

@@ -194,8 +194,9 @@ def _parameters(given: Mapping[str, Any]) -> dict[str, Expression]:
     if not isinstance(given, Mapping):
         raise refuse("parameters", given, "a mapping from names to numbers, such as {'omega': 1.7}")
     for name in given:
-        if not isinstance(name, str) or not name.isidentifier() or name in RESERVED:
-            raise refuse("parameter name", name, f"a plain name other than {', '.join(sorted(RESERVED))}")
+        if not isinstance(name, str) or not (name.isidentifier() and name.isascii()) or name in RESERVED:
+            letters = f"a name of letters a to z, digits and _ other than {', '.join(sorted(RESERVED))}"
+            raise refuse("parameter name", name, letters)
     return {name: constant(name, value) for name, value in given.items()}
 
 

@@ -10,7 +10,15 @@ import numpy as np
 from singimpact.dynamics.basins import Basins
 from singimpact.scenes.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
 
-FIXED = {"not decided": "#F2F2F2", "never returns": "#FFFFFF", "chaotic": "#C9C9C9", "rest": BLACK}
+FIXED = {
+    "not decided": "#F2F2F2",
+    "sensitive": "#E6E6E6",
+    "unresolved": "#FAFAFA",
+    "never returns": "#FFFFFF",
+    "no impact": "#FFFFFF",
+    "chaotic": "#C9C9C9",
+    "rest": BLACK,
+}
 CHATTERED = (BLACK, "#3D3D3D", "#6B6B6B")  # chatter for ever, of one lift-off or another
 ORBITS = (ORANGE, BLUE, SKY, VERMILLION, GREEN, PURPLE, "#F0E442", "#8C8C8C")  # neighbours differ in lightness
 

@@ -77,6 +77,7 @@ class _Drawn:
         self.branch, self.shown = branch, shown
         heights = self._heights()
         classes = np.where(branch.visible, np.where(branch.stable, "stable", "unstable"), "virtual")
+        classes[branch.at_event] = ""
         self.events: list[tuple[Event, Array]] = []
         number, rows, kinds = branch.parameter.tolist(), list(heights), classes.tolist()
         for event in sorted(branch.events, key=lambda event: event.index, reverse=True):

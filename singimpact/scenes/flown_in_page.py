@@ -15,14 +15,20 @@ from singimpact.algebra.numbers import as_float
 from singimpact.codegen import radii
 from singimpact.codegen.javascript import formula, translated
 from singimpact.codegen.scalar import scalar
+from singimpact.flights.horizons import horizon_of
 from singimpact.flights.kernels import roots, steps, taylor
 from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.model_numbers import horizon_of, numbers_of_flow, recurrence_of
+from singimpact.flights.model_numbers import numbers_of_flow, recurrence_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.rebound import rho_of
 
 KERNELS = (radii, roots, steps, taylor)
-BOUND = {"step_size": "step_size_of_discs", "singular_part": "singular_part_of_discs", "restart": "state_kept"}
+BOUND = {
+    "step_size": "step_size_of_discs",
+    "singular_part": "singular_part_of_discs",
+    "restart": "state_kept",
+    "quiet": "quiet_in_steps",
+}
 """What `flights.bind` puts in the places of functions of linear models."""
 GIVEN = "given"
 USED = ("coefficients", "taylor_flight", "follow", "rebound", "constants_of", "law_of")

@@ -18,6 +18,7 @@ from singimpact.oscillator.files import FIELDS, read_fields
 from singimpact.oscillator.model import Oscillator
 from singimpact.scenes.layer_data import Results
 from singimpact.scenes.layers import LAYERS
+from singimpact.store import read_bounded
 from singimpact.surface.curve import STATES, SURFACE, window_ends
 
 DPI = 100
@@ -274,9 +275,9 @@ def _inside(points: Any, box: Any) -> bool:
 
 def _toml(path: str | Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"), parse_float=str)
-    except OSError as error:
-        raise InputError(f"scene file {shown(str(path))} cannot be read: {error.strerror}") from None
+        return tomllib.loads(read_bounded(path, "scene file").decode("utf-8"), parse_float=str)
+    except InputError:  # a ValueError too
+        raise
     except (ValueError, RecursionError) as error:  # an integer of 5000 digits is a plain ValueError
         raise InputError(f"scene file {shown(str(path))} is not TOML: {' '.join(str(error).split())}") from None
 

@@ -82,6 +82,9 @@ MARKS = {
     "fold": "o",
     "period-doubling": "s",
     "torus": "D",
+    "pitchfork": "P",
+    "transcritical": "X",
+    "branch point": "*",
     "graze": "^",
     "hidden impact": "v",
 }

@@ -138,6 +138,8 @@ def test_a_doubled_branch_meets_the_one_that_it_left() -> None:
     assert "the (1, 1) orbits at their doubling" in note
     assert float(note.rpartition(" ")[2]) == pytest.approx(doubling.parameter, abs=1e-3)
     assert kinds(found).count("fold") == 2  # none where it meets them
+    (pitchfork,) = (event for event in found.events if event.kind == "pitchfork")
+    assert pitchfork.parameter == pytest.approx(doubling.parameter, rel=1e-12)
 
 
 @pytest.mark.slow
@@ -162,7 +164,9 @@ def test_multipliers_are_those_of_the_map() -> None:
     osc = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "-0.3", "0.6")
     for orbit in osc.periodic(1, 1, start=(2.12, 1.17)):
         slope = osc.derivative(orbit.tau[0], orbit.v[0]).matrix
-        assert np.sort_complex(orbit.multipliers) == pytest.approx(np.sort_complex(np.linalg.eigvals(slope)), abs=1e-9)
+        found, truth = (sorted(each, key=lambda mu: (mu.imag, mu.real)) for each in
+                        (orbit.multipliers, np.linalg.eigvals(slope)))  # fmt: skip
+        assert found == pytest.approx(truth, abs=1e-9)
 
 
 def test_a_hidden_impact_and_the_orbit_with_one_impact_more() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from second_program import copied, is_read_back, no_number_may_change, refuses, renewed, weakened
+from second_program import copied, dropped, is_read_back, no_number_may_change, refuses, renewed
 
 import singimpact as si
 from singimpact.certificates import checker
@@ -55,7 +55,8 @@ def test_values_beside_it_are_refused(made):
 
 @pytest.mark.parametrize(
     ("name", "value", "why"),
-    [("completes", "below", "at the ends"), ("completes", "beside", "above or below"), ("impacts", "0", "a_c < 0"),
+    [("completes", "below", "at the ends"), ("completes", "beside", "is not above or below"),
+     ("impacts", "0", "1 to 10000"),
      ("release", "2.0", "a_c is not shown to rise"), ("end", "4.1", "a_c is not shown to rise"),
      ("over", "restitution", "is not understood")],
 )  # fmt: skip
@@ -70,12 +71,12 @@ def test_another_model_is_refused(made):
         refuses(other)
 
 
-def test_the_second_program_needs_both_ends(made):
+def test_the_second_program_needs_both_ends(made, monkeypatch):
     other = copied(made.content)
     other["completes"] = "below"
-    weak = weakened("border_orbit", "if ends != wanted:", "if False:")
-    weak(checker.files.Model(other["model"]), other, 160)  # the check that was taken out is the one that refuses it
     refuses(other)
+    dropped(monkeypatch, "fates")  # the condition that refuses it
+    checker.check(renewed(other))
 
 
 def test_what_is_not_certified_has_no_certificate(orbit):

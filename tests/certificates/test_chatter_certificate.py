@@ -55,7 +55,7 @@ def test_any_changed_number_is_refused(name, made):
 
 @pytest.mark.parametrize(("name", "other"), [("duffing", "lift-off"), ("lift-off", "accumulation"), ("duffing", "x")])
 def test_another_end_is_refused(name, other, made):
-    refuses({**made[name].content, "ends": other}, "ends in")
+    refuses({**made[name].content, "ends": other}, "ends in|ends is not accumulation or lift-off")
 
 
 def test_a_radius_that_is_too_small_is_refused(made):

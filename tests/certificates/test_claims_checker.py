@@ -65,6 +65,7 @@ def test_a_file_says_what_its_claim_is(folder):
 
 def test_a_changed_file_is_refused(folder, tmp_path):
     told = json.loads((folder / "e_acc.json").read_text(encoding="utf-8"))
+    (tmp_path / "e_yeq.json").write_text((folder / "e_yeq.json").read_text(encoding="utf-8"))  # it rests on that
     damaged = changed(told, ("certificates", 0, "order"), bumped)
     (tmp_path / "one.json").write_text(json.dumps(damaged))
     renewed = damaged | {"digest": claims_checker.digest_of(damaged)}
@@ -125,11 +126,75 @@ def test_the_two_checkers_agree_on_damaged_certificates(folder):
     assert both > 5
 
 
+def test_the_list_has_the_words_of_each_claim(folder):
+    stated = json.loads(claims_checker.STATED.read_text(encoding="utf-8"))["claims"]
+    for path in folder.iterdir():
+        told = json.loads(path.read_text(encoding="utf-8"))
+        assert stated[told["id"]] == claims_checker.statement_of(told)
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"printed": "1=2"}, "are not those of the list"),
+        ({"title": "1 is 2"}, "are not those of the list"),
+        ({"verdict": "supported", "effective": "supported"}, "are not those of the list"),
+        ({"id": "one-is-two"}, "is no claim of the list"),
+        ({"corrected": "1=2"}, "does not go with the verdict"),
+        ({"proves": "anything"}, "is unknown"),
+        ({"rests_on": {}, "certificates": []}, "without a certificate and without other files"),
+        ({"rests_on": {"e:yeq": "0" * 64}}, "is another one"),
+        ({"rests_on": {"e:none": "0" * 64}}, "No such file"),
+        ({"rests_on": {"../e:yeq": "0" * 64}}, "is no claim"),
+    ],
+)
+def test_words_that_are_not_those_of_the_claim_are_refused(changes, why, folder, tmp_path):
+    """With a digest made anew, and the file that it rests on beside it."""
+    told = json.loads((folder / "e_acc.json").read_text(encoding="utf-8")) | changes
+    (tmp_path / "e_yeq.json").write_text((folder / "e_yeq.json").read_text(encoding="utf-8"))
+    (tmp_path / "e_acc.json").write_text(json.dumps(told | {"digest": claims_checker.digest_of(told)}))
+    assert judged(tmp_path / "e_yeq.json").returncode == 0
+    done = judged(tmp_path / "e_acc.json", tmp_path / "e_yeq.json")
+    assert done.returncode == 1
+    assert why in done.stdout.splitlines()[0]
+    assert "refused" not in done.stdout.splitlines()[1]
+
+
+@pytest.mark.parametrize("text", ["[]", "null", "[" * 5000 + "]" * 5000, '{"schema": NaN}', "\xff", "9" * 10**5])
+def test_what_is_no_claim_is_refused_in_one_line(text, tmp_path):
+    (tmp_path / "claim.json").write_text(text, encoding="latin-1")
+    done = judged(tmp_path / "claim.json")
+    assert (done.returncode, done.stderr, done.stdout.count("\n")) == (1, "", 1)
+
+
+ONE, X, TWO_X = [[[0], 1]], [[[1], 1]], [[[1], 2]]
+
+
+@pytest.mark.parametrize(
+    "certificate",
+    [
+        {"kind": "identity", "variables": ["x"], "left": [TWO_X, [[[0], 2]]], "right": [X, ONE], "relation": None,
+         "says": "(2*x)/(2) = x"},
+        {"kind": "composed", "variables": ["x"], "weights": [0], "order": None, "relation": None,
+         "left": {"outer": [TWO_X, [[[0], 2]]], "images": [[0, [X, ONE]]]}, "right": {"outer": [X, ONE], "images": []},
+         "says": "[(2*x)/(2) at x = x] = x"},
+        {"kind": "count", "variables": ["x", "y"], "chain": [[-1, 0, 1], [0, 1], [1]], "first": "2",
+         "steps": [[[0, 1], "1"], [[0, 1], "1"]], "low": "-2", "high": "2", "roots": 0,
+         "says": "x**2 - 1 has 0 real roots in (-2, 2)"},
+    ],
+)  # fmt: skip
+def test_a_statement_that_says_nothing_is_refused(certificate):
+    with pytest.raises(claims_checker.Refused, match=r"X = X|one variable"):
+        claims_checker.check_certificate(certificate)
+
+
 def test_the_program_stands_alone():
-    tree = ast.parse(PROGRAM.read_text(encoding="utf-8"))
-    named = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    named |= {name.name for node in ast.walk(tree) if isinstance(node, ast.Import) for name in node.names}
-    assert {name.partition(".")[0] for name in named} <= set(sys.stdlib_module_names) | {"flint"}
+    beside = PROGRAM.with_name("claims_proofs.py")
+    nodes = [node for path in (PROGRAM, beside) for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    named = {node.module for node in nodes if isinstance(node, ast.ImportFrom)}
+    named |= {name.name for node in nodes if isinstance(node, ast.Import) for name in node.names}
+    assert {name.partition(".")[0] for name in named} <= set(sys.stdlib_module_names) | {"flint", "claims_proofs"}
+    assert all(node.level < 2 for node in nodes if isinstance(node, ast.ImportFrom))
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):

@@ -16,6 +16,16 @@ TORN = ["--omega", "2.8", "--clearance", "0.1", "--restitution", "0.8", "--ampli
 GRAZE = np.hypot(1 - 0.64, 0.08)  # COCO, Recipes 15.2
 
 
+def test_a_pitchfork_is_listed_and_has_no_certificate(singimpact):
+    model = ["--omega", "4.83", "--clearance", "0.36", "--restitution", "0.34", "--orbit", "2", "2"]
+    done = singimpact("branch", *model, "--over", "clearance", "--from", "0.35", "--to", "0.4")
+    assert done.exit_code == 0
+    assert "pitchfork  0.375082663467" in done.output
+    refused = singimpact("certify", *model, "--event", "pitchfork", "clearance", "0.35", "0.4")
+    assert refused.exit_code != 0
+    assert "no proof covers a pitchfork" in refused.output
+
+
 def test_branch(singimpact, tmp_path):
     given = ["branch", *COCO, "--over", "amplitude", "--from", "-0.6", "--to", "-0.2"]
     done = singimpact(*given, "--json", "--csv", tmp_path / "b.csv", "-o", tmp_path / "b.png")

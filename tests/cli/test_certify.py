@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from singimpact.certificates.checker.event import KINDS
+from singimpact.certificates.checker import KINDS
 from singimpact.cli.certify import EVENTS
 
 MODEL = ["--omega", "2.8", "--clearance", "0.1", "--restitution", "0.8"]
@@ -100,4 +100,4 @@ def test_an_event_is_of_an_orbit(singimpact):
 
 
 def test_the_commands_kinds_are_those_of_the_checker():
-    assert EVENTS == KINDS
+    assert EVENTS[: len(KINDS)] == KINDS  # those after them are refused in a sentence

@@ -1,10 +1,13 @@
 """`singimpact derive --order`: series as text that runs by itself."""
 
 import json
+import runpy
 import shutil
 
+import mpmath
 import numpy as np
 import pytest
+import sympy
 from click.testing import CliRunner
 
 import singimpact as si
@@ -37,9 +40,12 @@ SERIES = ["v_c_generic", "fibre", "chatter_limit", "v_c_tangency", "gamma_tangen
 
 
 def test_sympy_for_symbols():
-    lines = told("--format", "sympy", "--order", "3").splitlines()
+    text = told("--format", "sympy", "--order", "3")
+    lines = [line for line in text.splitlines() if " = " in line and " = Symbol(" not in line]
     assert [line.split(" = ")[0] for line in lines] == SERIES
-    assert "gamma_tangency = -a_d1*sigma**2*(lambda - 1)*(lambda + 2)/6" in " ".join(lines).replace(" + sigma**3", " ")
+    assert "gamma_tangency = -a_d1*sigma**2*(lambda_ - 1)*(lambda_ + 2)/6" in " ".join(lines).replace(
+        " + sigma**3", " "
+    )
 
 
 def test_json_for_symbols_and_for_a_model(model_file):
@@ -126,7 +132,47 @@ def test_numpy_for_symbols_and_a_file(tmp_path):
     assert "def gamma_swan(sigma: Any, lambda_: Any" in text
     exec(text, {})
     told("--format", "sympy", "--order", "3", "-o", str(tmp_path / "out"))
-    assert (tmp_path / "out" / "series_sympy.py").read_text().startswith("v_c_generic = ")
+    assert "\nv_c_generic = " in (tmp_path / "out" / "series_sympy.py").read_text()
+
+
+@pytest.mark.parametrize("of_model", [False, True])
+def test_files_in_python_are_imported(of_model, tmp_path, model_file, monkeypatch):
+    given = ["--order", "4", *(["--model", model_file] if of_model else [])]
+    monkeypatch.syspath_prepend(tmp_path)
+    for form in ("sympy", "numpy"):
+        told("--format", form, *given, "-o", str(tmp_path))
+        place = tmp_path / f"series_{form}.py"
+        scope = runpy.run_path(str(place))
+        assert set(scope) >= {name for name in SERIES if name.endswith("tangency")}
+    # every number is exact: no double is among those of the series with symbols
+    if not of_model:
+        scope = runpy.run_path(str(tmp_path / "series_sympy.py"))
+        sigma, r = sympy.Symbol("sigma"), sympy.Symbol("lambda")
+        gamma = scope["gamma_tangency"]
+        assert not any(scope[name].has(sympy.Float) for name in SERIES)
+        expected = -sympy.Symbol("a_d1") * (r - 1) * (r + 2) / 6
+        assert sympy.expand(gamma.coeff(sigma, 2) - expected) == 0
+
+
+def test_files_keep_thirty_digits(tmp_path, model_file):
+    """x'' + x = cos 2t, c = 0.3, r = 1/2: lambda^2 (lambda + 2) = r (1 + 2 lambda), gamma = a' (1 - l)(l + 2)/6 s^2."""
+    for form in ("sympy", "numpy"):
+        told("--format", form, "--order", "4", "--model", model_file, "-o", str(tmp_path))
+    numbers = runpy.run_path(str(tmp_path / "series_numpy.py"))
+    symbols = runpy.run_path(str(tmp_path / "series_sympy.py"))
+    with mpmath.workdps(40):
+        r = mpmath.findroot(lambda r: r**2 * (r + 2) - (1 + 2 * r) / 2, 0.66)
+        slope = 2 * mpmath.sqrt(1 - mpmath.mpf("0.3") ** 2)  # a' = -2 sin 2 tau_*, cos 2 tau_* = 0.3
+        small = mpmath.mpf(10) ** -15
+        for truth, name, power in ((r, "motion_tangency", 1), (slope * (1 - r) * (r + 2) / 6, "gamma_tangency", 2)):
+            near, far = (numbers[name](each) / each**power for each in (small, -small))
+            # the mean has no term of odd order: what is left of the series is 1e-30
+            assert abs((near + far) / 2 / truth - 1) < 1e-28
+            coefficient = symbols[name].coeff(sympy.Symbol("sigma"), power)
+            assert abs(mpmath.mpf(str(coefficient)) / truth - 1) < 1e-28
+        both = numbers["v_c_tangency"](small, -2 * small), numbers["v_c_tangency"](-small, 2 * small)
+        # v_c = -a' (sigma/2 + t/6) t + O(3), odd orders cancel in the mean
+        assert abs((both[0] + both[1]) / 2 / (slope * small**2 / 3) - 1) < 1e-28
 
 
 @pytest.mark.parametrize(

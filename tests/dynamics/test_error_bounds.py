@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.attractors import CHATTER, OTHER
 from singimpact.dynamics.chatter import ENDING, _Flown
 from singimpact.dynamics.remaining import _coefficients, remaining
 from singimpact.flights.states import States
@@ -40,12 +39,12 @@ def test_the_error_of_a_threshold_holds_the_rounding_of_the_phase(turns):
 
 def test_slow_states_that_are_not_pressed_do_not_chatter():
     """At rest speed with a_c > 0 a mass lifts off: it is not in complete chatter."""
-    from singimpact.dynamics.basins import SETTINGS, _chattering
+    from singimpact.dynamics.settling import SETTINGS, Study, chattering
 
     model = si.ImpactOscillator("x", "cos(2*t)", "0.3", "1/2")
     slow = SETTINGS.rest / 2
-    codes = _chattering(model, np.array([0.1, 1.5]), np.array([slow, slow]), 1.0)
-    assert codes.tolist() == [OTHER, CHATTER]
+    rests = chattering(Study(model, (), 1.0, 100), np.array([0.1, 1.5]), np.array([slow, slow]))
+    assert rests.tolist() == [False, True]
 
 
 def test_a_chatter_is_summed_up_only_where_the_last_term_is_below_rounding():

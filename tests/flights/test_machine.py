@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
 import threading
-from threading import Timer
+import time
+from collections import Counter
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,10 +19,11 @@ import pytest
 import singimpact as si
 from singimpact import store
 from singimpact.codegen import object_code
-from singimpact.flights import interruptible, machine
+from singimpact.flights import bind, compiler_process, interruptible, machine
 from singimpact.flights.bind import LAW, MODULES, Emitted, constants
-from singimpact.flights.compiled_model import Allowance, CompiledModel, compiled_model
+from singimpact.flights.compiled_model import CompiledModel, compiled_model
 from singimpact.flights.counted import counted
+from singimpact.flights.horizons import Allowance
 from singimpact.flights.kernels import entries
 
 MODELS = {
@@ -187,28 +192,161 @@ def test_one_state_with_a_law_of_its_own_is_flown_once(compiled):
 @pytest.mark.usefixtures("compiled")
 def test_the_entry_that_is_waited_for_is_compiled_next(tmp_path):
     request = tmp_path / "text.asked"
-    order = machine._first_wanted(request, ("one", "two", "three", "four"))
+    order = compiler_process.first_wanted(request, ("one", "two", "three", "four"))
     assert next(order) == "one"
     request.with_suffix(machine.FIRST).write_text("four")
     assert next(order) == "four"
     assert list(order) == ["two", "three"]
 
 
-def test_an_entry_is_waited_for_while_another_process_compiles_it(tmp_path, monkeypatch, compiled):
-    flown = compiled_model(compiled["linear"])
-    kept = tmp_path / "kept"
-    kept.write_bytes(flown.machine.place("linear_entry").read_bytes())
+HOLDER = """
+import os, sys
+from pathlib import Path
+from singimpact.file_lock import FileLock
+lock = FileLock(Path(sys.argv[1]))
+assert lock.take(sys.argv[2])
+print("holds", flush=True)
+sys.stdin.readline()
+os.link(*sys.argv[3:])
+sys.stdin.readline()
+"""
+
+
+@pytest.fixture(scope="module")
+def whole_entry(compiled):
+    return compiled_model(compiled["linear"]).machine.place("linear_entry").read_bytes()
+
+
+@pytest.fixture
+def other(tmp_path, monkeypatch, compiled, whole_entry):  # noqa: ARG001
+    """A machine without entries, in a cache of its own; in this process nothing compiles."""
+    emitted = compiled_model(compiled["linear"]).machine.emitted
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path / "cache"))
-    other = machine.Machine(flown.machine.emitted)
+    monkeypatch.setattr(machine, "_STARTED", {})
+    monkeypatch.setattr(object_code, "emitted", lambda *_: pytest.fail("compiled here"))
+    other = machine.Machine(emitted)
+    store.folder(other.place("linear_entry").parent)
+    return other
+
+
+@pytest.fixture
+def holder(whole_entry, other, tmp_path):
+    """Another process that holds the lock, which writes the entry when it hears a line."""
+    kept = tmp_path / "kept"
+    kept.write_bytes(whole_entry)
     place = other.place("linear_entry")
-    store.folder(place.parent)
-    other._request.write_text("")
-    keeps = f"import os, time; time.sleep(0.5); os.link({str(kept)!r}, {str(place)!r})"
-    child = subprocess.Popen([sys.executable, "-c", keeps])
-    monkeypatch.setattr(machine, "_STARTED", [child])
-    monkeypatch.setattr(object_code, "emitted", None)  # compiling here would fail
+    arguments = [other.lock_of_cache.path, other._request.name, kept, place]
+    child = subprocess.Popen(
+        [sys.executable, "-c", HOLDER, *map(str, arguments)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    assert child.stdout.readline() == "holds\n"
+    yield child
+    child.kill()
+    child.communicate()
+
+
+def while_waiting(monkeypatch, event):
+    """Something happens once a machine waits."""
+    happens = iter([event])
+
+    class Line(machine.ProgressLine):
+        def show(self, *_):
+            next(happens, lambda: None)()
+
+    monkeypatch.setattr(machine, "ProgressLine", Line)
+
+
+def test_an_entry_is_waited_for_while_another_process_compiles_it(other, holder, monkeypatch, capsys):
+    monkeypatch.setattr(machine, "SETTINGS", replace(machine.SETTINGS, silent=(0.0, 0.0)))
+    while_waiting(monkeypatch, lambda: (holder.stdin.write("\n"), holder.stdin.flush()))
     assert other.compile_here("linear_entry")
-    child.wait()
+    assert "waiting for a process that compiles the model's flights" in capsys.readouterr().err
+
+
+def test_the_death_of_a_process_that_compiles_is_noticed(other, holder, monkeypatch):
+    while_waiting(monkeypatch, lambda: (holder.kill(), holder.wait()))
+    assert other.awaited("linear_entry") is None
+    assert other.lock_of_cache.holder() is None
+
+
+def test_a_request_of_a_dead_process_is_not_waited_for(other, monkeypatch):
+    """Whatever its age: a clock may jump, and file systems have clocks of their own."""
+    other._request.write_text("")
+    ended = SimpleNamespace(poll=lambda: 1, returncode=1)
+    starts = []
+    monkeypatch.setattr(machine, "_outliving", lambda *_, **__: starts.append(1) or ended)
+    monkeypatch.setattr(machine.time, "sleep", lambda _: pytest.fail("waits"))
+    for age in (-1e7, 0, 1e7):
+        os.utime(other._request, (time.time() - age,) * 2)
+        assert machine.Machine(other.emitted).awaited("linear_entry") is None
+    assert len(starts) == 3
+
+
+def refused(*_, **__):
+    raise BlockingIOError(11, "Resource temporarily unavailable")
+
+
+@pytest.mark.parametrize(
+    ("thing", "name", "value"), [(subprocess, "Popen", refused), (sys, "executable", ""), (sys, "executable", None)]
+)
+def test_where_no_process_can_be_started_flights_are_interpreted(thing, name, value, other, monkeypatch, capsys):
+    machine._not_started.cache_clear()
+    monkeypatch.setattr(thing, name, value)
+    other.interpreted(1.0, "linear_entry")
+    assert other.awaited("linear_entry") is None
+    folder = other.place("linear_entry").parent
+    assert [path.name for path in folder.iterdir() if not path.name.endswith(".lock")] == []
+    line = capsys.readouterr().err
+    assert line.count("\n") == 1
+    assert "no process can be started that compiles the model's flights" in line
+
+
+def test_flights_go_on_interpreted_where_the_process_that_compiles_is_killed(other, monkeypatch):
+    """As where memory is short: compiling here would end this process."""
+    killed = SimpleNamespace(poll=lambda: -9, returncode=-9)
+    monkeypatch.setattr(machine, "_outliving", lambda *_, **__: killed)
+    flown = CompiledModel(MODELS["linear"], compiled_model(MODELS["linear"]).allowance)
+    flown.machine, other.spent = other, 1e9
+    rows, _ = flown.segment(0.3, 0.7, 20)
+    want, _ = compiled_model(MODELS["linear"]).segment(0.3, 0.7, 20)
+    assert np.allclose(rows[:, :5], want[:, :5], rtol=1e-9)
+    assert other.is_killed()
+
+
+@pytest.fixture
+def compiling(other):
+    """A process that compiles, and holds the lock."""
+    other._request.write_text("\0\0")
+    process = machine._outliving(other._request, quick=False)
+    lock = other.lock_of_cache
+    while lock.holder() != other._request.name:
+        assert process.poll() is None
+        time.sleep(0.01)
+    yield process
+    process.kill()
+    process.wait()
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL, None])
+def test_a_process_that_compiles_ends_early(number, other, compiling):
+    """At a signal, and when its request is gone; nobody has to wait for it then."""
+    if number is None:
+        other._request.unlink()
+    else:
+        compiling.send_signal(number)
+    assert compiling.wait(timeout=60) == {None: 0, signal.SIGKILL: -9}.get(number, 128 + int(number or 0))
+    assert other.lock_of_cache.holder() is None
+    left = {path.suffix for path in other._request.parent.iterdir()}
+    assert left <= ({".lock", ".asked"} if number == signal.SIGKILL else {".lock"})
+
+
+def test_of_two_processes_that_compile_one_ends_at_once(other, compiling):
+    second = subprocess.run(
+        [sys.executable, "-m", "singimpact.flights.compiler_process", str(other._request)], check=False
+    )
+    assert second.returncode == machine.BUSY
+    assert compiling.poll() is None
+    assert other._request.exists()
 
 
 def test_linear_models_share_their_machine():
@@ -317,18 +455,88 @@ def test_damaged_object_code_is_named_and_not_run(tmp_path, monkeypatch, capsys)
     assert str(place) in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("stub", ["empty", "another entry", "no function", "cut"])
+def test_a_sealed_entry_that_is_not_the_one_is_never_called(stub, other, whole_entry, capsys):
+    """An address of 0 would be called, and end the process."""
+    import llvmlite.binding as llvm
+
+    place = other.place("linear_entry")
+    code = machine.cache.unsealed(place, whole_entry)
+    if stub == "another entry":
+        machine.cache.keep(other.place("batch_entry"), code)
+        os.rename(other.place("batch_entry"), place)
+    elif stub == "no function":
+        text = f'target triple = "{llvm.get_process_triple()}"\ndefine i64 @other() {{ ret i64 1 }}'
+        machine.cache.keep(place, object_code._machine().emit_object(llvm.parse_assembly(text)))
+    else:
+        machine.cache.keep(place, {"empty": b"", "cut": code[:40]}[stub])
+    assert other.entry("linear_entry") is None
+    assert str(place) in capsys.readouterr().err
+    assert not place.exists()
+    machine.cache.keep(place, code)
+    other._looked.clear()
+    assert other.entry("linear_entry") is not None
+
+
+def test_the_name_of_an_entry_depends_on_the_settings_of_the_compiler(monkeypatch):
+    def name():
+        machine._digest_of_sources.cache_clear()
+        return machine.Machine(Emitted()).digest
+
+    try:
+        before = name()
+        monkeypatch.setenv("NUMBA_NUM_THREADS", "1")  # changes no code
+        assert name() == before
+        monkeypatch.setenv("NUMBA_CPU_NAME", "generic")
+        assert name() != before
+    finally:
+        monkeypatch.undo()
+        machine._digest_of_sources.cache_clear()
+
+
+def test_a_text_has_one_object_code_whatever_level_numba_is_set_to(monkeypatch):
+    """In the process that compiles, and in one that compiles by itself."""
+    import numba
+
+    emitted = compiled_model(MODELS["a law"]).law.machine.emitted
+    texts = []
+    for level in (0, 3):
+        monkeypatch.setattr(numba.config, "OPT", type(numba.config.OPT)(level))
+        text = bind.Compiler(emitted).text(LAW)
+        assert level == numba.config.OPT
+        texts.append(Counter(re.findall(r"(?m)^ +(?:%\S+ = )?(\w+)", text)))  # instructions, without names
+    assert texts[0] == texts[1]
+
+
 def test_the_kinds_of_work_are_told_apart():
     kinds = (entries.PREPARE, entries.PREPARE_BATCH, entries.HITS, entries.SEGMENT, entries.ITERATE,
              entries.VARIATIONS, entries.FOLLOW, entries.JUDGE, entries.RELEASES)  # fmt: skip
     assert len(set(kinds)) == len(kinds)
 
 
-def test_long_calls_hear_an_interruption(compiled):
+def test_long_calls_hear_an_interruption(compiled, monkeypatch):
+    """Ctrl-C comes when another thread makes the call, and the main one waits for it."""
     osc = compiled["duffing"]
     osc.iterate(0.3, 0.5, 100)
-    Timer(0.05, os.kill, (os.getpid(), signal.SIGINT)).start()
+    begun = threading.Event()
+
+    def interrupts():
+        begun.wait()
+        os.kill(os.getpid(), signal.SIGINT)
+
+    class Watched(threading.Thread):
+        def start(self):
+            super().start()
+            begun.set()
+
+    monkeypatch.setattr(interruptible, "Thread", Watched)
+    compiled_model(osc)._seconds.clear()  # the call is expected to be long, however fast the last ones were
+    monkeypatch.setattr(compiled_model(osc), "_guess", 1.0)
+    interrupting = threading.Thread(target=interrupts)
+    interrupting.start()
     with pytest.raises(KeyboardInterrupt):
         osc.iterate(0.3, 0.5, 1_000_000)
+    interrupting.join()
     late = [thread for thread in threading.enumerate() if thread.name == interruptible.NAME]
     assert late  # the call itself has not ended
     for thread in late:

@@ -16,6 +16,7 @@ from functools import partial
 from itertools import count
 from pathlib import Path
 
+from singimpact.bench import first_commands
 from singimpact.bench.drawn import CLEARANCES, OMEGAS
 from singimpact.bench.fresh import CHILDREN, Cost, cost
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Timed, with_peers
@@ -86,6 +87,17 @@ def cases(effort: Effort) -> Iterator[Case]:
         for family in MODELS:
             yield _new_folder(family, place)
         yield _warm(effort, str(Path(place) / "kept"))
+    if not effort.quick:
+        yield _first_commands()
+
+
+def _first_commands() -> Case:
+    """A user's first commands with all their descendants, each in a new cache folder."""
+    rows = first_commands.measured()
+    own = [_known(f"singimpact, {row.name}", "CPU with descendants", row.seconds) for row in rows[1:]]
+    peer = _known("reference computation", "a loop of Python and numpy", rows[0].seconds)
+    notes = [f"{row.name}: {row.ratio:.2f} times the reference, {row.stored:.2f} stored." for row in rows[1:]]
+    return Case("first commands", [*own, peer], notes=notes)
 
 
 def _new_folder(family: str, place: str) -> Case:

@@ -1,50 +1,42 @@
-"""Pixels of basins of one model, followed impact by impact with `osc.impact_map`."""
+"""Pixels of basins of one model, each followed by itself with `bench.truth.plain_orbits`.
+
+Truth: one orbit of fixed-step flights, chatter summed from such impacts, lift-offs by bisection of a_c. Shared with the
+package: f, g, rho as expression trees, the period, and the horizon after which a flight counts as one without impact.
+"""
 
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from math import ceil, log
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
 from singimpact.bench.selftest.draws import Flown
+from singimpact.bench.selftest.fates import FOLLOWED, Fate, Follower
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.dynamics import basins
-from singimpact.impact_oscillator import ImpactOscillator
+from singimpact.flights.horizons import horizon_of
 from singimpact.inputs import InputError
-from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
-OTHER, CHATTER, PLACES = 0, 1, 1000
 NAME = "pixels of basins"
+UNSETTLED = ("chaotic", "not decided")
 
 
 @dataclass(frozen=True)
 class PixelSettings:
-    """How many pixels, and how they are followed.
+    """How many pixels, and when one is decided."""
 
-    Parameters
-    ----------
-    size, followed : pixels a side of the basins, and how many of them are followed.
-    transient, most : impacts flown before an orbit is looked at, beyond those that chatter takes, and of all.
-    rest : an impact slower than this part of the fastest state, with a_c < 0, is handed to `chatter_limit`.
-    periods : most impacts of a periodic orbit that is told apart, as many as `basins` tells.
-    close : how near two states are that are the same, relative to the period and to the fastest state.
-    moved : relative change of the state, far above the tolerance 1e-10 of the flights of `basins`: where it moves the
-        orbit into another class, rounding explains the difference.
-    """
-
-    size: int = 8
-    followed: int = 16
-    transient: int = 120
-    most: int = 300
-    rest: float = 1e-7
-    periods: int = 8
-    close: float = 1e-4
-    moved: float = 1e-8
+    size: int = 8  # pixels a side
+    followed: int = 16  # of them
+    impacts: int = 3000  # of an orbit, in `basins` and here; the default of `basins` takes a minute here
+    # relative changes of a state, far above the tolerance 1e-10 of the flights of `basins`: where one moves the orbit
+    # into another class, rounding explains the difference
+    moved: tuple[float, ...] = (-1e-8, -3e-9, 3e-9, 1e-8)
+    transient: int = 200  # an orbit that settles sooner is no long transient, whatever its neighbours do
+    same: float = 1e-3  # relative distance of states of one attractor
+    longer: int = 20_000  # impacts of an orbit that has settled in `basins` and not here
 
 
 PIXELS = PixelSettings()
@@ -57,90 +49,116 @@ def row(flown: Flown) -> Row:
         return Row(NAME, note="does not apply: g has no period")
     tally = Tally(NAME)
     try:
+        follower = Follower(flown.plain, fast, PIXELS.impacts, horizon_of(osc, None))
         with ThreadPoolExecutor(1) as pool:
-            found = basins.basins(osc, None, (0, fast), PIXELS.size, pool)
-    except InputError as reason:
+            answer = basins.basins(osc, None, (0, fast), PIXELS.size, pool, None, PIXELS.impacts)
+    except (InputError, TypeError) as reason:
         return Row(NAME, note=f"does not apply: {reason}")
     tally.restart()
-    tau, v = (part.ravel() for part in np.meshgrid(found.tau, found.v))
+    tau, v = (axis.ravel() for axis in np.meshgrid(answer.tau, answer.v))
     places = np.unique(np.linspace(0, tau.size - 1, PIXELS.followed).astype(int))
-    tau, v, codes = tau[places], v[places], _seen_first(found).ravel()[places]
-    classes = followed(osc, tau, v, fast, tally)
-    for index, (code, seen) in enumerate(zip(codes.tolist(), classes.tolist(), strict=True)):
-        told = f"basins from tau {float(tau[index])!r}, v {float(v[index])!r}: {_name(code)}"
-        told += f", followed {_name(seen)}"
-        if code == seen == OTHER:
-            tally.leave("settles on no orbit of few impacts")
-        elif code == seen:
-            tally.judge(0.0, told)
-        elif OTHER in (code, seen) or _multiple(code, seen):
-            tally.leave("settles slowly")
-        elif _moves(osc, (tau[index], v[index]), fast, code, tally):
-            tally.leave("rounding moves it to another class")
-        else:
-            tally.judge(np.inf, told)
+    first = answer.first_chatter_completes.ravel()
+    for done, at in enumerate(places.tolist()):
+        if tally.late:
+            tally.leave("CPU time used up", places.size - done)
+            break
+        state = float(tau[at]), float(v[at])
+        answered = answer.attractors[answer.codes.ravel()[at]]
+        _pixel(follower, state, answered, bool(first[at]), tally)
     return tally.row()
 
 
-def _seen_first(found: basins.Basins) -> Array:
-    """For every pixel, what the orbit does first: its first chatter completes, or it settles on an orbit."""
-    orbits = [each.n * PLACES + each.k if each.kind == "orbit" else OTHER for each in found.attractors]
-    return np.where(found.first_chatter_completes, CHATTER, np.array(orbits, dtype=int)[found.codes])
+def _pixel(follower: Follower, state: tuple[float, float], answer: basins.LongRun, first: bool, tally: Tally) -> None:
+    """Judge one pixel, or leave it with a cause."""
+    call = f"basins from tau {state[0]!r}, v {state[1]!r}: {answer.name}, first chatter completes: {first}"
+    if answer.kind == "unresolved":
+        tally.leave("unresolved")
+        return
+    fate = follower.first(*state)
+    if fate.kind == "unsettled" and answer.kind not in (*UNSETTLED, "sensitive"):
+        fate = replace(follower, impacts=PIXELS.longer).first(*state)
+    call += f"; followed: {fate.name} after {fate.impacts} impacts"
+    if fate.kind == "undecided":
+        tally.leave("steps do not settle")
+    elif answer.kind == "sensitive":
+        _sensitive(follower, state, fate, call, tally)
+    elif answer.kind in UNSETTLED and not first and (open_ := _unsettled_beside(follower, state, fate)):
+        _unsettled(follower, answer, open_, call, tally)
+    elif _agrees(follower, answer, first, fate):
+        tally.judge(0.0, call)
+    elif cause := _explained(follower, state, answer, fate):
+        tally.leave(cause)
+    else:
+        tally.judge(np.inf, call)
 
 
-def _name(code: int) -> str:
-    return {OTHER: "none", CHATTER: "chatter"}.get(code, f"({code // PLACES}, {code % PLACES}) orbit")
+def _agrees(follower: Follower, answer: basins.LongRun, first: bool, fate: Fate) -> bool:
+    """Whether the first chatter, and what comes of the orbit for ever, are those of `basins`."""
+    if first != (fate.kind == "chatter"):
+        return False
+    last = follower.last(fate)
+    if answer.kind == "orbit" and last.kind == "orbit":
+        return (last.n, last.k) == (answer.n, answer.k) and _near(follower, answer, last)
+    if answer.kind == "chatter":
+        return last.kind == "chatter for ever" and last.k == answer.k
+    if answer.kind in ("no impact", "never returns"):
+        return last.kind == "no impact"
+    if answer.kind in UNSETTLED:  # after a chatter
+        return last.kind == "unsettled"
+    return answer.kind == last.kind == "rest"
 
 
-def _multiple(code: int, seen: int) -> bool:
-    """Whether one periodic orbit is the other one several times over: next to a period doubling they look alike."""
-    one, other = sorted((code, seen))
-    return one >= PLACES and other % one == 0
+def _near(follower: Follower, answer: basins.LongRun, fate: Fate) -> bool:
+    """Whether the last state is one of the attractor."""
+    period = follower.plain.period
+    assert period is not None
+    away = (fate.tau - answer.tau) / period
+    near = (np.abs(away - np.rint(away)) < PIXELS.same) & (np.abs(fate.v - answer.v) < PIXELS.same * follower.fast)
+    return bool(near.any())
 
 
-def _moves(osc: ImpactOscillator, state: tuple[float, float], fast: float, code: int, tally: Tally) -> bool:
-    """Whether a tiny change of a state moves its orbit to the class of `basins`."""
-    sides = PIXELS.moved * np.array([-1.0, -0.3, 0.3, 1.0])
-    tau, v = np.repeat(state[0] + sides, 4), np.tile(state[1] * (1 + sides), 4)
-    classes = followed(osc, tau, v, fast, tally)
-    return bool(np.any((classes == code) | (classes == OTHER)))
+def _explained(follower: Follower, state: tuple[float, float], answer: basins.LongRun, fate: Fate) -> str:
+    """Why a difference decides nothing; empty where nothing explains it."""
+    last = follower.last(fate)
+    if "undecided" in (last.kind, fate.kind):
+        return "steps do not settle"
+    if "orbit" == answer.kind == last.kind and last.n != answer.n and _near(follower, answer, last):
+        few, many = sorted(((last.n, last.k), (int(answer.n), answer.k)))
+        # an orbit that is another one several times over has equal states
+        apart = np.abs(np.subtract.outer(answer.v, answer.v))[np.triu_indices(int(answer.n), 1)]
+        doubled = answer.n < last.n or bool((apart > FOLLOWED.close * follower.fast).all())
+        if many[0] * few[1] == few[0] * many[1] and doubled:
+            return "settles slowly beside a period doubling"
+    if last.kind == "unsettled":
+        return "settles slowly"
+    fates = [follower.first(state[0] + part, state[1] * (1 + part)) for part in PIXELS.moved]
+    if any(follower.last(beside).name != last.name or beside.kind != fate.kind for beside in fates):
+        return "rounding moves it to another class"
+    return ""
 
 
-def followed(osc: ImpactOscillator, tau: Array, v: Array, fast: float, tally: Tally) -> Array:
-    """The first behaviour of orbits: 1 for a chatter that completes, 1000 n + k for an orbit, 0 for neither."""
-    r = as_float(osc.slope_at_rest())
-    impacts = min(PIXELS.transient + (ceil(log(PIXELS.rest) / log(r)) if r < 1 else 0), PIXELS.most)
-    codes, open_ = np.full(tau.size, OTHER), np.arange(tau.size)
-    kept = np.full((PIXELS.periods + 1, 2, tau.size), np.nan)
-    kept[-1] = tau, v
-    for _ in range(impacts):
-        if not open_.size or tally.late:
-            break
-        step = osc.impact_map(kept[-1, 0, open_], kept[-1, 1, open_])
-        kept[:-1] = kept[1:]
-        kept[-1][:, open_] = step.tau, step.v
-        at_rest = (step.status == Status.sticks) | ((step.v < PIXELS.rest * fast) & (osc.acceleration(step.tau) < 0))
-        for place in np.flatnonzero(at_rest).tolist():
-            codes[open_[place]] = _chatter(osc, float(step.tau[place]), float(step.v[place]))
-        # a rho that is steeper than -1 at high velocities can send an orbit out of the range of doubles
-        open_ = open_[(step.status == Status.hit) & ~at_rest & np.isfinite(step.tau + step.v)]
-    assert osc.period is not None
-    for place in open_.tolist():
-        codes[place] = _periodic(kept[:, :, place], as_float(osc.period), fast)
-    return codes
+def _unsettled_beside(follower: Follower, state: tuple[float, float], fate: Fate) -> Fate | None:
+    """The fate of an orbit that does not settle, or of such a neighbour: rounding decides how long a transient is."""
+    if fate.kind == "unsettled" or fate.impacts < PIXELS.transient:
+        return fate if fate.kind == "unsettled" else None
+    fates = (follower.first(state[0] + part, state[1] * (1 + part)) for part in PIXELS.moved)
+    return next((beside for beside in fates if beside.kind == "unsettled"), None)
 
 
-def _chatter(osc: ImpactOscillator, tau: float, v: float) -> int:
-    """Whether chatter that is nearly over is complete."""
-    return CHATTER if v == 0 or osc.chatter_limit(tau, v).status == Status.complete else OTHER
+def _unsettled(follower: Follower, answer: basins.LongRun, fate: Fate, call: str, tally: Tally) -> None:
+    """No period here either; "chaotic" says that neighbours separate too."""
+    if answer.kind == "not decided" or follower.separates((fate.tau, fate.v), FOLLOWED.chaos, PIXELS.impacts):
+        tally.judge(0.0, call)
+    else:
+        tally.leave("no period, and neighbours separate slowly if at all")
 
 
-def _periodic(kept: Array, period: float, fast: float) -> int:
-    """The class of an orbit whose last impacts repeat; 0 where they do not."""
-    (tau, v), before = kept[-1], kept[:-1]
-    for n in range(1, PIXELS.periods + 1):
-        passed = (tau - before[-n, 0]) / period
-        k = round(passed) if np.isfinite(passed) else 0
-        if k > 0 and abs(passed - k) < PIXELS.close and abs(v - before[-n, 1]) < PIXELS.close * fast:
-            return n * PLACES + k
-    return OTHER
+def _sensitive(follower: Follower, state: tuple[float, float], fate: Fate, call: str, tally: Tally) -> None:
+    """Neighbours 1e-15 away part before the orbit settles; where some 1e-12 away do not, this is wrong."""
+    count = max(fate.impacts, 1)
+    if follower.separates(state, FOLLOWED.rounding, count):
+        tally.judge(0.0, call)
+    elif follower.separates(state, 1e3 * FOLLOWED.rounding, count):
+        tally.leave("neighbours part at a distance above rounding")
+    else:
+        tally.judge(np.inf, call)

@@ -13,6 +13,7 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.bench.selftest.rows import Tally
+from singimpact.bench.truth.plain_orbits import PlainOrbits, plain_orbits
 from singimpact.flights.results import Step
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.oscillator.acceleration import acceleration
@@ -69,6 +70,12 @@ class Flown(NamedTuple):
     v: Array
     step: Step
     left: int
+
+    @property
+    def plain(self) -> PlainOrbits:
+        """The model in `bench.truth.plain_orbits`; TypeError where it holds an algebraic number given as a root."""
+        units = self.scales
+        return plain_orbits(self.osc, units.rate, units.horizon, units.fast)
 
     def call(self, at: int, name: str = "impact_map") -> str:
         """A state as it is typed."""

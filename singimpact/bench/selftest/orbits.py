@@ -1,4 +1,8 @@
-"""Orbits and chatter limits of one model: each state of an orbit satisfies the impact map again."""
+"""Orbits and chatter limits of one model, event by event, against `bench.truth.plain_orbits`.
+
+Truth: impacts by fixed steps of order 8, chatter summed from such impacts, zeros of a_c by its sign on both sides,
+flights from rest by scipy's DOP853. Shared with the package: f, g, rho as expression trees, and the period.
+"""
 
 from __future__ import annotations
 
@@ -7,117 +11,207 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import compare
 from singimpact.bench.selftest.draws import Flown
 from singimpact.bench.selftest.rows import Row, Tally
+from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
+from singimpact.bench.truth.plain_orbits import Impact, PlainOrbits
 from singimpact.status import Status
 
 EPSILON = 2.0**-52
+ORBIT_NAME, LIMIT_NAME = "orbits, event by event", "chatter limits"
 Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
 class OrbitSettings:
-    """How many orbits and chatter sequences.
-
-    Parameters
-    ----------
-    orbits, impacts : orbits that are flown, and impacts of each.
-    limits, most : chatter sequences, and impacts flown of each at most: r = 0.99 takes 2000.
-    slow : velocities of chatter are below this part of the largest one drawn.
-    least : a difference of so many epsilon of tau and v is a rounding.
-    """
+    """How many orbits and chatter sequences, and what they may differ by."""
 
     orbits: int = 6
+    slow_orbits: int = 4  # beside those of the fastest states: slow ones where a_c < 0, which chatter
     impacts: int = 40
-    limits: int = 20
-    most: int = 3000
-    slow: float = 0.03
-    least: float = 4.0
+    limits: int = 20  # chatter sequences
+    most: int = 3000  # impacts flown of each at most: r = 0.99 takes 2000
+    slow: float = 0.03  # velocities of chatter are below this part of the largest one drawn
+    wrong: float = 1e-9  # relative difference of a flight or a chatter; fixed steps agree to 1e-11
+    # a lift-off may be off by this part of 1/rate, and by so many roundings of a_c over its slope
+    lifted: float = 1e-11
+    rounding: float = 64.0
+    looked: int = 512  # times between rest and lift-off at which a_c must not be positive
+    flat: float = 1e-3  # a zero of a_c that is less sharp, in units of 1/rate, is undecided
+    # where fixed steps do not return the flight of an orbit: as far as that flight, and a half more
+    longer: float = 1.5
 
 
 ORBITS = OrbitSettings()
 
 
 def orbits(flown: Flown) -> Row:
-    """Flights of `osc.orbit` against `osc.impact_map` from the state where each begins."""
-    tally = Tally("orbits against the impact map")
-    for at in np.argsort(-flown.v, kind="stable")[:: max(flown.v.size // ORBITS.orbits, 1)][: ORBITS.orbits].tolist():
+    """All events of `osc.orbit`: impacts, ends of chatter, lift-offs, and what comes last."""
+    tally = Tally(ORBIT_NAME)
+    try:
+        plain = flown.plain
+    except TypeError as reason:
+        return Row(ORBIT_NAME, note=f"does not apply: {reason}")
+    for at in _starts(flown):
         if tally.late:
             break
-        orbit = flown.osc.orbit(flown.tau[at], flown.v[at], ORBITS.impacts)
-        # an impact is flown from the event before it, unless chatter was summed up in between
-        ends = np.flatnonzero((orbit.kind[1:] == "impact") | (orbit.kind[1:] == "graze")) + 1
-        if ends.size:
-            _satisfied(flown, at, (orbit.tau, orbit.v), ends, tally)
-    found = tally.row()
-    return found if found.tried else Row(tally.compared, note="no orbit that was flown has an impact")
+        _orbit(flown, plain, at, tally)
+    row = tally.row()
+    return row if row.tried else Row(ORBIT_NAME, note="no orbit that was flown has an event")
 
 
-def _satisfied(flown: Flown, at: int, events: tuple[Array, Array], ends: Array, tally: Tally) -> None:
-    tau, v = events
-    step = flown.osc.impact_map(tau[ends - 1], v[ends - 1])
-    least = ORBITS.least * EPSILON
-    for place, index in enumerate(ends.tolist()):
-        call = f"{flown.call(at, 'orbit').split(', horizon')[0]}), event {index}: "
-        if step.status[place] == Status.unresolved:
-            tally.leave("unresolved")
-            continue
-        # two flights of one state may round differently: twice the errors of one
-        late = 2 * step.time_error[place] * step.flight_time[place] + least * (
-            abs(tau[index]) + step.flight_time[place]
-        )
-        fast = (2 * step.velocity_error[place] + least) * v[index]
-        # the orbit continues from a time in two doubles; the event stores one double of it
-        rounded = EPSILON * abs(tau[index - 1]) * np.nan_to_num(step.condition[place], posinf=0.0)
-        late += rounded
-        turn = np.nan_to_num(step.velocity_condition[place], posinf=0.0) / max(step.flight_time[place], 1e-300)
-        fast += EPSILON * abs(tau[index - 1]) * turn * v[index]
-        if step.status[place] == Status.graze:
-            late, fast = np.nan_to_num(late) + least * abs(tau[index]), least
-        ratios = (abs(step.tau[place] - tau[index]) / late, abs(step.v[place] - v[index]) / (fast or least))
-        numbers = [float(part) for part in (tau[index], v[index], step.tau[place], step.v[place])]
-        told = "tau {!r}, v {!r}; the map gives {!r}, {!r}".format(*numbers)
-        tally.judge(float(np.max(ratios)), call + told)
+def _starts(flown: Flown) -> list[int]:
+    """Fast states, and slow ones that are pressed."""
+    spread = np.argsort(-flown.v, kind="stable")[:: max(flown.v.size // ORBITS.orbits, 1)][: ORBITS.orbits]
+    slow = np.flatnonzero((flown.plain.pushes(flown.tau) < 0) & (flown.v < ORBITS.slow * flown.scales.fast))
+    return list(dict.fromkeys([*spread.tolist(), *slow[: ORBITS.slow_orbits].tolist()]))
+
+
+def _orbit(flown: Flown, plain: PlainOrbits, at: int, tally: Tally) -> None:
+    orbit = flown.osc.orbit(flown.tau[at], flown.v[at], ORBITS.impacts)
+    call = f"{flown.call(at, 'orbit').split(', horizon')[0]}), event "
+    tau, v, kind = orbit.tau.tolist(), orbit.v.tolist(), orbit.kind.tolist()
+    for index in range(1, len(tau)):
+        if tally.late:
+            return
+        before, after = (tau[index - 1], v[index - 1]), (tau[index], v[index])
+        state = f"{call}{index} ({kind[index]}): "
+        if kind[index] == "release":
+            _lift_off(plain, before[0], after[0], state, tally)
+        elif kind[index] == "complete":
+            _end_of_chatter(plain, before, after[0], state, tally)
+        elif kind[index] == "graze":
+            tally.leave("graze")
+        else:
+            _impact(plain, before, after, state, tally)
+    if len(orbit.phases) == len(tau):
+        _last(plain, orbit.phases[-1], (tau[-1], v[-1]), call + f"{len(tau)}: ", tally)
+
+
+def _impact(
+    plain: PlainOrbits, before: tuple[float, float], after: tuple[float, float], state: str, tally: Tally
+) -> None:
+    passed = after[0] - before[0]
+    horizon = max(plain.horizon, ORBITS.longer * passed)
+    rest = before[1] == 0
+    hit = plain.lifted(before[0], horizon) if rest else plain.impact(*before, horizon)
+    state += f"tau {after[0]!r}, v {after[1]!r}, truth {before[0] + hit.time!r}, {hit.v!r}"
+    if hit.status == UNDECIDED:
+        tally.leave("steps do not settle")
+        return
+    if hit.status == MISS:
+        tally.judge(np.inf, state)
+        return
+    late = ORBITS.wrong * hit.time + 4 * EPSILON * (abs(after[0]) + abs(before[0]))
+    fast = ORBITS.wrong * hit.v
+    ratio = _ratio(hit, passed, after[1], (late, fast))
+    if not ratio <= 1 and not rest:
+        more = plain.spread(*before)
+        if not np.isfinite(more[0]):
+            tally.leave("rounding decides whether the flight touches")
+            return
+        ratio = _ratio(hit, passed, after[1], (late + more[0], fast + more[1]))
+    tally.judge(ratio, state)
+
+
+def _ratio(hit: Impact, passed: float, v: float, allowed: tuple[float, float]) -> float:
+    return max(abs(hit.time - passed) / allowed[0], abs(hit.v - v) / allowed[1])
+
+
+def _end_of_chatter(plain: PlainOrbits, before: tuple[float, float], end: float, state: str, tally: Tally) -> None:
+    true = plain.chatter(*before, ORBITS.most)
+    state += f"{end!r}, truth {true.status} at {before[0] + true.time!r}"
+    if true.status == "open":
+        tally.leave("impacts do not accumulate within the number flown")
+    elif true.status == "lifts off":
+        tally.judge(np.inf, state)
+    else:
+        allowed = ORBITS.wrong * true.time + true.error + 4 * EPSILON * (abs(end) + abs(before[0]))
+        tally.judge(abs(end - before[0] - true.time) / allowed, state)
+
+
+def _lift_off(plain: PlainOrbits, rest: float, lifted: float, state: str, tally: Tally) -> None:
+    """a_c changes from - to + at the lift-off, and is not positive between rest and lift-off."""
+    h = 1e-6 / plain.rate
+    around = plain.pushes(lifted + np.linspace(-1, 1, 5) / plain.rate)
+    size = float(np.max(np.abs(around))) + abs(float(plain.push(rest)))
+    slope = (plain.push(lifted + h) - plain.push(lifted - h)) / (2 * h)
+    noise = ORBITS.rounding * EPSILON * size
+    beside = ORBITS.lifted / plain.rate + 16 * EPSILON * abs(lifted) + noise / max(slope, 1e-300)
+    signs = plain.push(lifted - beside), plain.push(lifted + beside)
+    state += f"mass at rest from {rest!r} lifts off at {lifted!r}, a_c {signs[0]:.3g} and {signs[1]:.3g} beside it"
+    between = plain.pushes(np.linspace(rest, lifted - beside, ORBITS.looked)) if lifted - beside > rest else np.zeros(1)
+    if float(np.max(between)) > noise:
+        tally.judge(np.inf, state + f", a_c {np.max(between):.3g} before")
+    elif slope > 0 and beside <= ORBITS.flat / plain.rate:
+        tally.judge(0.0 if signs[0] < 0 < signs[1] else np.inf, state)
+    elif slope < 0 and -slope * beside > noise:
+        tally.judge(np.inf, state)
+    else:
+        tally.leave("a_c is flat at the lift-off")
+
+
+def _last(plain: PlainOrbits, phase: tuple[str, float, float], last: tuple[float, float], state: str,
+          tally: Tally) -> None:  # fmt: skip
+    """What follows the last event: no impact, or rest for ever."""
+    if phase[0] == "no_return":
+        hit = plain.impact(*last) if last[1] > 0 else plain.lifted(last[0])
+        if hit.status == UNDECIDED:
+            tally.leave("steps do not settle")
+        else:
+            tally.judge(np.inf if hit.status == HIT else 0.0, state + f"no return, truth {hit.time!r}")
+    elif phase[0] == "sticking" and plain.period is not None:
+        pushes = plain.grid[1]
+        noise = ORBITS.rounding * EPSILON * float(np.max(np.abs(pushes)))
+        tally.judge(0.0 if float(np.max(pushes)) <= noise else np.inf, state + "rest for ever, a_c is positive")
+    else:
+        tally.leave(f"ends in {phase[0]}")
 
 
 def limits(flown: Flown) -> Row:
-    """Chatter limits of a state and of its image agree within their errors."""
-    tally = Tally("chatter limits of images")
-    name = tally.compared
-    if compare(flown.osc.slope_at_rest(), 1) == 0:
-        return Row(name, note="does not apply: with restitution 1 impacts do not accumulate")
-    pressed = flown.osc.acceleration(flown.tau) < 0
+    """`osc.chatter_limit` of slow states."""
+    try:
+        plain = flown.plain
+    except TypeError as reason:
+        return Row(LIMIT_NAME, note=f"does not apply: {reason}")
+    if not plain.slope < 1:
+        return Row(LIMIT_NAME, note="does not apply: rho is not smooth at rest, or has slope -1: no geometric series")
+    tally = Tally(LIMIT_NAME)
+    pressed = plain.pushes(flown.tau) < 0
     slow = (flown.v < ORBITS.slow * flown.scales.fast) & (flown.step.status == Status.hit)
     places = np.flatnonzero(pressed & slow)[: ORBITS.limits].tolist()
     for done, at in enumerate(places):
         if tally.late:
             tally.leave("CPU time used up", len(places) - done)
             break
-        _limit(flown, at, tally)
-    return tally.row() if places else Row(name, note="does not apply: no slow state that was drawn is pressed")
+        _limit(flown, plain, at, tally)
+    return tally.row() if places else Row(LIMIT_NAME, note="does not apply: no slow state that was drawn is pressed")
 
 
-def _limit(flown: Flown, at: int, tally: Tally) -> None:
-    osc, step = flown.osc, flown.step
-    here = osc.chatter_limit(flown.tau[at], flown.v[at], impacts=ORBITS.most)
-    there = osc.chatter_limit(step.tau[at], step.v[at], impacts=ORBITS.most)
-    statuses = [Status(int(each.status)) for each in (here, there)]
-    told = (
-        flown.call(at, "chatter_limit").split(", horizon")[0]
-        + "), then of its image: "
-        + ", ".join(
-            f"{float(each.tau)!r} with error {each.error:.2g}, {status.name}"
-            for each, status in zip((here, there), statuses, strict=True)
-        )
-    )
-    if Status.unresolved in statuses:
+def _limit(flown: Flown, plain: PlainOrbits, at: int, tally: Tally) -> None:
+    tau, v = float(flown.tau[at]), float(flown.v[at])
+    limit = flown.osc.chatter_limit(tau, v, impacts=ORBITS.most)
+    status = Status(int(limit.status))
+    if status == Status.unresolved:
         tally.leave("impacts do not accumulate within the number flown")
-    elif statuses[0] != statuses[1]:
-        tally.judge(np.inf, told)
-    elif statuses[0] == Status.lifts_off and here.impacts <= 1:
-        tally.leave("contact is lost at the first impact")
-    elif statuses[0] not in (Status.complete, Status.lifts_off):
-        tally.leave(statuses[0].name)
-    else:
-        tally.judge(float(abs(here.tau - there.tau) / (here.error + there.error)), told)
+        return
+    true = plain.chatter(tau, v, ORBITS.most)
+    state = flown.call(at, "chatter_limit").split(", horizon")[0]
+    state += f"): {float(limit.tau)!r}, {status.name}, truth {tau + true.time!r}, {true.status}"
+    if true.status == "open":
+        tally.leave("impacts do not accumulate within the number flown")
+        return
+    ends = {Status.complete: "complete", Status.lifts_off: "lifts off"}
+    side = plain.chatter(tau, v * (1 + 1e-9), ORBITS.most)
+    if ends.get(status) != true.status:
+        if side.status == true.status == plain.chatter(tau, v * (1 - 1e-9), ORBITS.most).status:
+            tally.judge(np.inf, state)
+        else:
+            tally.leave("rounding decides whether it completes")
+        return
+    moved = abs(side.time - true.time) if side.status == true.status else np.inf
+    if not np.isfinite(moved) or moved > 1e-2 * true.time:
+        tally.leave("rounding decides when it ends")
+        return
+    allowed = float(limit.error) + true.error + ORBITS.wrong * true.time + 1e-2 * moved
+    tally.judge(float(abs(limit.tau - tau - true.time) / allowed), state)

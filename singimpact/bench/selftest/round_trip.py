@@ -1,4 +1,7 @@
-"""Flights forward and back: `inverse_map` of the impact gives the launch, within what rounding explains."""
+"""Flights forward and back: `inverse_map` of the impact gives the launch, within what rounding explains.
+
+No independent truth: both flights, D G and the error estimates are those of the package.
+"""
 
 from __future__ import annotations
 

@@ -25,12 +25,12 @@ class RowSettings:
     ----------
     shown : wrong states of a row that are written out.
     seconds : CPU time, counted from the end of the first state, after which a row starts no further one; those left are
-        undecided. The first state includes what is compiled, 10 s for a new model. Eight rows then end within
+        undecided. The first state includes what is compiled, 10 s for a new model. Twelve rows then end within
         about two minutes for any model.
     """
 
     shown: int = 3
-    seconds: float = 20.0
+    seconds: float = 10.0
 
 
 ROWS = RowSettings()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from time import process_time
 
-from singimpact.bench.selftest import basin_pixels, orbits, round_trip, tangencies, truths
+from singimpact.bench.selftest import basin_pixels, batches, orbits, responses, round_trip, tangencies, truths
 from singimpact.bench.selftest.draws import Flown, flown
 from singimpact.bench.selftest.rows import Row, SelfTest
 from singimpact.impact_oscillator import ImpactOscillator
@@ -19,8 +19,13 @@ COMPARED: dict[str, Callable[[Flown], Row]] = {
     "balls": truths.balls,
     "orbits": orbits.orbits,
     "chatter limits": orbits.limits,
+    "D G": responses.derivatives,
+    "rebounds": responses.rebounds,
     "basins": basin_pixels.row,
     "tangency points": tangencies.row,
+    # last, because by then a second process has compiled what flies batches
+    "batches": batches.lanes,
+    "grazes": batches.grazes,
 }
 
 
@@ -44,7 +49,14 @@ def selftest(osc: ImpactOscillator, *, states: int = 1000, seed: int = 0) -> Sel
 
     Notes
     -----
-    A row starts no further state after 20 s of CPU time; states that are left are undecided.
+    The rows are: flights forward and back; flights against fixed steps of order 8, against balls, and against
+    `digits=20`; events of orbits (impacts, ends of chatter, lift-offs) and chatter limits; D G against differences of
+    flights; rho; each state of an array longer than a batch; launches beside a graze; pixels of basins; signs of a_c
+    beside tangency points. "Flown forward and back" compares the package with itself, and `digits=20` compares its two
+    arithmetics. The truths of the others share with the package f, g and rho as expression trees, the period and the
+    default horizon.
+
+    A row starts no further state after 10 s of CPU time; states that are left are undecided.
 
     Examples
     --------

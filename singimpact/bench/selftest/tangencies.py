@@ -1,4 +1,7 @@
-"""Tangency points of one model: a_c changes its sign at each as its kind says, and nowhere else on a fine grid."""
+"""Tangency points of one model: a_c changes its sign at each as its kind says, and nowhere else on a fine grid.
+
+Truth: signs of a_c, evaluated by Python from the expression trees of f and g, which is all that is shared.
+"""
 
 from __future__ import annotations
 
@@ -42,8 +45,8 @@ def row(flown: Flown) -> Row:
     """The row of the table."""
     osc, tally = flown.osc, Tally(NAME)
     try:
-        points = tangency_points(osc)
-    except InputError as reason:
+        points, plain = tangency_points(osc), flown.plain
+    except (InputError, TypeError) as reason:
         return Row(NAME, note=f"does not apply: {reason}")
     tau, period = np.array([point.tau for point in points]), flown.scales.period
     low, high = flown.scales.low, flown.scales.high
@@ -51,7 +54,7 @@ def row(flown: Flown) -> Row:
         low, high = min(low, 2 * tau[0] - tau[-1] - 1), max(high, 2 * tau[-1] - tau[0] + 1)
     # half an interval off the ends, where points of simple models lie
     grid = np.linspace(low, high, GRID.grid + 1) + (high - low) / GRID.grid * 0.4142
-    a = osc.acceleration(grid)
+    a = plain.pushes(grid)
     least = GRID.rounding * EPSILON * float(np.max(np.abs(a), initial=0.0))
     _kinds(flown, tau, [point.kind for point in points], (high - low) / GRID.grid, tally)
     changed = np.flatnonzero(np.sign(a[:-1]) != np.sign(a[1:]))
@@ -78,8 +81,9 @@ def _kinds(flown: Flown, tau: Array, kinds: list[str], interval: float, tally: T
         gaps = np.minimum(gaps, period - gaps)
     np.fill_diagonal(gaps, np.inf)
     beside = np.minimum(GRID.beside * interval, np.min(gaps, axis=1, initial=np.inf) / 3)
-    sides = [flown.osc.acceleration(tau + sign * beside) for sign in (-1, 1)]
-    rounding = GRID.rounding * EPSILON * np.maximum(np.abs(tau), 1.0) * np.abs(flown.osc.acceleration(tau, order=1))
+    sides = [flown.plain.pushes(tau + sign * beside) for sign in (-1, 1)]
+    slope = (sides[1] - sides[0]) / (2 * beside)
+    rounding = GRID.rounding * EPSILON * np.maximum(np.abs(tau), 1.0) * np.abs(slope)
     for at, kind in enumerate(kinds):
         signs = tuple(int(np.sign(side[at])) for side in sides)
         if min(abs(side[at]) for side in sides) <= rounding[at]:

@@ -1,4 +1,8 @@
-"""Flights of one model against flights that share nothing with them: small fixed steps, balls, more digits."""
+"""Flights of one model against small fixed steps, balls, and more digits.
+
+Fixed steps and balls (`bench.truth`) share with the package f and g as expression trees; kappa is that of the package.
+`digits=20` is the package's own flight in other arithmetic, by other code from the recurrence on.
+"""
 
 from __future__ import annotations
 

@@ -6,12 +6,14 @@ The layers of a model are not known here, so the steps are graded by the rate of
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import as_float
 from singimpact.bench.truth import graded_steps
 from singimpact.bench.truth.graded_steps import EVERYWHERE, Motion
@@ -58,10 +60,30 @@ def text(osc: Oscillator) -> str:
         s3 = s1 * s2
         return s0 - s3
     """
-    program = Program.of([osc.forcing(), osc.force()])
-    lines = [f"    s{place} = {_operation(kind, parts)}" for place, (kind, parts) in enumerate(program.operations)]
-    g, f = program.results
+    lines, (g, f) = _written([osc.forcing(), osc.force()])
     return "\n".join(["def acceleration(t, x, xdot, p):", *lines, f"    return s{g} - s{f}", ""])
+
+
+def rebound(osc: Oscillator) -> Callable[[float], float]:
+    """rho as a plain Python function of the velocity before the impact.
+
+    Examples
+    --------
+    >>> rebound(Oscillator("x", "cos(t)", 0, "-v/2"))(-0.75)
+    0.375
+    """
+    lines, (place,) = _written([osc.rho()])
+    space: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
+    source = "\n".join(["def rho(v):", *lines, f"    return s{place}", ""])
+    exec(compile(source, "<rebound>", "exec"), space)
+    return space["rho"]  # type: ignore[no-any-return]
+
+
+def _written(trees: Sequence[Expression]) -> tuple[list[str], tuple[int, ...]]:
+    """Assignments s0 = ..., s1 = ..., and the places of the results."""
+    program = Program.of(trees)
+    lines = [f"    s{place} = {_operation(kind, parts)}" for place, (kind, parts) in enumerate(program.operations)]
+    return lines, program.results
 
 
 def _operation(kind: str, parts: tuple[Any, ...]) -> str:

@@ -3,15 +3,18 @@
 This folder stands alone.  It imports python-flint and the standard library, reads the model as text, and encloses the
 motion again with its own code.  It accepts a certificate when its enclosure lies within what the certificate says.
 
-A first impact needs `files` (reads a certificate, chooses the precision, answers), `formulas` (texts over balls, series
-and numbers with derivatives), `told` (numbers as they are written), `motion` (a flight in balls up to its first hit)
-and `first_impact`.  What else a certificate may say: `periodic_orbit`, `event` and `horseshoe` by `impacts` (the
-derivative of the impact map) and `periods` (that g has a period); `chatter_limit`; `border_orbit`; `invariant_arc` by
-`gravity` (a linear model as a ball under gravity) or `nonlinear` (others, by power series made by `growing`), and
-`after_contact`.  `__main__` runs the program.
+A first impact needs `files` (chooses the precision, answers), `schema` (reads a file; the keys, types and ranges of all
+that it may say), `sentences` (what it says, in words), `formulas` (texts over balls, series and numbers with
+derivatives; `need`, by which every condition refuses), `told` (numbers as they are written), `motion` (a flight in
+balls up to its first hit) and `first_impact`.  What else a certificate may say: `periodic_orbit`, `event` and
+`horseshoe` by `impacts` (the derivative of the impact map) and `periods` (that g has a period); `chatter_limit`;
+`border_orbit`; `invariant_arc` by `gravity` (a linear model as a ball under gravity) or `nonlinear` (others, by power
+series made by `growing`), and `after_contact`.  `__main__` runs the program.
 """
 
-from .files import SCHEMA, check, digest_of, main
+from .files import check, digest_of, main
 from .formulas import Refused, Wrong
+from .schema import KINDS, SCHEMA, TOUCHING, read
+from .sentences import sentence
 
-__all__ = ["SCHEMA", "Refused", "Wrong", "check", "digest_of", "main"]
+__all__ = ["KINDS", "SCHEMA", "TOUCHING", "Refused", "Wrong", "check", "digest_of", "main", "read", "sentence"]

@@ -15,7 +15,7 @@ from typing import Any
 
 from flint import arb
 
-from .formulas import Refused, Wrong, ball
+from .formulas import Refused, Wrong, ball, need
 from .gravity import Gravity
 
 PIECES, LAUNCHES, DEEP = 64, 16, 7
@@ -28,14 +28,12 @@ def require_after(o: Gravity, told: dict[str, Any], r: Any) -> None:
     if not after:
         return
     numbers = {name: ball(Fraction(text)) for name, text in after.items()}
-    if Fraction(after["near" if o.j % 2 else "launch"]) > Fraction(told["reach"]):
-        raise Wrong("what comes after tau is said of launches beyond the reach")
+    reached = Fraction(after["near" if o.j % 2 else "launch"]) <= Fraction(told["reach"])
+    need("reached", reached, "what comes after tau is said of launches beyond the reach")
     if o.j % 2:
         require_lost(o, numbers["near"], numbers["time"])
     elif o.j == 2:
         launch, end = numbers["launch"], numbers["end"]
-        if not numbers["first"] < end:
-            raise Wrong("chatter ends before its first impact after tau")
         wide = launch if launch > end else end
         require_settled(Gravity(o.model, o.tau, 2, wide, COARSE), numbers, r)
     else:
@@ -52,22 +50,23 @@ def series(o: Gravity, s: Any, weight: Callable[[int], Any]) -> Any:
 
 def require_positive(function: Callable[[Any], Any], end: Any, what: str) -> None:
     for n in range(PIECES):
-        if not function((end * n / PIECES).union(end * (n + 1) / PIECES)) > 0:
-            raise Refused(f"{what} is not shown")
+        piece = (end * n / PIECES).union(end * (n + 1) / PIECES)
+        need(what, function(piece) > 0, f"that {what} is not shown", Refused)
 
 
 def require_lost(o: Gravity, near: Any, time: Any) -> None:
     """a_c > 0 for so long."""
-    if o.square > 0 and not time * o.square.sqrt() < arb.pi() / 2:
-        raise Wrong("the time after tau is longer than the change of variable reaches")
-    require_positive(lambda s: series(o, s, lambda _: 1), near, "that a_c > 0 after tau")
+    short = not o.square > 0 or time * o.square.sqrt() < arb.pi() / 2
+    need("short", short, "the time after tau is longer than the change of variable reaches")
+    require_positive(lambda s: series(o, s, lambda _: 1), near, "a_c > 0 after tau")
     todo = [(arb(o.time(near).lower()), arb(time.upper()), 0)]
     while todo:
         a, b, level = todo.pop()
         if a >= b or o.model.push(o.tau + a.union(b), arb(0)) > 0:
             continue
         if level > 12:
-            raise Refused("that a_c > 0 for so long is not shown")
+            need("lost", False, "that a_c > 0 for so long is not shown", Refused)
+            break
         middle = arb(((a + b) / 2).mid())
         todo += [(a, middle, level + 1), (middle, b, level + 1)]
 
@@ -80,13 +79,13 @@ def moment(o: Gravity, s: Any, n: int) -> Any:
 def require_settled(o: Gravity, numbers: dict[str, Any], r: Any) -> None:
     """Chatter completes before s = end, of all launches with S <= launch and y' <= speed that pass tau."""
     launch, speed, first, end = (numbers[name] for name in ("launch", "speed", "first", "end"))
-    require_positive(lambda s: series(o, s, lambda k: k), end, "that |A| increases after tau")
-    require_positive(lambda s: series(o, -s, lambda k: k), launch, "that |A| decreases before tau")
+    require_positive(lambda s: series(o, s, lambda k: k), end, "|A| increases after tau")
+    require_positive(lambda s: series(o, -s, lambda k: k), launch, "|A| decreases before tau")
     right = first ** (o.j + 2) * series(o, first, lambda k: arb(1) / ((k + 1) * (k + 2)))
     for n in range(LAUNCHES):
         S = (launch * n / LAUNCHES).union(launch * (n + 1) / LAUNCHES)
-        if not speed * (first + S) < right + first * moment(o, -S, 1) + moment(o, -S, 2):
-            raise Refused("that the first flight after tau lands in time is not shown")
+        landed = speed * (first + S) < right + first * moment(o, -S, 1) + moment(o, -S, 2)
+        need("landed", landed, "that the first flight after tau lands in time is not shown", Refused)
     ratios = [arb(series(o, (end * n / PIECES).union(end * (n + 1) / PIECES), lambda _: 1).lower())
               for n in range(PIECES)]  # fmt: skip
     todo, half = [(0, 0, 0)], arb(1) / 2
@@ -95,7 +94,8 @@ def require_settled(o: Gravity, numbers: dict[str, Any], r: Any) -> None:
         S, e = ((k * half**n).union((k + 1) * half**n) * width for k, width in ((a, launch), (c, first)))
         if not ends_before(o, (S, e), r, end, ratios):
             if n >= DEEP:
-                raise Refused("that chatter completes in time is not shown")
+                need("completes", False, "that chatter completes in time is not shown", Refused)
+                break
             todo += [(2 * a + i, 2 * c + k, n + 1) for i in (0, 1) for k in (0, 1)]
 
 

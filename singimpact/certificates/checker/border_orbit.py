@@ -14,7 +14,7 @@ from typing import Any
 from flint import arb
 
 from .chatter_limit import IMPACTS, rest
-from .formulas import Dual, Refused, Wrong, ball
+from .formulas import Dual, Refused, ball, need
 from .motion import Flight, Model, next_state
 from .told import read
 
@@ -26,14 +26,10 @@ SIDES = {"above": [PASSES, COMPLETES], "below": [COMPLETES, PASSES]}
 
 def border_orbit(_model: Model, told: dict[str, Any], bits: int) -> None:
     """That a border orbit exists for a value of the number within the radius, with chatter on the side that is told."""
-    wanted = SIDES.get(told["completes"])
-    if wanted is None:
-        raise Wrong(f"chatter completes {' or '.join(SIDES)}")
     value, radius = (Fraction(told["parameter"][part]) for part in ("value", "radius"))
     came_back(Model(told["model"], told["over"], read(told["parameter"])), told, bits)
     ends = [fate(Model(told["model"], told["over"], ball(end)), told, bits) for end in (value - radius, value + radius)]
-    if ends != wanted:
-        raise Wrong(f"at the ends of the radius {ends[0]} and {ends[1]}")
+    need("fates", ends == SIDES[told["completes"]], f"at the ends of the radius {ends[0]} and {ends[1]}")
 
 
 def came_back(model: Model, told: dict[str, Any], bits: int) -> tuple[Any, Any, Any]:
@@ -43,8 +39,7 @@ def came_back(model: Model, told: dict[str, Any], bits: int) -> tuple[Any, Any, 
     for _ in range(int(told["impacts"])):
         time, velocity, _ = Flight(model, tau, v, bits, removed=removed).first_hit()
         tau, v, removed = tau + time, model.rebound(velocity), 0
-    if not tau < end:
-        raise Refused("that the orbit comes back before the end is not shown")
+    need("back", tau < end, "that the orbit comes back before the end is not shown", Refused)
     require_pressing(model, tau, end)
     return tau, v, end
 
@@ -58,8 +53,8 @@ def rising_zero(model: Model, near: Fraction) -> Any:
         found = model.g(t=Dual(time, [arb(1)]))
         return found.slopes[0] if isinstance(found, Dual) else arb(0)
 
-    if not (model.push(low, still) < 0 and model.push(high, still) > 0 and rate(U) > 0):
-        raise Refused(f"a_c is not shown to rise through zero once near {float(near)}")
+    rises = model.push(low, still) < 0 and model.push(high, still) > 0 and rate(U) > 0
+    need("rises", rises, f"a_c is not shown to rise through zero once near {float(near)}", Refused)
     while True:
         middle = arb(U.mid())
         smaller = U.intersection(middle - model.push(middle, still) / rate(U))

@@ -11,19 +11,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from .formulas import Formula, Refused, Wrong
+from .formulas import Refused, need
 from .motion import Model, next_state, size, within
-from .told import compared, lies_within, read
+from .told import compared, launched, lies_within, read
 
 IMPACTS = 200_000  # at most
-ENDS = ("accumulation", "lift-off")
 
 
 def chatter_limit(model: Model, told: dict[str, Any], bits: int) -> None:
     """That the impacts from the launch accumulate at tau; or that a_c > 0 first at the impact at tau."""
-    if told["ends"] not in ENDS:
-        raise Wrong(f"a chatter ends in {' or '.join(ENDS)}")
-    written, tau, v = read(told["tau"]), *(Formula(told["launch"][name], {})() for name in ("tau", "v"))
+    (tau, v), written = launched(told, moving=True), read(told["tau"])
     r = model.ratio()
     for count in range(IMPACTS):
         a = model.push(tau, v * 0)
@@ -37,7 +34,7 @@ def chatter_limit(model: Model, told: dict[str, Any], bits: int) -> None:
             require(told, "accumulation")
             if lies_within(tau + left, told["tau"]):
                 return None
-            if not written.overlaps(tau + left) or tau.rad() > written.rad():
+            if not written.overlaps(tau + left) or tau.rad() > written.rad():  # more impacts make it no narrower
                 return compared({"tau": (tau + left, told["tau"])})
         tau, v = next_state(model, tau, v, bits)
     raise Refused(f"{IMPACTS} impacts do not come to an end")
@@ -45,8 +42,7 @@ def chatter_limit(model: Model, told: dict[str, Any], bits: int) -> None:
 
 def require(told: dict[str, Any], ends: str) -> None:
     """Refuse another end than the one that is shown."""
-    if told["ends"] != ends:
-        raise Wrong(f"the chatter ends in {ends}")
+    need("ends", told["ends"] == ends, f"the chatter ends in {ends}")
 
 
 def rest(model: Model, tau: Any, v: Any, a: Any, r: Any) -> Any:

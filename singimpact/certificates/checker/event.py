@@ -20,14 +20,13 @@ from typing import Any
 
 from flint import arb
 
-from .formulas import Formula, Refused, Wrong, ball
+from .formulas import Formula, Refused, Wrong, ball, need
 from .motion import Model, size
-from .periodic_orbit import Orbits, return_map
+from .periodic_orbit import Orbits, require_shortest, return_map
 from .periods import require_period
+from .schema import CURVED, TOUCHING
 from .told import compared
 
-CURVED, TOUCHING = ("fold", "period-doubling", "torus"), ("graze", "hidden impact")
-KINDS = (*CURVED, *TOUCHING)
 PART = 512  # of the radii: half of the interval of the held unknown
 ROUNDS = 12  # of Newton's method and of secants
 
@@ -35,11 +34,9 @@ ROUNDS = 12  # of Newton's method and of secants
 def event(model: Model, told: dict[str, Any], bits: int) -> None:
     """That an event with its number and an orbit within the radii exists."""
     kind, over, touches = told["kind"], told["over"], told["kind"] in TOUCHING
-    if kind not in KINDS or int(told["periods"]) < 1 or not told["states"]:
-        raise Wrong(f"an event is a {' or a '.join(KINDS)} of an orbit that has impacts and closes after periods")
     others = {name: text for name, text in model.g.parameters.items() if name != over}
-    if len(others) == len(model.g.parameters) or over in model.c.names():
-        raise Wrong(f"{over} is no parameter of the model, or moves the wall")
+    free = len(others) < len(model.g.parameters) and over not in model.c.names()
+    need("over", free, f"{over} is no parameter of the model, or moves the wall")
     require_period(Formula(model.g.text, others), told["period"])  # whatever the number is
     numbers = [state[name] for state in told["states"] for name in ("tau", "v")] + [told["parameter"]]
     point, radii = ([ball(Fraction(each[part])) for each in numbers] for part in ("value", "radius"))
@@ -47,12 +44,11 @@ def event(model: Model, told: dict[str, Any], bits: int) -> None:
     span, held = Formula(told["period"], others)() * int(told["periods"]), -1 if kind in CURVED[1:] else 1
     orbits = Orbits(family, span, bits, held % len(point), touches)
     if touches:
-        if told["states"][0]["v"]["value"] != "0":
-            raise Wrong("v is not 0 where the orbit touches the wall")
         near = [ball(Fraction(told["unique_within"]))] * len(point)
         near[1] = radii[1] = arb(0)
         orbits.alone(point, [near, radii])
         return
+    require_shortest(point[:-1], radii, span, int(told["periods"]))
     found = Curve(orbits, kind).event(point, radii)
     compared({f"number {k + 1}": pair for k, pair in enumerate(zip(found, numbers, strict=True))})
 
@@ -67,8 +63,8 @@ class Curve:
         """What vanishes at the event."""
         total = return_map(slopes)
         trace, determinant = total[0, 0] + total[1, 1], total.det()
-        if self.kind == "torus" and not trace * trace < 4 * determinant:
-            raise Refused("the multipliers are not shown to be complex")
+        complex_ = self.kind != "torus" or trace * trace < 4 * determinant
+        need("complex", complex_, "the multipliers are not shown to be complex", Refused)
         return 1 + {"fold": -trace, "period-doubling": trace, "torus": -2 * determinant}[self.kind] + determinant
 
     def moved(self, point: list[Any], shift: Any) -> list[Any]:
@@ -100,8 +96,8 @@ class Curve:
     def inside(self, point: list[Any], radius: Any, half: Any = None) -> tuple[list[Any], list[Any]]:
         """D G and the orbits less the centre, where one orbit is shown in the box for each value of the held one."""
         slopes, image = self.orbits.krawczyk(point, [radius] * len(point), half)
-        if not all(abs(part) < radius for part in image):
-            raise Refused("Krawczyk's operator does not map the box of the curve into itself")
+        inside = all(abs(part) < radius for part in image)
+        need("curve", inside, "Krawczyk's operator does not map the box of the curve into itself", Refused)
         return slopes, image
 
     def event(self, point: list[Any], radii: list[Any]) -> list[Any]:
@@ -110,15 +106,17 @@ class Curve:
         half, own, signs = arb((narrow / PART).mid()), arb(2) ** -(self.bits - 20), []
         if not own < half / PART:
             raise Refused("too few bits")
-        point = self.crossing(point, half)
+        written, point = point, self.crossing(point, half)
+        if not all(abs(x - centre) < 4 * radius for x, centre, radius in zip(point, written, radii, strict=True)):
+            raise Wrong("the test does not vanish near the orbit that is written")
         slopes, image = self.inside(point, narrow, half * arb(1.01))  # its ends are beyond those below
         self.test(slopes)  # along the whole curve a torus has complex multipliers
         for side in (-1, 1):
             end, _ = self.solved(self.moved(point, side * half))
-            if not all(abs(a - b) + own < narrow for a, b in zip(end, point, strict=True)):
-                raise Refused("an orbit beside the event is not shown to lie on the curve")
+            on_curve = all(abs(a - b) + own < narrow for a, b in zip(end, point, strict=True))
+            need("on curve", on_curve, "an orbit beside the event is not shown to lie on the curve", Refused)
             test = self.test(self.inside(end, own)[0])
             signs.append(1 if test > 0 else -1 if test < 0 else 0)
-        if sorted(signs) != [-1, 1]:
-            raise (Wrong if abs(sum(signs)) == 2 else Refused)("the test is not shown to change its sign")
+        error = Wrong if abs(sum(signs)) == 2 else Refused
+        need("change of sign", sorted(signs) == [-1, 1], "the test is not shown to change its sign", error)
         return [x + part for x, part in zip(point, image, strict=True)]

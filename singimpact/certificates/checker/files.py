@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
 
@@ -14,15 +15,16 @@ from .border_orbit import border_orbit
 from .chatter_limit import chatter_limit
 from .event import event
 from .first_impact import first_impact
-from .formulas import Refused, Wrong
+from .formulas import Clock, Refused, Wrong
 from .horseshoe import horseshoe
 from .invariant_arc import invariant_arc
 from .motion import Model
 from .periodic_orbit import periodic_orbit
+from .schema import read, require_form, require_statement
 from .told import balls_of
 
-SCHEMA = "singimpact certificate 1"
 LEAST = 80  # bits, for bounds that are given with a few digits
+SECONDS, ORDINARY = 9.0, 640  # of CPU for a certificate of at most so many bits; more bits have more, by their square
 TERMS = 10_000  # flint cuts a series after ctx.cap terms without a word
 STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "first impact": first_impact,
@@ -33,7 +35,7 @@ STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "border orbit": border_orbit,
     "invariant arc": invariant_arc,
 }
-"""What a certificate may say, and what shows it at so many bits."""
+"""What shows each statement at so many bits."""
 
 
 def digest_of(told: dict[str, Any]) -> str:
@@ -42,49 +44,69 @@ def digest_of(told: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
 
 
-def check(told: dict[str, Any]) -> None:
+def check(told: dict[str, Any], seconds: float = SECONDS) -> None:
     """Nothing where the certificate holds.
 
     Raises
     ------
-    Refused : it does not hold, or that is not decided; and why.
+    Refused : it does not hold, or that is not decided within so many seconds of CPU; and why.
     """
-    shown = STATEMENTS.get(str(told.get("statement")))
-    if told.get("schema") != SCHEMA or shown is None:
-        raise Refused(f"only certificates {SCHEMA!r} of these are checked here: {', '.join(STATEMENTS)}")
-    if told.get("digest") != digest_of(told):
-        raise Refused("the digest is not that of the content: the file was changed")
-    before, why = (ctx.prec, ctx.cap), ""
+    before = ctx.prec, ctx.cap
+    with answered():
+        try:
+            require_statement(told)
+            if told.get("digest") != digest_of(told):
+                raise Refused("the digest is not that of the content: the file was changed")
+            require_form(told)
+            numbers = list(balls_of(told))
+            narrowest = min(
+                Fraction(each["radius"]) / max(abs(Fraction(each["value"])), Fraction(1)) for each in numbers
+            )
+            wanted = max(narrowest.denominator.bit_length() - narrowest.numerator.bit_length() + 16, LEAST)
+            Clock.start(seconds * max(1.0, wanted / ORDINARY) ** 2)
+            decide(told, wanted)
+        finally:
+            ctx.prec, ctx.cap = before
+
+
+def decide(told: dict[str, Any], wanted: int) -> None:
+    """Try with more and more bits: what is wrong in its first digits is refused by few."""
+    why = Refused()
+    for bits in (*(LEAST * 4**k for k in range(4) if LEAST * 4**k * 2 < wanted), wanted, 2 * wanted, 4 * wanted):
+        ctx.prec, ctx.cap = bits + 32, TERMS
+        try:
+            STATEMENTS[told["statement"]](Model(told["model"]), told, bits)
+        except Wrong:
+            raise
+        except Refused as reason:
+            why = reason
+        else:
+            return
+    raise why
+
+
+@contextmanager
+def answered() -> Iterator[None]:
+    """Whatever goes wrong with a file is a refusal of one line."""
     try:
-        numbers = list(balls_of(told))
-        narrowest = min(Fraction(each["radius"]) / max(abs(Fraction(each["value"])), Fraction(1)) for each in numbers)
-        if narrowest <= 0:
-            raise Refused("a radius that is not above 0")
-        wanted = narrowest.denominator.bit_length() - narrowest.numerator.bit_length()
-        for bits in (max(wanted + 16, LEAST) * 2**k for k in range(4)):
-            ctx.prec, ctx.cap = bits + 32, TERMS
-            try:
-                return shown(Model(told["model"]), told, bits)
-            except Wrong:
-                raise
-            except Refused as reason:
-                why = str(reason)
-        raise Refused(why)
-    except (KeyError, TypeError, ValueError, SyntaxError, ZeroDivisionError, AttributeError) as error:
-        raise Refused(f"not a certificate: {error!r}") from error
-    finally:
-        ctx.prec, ctx.cap = before
+        yield
+    except Exception as error:
+        kind = "" if isinstance(error, Refused | OSError) else f"not a certificate: {type(error).__name__} "
+        raise Refused(" ".join(f"{kind}{error}".split())[:400]) from error
 
 
-def main(paths: Sequence[str]) -> int:
-    """0 where all certificates hold, else 1."""
-    failed = 0
+def main(arguments: Sequence[str]) -> int:
+    """0 where all certificates hold, else 1; `--seconds N` before the files is the CPU time of each."""
+    failed, seconds, paths = 0, SECONDS, list(arguments)
+    if paths[:1] == ["--seconds"]:
+        seconds, paths = float(paths[1]), paths[2:]
     for path in paths:
         try:
-            with open(path, encoding="utf-8") as file:
-                check(json.load(file))
+            with answered():
+                told = read(path)
+            check(told, seconds)
             print(f"{path}: holds")
-        except (Refused, OSError, json.JSONDecodeError) as reason:
+        except Refused as reason:
             print(f"{path}: refused: {reason}")
             failed = 1
     return failed

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from .formulas import Formula
 from .motion import Flight, Model
-from .told import compared
+from .told import compared, launched
 
 PARTS = ("flight_time", "velocity", "tau", "v")
 
 
 def first_impact(model: Model, told: dict[str, Any], bits: int) -> None:
     """That the motion from the launch meets the wall first where and as fast as it is written."""
-    tau, v = (Formula(told["launch"][name], {})() for name in ("tau", "v"))
+    tau, v = launched(told)
     time, velocity, _ = Flight(model, tau, v, bits).first_hit()
     found = zip(PARTS, (time, velocity, tau + time, model.rebound(velocity)), strict=True)
     compared({name: (each, told[name]) for name, each in found})

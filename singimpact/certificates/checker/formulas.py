@@ -5,9 +5,12 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 from fractions import Fraction
+from time import process_time
 from typing import Any
 
 from flint import acb, arb, fmpq
+
+FUNCTIONS = ("sin", "cos", "tan", "tanh", "exp", "log", "sqrt", "atan")
 
 
 class Refused(Exception):
@@ -16,6 +19,32 @@ class Refused(Exception):
 
 class Wrong(Refused):
     """One that more digits do not help."""
+
+
+def need(name: str, holds: Any, why: str, error: type[Refused] = Wrong) -> None:
+    """Refuse unless a condition holds; its name stands in the tests, with a false certificate that it alone refuses."""
+    if not holds:
+        refuse(name, error(why))
+
+
+def refuse(name: str, error: Refused) -> None:  # noqa: ARG001
+    """The one place in which a condition refuses."""
+    raise error
+
+
+class Clock:
+    """The CPU seconds that a certificate may take."""
+
+    seconds = end = float("inf")
+
+    @classmethod
+    def start(cls, seconds: float) -> None:
+        cls.seconds, cls.end = seconds, process_time() + seconds
+
+    @classmethod
+    def look(cls) -> None:
+        if process_time() > cls.end:
+            raise Wrong(f"it is not decided within {cls.seconds:g} s of CPU")
 
 
 def ball(value: Fraction) -> Any:
@@ -81,13 +110,12 @@ def power(x: Any, exponent: Fraction) -> Any:
 class Formula:
     """A text of numbers, names, + - * / **, and functions."""
 
-    FUNCTIONS = ("sin", "cos", "tan", "tanh", "exp", "log", "sqrt", "atan")
-
     def __init__(self, text: Any, parameters: dict[str, Any]) -> None:
         self.text, self.parameters = str(text), parameters
         self.tree = ast.parse(self.text, mode="eval").body
 
     def __call__(self, **values: Any) -> Any:
+        Clock.look()
         return self._at(self.tree, values)
 
     def names(self, node: ast.expr | None = None) -> set[str]:
@@ -134,7 +162,7 @@ class Formula:
                 return self._at(left, values) * reciprocal(self._at(right, values))
             case ast.BinOp(base, ast.Pow(), exponent) if (value := self.exact(exponent)) is not None:
                 return power(self._at(base, values), value)
-            case ast.Call(ast.Name(name), [part], []) if name in self.FUNCTIONS:
+            case ast.Call(ast.Name(name), [part], []) if name in FUNCTIONS:
                 x = self._at(part, values)
                 if name == "tan":
                     return applied("sin", x) * reciprocal(applied("cos", x))

@@ -18,7 +18,7 @@ from typing import Any
 
 from flint import acb, arb, arb_poly, arb_series
 
-from .formulas import Formula, Refused, Wrong
+from .formulas import Formula, Refused, Wrong, need
 from .motion import Model, size, within
 
 MOST = 240  # terms
@@ -65,13 +65,13 @@ def contact(model: Model, told: Any, j: int) -> Any:
 
     whole, sign = told, 1 if j % 2 else -1
     low, high = (sign * jet(arb(end))[j - 1] for end in (told.lower(), told.upper()))
-    if not (low < 0 < high and sign * jet(whole)[j] > 0):
-        raise Refused("that tau is a zero of a_c of its order is not shown")
+    zero = low < 0 < high and sign * jet(whole)[j] > 0
+    need("zero of a_c", zero, "that tau is a zero of a_c of its order is not shown", Refused)
     for _ in range(6):
         middle = arb(whole.mid())
         whole = whole.intersection(middle - jet(middle)[j - 1] / (j * jet(whole)[j]))
-    if not all(part.contains(0) for part in jet(whole)[: j - 1]):
-        raise Wrong("a_c does not vanish at tau to the order that is written")
+    vanishes = all(part.contains(0) for part in jet(whole)[: j - 1])
+    need("order", vanishes, "a_c does not vanish at tau to the order that is written")
     return whole
 
 

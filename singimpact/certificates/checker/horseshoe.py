@@ -20,7 +20,7 @@ from typing import Any
 
 from flint import arb, arb_mat
 
-from .formulas import Formula, Refused, Wrong, ball
+from .formulas import Formula, Refused, Wrong, ball, need
 from .impacts import impact
 from .motion import Model, next_state, within
 from .periods import require_period
@@ -37,8 +37,6 @@ class Set:
         self.frame = arb_mat([[ball(Fraction(part)) for part in row] for row in told["frame"]])
         self.radii = [ball(Fraction(part)) for part in told["radii"]]
         self.inverse = self.frame.inv()
-        if not all(radius > 0 for radius in self.radii):
-            raise Wrong("a set whose radii are not above 0")
 
     def pieces(self, count: int) -> list[list[Any]]:
         """Balls of tau and v that cover it."""
@@ -65,14 +63,13 @@ def horseshoe(model: Model, told: dict[str, Any], bits: int) -> None:
     require_period(model.g, told["period"])
     period = Formula(told["period"], model.g.parameters)()
     (short, long), (home, *way) = map(int, told["loops"]), map(Set, told["sets"])
-    if not way or short < 1 or long != short + len(way):
-        raise Wrong("the loops are not those of the sets")
+    need("loops", long == short + len(way), "the loops are not those of the sets")
     x = [
         (ball(Fraction(told["entropy"]["value"])) + k * ball(Fraction(told["entropy"]["radius"]))).exp()
         for k in (-1, 1)
     ]
-    if not (x[0] ** -short + x[0] ** -long > 1 > x[1] ** -short + x[1] ** -long):
-        raise Refused("the entropy is not shown to be that of the loops")
+    between = x[0] ** -short + x[0] ** -long > 1 > x[1] ** -short + x[1] ** -long
+    need("entropy", between, "the entropy is not shown to be that of the loops", Refused)
     require_apart(way[0], home, period)
     for one, other, impacts in ((home, home, short), (home, way[0], short), *((*pair, 1) for pair in pairwise(way)),
                                 (way[-1], home, 1)):  # fmt: skip
@@ -82,14 +79,13 @@ def horseshoe(model: Model, told: dict[str, Any], bits: int) -> None:
 def require_apart(one: Set, other: Set, period: Any) -> None:
     """Refuse sets that may meet, whole periods apart."""
     whole = round(float((one.centre[0] - other.centre[0]).mid()) / float(period))
-    if not sum(abs(part.reach()[0]) for part in (one, other)) < period / 2:
-        raise Wrong("a set is too long")
+    need("long", sum(abs(part.reach()[0]) for part in (one, other)) < period / 2, "a set is too long")
     for turns in (whole - 1, whole, whole + 1):
         # sets of less than half a period are apart after more turns
         off = [one.centre[0] - other.centre[0] - turns * period, one.centre[1] - other.centre[1]]
         place = [x + part for x, part in zip(off, one.reach(), strict=True)]
-        if not any(abs(x) > radius for x, radius in zip(seen(other, one, off), other.radii, strict=True)):
-            raise Wrong(f"two sets are not shown to be apart: {place}")
+        apart = any(abs(x) > radius for x, radius in zip(seen(other, one, off), other.radii, strict=True))
+        need("apart", apart, f"two sets are not shown to be apart: {place}")
 
 
 def seen(other: Set, one: Set, off: list[Any]) -> list[Any]:
@@ -117,9 +113,13 @@ def require_crossed(model: Model, pair: tuple[Set, Set], impacts: int, period: A
         D = arb_mat([[joined(each[i, k] for each in over) for k in (0, 1)] for i in (0, 1)])
         (m11, m12), (m21, m22) = (other.inverse * D * one.frame).table()
         width, height = abs(m11) * a - abs(m12) * b - abs(u), abs(s) + abs(m21) * a + abs(m22) * b
-        if not m11.contains(0) and width > other.radii[0] and height < other.radii[1]:
+        try:
+            # m11 is not 0 then
+            need("width", width > other.radii[0], "an image is not shown to cross the next set from side to side")
+            need("height", height < other.radii[1], "an image is not shown to cross the next set within its height")
             return
-        why = "an image is not shown to cross the next set"
+        except Wrong as reason:
+            why = str(reason)
     raise Wrong(why)
 
 

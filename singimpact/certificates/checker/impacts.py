@@ -11,7 +11,7 @@ from typing import Any
 
 from flint import arb
 
-from .formulas import Dual, Refused
+from .formulas import Dual, Refused, need
 from .motion import Flight, Model, ends, first_root, tiny
 
 
@@ -73,16 +73,15 @@ def touching(model: Model, launch: tuple[Any, Any], time: Any, bits: int, column
         if not left.upper() <= h:
             h = arb(min(h, left * arb(0.8), key=float).mid())
             U, h = motion.root(h)
-            if U is not None:
-                raise Refused("the motion meets the wall before it touches it")
+            need("before", U is None, "the motion meets the wall before it touches it", Refused)
             motion.advance(h)
             continue
         for k in range(1, 30):
             last = arb((left * (1 - arb(2) ** -k)).mid())
             x, speed = ends(motion.X, motion.K, last.union(left))
             if model.push(launch[0] + motion.passed + last.union(left), speed[0], x[0]) > 0:
-                if last > 0 and first_root(motion.y, motion.slope, last, tiny(last, bits)) is not None:
-                    raise Refused("the motion meets the wall before it touches it")
+                root = first_root(motion.y, motion.slope, last, tiny(last, bits)) if last > 0 else None
+                need("just before", root is None, "the motion meets the wall before it touches it", Refused)
                 x, speed = ends(motion.X, motion.K, left)
                 return [(x[0] - motion.c, speed[0]), *zip(x[1:], speed[1:], strict=True)]
         raise Refused("that the mass is driven off the wall where it touches it is not shown")

@@ -25,12 +25,13 @@ from typing import Any
 from flint import arb, arb_poly
 
 from .after_contact import require_after
-from .formulas import Refused, Wrong, ball
+from .formulas import Clock, Refused, Wrong, ball, need
 from .gravity import Gravity, contact
 from .motion import Model, size, within
 from .nonlinear import Flights
 from .told import compared, lies_within, read
 
+NOT_SHOWN = arb(-1)  # no bound above 0
 SHARE = 4  # a box of this part of S and l is halved no further than 2^-40
 
 
@@ -127,8 +128,7 @@ class Box:
         self.o, self.told, j = o, told, o.j
         self.N, D, self.pieces = (int(told[name]) for name in ("N", "D", "pieces"))
         low, high = (ball(Fraction(end)) for end in told["lambda"])
-        if not (0 < low < high < 1 and 2 <= self.N < D <= o.K - j and self.pieces >= 1):
-            raise Wrong("a box, or an order, is not as it must be")
+        need("orders", self.N < D <= o.K - j, "N < D is asked of a box, and D within the series of the flights")
         self.high, self.eta, self.slope = high, *(ball(Fraction(told[name])) for name in ("eta", "M"))
         centre = arb(((low + high) / 2).mid())
         h, m = size((low - centre).union(high - centre)), 0 if r is not None else 2
@@ -153,19 +153,17 @@ class Box:
     def take(self, ring: Folded, L: list[Part], ratio: Part, inverse: Part) -> None:
         """L, (1 - L)/(1 - lambda) and the residual over the box."""
         found = ring.residual(self.o, L, ratio).over()
-        if not all(found[i].contains(0) for i in range(self.N)):
-            raise Wrong("the series does not annul the residual")
+        annulled = all(found[i].contains(0) for i in range(self.N))
+        need("annulled", annulled, "the series does not annul the residual")
         self.E = [found[i] for i in range(self.N, ring.D + 1)]
         self.L: Any = arb_poly([part.over()[0] for part in L])
         self.gap = arb_poly([1, *(-(part * inverse).over()[0] for part in L[1:])])
 
     def require_series(self, told: list[dict[str, str]]) -> None:
         """Refuse a series that is not the one of the box."""
-        if len(told) != self.N:
-            raise Wrong("the series has another length")
-        for n, part in enumerate(told):
-            if not lies_within(self.L[n], part):
-                raise Wrong(f"L_{n} is {self.L[n].str(20)}")
+        need("series", len(told) == self.N, "the series has another length")
+        for n, part in enumerate(told[: self.N]):
+            need("L", lies_within(self.L[n], part), f"L_{n} is {self.L[n].str(20)}")
 
     def steps(self) -> list[tuple[Any, Any]]:
         """Pieces of [0, s0]."""
@@ -178,13 +176,13 @@ class Box:
         K, Kx = self.gap(S1) / gap, S * slopes(S1) / gap
         m = 1 - (1 - x) * K
         if not (K > 0 and -1 < m < 1.01):
-            return None
+            return NOT_SHOWN
         m = arb(m.lower()).union(arb(m.upper()).min(arb(1)))
         here, below = o.speeds(S, x), m.union(arb(0))
         _, U, _, _, _, Ux = here
         W, _, WS, _, Wx, _ = o.speeds(S1, m)
         if not (U > 0 and W > 0 and o.fall(here, x) > 0 and (m > 0 or o.fall(o.speeds(S1, below), below) > 0)):
-            return None
+            return NOT_SHOWN
         return (o.j + 1) + x * (Kx / K + (S * WS + (K - (1 - x) * Kx) * Wx) / W - Ux / U)
 
     def least_drift(self) -> Any:
@@ -193,6 +191,7 @@ class Box:
         for letter in self.told["tree"]:
             if not todo:
                 raise Wrong("the boxes of lemma 1 do not fit together")
+            Clock.look()
             a, n, e, k = todo.pop()
             if n + k > 10 * SHARE:
                 raise Wrong("a box of lemma 1 is too small")
@@ -200,20 +199,17 @@ class Box:
                 todo += [(2 * a + 1, n + 1, e, k), (2 * a, n + 1, e, k)]
             elif letter == "l":
                 todo += [(a, n, 2 * e + 1, k + 1), (a, n, 2 * e, k + 1)]
-            elif letter == ".":
+            else:
                 S = (a * half**n).union((a + 1) * half**n) * self.o.s0
                 found = self.drift(S, (e * half**k).union((e + 1) * half**k))
-                if found is None or not found > 0:
-                    raise Refused("lemma 1 is not shown on a box")
+                need("lemma 1", found > 0, "lemma 1 is not shown on a box", Refused)
                 least = least.min(arb(found.lower()))
-            else:
-                raise Wrong("the boxes of lemma 1 are written with S, l and . alone")
-        if todo:
-            raise Wrong("the boxes of lemma 1 do not cover the square")
+        need("covered", not todo, "the boxes of lemma 1 do not cover the square")
         return least
 
     def cones(self, a: Any, b: Any) -> tuple[Any, Any, Any]:
         """Lemma 3 on a piece: bounds of (H + r)/l, of U times 1 - l, and of the growth."""
+        Clock.look()
         o, j, eta, M, L = self.o, self.o.j, self.eta, self.slope, self.L
         S = (a - 2 * M * eta).max(arb(0)).union((b + 2 * M * eta).min(o.s0))
         y, dL = within(eta), self.L.derivative()
@@ -222,8 +218,8 @@ class Box:
         x1 = L(S1) + y
         K = self.gap(S1) / self.gap(S)
         m = 1 - (1 - x) * K
-        if not (0 < x < 1 and 0 < x1 < 1 and -1 < m < 1 and self.N * (1 - L(S)) + S * dL(S) > 0):
-            raise Refused("the strip leaves 0 < l < 1")
+        inside = 0 < x < 1 and 0 < x1 < 1 and -1 < m < 1 and self.N * (1 - L(S)) + S * dL(S) > 0
+        need("strip", inside, "the strip leaves 0 < l < 1", Refused)
         there = o.speeds(S1, x1)
         W1, _, WS1, _, _, _ = there
         fall = o.fall(there, x1)
@@ -235,30 +231,26 @@ class Box:
         by_S = x ** (j + 2) * along - self.r * (1 - x) * US + by_l * dL(S)
         d, g, e = -by_l / by_y1, -by_S / by_y1, x + S * dL(S)
         up = d - abs(g) * M
-        if not (U > 0 and fall > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0):
-            raise Refused("lemma 3 is not shown: the cones are not expanded into themselves")
+        expanded = U > 0 and fall > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0
+        need("cones", expanded, "lemma 3 is not shown: the cones are not expanded into themselves", Refused)
         return rate, (1 - x) * U, up
 
     def require(self) -> None:
         """Refuse the box unless the three lemmas hold with its numbers."""
         R, Kl, grow = (ball(Fraction(self.told[name])) for name in ("R", "Kl", "grow"))
-        if not (self.eta > 0 and self.slope > 0):
-            raise Wrong("eta and M must be positive")
         for a, b in self.steps():
             E, S = arb(0), a.union(b)
             for part in reversed(self.E):
                 E = E * S + part
-            if not abs(E) <= R:
-                raise (Refused if abs(E).overlaps(R) else Wrong)(f"the residual is not shown to be below {R.str(8)}")
+            error = Refused if abs(E).overlaps(R) else Wrong
+            need("residual", abs(E) <= R, f"the residual is not shown to be below {R.str(8)}", error)
         least = self.least_drift()
         bounds = [self.cones(a, b) for a, b in self.steps()]
         rate, U = (lowest(each[k] for each in bounds) for k in (0, 1))
-        if not R / (rate * least * U) <= Kl:
-            raise Wrong("Kl is not shown to bound the distance from the series")
-        if not Kl * self.o.s0**self.N < self.eta:
-            raise Wrong("the strip is narrower than the bound")
-        if not (grow > 1 and lowest(each[2] for each in bounds) >= grow):
-            raise Wrong("that distances grow as fast as is written is not shown")
+        need("Kl", R / (rate * least * U) <= Kl, "Kl is not shown to bound the distance from the series")
+        need("wide", Kl * self.o.s0**self.N < self.eta, "the strip is narrower than the bound")
+        grown = lowest(each[2] for each in bounds) >= grow
+        need("grow", grown, "that distances grow as fast as is written is not shown")
 
     def threshold(self, S: Any) -> Any:
         """The speed on gamma at S, as of y'."""
@@ -276,28 +268,23 @@ def lowest(parts: Any) -> Any:
 def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:  # noqa: ARG001
     """That gamma is as the certificate says, for the r of the model or for all r of an interval."""
     j, reach = int(told["order"]), ball(Fraction(told["reach"]))
-    if not (1 <= j <= 12 and reach > 0 and told["boxes"]):
-        raise Wrong("an order, a reach and boxes must be given")
     tau = contact(model, read(told["tau"]), j)
     o = Flights(model, tau, j, reach) if "fastest" in told else Gravity(model, tau, j, reach)
-    if isinstance(o, Flights) and not ball(Fraction(told["fastest"])) <= o.fastest:
-        raise Wrong("the launch speeds go beyond what is shown")
+    fast = isinstance(o, Gravity) or ball(Fraction(told["fastest"])) <= o.fastest
+    need("fastest", fast, "the launch speeds go beyond what is shown")
     cuts = [[Fraction(end) for end in box["lambda"]] for box in told["boxes"]]
     single = told["restitution"] == "model"
     r = model.ratio() if single else None
     ends: list[Any] = [r, r] if single else [ball(Fraction(end)) for end in told["restitution"]]
     if not all(0 < end < 1 for end in ends) or (single and len(cuts) != 1):
-        raise Wrong("r must lie in (0, 1)")
-    if any(one[1] != other[0] for one, other in pairwise(cuts)):
-        raise Wrong("the boxes of lambda do not touch")
-    if not (restitution(j, ball(cuts[0][0])) <= ends[0] and ends[-1] <= restitution(j, ball(cuts[-1][1]))):
-        raise Wrong("the boxes of lambda do not contain the lambda of every r")
+        raise Wrong("r must lie in (0, 1), and a model has one box")
+    need("touch", all(one[1] == other[0] for one, other in pairwise(cuts)), "the boxes of lambda do not touch")
+    all_in = restitution(j, ball(cuts[0][0])) <= ends[0] and ends[-1] <= restitution(j, ball(cuts[-1][1]))
+    need("lambda", all_in, "the boxes of lambda do not contain the lambda of every r")
     boxes = [Box(o, each, r) for each in told["boxes"]]
     for box in boxes:
         box.require()
     if single:
         compared({"threshold": (boxes[0].threshold(reach) * o.factor(reach), told["threshold"])})
-    if isinstance(o, Gravity):
+    if isinstance(o, Gravity):  # of others nothing may be said of the time after tau: see `schema`
         require_after(o, told, size(ends[-1]))
-    elif told["after"]:
-        raise Wrong("what comes after tau is shown for linear models alone")

@@ -23,7 +23,7 @@ from typing import Any
 
 from flint import acb, arb, arb_poly, arb_series
 
-from .formulas import Dual, Formula, Refused, Wrong
+from .formulas import FUNCTIONS, Dual, Formula, Refused, Wrong, need
 
 HORIZON = 1e4  # of a flight
 
@@ -36,6 +36,8 @@ class Model:
         given = dict(told.get("parameters") or {}) | ({over: value} if over else {})
         self.f, self.g, self.c = (Formula(told[name], given) for name in ("f", "g", "clearance"))
         self._law = Formula(told["restitution"], given)
+        if not self._law.names() - {"pi", *FUNCTIONS, *given}:
+            need("restitution", 0 <= self._law() <= 1, "the restitution is not shown to be in [0, 1]")
 
     def at(self, value: Any) -> Model:
         """The model with another number."""
@@ -237,7 +239,7 @@ class Flight:
 
     def __init__(self, model: Model, tau: Any, v: Any, bits: int, columns: int = 0, removed: int = 0) -> None:
         if not (v > 0 or v == 0):
-            raise Refused("the launch velocity is not shown to be positive")
+            raise Refused("a velocity after an impact is not shown to be positive")
         self.model, self.tau, self.bits, self.c, self.passed = model, tau, bits, model.c(), arb(0)
         self.x, self.speed = [self.c, arb(1), arb(0), arb(0)][: 1 + columns], [v, arb(0), arb(1), arb(0)][: 1 + columns]
         self.removed = removed or (1 if v > 0 else 2)
@@ -273,8 +275,7 @@ class Flight:
 
     def require_above(self) -> None:
         """Refuse the end of a step that may be on the wall."""
-        if not self.x[0] - self.c > 0:
-            raise Refused("x - c is lost at the end of a step")
+        need("off the wall", self.x[0] - self.c > 0, "x - c is lost at the end of a step", Refused)
 
     def first_hit(self) -> tuple[Any, Any, list[tuple[Any, Any]]]:
         """The time of the first hit, x' there, and psi, psi' of the derivatives."""

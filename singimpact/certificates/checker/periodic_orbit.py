@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from flint import arb, arb_mat
 
-from .formulas import Formula, Refused, Wrong, ball
+from .formulas import Formula, Refused, Wrong, ball, need
 from .impacts import by_launch, impact, touching
 from .motion import Model, next_state, size, within
 from .periods import require_period
@@ -82,10 +82,10 @@ class Orbits(NamedTuple):
         for radii in boxes:
             slopes, image = self.krawczyk(point, radii)
             for k, (part, radius) in enumerate(zip(image, radii, strict=True)):
-                if k != self.held and not abs(part) < radius:
-                    # more bits help a narrow box alone, and only if there may be a zero in it
-                    error = Wrong if radii is not boxes[-1] or abs(part) > radius else Refused
-                    raise error(f"Krawczyk's operator maps a side of {float(radius):.3g} to {float(size(part)):.3g}")
+                # more bits help a narrow box alone, and only if there may be a zero in it
+                error = Wrong if radii is not boxes[-1] or abs(part) > radius else Refused
+                why = f"Krawczyk's operator maps a side of {float(radius):.3g} to {float(size(part)):.3g}"
+                need("Krawczyk", k == self.held or abs(part) < radius, why, error)
         return slopes
 
 
@@ -101,17 +101,28 @@ def return_map(slopes: list[Any]) -> Any:
     return total
 
 
+def require_shortest(point: list[Any], radii: list[Any], span: Any, periods: int) -> None:
+    """Refuse a shorter orbit that is written several times: its states would be repeated after a part of the span."""
+    n = len(point) // 2
+    for times in (m for m in range(2, n + 1) if n % m == 0 == periods % m):
+        shift = 2 * n // times
+        off = [point[shift] - point[0] - span / times, point[shift + 1] - point[1]]
+        wide = [radii[shift] + radii[0], radii[shift + 1] + radii[1]]
+        apart = any(abs(x) > radius for x, radius in zip(off, wide, strict=True))
+        need("shortest", apart, f"a shorter orbit, {times} times, is not shown to be another one")
+
+
 def periodic_orbit(model: Model, told: dict[str, Any], bits: int) -> None:
     """That one orbit has its states in the balls that are written, and no other is near; and its multipliers."""
     states, k = told["states"], int(told["periods"])
-    if k < 1 or not states:
-        raise Wrong("an orbit has impacts, and closes after one period or more")
     require_period(model.g, told["period"])
     numbers = [state[name] for state in states for name in ("tau", "v")]
     point, radii = ([ball(Fraction(each[part])) for each in numbers] for part in ("value", "radius"))
     orbits = Orbits(model, Formula(told["period"], model.g.parameters)() * k, bits)
-    total = return_map(orbits.alone(point, [[ball(Fraction(told["unique_within"]))] * len(point), radii]))
-    if told["multipliers"]:
+    near = ball(Fraction(told["unique_within"]))
+    require_shortest(point, radii, orbits.span, k)
+    total = return_map(orbits.alone(point, [[near] * len(point), radii]))
+    if told["multipliers"]:  # two, or none is said of them
         wanted = [each[part] for each in told["multipliers"] for part in ("real", "imaginary")]
         for found, written in zip(eigenvalues(total), wanted, strict=True):
             compared({"a multiplier": (found, written)})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from fractions import Fraction
 
-from .formulas import Formula, Refused
+from .formulas import Formula, need
 
 
 def require_period(g: Formula, period: str) -> None:
@@ -25,8 +25,7 @@ def require_period(g: Formula, period: str) -> None:
                 return (found[0] * turn[0] / 2).denominator == 1
         return all(seen(part) for part in ast.iter_child_nodes(node))
 
-    if not seen(g.tree):
-        raise Refused(f"g = {g.text} is not shown to have the period {period}")
+    need("period", seen(g.tree), f"g = {g.text} is not shown to have the period {period}")
 
 
 def monomial(formula: Formula, node: ast.expr) -> tuple[Fraction, int] | None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 
-from .formulas import Refused, Wrong, ball
+from .formulas import Formula, Refused, Wrong, ball, need
 from .motion import within
 
 
@@ -29,10 +29,17 @@ def balls_of(told: Any) -> Iterable[dict[str, str]]:
 def compared(found: dict[str, tuple[Any, dict[str, str]]]) -> None:
     """Refuse the first ball that does not lie within the one that is written."""
     for name, (ball_found, told) in found.items():
-        if not lies_within(ball_found, told):
-            raise (Refused if ball_found.overlaps(read(told)) else Wrong)(f"{name} is {ball_found.str(30)}")
+        error = Refused if ball_found.overlaps(read(told)) else Wrong
+        need("compared", lies_within(ball_found, told), f"{name} is {ball_found.str(30)}", error)
 
 
 def read(told: dict[str, str]) -> Any:
     """A number with its radius as a ball."""
     return ball(Fraction(told["value"])) + within(ball(Fraction(told["radius"])))
+
+
+def launched(told: dict[str, Any], moving: bool = False) -> tuple[Any, Any]:
+    """tau and v of a launch: from the wall, not into it."""
+    tau, v = (Formula(told["launch"][name], {})() for name in ("tau", "v"))
+    need("launch", v > 0 or (v == 0 and not moving), "the launch velocity is not shown to be positive")
+    return tau, v

@@ -176,7 +176,7 @@ def released(removed: int, a: float, model: Any, work: Any) -> Any:
 def raised(rules: Any, degrees: int) -> Any:
     """Rules with steps of a higher degree."""
     return Rules(rules.horizon, rules.budget, rules.order + degrees, rules.short, rules.ulp, rules.likely,
-                 rules.rough_time, rules.rough_velocity, rules.pace, rules.lost)  # fmt: skip
+                 rules.rough_time, rules.rough_velocity, rules.pace, rules.lost, rules.reach)  # fmt: skip
 
 
 def carried_errors(t: float, v: float, time: float, u: float, judged: Any, row: Any) -> None:

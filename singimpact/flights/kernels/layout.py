@@ -15,8 +15,8 @@ from singimpact.flights.kernels.state import Batch, Columns, Flying, Linear, Mod
 KIND, COUNT, WAVES, ROWS, ROOM, CONSTANTS, IMPACTS, RHO = range(8)
 """Entries of `sizes`: the kind of work; states, impacts or times; waves; rows of the tables and of the work of a
 flight; room for Taylor coefficients; constants of a recurrence; impacts of an iteration; constants of rho."""
-TURN, SCALARS = 10, 15
-"""Where the period and the scalars of a model begin; the ten rules come first."""
+TURN, SCALARS = 11, 16
+"""Where the period and the scalars of a model begin; the eleven rules come first."""
 TERMS = 24
 """Entries of 1/k! in a table."""
 
@@ -30,9 +30,9 @@ def block(flat: Any, at: int, shape: Any) -> Any:
 
 
 def rules_of(flat: Any) -> Any:
-    """The first ten numbers of a model."""
+    """The first eleven numbers of a model."""
     return Rules(flat[0], int(flat[1]), int(flat[2]), int(flat[3]), flat[4], flat[5], flat[6], flat[7], flat[8],
-                 flat[9])  # fmt: skip
+                 flat[9], flat[10])  # fmt: skip
 
 
 def numbers_of(flat: Any, scalars: int, at: int, waves: int) -> Any:

@@ -9,11 +9,14 @@ resonance, critical damping and k = 0 are ordinary points.  launch = cos theta_j
 from __future__ import annotations
 
 from cmath import sqrt as complex_sqrt
-from math import cos, exp, sin
+from math import cos, exp, inf, sin
 from typing import Any
 
 from singimpact.flights.kernels.double_double import product_twice
 from singimpact.flights.kernels.state import COSINE, RATE, SINE
+
+SHY = 1 - 2.0**-20
+"""The share of a proved quiet time that is used: the rest is far above what a few operations round."""
 
 
 def coefficients(launch: Any, time: Any, z: Any, u: Any, shift: Any, n: int, p: Any, work: Any) -> None:
@@ -109,6 +112,69 @@ def restart(launch: Any, v: float, time: float, z: float, u: float, noise: float
         moved = wave * free + rate * forced
         z, u, size = z + forced.real, u + moved.real, size + abs(forced) + abs(wave) * abs(free) / p.fastest
     return z, u, ulp * size * (1 + p.fastest * time)
+
+
+def quiet(z: Any, u: Any, W: Any, p: Any) -> Any:
+    """A time from the state x - c = z, x' = u on in which the mass does not come down to the wall; 0 if none is proved.
+
+    Parameters
+    ----------
+    W : cosine and sine of every wave now, in the first entries of its rows.
+
+    Notes
+    -----
+    x - c = mean + forced motion + free motion. With k > 0 and d >= 0 the energy of the free motion does not grow, so
+    its distance from 0 is at most A, and the forced motion changes no faster than the sum of its amplitudes times their
+    rates; with k = 0 the free motion falls along a parabola, or to a straight line, and the forced motion is bounded.
+    2^-20 of the sizes is left for rounding.
+    """
+    d, k = p.damping, p.stiffness
+    none = 0 * z
+    if d < 0 or k < 0:
+        return none
+    place, speed, bound, rise = none, none, none, none
+    for j in range(len(p.waves)):
+        rate = p.waves[j, RATE]
+        # (k - rate^2 + i d rate) answers: the amplitude of x over that of the force
+        a, b = k - rate * rate, d * rate
+        square = a * a + b * b
+        if not square > 1e-16 * (k + rate * rate) * (k + rate * rate):
+            return none  # too near to a resonance for doubles
+        even = p.waves[j, COSINE] * W[2 * j, 0] + p.waves[j, SINE] * W[2 * j + 1, 0]
+        odd = p.waves[j, SINE] * W[2 * j, 0] - p.waves[j, COSINE] * W[2 * j + 1, 0]
+        place += (a * even - b * odd) / square
+        speed += rate * (a * odd + b * even) / square
+        size = ((p.waves[j, COSINE] * p.waves[j, COSINE] + p.waves[j, SINE] * p.waves[j, SINE]) / square) ** 0.5
+        bound += size
+        rise += abs(rate) * size
+    free, moving = z - place, u - speed
+    spare = (abs(z) + abs(free) + bound) / 1048576
+    if k > 0:
+        mean = p.steady / k
+        away = ((free - mean) * (free - mean) + moving * moving / k) ** 0.5
+        spare += (abs(mean) + away) / 1048576
+        gap = mean + place - away - spare
+        if not gap > 0:
+            return none
+        return SHY * gap / rise if rise > 0 else gap * inf
+    room = free - bound - spare
+    if d > 0:
+        # x' of the free motion goes to the drift h/d monotonically: what it falls behind at most comes first
+        drift = p.steady / d
+        room += min((moving - drift) / d, none)
+        if not room > 0:
+            return none
+        return SHY * room / -drift if drift < 0 else room * inf
+    if not room > 0:
+        return none
+    # room + moving t + steady t^2/2 = 0, by the form of the root that does not cancel
+    if p.steady < 0:
+        root = (moving * moving - 2 * p.steady * room) ** 0.5
+        return SHY * (2 * room / (root - moving) if moving < 0 else (moving + root) / -p.steady)
+    if moving >= 0:
+        return room * inf
+    square = moving * moving - 2 * p.steady * room
+    return SHY * 2 * room / (square**0.5 - moving) if square >= 0 else room * inf
 
 
 def response(launch: Any, v: float, time: float, p: Any) -> Any:

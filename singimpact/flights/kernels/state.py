@@ -52,7 +52,8 @@ class Table(NamedTuple):
 class Rules(NamedTuple):
     """When a flight is given up, and the degree and rounding of its steps.
 
-    horizon : time. budget : Taylor steps. order : degree of a Taylor step. short : degree of the shorter steps through
+    horizon, reach : a flight is given up after this time, or after `reach` times its launch velocity if that is later.
+    budget : Taylor steps. order : degree of a Taylor step. short : degree of the shorter steps through
     a table, and of the steps of `variational.judge`. ulp : rounding error allowed for, relative to the size of the
     terms. likely : the same, as it usually is, in roundings. rough_time, rough_velocity : relative errors of a hit
     below these are never refined. pace : the rate at which the model moves. lost : 1 - r, r of a slow impact.
@@ -68,6 +69,7 @@ class Rules(NamedTuple):
     rough_velocity: Any
     pace: Any
     lost: Any
+    reach: Any
 
 
 class Work(NamedTuple):

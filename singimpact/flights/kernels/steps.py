@@ -44,12 +44,20 @@ def wished_step(X: Any, z: Any, n: int, longest: Any, ulp: Any) -> Any:
     return h
 
 
+def whole_power(base: Any, n: int) -> Any:
+    """base^n as a product: the same bits in compiled code and in Python, whose `**` calls the C library."""
+    value = 1 + 0 * base
+    for _ in range(n):
+        value *= base
+    return value
+
+
 def step_terms(X: Any, n: int, h: Any) -> Any:
     """The size of the terms that move x on a step: three of them, or the first that is not zero for a mass at rest."""
     size = h * (abs(X[1]) + h * (abs(X[2]) + h * abs(X[3])))
     k = 4
     while size == 0 and k < n - 1:
-        size = abs(X[k]) * h**k
+        size = abs(X[k]) * whole_power(h, k)
         k += 1
     return size
 
@@ -114,7 +122,7 @@ def allowed_step(bound: Any, R: Any, X: Any, n: int, wish: Any, ulp: Any) -> Any
     # to bound q^(n-1)/(1 - q)
     q = h * (65 / 64) / R
     # 1.04: the reach of the root finder, squared, and that the bound is summed without outward rounding
-    error = 1.04 * h * h * bound * q ** (n - 1)
+    error = 1.04 * h * h * bound * whole_power(q, n - 1)
     size = 25 * ulp * n * (1 - q) * step_terms(X, n, h)
     if error <= size:
         return h
@@ -128,7 +136,7 @@ def shortened_step(bound: Any, R: Any, X: Any, n: int, h: Any, ulp: Any) -> Any:
     """`allowed_step` for a mass at rest whose first terms vanish."""
     for _ in range(400):
         q = h * (65 / 64) / R
-        if 1.04 * h * h * bound * q ** (n - 1) <= 25 * ulp * n * (1 - q) * step_terms(X, n, h):
+        if 1.04 * h * h * bound * whole_power(q, n - 1) <= 25 * ulp * n * (1 - q) * step_terms(X, n, h):
             return h
         h *= 0.9
     return 0 * h
@@ -143,6 +151,11 @@ def singular_part_of_discs(X: Any, W: Any, n: int, h: Any, p: Any) -> Any:
         if suspect > 0:
             return suspect
     return 0
+
+
+def quiet_in_steps(z: Any, u: Any, W: Any, p: Any) -> Any:  # noqa: ARG001
+    """0: of a motion without a closed form no envelope is known."""
+    return 0 * z
 
 
 def state_kept(launch: Any, v: Any, time: Any, z: Any, u: Any, noise: Any, ulp: Any, p: Any) -> Any:  # noqa: ARG001

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import cos, sin
 from typing import Any
 
-from singimpact.flights.kernels.linear import restart
+from singimpact.flights.kernels.linear import quiet, restart
 from singimpact.flights.kernels.roots import first_root
 from singimpact.flights.kernels.state import (
     A_COS,
@@ -45,7 +45,7 @@ def tabulated_flight(launch: Any, v: float, acceleration: float, model: Any, wor
     launch : cosine and sine of every wave. acceleration : a_c at the launch. model, work : see `state`.
     """
     p, table, W = model.numbers, model.table, work.W
-    step, ulp, horizon = table.step, model.rules.ulp, model.rules.horizon
+    step, ulp, horizon = table.step, model.rules.ulp, max(model.rules.horizon, model.rules.reach * v)
     waves, last = len(p.waves), len(table.rows) - 1
     start, z0, u0, base = 0.0, 0.0, v, 0.0
     for j in range(waves):
@@ -63,6 +63,13 @@ def tabulated_flight(launch: Any, v: float, acceleration: float, model: Any, wor
             # the table ends: its last state is the next start, from the closed form and so without accumulated error
             start += last * step
             z0, u0, base = restarted(launch, v, start, z, u, model, work)
+            ahead = quiet(z0, u0, W, p)
+            if ahead > last * step:
+                # far above the wall: tables in which no impact is possible are passed over
+                if start + ahead >= horizon:
+                    return 3, start, u0, z0, base
+                start += ahead
+                z0, u0, base = restarted(launch, v, start, z0, u0, model, work)
             z, u, m = z0, u0, last - last
             if not abs(z) < 1e100:
                 return 23, start, u, z, base

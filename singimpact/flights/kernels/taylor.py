@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from singimpact.flights.kernels.linear import coefficients, restart, singular_part, step_size
+from singimpact.flights.kernels.linear import coefficients, quiet, restart, singular_part, step_size
 from singimpact.flights.kernels.roots import first_root
 
 
@@ -32,8 +32,8 @@ def taylor_flight(
     trace : where its rows suffice, row i becomes time, x - c, x' at the start of step i and x'' there by the polynomial
         of the step before; the row of the hit ends it, and entry [0, 3] counts the steps.
     """
-    X, W, q, order, ulp, horizon = work.X, work.W, work.q, rules.order, rules.ulp, rules.horizon
-    zero = 0 * v
+    X, W, q, order, ulp = work.X, work.W, work.q, rules.order, rules.ulp
+    horizon, zero = max(rules.horizon, rules.reach * v), 0 * v
     time, z, u, noise, shift, z_lost, u_lost = zero, zero, v, zero, zero, zero, zero
     if removed == 0:
         z = q[0]
@@ -49,6 +49,15 @@ def taylor_flight(
         h, overlap, pace = step_size(X, W, z, order, longest, ulp, p, pace)
         if not abs(u) < 1e150 or not abs(z) < 1e150:
             return 23, time, u, z, noise
+        if count % 64 == 63:
+            ahead = quiet(z, u, W, p)
+            if ahead > 64 * h:
+                # far above the wall: a time in which no impact is possible is passed over
+                if time + ahead >= horizon:
+                    return 3, time, u, z, noise
+                time += ahead
+                z, u, noise = restart(launch, v, time, z, u, noise, ulp, p)
+                continue
         # a step below one rounding unit of the time
         if not h > ulp * time:
             return 22, time, u, z, zero + singular_part(X, W, order, max(h, ulp * (time + ulp)), p)

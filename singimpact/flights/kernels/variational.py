@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from singimpact.flights.kernels.linear import step_size
+from singimpact.flights.kernels.steps import whole_power
 from singimpact.flights.kernels.taylor import advanced
 
 
@@ -136,7 +137,7 @@ def column_step(work: Any, columns: Any, n: int, h: Any, R: Any, ulp: Any, p: An
             break
         # as in `steps.allowed_step`: Cauchy's bound of the cut-off, integrated twice
         q = h / R
-        part = 1.001 * h * h * q ** (n - 1) / (n * (1 - q)) if q < 0.9 else 1e300 + 0 * h
+        part = 1.001 * h * h * whole_power(q, n - 1) / (n * (1 - q)) if q < 0.9 else 1e300 + 0 * h
         a, b, d = disc_of_columns(work, columns, n, R, p)
         # Z starts from nothing, and Z - x' solves the homogeneous equation: what a step moves either of them counts
         size = ulp * abs(X[1]) + h * (abs(X[2]) + h * (abs(X[3]) + abs(Z[2]) + h * (abs(Z[3]) + h * abs(Z[4]))))

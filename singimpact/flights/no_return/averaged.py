@@ -32,7 +32,7 @@ class Bounds:
     force: float
 
 
-def stays_up(osc: Oscillator, v: Array, horizon: float) -> Array:
+def stays_up(osc: Oscillator, v: Array, horizon: Any) -> Array:
     """Whether flights launched with velocities v are proved not to return before the horizon.
 
     Examples

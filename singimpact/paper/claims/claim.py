@@ -12,10 +12,12 @@ from singimpact.notebook import table
 PROVED = "proved"
 MODULO = "proved modulo"  # an exact argument that uses theorems, which are named and not proved here
 IN_MODEL = "proved in the model"  # an exact argument about x'' = 12 kappa (s^2 - 1) alone, which oscillators tend to
-STRONGEST_FIRST = (PROVED, MODULO, IN_MODEL, "certified", "supported", "cited", "open", "error")
+ARGUED = "argued"  # exact checks decide some links of an argument; the others are sentences that no program decides
+FORMAL = "formal"  # an exact expansion to the orders named; existence, uniqueness and the remainder are not shown
+STRONGEST_FIRST = (PROVED, MODULO, IN_MODEL, "certified", ARGUED, FORMAL, "supported", "cited", "open", "error")
 STRENGTH = {word: len(STRONGEST_FIRST) - 1 - place for place, word in enumerate(STRONGEST_FIRST)}
 KINDS = ("corrected", *(word for word in STRONGEST_FIRST if word != IN_MODEL))  # in the model: found, never stated
-ARGUED = (PROVED, MODULO, IN_MODEL, "certified")  # kinds that a theorem can be missing from; numbers use none
+WITH_THEOREMS = (PROVED, MODULO, IN_MODEL, "certified", ARGUED)  # a theorem can be missing from these; numbers use none
 
 
 def told(kind: str, modulo: Sequence[str]) -> str:
@@ -28,7 +30,7 @@ def told(kind: str, modulo: Sequence[str]) -> str:
     >>> told("certified", ["Smale's theorem", "the shadowing lemma"])
     "certified, modulo Smale's theorem and the shadowing lemma"
     """
-    if not modulo or kind not in ARGUED:
+    if not modulo or kind not in WITH_THEOREMS:
         return kind
     names = " and ".join(part for part in (", ".join(modulo[:-1]), modulo[-1]) if part)
     return f"{kind} {names}" if kind == MODULO else f"{kind}, modulo {names}"
@@ -49,7 +51,7 @@ class Check:
     Attributes
     ----------
     holds : whether the statement passed.
-    kind : what the argument is worth if it holds: proved, certified, supported or cited.
+    kind : what the argument is worth if it holds: proved, certified, argued, formal, supported or cited.
     evidence : one line for a person. witness : numbers at which a failing statement fails.
     modulo : names of theorems that the argument uses; with any, "proved" becomes "proved modulo".
     transverse : conditions, each found to hold, by which what holds in the universal model of section 6 holds near it.

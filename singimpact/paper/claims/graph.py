@@ -68,6 +68,8 @@ COLOURS = {
     "proved modulo": "#d0ece7",
     "proved in the model": "#e6f0d0",
     "certified": "#fff2cc",
+    "argued": "#fbe8d0",
+    "formal": "#ece4f4",
     "supported": "#dae8fc",
     "cited": "#eeeeee",
     "corrected": "#ffe6cc",

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from singimpact.certificates.claims_checker import SCHEMA, digest_of
+from singimpact.certificates.claims_checker import SCHEMA, digest_of, file_of
 from singimpact.notebook import table
 from singimpact.paper.claims.claim import MODULO
 from singimpact.paper.claims.layout import Painter, Row, laid_out, unpainted, wrapped
@@ -98,7 +98,7 @@ class VerdictTable(Sequence["Verdict"]):
         return {"claims": [verdict.as_dict() for verdict in self.verdicts]}
 
     def save_certificates(self, place: str | Path) -> list[Path]:
-        """Write one JSON file a claim into a folder: its verdict and the certificates that it rests on.
+        """Write one JSON file a claim into a folder: its verdict, its own certificates, and the files that it rests on.
 
         Parameters
         ----------
@@ -122,13 +122,37 @@ class VerdictTable(Sequence["Verdict"]):
         ['e_yeq.json', 'e_acc.json']
         """
         made = folder(place)
-        paths = []
-        for verdict in self.verdicts:
-            content = {"schema": SCHEMA} | {name: value for name, value in verdict.as_dict().items() if name in WRITTEN}
-            paths.append(made / f"{verdict.id.replace(':', '_')}.json")
-            text = json.dumps({**content, "digest": digest_of(content)}, indent=1, ensure_ascii=False)
-            write_text(paths[-1], text + "\n")
+        contents = self._contents()
+        paths = [made / file_of(verdict.id) for verdict in self.verdicts]
+        for path, verdict in zip(paths, self.verdicts, strict=True):
+            write_text(path, json.dumps(contents[verdict.id], indent=1, ensure_ascii=False) + "\n")
         return paths
+
+    def _contents(self) -> dict[str, dict[str, Any]]:
+        """The files by id: of the certificates its own, and of the claims that it rests on their files' digests."""
+        verdicts = {verdict.id: verdict for verdict in self.verdicts}
+        contents: dict[str, dict[str, Any]] = {}
+        certified: dict[str, set[str]] = {}  # of a claim and of all below it
+
+        def write(verdict: Verdict) -> None:
+            below = [name for name in verdict.rests_on if name in verdicts]
+            for name in below:
+                if name not in contents:
+                    write(verdicts[name])
+            others = set[str]().union(*(certified[name] for name in below))
+            texts = [json.dumps(certificate, sort_keys=True) for certificate in verdict.certificates]
+            certified[verdict.id] = others.union(texts)
+            content = {"schema": SCHEMA} | {name: part for name, part in verdict.as_dict().items() if name in WRITTEN}
+            content["rests_on"] = {name: contents[name]["digest"] for name in below}
+            content["certificates"] = [
+                json.loads(text) for text in dict.fromkeys(texts) if text not in others
+            ]  # fmt: skip
+            contents[verdict.id] = {**content, "digest": digest_of(content)}
+
+        for verdict in self.verdicts:
+            if verdict.id not in contents:
+                write(verdict)
+        return contents
 
     def text(self, width: int | None = None, paint: Painter = unpainted) -> str:
         """The table, the count of each verdict, and the list of what is misprinted.

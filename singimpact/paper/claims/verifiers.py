@@ -114,6 +114,7 @@ def every(
     kind: str = "proved",
     witness: Callable[[], dict[str, str]] | None = None,
     modulo: tuple[str, ...] = (),
+    tried: Sequence[tuple[str, bool]] = (),
 ) -> Check:
     """One check from several named ones; all must pass.
 
@@ -122,14 +123,18 @@ def every(
     checks : (what was tested, whether it passed).
     witness : numbers for a failure; without it the parts that failed are named.
     modulo : names of theorems that take the checks for their hypotheses.
+    tried : the same of true orbits, which decide nothing: a failing integrator makes no theorem wrong.
 
     Examples
     --------
     >>> every([("0 < mu < 1", True)], modulo=("the stable manifold theorem",)).kind
     'proved modulo'
+    >>> every([("0 < mu < 1", True)], tried=[("two orbits agree to 1e-9", False)]).evidence
+    '0 < mu < 1; a trial apart from the argument FAILS: two orbits agree to 1e-9'
     """
     failed = [name for name, passed in checks if not passed]
     if not failed:
-        return Check(True, kind, "; ".join(name for name, _ in checks), modulo=modulo)
+        apart = [f"a trial apart from the argument{'' if passed else ' FAILS'}: {name}" for name, passed in tried]
+        return Check(True, kind, "; ".join([*(name for name, _ in checks), *apart]), modulo=modulo)
     shown = witness() if witness else {"fails": "; ".join(failed)}
     return Check(False, kind, f"fails: {'; '.join(failed)}", shown, modulo)

@@ -30,7 +30,8 @@ NOTATION = Section(
         Step(
             "At the right of a formula stands its label and what its claims were found to be: proved in exact "
             "arithmetic, proved modulo a theorem that is named, proved in the model $x'' = 12\\kappa(s^2 - 1)$ alone, "
-            "certified with bounds, supported by numbers, or corrected, when the paper prints something else; what it "
+            "certified with bounds, argued (some links are sentences), formal (an expansion without its remainder), "
+            "supported by numbers, or corrected, when the paper prints something else; what it "
             "prints is then quoted below. The word is the weakest along all that the claim rests on. A formula without "
             "a verdict is a step on the way."
         ),

@@ -42,6 +42,17 @@ def closed_forms() -> list[tuple[str, bool]]:
     )
     coefficient = j + 1 - i  # of l^i in P: second differences vanish, which leaves the ends of (1 - l)^2 P
     second = sympy.expand(coefficient - 2 * coefficient.subs(i, i - 1) + coefficient.subs(i, i - 2))
+    reversed_ = coefficient.subs(i, j - i)  # of l^i in Q
+    ends = all(
+        same(found, stated)
+        for each, first, last in ((coefficient, j + 1, (0, 1)), (reversed_, 1, (-(j + 2), j + 1)))
+        for found, stated in (
+            (each.subs(i, 0), first),
+            (each.subs(i, 1) - 2 * each.subs(i, 0), -(j + 2) if first != 1 else 0),
+            (each.subs(i, j - 1) - 2 * each.subs(i, j), last[0]),
+            (each.subs(i, j), last[1]),
+        )
+    )
     return [
         (
             "(1-l)^2 P = j+1 - (j+2) l + l^(j+2), (1-l)^2 Q = 1 - (j+2) l^(j+1) + (j+1) l^(j+2) for every j, from "
@@ -49,8 +60,9 @@ def closed_forms() -> list[tuple[str, bool]]:
             is_zero(height.subs(V, launch)) and same(speed.subs(V, launch), landing),
         ),
         (
-            f"so P = sum (j+1-i) l^i and Q = sum (i+1) l^i, i <= j; those of j = 1..{SHOWN} agree",
-            is_zero(second) and tried,
+            "so P = sum (j+1-i) l^i and Q = sum (i+1) l^i, i <= j, for every j: second differences of the "
+            f"coefficients vanish, and the ends are those above; j = 1..{SHOWN} one by one agree",
+            is_zero(second) and ends and tried,
         ),
     ]
 
@@ -59,7 +71,8 @@ def _ray(count: int) -> Check:
     """How many rays l > 0 of flights with one ratio there are for each r in (0, 1) and every j."""
     spare = sympy.factor(j * (i + 1) - i * (i + 1))  # coefficient of l^i in j Q - l Q'
     rising = same(spare, (j - i) * (i + 1))
-    ends = all(
+    # the coefficients of P are those of Q in reverse, so P(1) = Q(1)
+    ends = same((j + 1 - i).subs(i, j - i), i + 1) and all(
         rate == 1 for rate in (sympy.cancel(r_of_lambda(order)).subs(lambda_, 1) for order in range(1, SHOWN + 1))
     )
     return every(
@@ -172,7 +185,10 @@ def _exponents(power: int) -> Check:
     return every(
         [
             *multipliers(),
-            (f"det DG = l^(j+1) (P/Q)^{power} on gamma, and along it the multiplier is l", scaled),
+            (
+                f"det DG = l^(j+1) (P/Q)^{power} on gamma, along it the multiplier is l; from DG at j = 1, 2, 3",
+                scaled,
+            ),
             *rising(),
             ("l^j (P/Q)^2 is smaller than l^j (P/Q)^3 as P > Q", scaled and _saddle(1).holds),
         ],

@@ -44,12 +44,14 @@ def _smooth(exceptions: Any) -> Check:
                 and _vanishes(exceptions, {variations.v: 0, variations.u: 0}),
             ),
             ("there are such points: x'' + x = 1 + c, from rest, at t = 2 pi", exists),
+        ],
+        witness=lambda: {"model": "x'' + x = 1 + c", "v": "0", "t": "2 pi", "gradient": "0"},
+        tried=[
             (
                 f"x_tau = x-dot - v x_c - A x_v at {len(found)} points of V_c on two models",
                 max(case.identity_error for case in found) < 1e-6,
-            ),
+            )
         ],
-        witness=lambda: {"model": "x'' + x = 1 + c", "v": "0", "t": "2 pi", "gradient": "0"},
     )
 
 
@@ -150,8 +152,8 @@ def _phi_fold(condition: Any) -> Check:
                 f"the second derivative along the kernel is {bend} over x_v, or over x_tau: not 0 where a is not",
                 _same_zeros(condition, bend),
             ),
-            (f"at {len(found)} points of Z on two models it is -a_c(tau)/(t dy/dv) (to {worst:.0e})", worst < 1e-4),
-        ]
+        ],
+        tried=[(f"at {len(found)} points of Z on two models it is -a_c(tau)/(t dy/dv) (to {worst:.0e})", worst < 1e-4)],
     )
 
 
@@ -247,12 +249,14 @@ def _discontinuity(condition: Any) -> Check:
                 "persists, by the implicit function theorem",
                 is_zero(start - v) and _same_zeros(condition, derived),
             ),
+        ],
+        tried=[
             (
                 f"{found.count} jumps of F located on {found.lines} lines of two models, each with |x-dot| at the first touch below "
                 f"{found.worst:.0e}",
                 found.count >= 5 and found.worst < 1e-3,
-            ),
-        ]
+            )
+        ],
     )
 
 
@@ -275,16 +279,18 @@ def _corresponding(stated: tuple[bool, bool]) -> Check:
                 "in P",
                 empty and not onto and not with_axis,
             ),
-            (
-                f"phi takes {touched.count} points of H on two models to |v| <= {touched.worst:.0e}",
-                touched.worst < 1e-9,
-            ),
         ],
         witness=lambda: {
             "model": "x'' = 1, c = 0",
             "point of Z": "(tau, 0; 0)",
             "its image under phi": "(tau, 0), not in P_c",
         },
+        tried=[
+            (
+                f"phi takes {touched.count} points of H on two models to |v| <= {touched.worst:.0e}",
+                touched.worst < 1e-9,
+            )
+        ],
     )
 
 
@@ -309,11 +315,13 @@ def _preimages(stated: tuple[bool, bool]) -> Check:
                 with_P and with_axis,
             ),
             (f"from rest {height} lands with x-dot = {lands} and touches c at rest at t = 0 alone", alone),
+        ],
+        tried=[
             (
                 f"{found.count} flights of two models: p(z) and phi(z) on one orbit to {found.worst:.0e}",
                 found.worst < 1e-9,
-            ),
-        ]
+            )
+        ],
     )
 
 
@@ -334,11 +342,6 @@ def _semiconjugacy(crossings: Any) -> Check:
                 "is the first one for both",
                 times == [1, 2] and states[0] != states[1] and crossings == 1,
             ),
-            (
-                f"at {found.visible} first hits of two models G(p(z)) = R(phi(z)) to {found.worst:.0e}, at later "
-                "crossings not",
-                found.worst < 1e-9 and found.least_miss > 1e-3,
-            ),
         ],
         witness=lambda: {
             "model": found.name,
@@ -347,6 +350,13 @@ def _semiconjugacy(crossings: Any) -> Check:
             "t of a later crossing": f"{found.later:.6f}",
             "first hit": f"{found.first:.6f}",
         },
+        tried=[
+            (
+                f"at {found.visible} first hits of two models G(p(z)) = R(phi(z)) to {found.worst:.0e}, at later "
+                "crossings not",
+                found.worst < 1e-9 and found.least_miss > 1e-3,
+            )
+        ],
     )
 
 

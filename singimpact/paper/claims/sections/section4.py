@@ -168,16 +168,10 @@ def _leading(j: int, order: int) -> Any:
         if not check.holds:
             return check
         slopes = crosscheck.remainders(j, order)
-        missed = [case for case in slopes if not case.agrees]
-        if missed:
-            return Check(
-                False,
-                "proved",
-                f"the remainder on true orbits disagrees: {missed[0].line()}",
-                {"case": missed[0].line()},
-            )
-        return Check(
-            True, "proved", f"{check.evidence}; remainder on true orbits: " + "; ".join(s.line() for s in slopes)
+        lines = "; ".join(case.line() for case in slopes)
+        return every(
+            [(check.evidence, True)],
+            tried=[(f"remainder on true orbits: {lines}", all(case.agrees for case in slopes))],
         )
 
     return verify

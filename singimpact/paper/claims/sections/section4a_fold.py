@@ -65,7 +65,7 @@ def _identity_order(order: int) -> Check:
 
 
 def _fold_form(stated: Any) -> Check:
-    """Source and target changes take psi o p to (sigma, stated): to order 5 by series, to all orders by one quotient.
+    """Source and target changes take psi o p to (sigma, stated): computed to order 5, smooth by one quotient.
 
     With the horizon moved to eta = 0 and its image to 0, psi o p has the factor eta^2 (Hadamard's lemma, twice).
     """
@@ -77,7 +77,7 @@ def _fold_form(stated: Any) -> Check:
             (check.evidence, check.holds),
             (
                 f"d^2/d eta^2 of psi o p is {bend}, not 0: so it is -k eta^2 u with u smooth, u = 1 at w_*, and eta sqrt(u) for eta "
-                "removes what is left to all orders",
+                "removes what is left; both changes are computed to order 5",
                 is_zero(bend + 2 * k),
             ),
             ("psi o p composed with the changes leaves no term up to order 5", form.residual_vanishes),

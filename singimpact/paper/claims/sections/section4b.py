@@ -104,11 +104,13 @@ def _continuous(side: int) -> Check:
                 f"dv/dt = -k ({rise}), positive on both edges of the sector, where v = 0",
                 bounds and all(rise.subs(edge) > 0 for edge in edges) and sympy.Poly(rise, sigma, t).is_homogeneous,
             ),
+        ],
+        tried=[
             (
                 f"no jump of F among {found.states} neighbouring states on two models, largest step {found.largest:.1e}",
                 found.largest < 0.05,
-            ),
-        ]
+            )
+        ],
     )
 
 

@@ -29,11 +29,14 @@ def _iterates(stated: int) -> Check:
                 "v_c has the factor t, so v <= C t falls to 0 as fast, at once for all launches near w_*",
                 vanish_at_launch(),
             ),
+            ("so the limit is 0", stated == 0),
+        ],
+        tried=[
             (
-                f"true orbits: the largest v over arcs t = l sigma falls below {found.last:.0e} of its start after {found.count} impacts "
-                f"on two models, by a factor of at most {found.factor:.3f} an impact in the end",
-                found.last < 1e-6 and found.factor < 1 and stated == 0,
-            ),
+                f"the largest v over arcs t = l sigma of true orbits falls below {found.last:.0e} of its start after "
+                f"{found.count} impacts on two models, by a factor of at most {found.factor:.3f} an impact in the end",
+                found.last < 1e-6 and found.factor < 1,
+            )
         ],
     )
 
@@ -57,10 +60,12 @@ def _backwards(stated: Any) -> Check:
                 "it takes the values sigma > 0 and no other",
                 [bool(stated.subs(sigma, value)) for value in (-1, 0, 1)] == [False, False, True],
             ),
+        ],
+        tried=[
             (
-                f"true orbits: the leaf of sigma > 0 ends at sigma' < 0 (sigma -> sigma': {shown}), in a ratio that settles",
+                f"the leaf of sigma > 0 of true orbits ends at sigma' < 0 (sigma -> sigma': {shown}), in a ratio that settles",
                 all(case.end < 0 for case in found) and shrinking,
-            ),
+            )
         ],
         witness=lambda: {
             "sigma": "0",
@@ -76,6 +81,8 @@ def _foliated(stated: tuple[int, int]) -> Check:
 
     E(sigma, v) is continuous and increases strictly with v, so a level is a graph v = V(sigma) over the interval between
     its two points on Pi_0: sigma = E > 0, at rest, and the sigma' < 0 from which chatter ends there.
+
+    The signs of the ends are read off leaves of true orbits: the step to all leaves is a sentence.
     """
     found = leaves.ends()
     sides = (1 if all(case.foot > 0 for case in found) else 0, -1 if all(case.end < 0 for case in found) else 0)
@@ -92,6 +99,7 @@ def _foliated(stated: tuple[int, int]) -> Check:
             ),
             (f"true orbits: {len(found)} leaves on two models, nested: one with a smaller foot lies inside", ordered),
         ],
+        "argued",
     )
 
 

@@ -1,0 +1,271 @@
+"""Impacts, chatter, rest and lift-off of any model by fixed steps: what orbits of the package are compared with.
+
+Shared with the package: f, g and rho as expression trees, and the period. Not shared: their evaluation, flights, laws
+of rebound, sums of chatter, zeros of a_c.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from math import inf, isfinite, nan
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.bench.truth import graded_steps, plain_steps
+from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED, Motion
+from singimpact.oscillator.model import Oscillator
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class PlainOrbitSettings:
+    """How orbits are followed."""
+
+    # of the first of the flights that must agree; at 0.2 the velocities of a friction of steepness 50 are off by 2e-10
+    first: float = 0.1
+    # of a flight that is flown once: 1e-13 from two that agree, for 600 states of three smooth models
+    quick: float = 0.2
+    # intervals of a period between which the sign of a_c is looked at
+    grid: int = 4096
+    # a chatter is summed up where the last correction is below this part of its length
+    summed: float = 1e-10
+    # v/fast at which the slope of rho at rest is taken
+    slow: float = 1e-9
+    # steps of a central difference of flights: of v relative, of tau in units of 1/rate
+    step: float = 2e-3
+    # of neighbours whose flights say how a launch error grows: relative, and in units of 1/rate
+    beside: float = 1e-10
+    # relative tolerance of a flight from rest
+    rest: float = 1e-12
+
+
+SETTINGS = PlainOrbitSettings()
+
+
+class Impact(NamedTuple):
+    """The end of a flight: HIT, MISS or UNDECIDED, flight time, velocity there, velocity after."""
+
+    status: int
+    time: float
+    velocity: float
+    v: float
+
+
+class Chatter(NamedTuple):
+    """`status` "complete", "lifts off" or "open"; the time from the start to the end, its error, impacts flown."""
+
+    status: str
+    time: float
+    error: float
+    impacts: int
+
+
+@dataclass(frozen=True, eq=False)
+class PlainOrbits:
+    """Orbits of one model.
+
+    Parameters
+    ----------
+    motion : the model as `graded_steps` flies it. rho : velocity after an impact.
+    slope : -rho'(0); nan where rho is not smooth at rest, or loses nothing there. period : of g, or None.
+    rate : fastest rate of the model. horizon : of a flight.
+    """
+
+    motion: Motion
+    rho: Callable[[float], float]
+    slope: float
+    period: float | None
+    rate: float
+    horizon: float
+
+    def push(self, tau: float) -> float:
+        """a_c(tau)."""
+        return float(self.motion.acceleration(tau, self.motion.clearance, 0.0, self.motion.parameters))
+
+    def pushes(self, tau: Array) -> Array:
+        """a_c at times."""
+        return np.array([self.push(t) for t in tau.tolist()])
+
+    def rebound(self, velocity: float) -> float:
+        """rho(velocity); nan where it is no velocity away from the obstacle."""
+        if velocity == 0:
+            return 0.0
+        try:
+            v = self.rho(velocity)
+        except (ArithmeticError, ValueError):
+            return nan
+        return float(v) if isinstance(v, int | float) and 0 < v < inf else nan
+
+    def impact(self, tau: float, v: float, horizon: float | None = None) -> Impact:
+        """The first impact of a flight, alike at two finenesses."""
+        until = self.horizon if horizon is None else horizon
+        hit = graded_steps.first_hit(self.motion, tau, v, until, SETTINGS.first)
+        return Impact(hit.status, hit.flight_time, hit.velocity, self.rebound(min(hit.velocity, 0.0)))
+
+    def quick_impact(self, tau: float, v: float, horizon: float | None = None) -> Impact:
+        """The first impact of a flight at one fineness."""
+        run = graded_steps.compiled_kernel()["flown"]
+        until = self.horizon if horizon is None else horizon
+        status, time, velocity, *_ = run(*self.motion, tau, v, until, SETTINGS.quick)
+        return Impact(status, time, velocity, self.rebound(min(velocity, 0.0)))
+
+    def impacts(self, tau: float, v: float, count: int, quick: bool = False) -> tuple[float, float] | None:
+        """Time and velocity after so many impacts; None where a flight does not return.
+
+        Parameters
+        ----------
+        quick : each flown at one fineness alone.
+        """
+        since, fly = 0.0, self.quick_impact if quick else self.impact
+        for _ in range(count):
+            hit = fly(tau + since, v)
+            if hit.status != HIT or not hit.v > 0:
+                return None
+            since, v = since + hit.time, hit.v
+        return since, v
+
+    def spread(self, tau: float, v: float, count: int = 1) -> tuple[float, float]:
+        """By how much rounding of a launch moves time and velocity after impacts: differences of neighbours, scaled.
+
+        The launch is off by 1e-12 of v, and by 1e-12/rate and a rounding of tau.
+        """
+        h, centre = SETTINGS.beside, self.impacts(tau, v, count, True)
+        sides = [self.impacts(tau + i * h / self.rate, v * (1 + j * h), count, True)
+                 for i, j in ((1, 0), (-1, 0), (0, 1), (0, -1))]  # fmt: skip
+        if centre is None or None in sides:
+            return inf, inf
+        away = np.max(np.abs(np.array(sides, dtype=float) - centre), axis=0)
+        scale = 1e-2 + 2.0**-52 * abs(tau) * self.rate / h
+        return float(away[0] * scale), float(away[1] * scale)
+
+    def chatter(self, tau: float, v: float, most: int) -> Chatter:
+        """Where infinitely many impacts end: flown ones and 2 v/(|a_c| (1 - r)) for the others.
+
+        Notes
+        -----
+        What this sum E_n after n impacts leaves out is C v_n^2 + ..., so E_n + (E_n - E_(n-1)) r^2/(1 - r^2) is used,
+        and the correction is its error.
+        """
+        since, before, r = 0.0, nan, self.slope
+        if not r < 1:
+            return Chatter("open", nan, inf, 0)
+        for count in range(most + 1):
+            a = self.push(tau + since)
+            if a >= 0 and count:
+                return Chatter("lifts off", since, graded_steps.FINENESS.most * since, count)
+            total = since + 2 * v / (-a * (1 - r)) if a < 0 else nan
+            correction = (total - before) * r * r / (1 - r * r)
+            if abs(correction) <= SETTINGS.summed * total:
+                return Chatter("complete", total + correction, abs(correction) + 1e-11 * total, count)
+            before = total
+            hit = self.impact(tau + since, v)
+            if hit.status != HIT or not hit.v > 0:
+                break
+            since, v = since + hit.time, hit.v
+        return Chatter("open", nan, inf, most)
+
+    def difference_quotients(self, tau: float, v: float) -> tuple[Array, Array] | None:
+        """D G and its error by central differences of flights; None where a flight does not return or is not decided.
+
+        Notes
+        -----
+        Two steps h and h/2 give (4 D_(h/2) - D_h)/3; the error is a tenth of their difference, and of the flights.
+        """
+        columns, errors = [], []
+        for by_tau in (1.0, 0.0):
+            quotients = []
+            for part in (1.0, 0.5):
+                h = SETTINGS.step * part * (1 / self.rate if by_tau else v)
+                ends = [self.impact(tau + s * h * by_tau, v + s * h * (1 - by_tau)) for s in (-1, 1)]
+                if any(end.status != HIT or not isfinite(end.v) for end in ends):
+                    return None
+                less, more = ends
+                quotients.append(np.array([by_tau + (more.time - less.time) / (2 * h), (more.v - less.v) / (2 * h)]))
+                noise = 1e-11 * np.array([more.time, more.v]) / h
+            columns.append((4 * quotients[1] - quotients[0]) / 3)
+            errors.append(np.abs(quotients[1] - quotients[0]) / 10 + noise)
+        return np.stack(columns, axis=1), np.stack(errors, axis=1)
+
+    @cached_property
+    def grid(self) -> tuple[Array, Array]:
+        """Times of one period, shifted by a part of an interval, and a_c there."""
+        assert self.period is not None
+        times = (np.arange(SETTINGS.grid) + 0.4142) * self.period / SETTINGS.grid
+        return times, self.pushes(times)
+
+    @cached_property
+    def lift_offs(self) -> tuple[float, ...]:
+        """Phases in one period at which a_c becomes positive, by bisection."""
+        assert self.period is not None
+        times, a = self.grid
+        ends = np.append(times[1:], times[0] + self.period)
+        rising = np.flatnonzero((a < 0) & (np.roll(a, -1) >= 0))
+        return tuple(sorted(self._zero(times[at], ends[at]) % self.period for at in rising.tolist()))
+
+    def _zero(self, low: float, high: float) -> float:
+        while low < (middle := 0.5 * (low + high)) < high:
+            low, high = (middle, high) if self.push(middle) < 0 else (low, middle)
+        return high
+
+    def next_lift_off(self, tau: float) -> int:
+        """The place in `lift_offs` of the first after a time; -1 where there is none."""
+        assert self.period is not None
+        if not self.lift_offs:
+            return -1
+        return int(np.searchsorted(np.array(self.lift_offs), tau % self.period)) % len(self.lift_offs)
+
+    def lifted(self, tau: float, horizon: float | None = None) -> Impact:
+        """The first impact of a mass that lifts off from rest, by scipy's DOP853 with dense output."""
+        from scipy.integrate import solve_ivp
+
+        p, c = self.motion.parameters, self.motion.clearance
+
+        def slopes(s: float, y: Any) -> Any:
+            return [y[1], self.motion.acceleration(tau + s, c + y[0], y[1], p)]
+
+        def height(_s: float, y: Any) -> float:
+            return float(y[0])
+
+        height.terminal, height.direction = True, -1.0  # type: ignore[attr-defined]
+        until = self.horizon if horizon is None else horizon
+        try:
+            # x - c begins as s^3, below any absolute tolerance: steps are short there
+            flight = solve_ivp(slopes, (0.0, until), [0.0, 0.0], "DOP853", events=height, rtol=SETTINGS.rest,
+                               atol=1e-15, max_step=0.2 / self.rate)  # fmt: skip
+        except (ArithmeticError, ValueError):
+            return Impact(UNDECIDED, nan, nan, nan)
+        if flight.status != 1:
+            return Impact(MISS if flight.status == 0 else UNDECIDED, inf, 0.0, nan)
+        time, velocity = float(flight.t_events[0][0]), float(flight.y_events[0][0][1])
+        return Impact(HIT, time, velocity, self.rebound(velocity))
+
+
+@lru_cache(maxsize=8)
+def plain_orbits(osc: Oscillator, rate: float, horizon: float, fast: float) -> PlainOrbits:
+    """The orbits of a model.
+
+    Parameters
+    ----------
+    rate, horizon : see `PlainOrbits`. fast : largest velocity of interest.
+
+    Raises
+    ------
+    TypeError : f, g or rho holds an algebraic number that is given as a root.
+
+    Examples
+    --------
+    >>> ball = plain_orbits(Oscillator("0", "-2", 0, "1/2"), 1.0, 30.0, 1.0)
+    >>> end = ball.chatter(0.0, 1.0, 100)
+    >>> end.status, round(end.time, 12), round(ball.impact(0.0, 3.0).v, 12)
+    ('complete', 2.0, 1.5)
+    """
+    rho = plain_steps.rebound(osc)
+    slopes = [rho(-slow) / slow for slow in (SETTINGS.slow * fast, 1e-3 * SETTINGS.slow * fast)]
+    smooth = abs(slopes[1] - slopes[0]) <= 1e-6 * slopes[0] and slopes[0] < 1 - 1e-6
+    period = None if osc.period is None else as_float(osc.period)
+    return PlainOrbits(plain_steps.motion(osc, rate), rho, slopes[1] if smooth else nan, period, rate, horizon)

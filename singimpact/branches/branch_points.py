@@ -1,0 +1,226 @@
+"""Points at which a branch of periodic orbits meets another branch of orbits of as many impacts and periods.
+
+A pitchfork: the branch of (2n, 2k) orbits that leaves the (n, k) orbits at a period doubling meets them again there,
+as (2n, 2k) orbits whose halves are equal. Other branches cross at a slope over the parameter (transcritical) or none
+(pitchfork); the second branch is reached by one step across the first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from singimpact.branches.closing import Closing
+from singimpact.branches.continuation import Curve, Point, null_plane, root_between
+from singimpact.branches.event_tests import EventTests
+from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of
+from singimpact.branches.step_search import Crossing, Node, StepSearch
+from singimpact.branches.switching import APART, Equations, others
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class BranchPointSettings:
+    """How branch points are located."""
+
+    # of the step: distances of the points from which a branch point is interpolated; the equations are singular at it
+    beside: tuple[float, ...] = (1e-1, 1e-2, 1e-3)
+    # secants for the doubling of the orbits of half as many impacts, and their tolerance in scaled unknowns
+    secants: int = 30
+    arrived: float = 1e-14
+    # halves of an orbit that differ by less, in scaled unknowns, are equal
+    equal: float = 1e-7
+    # ... where the branch was only seen to come near equal parts
+    alike: float = 1e-3
+    # slope of the parameter along the other branch, in scaled unknowns, below which it turns back: the step is 1e-3
+    level: float = 1e-2
+
+
+SETTINGS = BranchPointSettings()
+
+
+@dataclass(frozen=True)
+class BranchPoint:
+    """A branch point.
+
+    Parameters
+    ----------
+    kind : "pitchfork", "transcritical"; "branch point" where the other branch is not reached. along : distance from the
+        first point of the step. at : the point. other : an orbit of the other branch.
+    """
+
+    kind: str
+    along: float
+    at: Array
+    other: PeriodicOrbit | None
+
+
+def halves(closing: AnyClosing, at: Array) -> Array:
+    """The second half of an orbit less the first, in scaled unknowns; it changes sign where a doubled orbit begins.
+
+    Of an odd number of impacts or periods a single 0.
+    """
+    n, k = closing.n, closing.k
+    if n % 2 or k % 2:
+        return np.zeros(1)
+    scales = closing.scales(at)
+    if not isinstance(closing, Closing):
+        values = closing.launch(at)
+        end = closing.family.end(values, 0.0, float(at[1]), closing.span(at, 0) / 2)
+        return np.asarray((end.place - np.array([0.0, at[1]])) / scales[:2])
+    period = closing.family.period(closing.values(at)).value
+    times, speeds = np.diff(at[:n].reshape(2, -1), axis=0)[0], np.diff(at[n : 2 * n].reshape(2, -1), axis=0)[0]
+    return np.concatenate([(times - k // 2 * period) / scales[0], speeds / scales[n]])
+
+
+def repeats(closing: AnyClosing, at: Array) -> int:
+    """How often an orbit with impacts repeats one of fewer impacts and periods, about."""
+    n, k = closing.n, closing.k
+    if not isinstance(closing, Closing):
+        return 1
+    period, scales = closing.family.period(closing.values(at)).value, closing.scales(at)
+    for share in range(n, 1, -1):
+        if n % share == 0 and k % share == 0:
+            m = n // share
+            times = (np.roll(at[:n], -m) - at[:n] - k // share * period)[: n - m] / scales[0]
+            speeds = (np.roll(at[n : 2 * n], -m) - at[n : 2 * n]) / scales[n]
+            if max(float(np.abs(times).max()), float(np.abs(speeds).max())) < SETTINGS.alike:
+                return share
+    return 1
+
+
+def branch_point(search: StepSearch, crossing: Crossing) -> BranchPoint | None:
+    """The branch point of a step, where the fold or the branch point test changes sign; None where there is none."""
+    closing = search.tests.closing
+    low, high = crossing.low.point.at, crossing.high.point.at
+    differences = halves(closing, low), halves(closing, high)
+    sizes = [float(np.linalg.norm(each)) for each in differences]
+    doubled = len(differences[0]) > 1 and (max(sizes) < SETTINGS.equal or float(differences[0] @ differences[1]) < 0)
+    if doubled:
+        return _doubling(search, crossing, max(sizes) < SETTINGS.equal)
+    return _crossing(search, crossing) if crossing.kind == "branch point" else None
+
+
+def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoint | None:
+    """The pitchfork at the period doubling of the orbits of half as many impacts, a regular point of theirs."""
+    closing, scales = search.tests.closing, search.tests.scales
+    low, high = crossing.low.point.at, crossing.high.point.at
+    near = min(low, high, key=lambda at: float(np.linalg.norm(halves(closing, at))))
+    n = closing.n
+    half = closing_of(closing.family.osc, n // 2, closing.k // 2, closing.over)
+    shift = closing.k // 2 * closing.family.period(closing.values(near)).value if n else 0.0
+    guess = np.concatenate([(near[: n // 2] + near[n // 2 : n] - shift) / 2,
+                            near[n : 2 * n].reshape(2, -1).mean(axis=0), near[2 * n :]]) if n else near  # fmt: skip
+    places = [*range(n // 2), *range(n, n + n // 2), 2 * n] if n else [0, 1, 2]
+    sizes = scales[places]
+    curve = Curve(Equations(half), sizes, 1.0)
+    start = curve.begin(guess)
+    if start is None:
+        return None
+    known = start.at, _doubling_test(half, start.at)
+    moved = curve.beyond(start, 1e-6)
+    lengths = 0.0, 1e-6
+    if moved is None:
+        return None
+    latest = moved[0].at, _doubling_test(half, moved[0].at)
+    for _ in range(SETTINGS.secants):
+        slope = (latest[1] - known[1]) / (lengths[1] - lengths[0]) if lengths[1] != lengths[0] else 0.0
+        if not slope:
+            break
+        length = lengths[1] - latest[1] / slope
+        step = curve.beyond(start, length) if abs(length) < 1 else None
+        if step is None:
+            return None
+        known, latest = latest, (step[0].at, _doubling_test(half, step[0].at))
+        lengths = lengths[1], length
+        if abs(lengths[1] - lengths[0]) <= SETTINGS.arrived:
+            break
+    root = latest[0]
+    at = root
+    if n:
+        period = half.family.period(half.values(root)).value
+        m = n // 2
+        at = np.concatenate([root[:m], root[:m] + closing.k // 2 * period, root[m:n], root[m:n], root[n:]])
+    away = np.linalg.norm((at - (low + high) / 2) / scales)
+    width = np.linalg.norm((high - low) / scales)
+    if not away <= 2 * width:
+        return None
+    orbit = orbit_of(half, root)
+    following = others("period-doubling", orbit, closing.over[0], float(root[-1])) if equal else [orbit]
+    along = float(search.here.tangent @ ((at - search.here.at) / scales))
+    return BranchPoint("pitchfork", along, at, following[0] if following else None)
+
+
+def _doubling_test(half: AnyClosing, at: Array) -> float:
+    zero, one, two = half.at(at).characteristic()
+    return zero - one + two
+
+
+def _crossing(search: StepSearch, crossing: Crossing) -> BranchPoint | None:
+    """A branch point by interpolation from both sides."""
+    low, high = crossing.low, crossing.high
+    root = _cubic_root(low, high)
+    for share in SETTINGS.beside:
+        beside = share * search.length
+        before, after = search.at(max(root - beside, low.along)), search.at(min(root + beside, high.along))
+        if before is None or after is None or _value(before) * _value(after) > 0:
+            break
+        low, high = before, after
+        root = _cubic_root(low, high)
+    scales = search.tests.scales
+    at = _between(low, high, root, search)
+    tangent = (low.point.tangent + high.point.tangent) / 2
+    tangent /= np.linalg.norm(tangent)
+    return _classified(search.tests, Point(at, tangent), scales, root)
+
+
+def _value(node: Node) -> float:
+    return node.tests["branch point", 0, 0].value
+
+
+def _cubic_root(low: Node, high: Node) -> float:
+    """Where the cubic through the branch point test at two points vanishes."""
+    width = high.along - low.along
+    one, other = (node.tests["branch point", 0, 0] for node in (low, high))
+    rise = other.value - one.value
+    rates = one.rate * width, other.rate * width
+    square, cube = 3 * rise - 2 * rates[0] - rates[1], rates[0] + rates[1] - 2 * rise
+    if not np.isfinite(square + cube):
+        return low.along - one.value / rise * width
+    share = root_between(lambda s: one.value + s * (rates[0] + s * (square + s * cube)), 0.0, 1.0,
+                         (one.value, other.value))  # fmt: skip
+    return low.along + share * width
+
+
+def _between(low: Node, high: Node, along: float, search: StepSearch) -> Array:
+    """The cubic through two points of the branch along their tangents."""
+    width = high.along - low.along
+    s = (along - low.along) / width
+    scales = search.tests.scales
+    rates = [node.point.tangent * scales * width / float(node.point.tangent @ search.here.tangent)
+             for node in (low, high)]  # fmt: skip
+    rise = high.point.at - low.point.at
+    square, cube = 3 * rise - 2 * rates[0] - rates[1], rates[0] + rates[1] - 2 * rise
+    return np.asarray(low.point.at + s * (rates[0] + s * (square + s * cube)))
+
+
+def _classified(tests: EventTests, point: Point, scales: Array, along: float) -> BranchPoint:
+    """The kind of a branch point, by one step to each side along the other branch."""
+    closing = tests.closing
+    across = null_plane(closing.at(point.at).slope * scales, point.tangent)
+    curve = Curve(Equations(closing), scales, 10 * APART)
+    sides = [curve.beyond(Point(point.at, sign * across), APART) for sign in (1.0, -1.0)]
+    if sides[0] is None or sides[1] is None:
+        return BranchPoint("branch point", along, point.at, None)
+    ahead, behind = (float(side[0].at[-1]) for side in sides if side is not None)
+    slope = (ahead - behind) / (2 * APART * scales[-1])
+    turning = min(abs(slope), abs(float(point.tangent[-1]))) < SETTINGS.level
+    try:
+        other = orbit_of(closing, sides[0][0].at)
+    except ArithmeticError:  # at rest
+        other = None
+    return BranchPoint("pitchfork" if turning else "transcritical", along, point.at, other)

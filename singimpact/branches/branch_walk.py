@@ -1,0 +1,313 @@
+"""A branch of periodic orbits while it is followed: points, and the events between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from singimpact.branches.branch_points import BranchPoint, branch_point, repeats
+from singimpact.branches.closing import Closing
+from singimpact.branches.continuation import Curve, Point
+from singimpact.branches.event_tests import EventTests, Tests
+from singimpact.branches.events import Event
+from singimpact.branches.kept import KeptSide
+from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.branches.solutions import AnyClosing, orbit_of, orbit_period
+from singimpact.branches.step_search import Crossing, StepSearch
+from singimpact.flights.family import SteppedFamily
+from singimpact.inputs import InputError
+from singimpact.oscillator.acceleration import acceleration
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class BranchSettings:
+    """Step sizes and tolerances of a branch."""
+
+    # largest step, as a part of the width of the interval, of a period and of the largest velocity
+    step: float = 0.02
+    # half width of the default interval, as a part of the parameter, or of 1 if it is 0
+    around: float = 0.5
+    # flight time, in periods, below which two impacts have met
+    shortest: float = 1e-9
+    # height above the wall that is a rounding error
+    touching: float = 1e-12
+    # the same at a located event
+    located: float = 1e-9
+    # |product of the multipliers| - 1 that is a rounding error: for r = 1 without damping it is 0 everywhere
+    neutral: float = 1e-9
+    # events of a step that are nearer to each other, of its length, have no point between them
+    together: float = 1e-7
+
+
+SETTINGS = BranchSettings()
+TOUCHES = ("graze", "hidden impact")
+"""Events at which the orbit touches the wall."""
+
+
+class Row(NamedTuple):
+    """A point of a branch with its computed values, or an event."""
+
+    point: Point
+    multipliers: Array
+    visible: bool
+    event: Event | None = None
+
+    @property
+    def listed(self) -> bool:
+        """Whether it is a point of the branch; at touches multipliers are infinite and first hits jump."""
+        return self.event is None or self.event.kind not in TOUCHES
+
+
+@dataclass
+class BranchWalk:
+    """A branch while it is followed.
+
+    Parameters
+    ----------
+    closing : of its orbits. ends : of the interval. step : the largest one. most : points on either side. over : the
+        name of the parameter. notes : where and why it ends, and what else was seen.
+    """
+
+    closing: AnyClosing
+    ends: tuple[float, float]
+    step: float
+    most: int
+    over: str
+    notes: list[str] = field(default_factory=list)
+
+    def equations(self, point: Array) -> tuple[Array, Array]:
+        """The closing conditions; nan where a flight has collapsed."""
+        if isinstance(self.closing, Closing) and self._collapsed(point):
+            return np.full(2 * self.closing.n, np.nan), np.full((2 * self.closing.n, len(point)), np.nan)
+        loop = self.tests.loop(point)
+        return loop.miss, loop.slope
+
+    def _collapsed(self, point: Array) -> bool:
+        assert isinstance(self.closing, Closing)
+        period = self.closing.family.period(self.closing.values(point)).value
+        return any(flight[3] < SETTINGS.shortest * period for flight in self.closing.flights(point))
+
+    def rows(self, guess: Array) -> list[Row]:
+        """The points of the branch in both directions from a guess, in the order of the branch."""
+        scales = self.closing.scales(guess)
+        scales[-1] = self.ends[1] - self.ends[0]
+        self.tests = EventTests(self.closing, scales)
+        upwards = np.zeros(len(guess))
+        upwards[-1] = scales[-1]
+        n = self.closing.n
+        speeds = slice(n, 2 * n) if n else slice(0, 2)
+        start = Curve(self, scales, self.step, speeds).begin(guess, upwards)
+        if start is None:
+            raise InputError("the orbit does not solve its closing conditions: give one of osc.periodic(n, k)")
+        rows = [self._row(start)]
+        for sign in (-1.0, 1.0):
+            side = self._side(Curve(self, scales, self.step, speeds), Point(start.at, sign * start.tangent))
+            rows = side[::-1] + rows if sign < 0 else rows + side
+            if self.notes and self.notes[-1].startswith("closed"):
+                break
+        return rows
+
+    # ---- one side
+
+    def _side(self, curve: Curve, start: Point) -> list[Row]:
+        kept = KeptSide(self._key(start))
+        try:
+            return self._followed(curve, start, kept)
+        finally:
+            kept.write()
+
+    def _followed(self, curve: Curve, start: Point, kept: KeptSide) -> list[Row]:
+        rows: list[Row] = []
+        before, last = self.tests.at(start), start
+        low, high = self.ends
+        for index, (here, length, after) in enumerate(self._steps(curve, start, kept)):
+            stored = kept.points[index] if index < len(kept.points) else None
+            outside = not low <= after.at[-1] <= high
+            if outside:
+                end = self._end(curve, here, length, after)
+                if end is None:
+                    self.notes.append(f"ends at {self.over} = {here.at[-1]:.12g}, next to the end of the interval")
+                    return rows
+                length, after = end
+            tests = self.tests.at(after) if stored is None else stored.named_tests()
+            rows += self._events(StepSearch(self.tests, curve, here, length), before, after, tests)
+            rows.append(self._row(after) if stored is None else Row(after, stored.multipliers, stored.visible))
+            if stored is None and not outside:
+                kept.add((after.at, after.tangent, curve.following), rows[-1][:3], tests)
+            before, last = tests, after
+            if outside:
+                self.notes.append(f"ends at {self.over} = {after.at[-1]:.12g}, the end of the interval")
+                return rows
+            if index > 9 and self._again(curve, start, here, after):
+                self.notes.append("closed: the branch comes back to where it began")
+                return rows
+        self.notes.append(f"at {self.over} = {last.at[-1]:.12g}: {self._reason(last) or curve.note}")
+        return rows
+
+    def _key(self, start: Point) -> tuple[Any, ...] | None:
+        """The key of a side in the cache; None for a linear model, whose branches take less than 1 s."""
+        family = self.closing.family
+        if not isinstance(family, SteppedFamily):
+            return None
+        numbers = (start.at.tolist(), start.tangent.tolist(), self.ends, self.step, self.most)
+        return family.osc, self.closing.n, self.closing.k, self.over, numbers
+
+    def _steps(self, curve: Curve, start: Point, kept: KeptSide) -> Iterator[tuple[Point, float, Point]]:
+        """The stored steps, then new ones."""
+        here = start
+        stored = list(kept.points)
+        for row in stored:
+            after = Point(row.at, row.tangent)
+            yield here, float(here.tangent @ ((after.at - here.at) / curve.scales)), after
+            here = after
+        yield from curve.walk(here, self.most - len(stored), stored[-1].following if stored else None)
+
+    def _reason(self, where: Point) -> str:
+        """Why flights have no value just beyond a point."""
+        if not isinstance(self.closing, Closing):
+            return ""
+        values = self.closing.values(where.at)
+        period = self.closing.family.period(values).value
+        times = [flight[3] for flight in self.closing.flights(where.at)]
+        if min(times) < 1e-3 * period:
+            return "two impacts meet: a flight shrinks to nothing"
+        return ""
+
+    def _end(self, curve: Curve, here: Point, length: float, after: Point) -> tuple[float, Point] | None:
+        """The point of the step at which the number is the end of the interval."""
+        goal = self.ends[0] if after.at[-1] < self.ends[0] else self.ends[1]
+        ends = float(here.at[-1] - goal), float(after.at[-1] - goal)
+        crossed = None if ends[0] == 0 else curve.located(here, length, lambda point: float(point.at[-1] - goal), ends)
+        if crossed is not None:
+            crossed[1].at[-1] = goal
+        return crossed
+
+    def _again(self, curve: Curve, start: Point, here: Point, after: Point) -> bool:
+        """Whether a step passes the start, perhaps some periods later."""
+        gap, n = (start.at - here.at) / curve.scales, self.closing.n
+        if n:
+            period = self.closing.family.period(self.closing.values(after.at)).value / curve.scales[0]
+            gap[:n] -= period * np.rint(gap[0] / period)
+        return curve.passes(start, here, after, gap)
+
+    # ---- a point: visible or not
+
+    def _row(self, point: Point, rounding: float = SETTINGS.touching, event: Event | None = None) -> Row:
+        loop = self.tests.loop(point.at)
+        with np.errstate(all="ignore"):
+            product = partial(self.closing.product, point.at) if isinstance(self.closing, Closing) else None
+            return Row(point, loop.multipliers(product), self._visible(point.at, rounding), event)
+
+    def _visible(self, at: Array, rounding: float) -> bool:
+        n = self.closing.n
+        if n and float(at[n : 2 * n].min()) < -rounding:
+            return False
+        return min(self.tests.heights(at)) >= -rounding
+
+    # ---- events within a step
+
+    def _events(self, search: StepSearch, before: Tests, after: Point, later: Tests) -> list[Row]:
+        """The events of a step, and a point between those that are apart."""
+        located: list[tuple[float, Row]] = []
+        meetings: list[float] = []
+        crossings = search.crossings(before, after, later)
+        # at a pitchfork both of these may change sign: it is located first, and once
+        for crossing in sorted(crossings, key=lambda crossing: crossing.kind != "branch point"):
+            if crossing.kind in ("branch point", "fold"):
+                meeting = branch_point(search, crossing)
+                if meeting is not None:
+                    if not any(abs(meeting.along - along) <= 1e-3 * search.length for along in meetings):
+                        point = Point(meeting.at, crossing.low.point.tangent)
+                        located.append((meeting.along, self._event_row(meeting.kind, point, other=meeting.other)))
+                        self._met(meeting)
+                    meetings.append(meeting.along)
+                    continue
+            if crossing.kind == "branch point":
+                self.notes.append(f"a branch point near {crossing.low.point.at[-1]:.9g} could not be located")
+                continue
+            row = self._crossed(search, crossing)
+            if row is not None and not self._repeated(search, row, located):
+                located.append(row)
+        self._doubtful(search)
+        located.sort(key=lambda pair: pair[0])
+        return self._separated(search, located)
+
+    def _doubtful(self, search: StepSearch) -> None:
+        """Note test functions that touch 0."""
+        for (kind, _, _), at in {key: (key, at) for key, at in search.doubts}.values():
+            share = repeats(self.closing, at) if kind == "branch point" else 1
+            n, k = self.closing.n // share, self.closing.k // share
+            seen = f"the test of a {kind} comes so near to 0 that two may lie there, or none: give a smaller step="
+            if share > 1:
+                seen = f"meets the ({n}, {k}) orbits, of which a multiplier to the power {share} is 1"
+            self.notes.append(f"near {self.over} = {at[-1]:.9g} {seen}")
+
+    def _met(self, meeting: BranchPoint) -> None:
+        """Note which orbits a doubled branch meets."""
+        n, k = self.closing.n, self.closing.k
+        if meeting.kind == "pitchfork" and meeting.other is not None and meeting.other.k < k:
+            self.notes.append(f"meets the ({n // 2}, {k // 2}) orbits at their doubling, at {meeting.at[-1]:.12g}")
+
+    def _repeated(self, search: StepSearch, row: tuple[float, Row], located: list[tuple[float, Row]]) -> bool:
+        """Whether an orbit without impact touches the wall again, some periods of the forcing later."""
+        if self.closing.n or row[1].listed:
+            return False
+        near = SETTINGS.together * search.length
+        return any(abs(along - row[0]) <= near and not other.listed for along, other in located)
+
+    def _separated(self, search: StepSearch, located: list[tuple[float, Row]]) -> list[Row]:
+        rows: list[Row] = []
+        for i, (along, row) in enumerate(located):
+            if i and along - located[i - 1][0] > SETTINGS.together * search.length:
+                between = search.curve.beyond(search.here, (along + located[i - 1][0]) / 2)
+                rows += [] if between is None else [self._row(between[0])]
+            rows.append(row)
+        return rows
+
+    def _crossed(self, search: StepSearch, crossing: Crossing) -> tuple[float, Row] | None:
+        """The event at a change of sign; None where it is none of an orbit."""
+        root = search.located(crossing)
+        kind, impact, _ = crossing.keys[0]
+        if root is None:
+            self.notes.append(f"a {kind} near {crossing.low.point.at[-1]:.9g} could not be located")
+            return None
+        along, point = root
+        if kind == "torus":
+            zero, one, two = self.tests.loop(point.at).characteristic()
+            if not one * one < 4 * zero * two:
+                return None  # the multipliers are real where their product is 1, so this is no torus bifurcation
+        time = np.nan
+        if np.isfinite(crossing.ends[0].share) and kind in ("graze", "hidden impact"):
+            turn = search.turn(crossing, along, point)
+            size = max(abs(test.value) for test in crossing.ends)
+            # a minimum that is not the lowest of its flight has its zero behind the wall
+            lowest = turn is not None and turn[1] - self.tests.heights(point.at)[impact] <= SETTINGS.located * size
+            if not (lowest and self._launched(point)) or turn is None:
+                return None
+            time = turn[0]
+        return along, self._event_row(kind, point, impact, time if kind == "hidden impact" else np.nan)
+
+    def _launched(self, point: Point) -> bool:
+        """Whether every flight begins with a velocity: flights of orbits with v <= 0 start behind the wall."""
+        n = self.closing.n
+        return not n or float(point.at[n : 2 * n].min()) > 1e-9 * float(self.closing.scales(point.at)[n])
+
+    def _event_row(
+        self, kind: str, point: Point, impact: int = 0, time: float = np.nan, other: PeriodicOrbit | None = None
+    ) -> Row:
+        seen = self._visible(point.at, SETTINGS.located)
+        orbit = orbit_of(self.closing, point.at, seen)
+        value = float(point.at[-1])
+        if kind == "graze" and self.closing.n:
+            push = float(acceleration(orbit.oscillator, np.array([point.at[impact]]))[0])
+            fastest = float(np.abs(acceleration(orbit.oscillator, np.linspace(0, 1, 9) * orbit_period(orbit))).max())
+            if abs(push) < 1e-6 * fastest:
+                self.notes.append(f"the graze at {value:.12g} is one with a_c = 0: a degenerate graze")
+        event = Event(kind, value, orbit, 0, impact, time, self.over, other)
+        return self._row(point, SETTINGS.located, event)

@@ -1,0 +1,307 @@
+"""Zeros of the test functions of events within one step of a branch, also where a function has two of them.
+
+At both ends of a step the values and the rates of every test function are given. A step on which the cubic through
+them comes near 0 without a change of sign is divided where that cubic has its extremum, until every piece has one
+change of sign of a function or none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import isfinite, sqrt
+from typing import Any
+
+import numpy as np
+
+from singimpact.branches.continuation import Curve, Point, root_between
+from singimpact.branches.event_tests import EventTests, Key, Test, Tests
+
+Array = np.ndarray[Any, Any]
+MINIMA = ("hidden impact", "graze")
+
+
+@dataclass(frozen=True)
+class SearchSettings:
+    """When a step is divided."""
+
+    # an extremum of the cubic that is nearer to 0 than this part of the larger end
+    near: float = 0.1
+    # ... unless it is about as far as the nearer end, which is a value of the function itself
+    computed: float = 0.9
+    # pieces are no shorter than this part of the step
+    least: float = 1e-6
+    # points in a step at most
+    most: int = 100
+    # a piece in which a minimum of a flight begins or ends is divided down to this part of the step
+    born: float = 1e-3
+    # how far beyond a linear forecast such a minimum may rise or fall
+    forecast: float = 1.5
+    # an extremum this near to 0, of the values at the ends of the step, may hide two zeros: two that are 1e-3 of the
+    # interval apart leave a dip of 6e-4 on a step of 2 %, and are found (2000 branches); nearer ones may not be
+    rounding: float = 1e-3
+    # torus test, of its terms, that is a rounding error: for r = 1 without damping it is 0 everywhere
+    neutral: float = 1e-9
+
+
+SETTINGS = SearchSettings()
+
+
+@dataclass(frozen=True)
+class Node:
+    """A point within a step, at a distance along the tangent of its first point, with its tests by that distance."""
+
+    along: float
+    point: Point
+    tests: Tests
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A change of sign of a test function between two points of a step; the keys may differ for minima of a flight."""
+
+    keys: tuple[Key, Key]
+    low: Node
+    high: Node
+
+    @property
+    def kind(self) -> str:
+        """Of the event."""
+        return self.keys[0][0]
+
+    @property
+    def ends(self) -> tuple[Test, Test]:
+        """The test at both ends."""
+        return self.low.tests[self.keys[0]], self.high.tests[self.keys[1]]
+
+
+@dataclass
+class StepSearch:
+    """Where test functions vanish within a step.
+
+    Parameters
+    ----------
+    tests : of the branch. curve : the branch. here : the first point. length : of the step.
+    """
+
+    tests: EventTests
+    curve: Curve
+    here: Point
+    length: float
+    doubts: list[tuple[Key, Array]] = field(default_factory=list)
+    neutral: bool = False  # whether the torus test is 0 all along the step, up to rounding
+
+    def node(self, along: float, point: Point, tests: Tests) -> Node:
+        """A point of the step; rates become those by the distance along the tangent of the first point."""
+        share = float(point.tangent @ self.here.tangent)
+        return Node(along, point, {key: Test(test.value, test.rate / share, test.share) for key, test in tests.items()})
+
+    def at(self, along: float) -> Node | None:
+        """The point of the branch at a distance."""
+        step = self.curve.beyond(self.here, along)
+        return None if step is None else self.node(along, step[0], self.tests.at(step[0]))
+
+    def crossings(self, before: Tests, after: Point, later: Tests) -> list[Crossing]:
+        """Every change of sign in the step; `doubts` has functions that touch 0, up to rounding."""
+        nodes = [self.node(0.0, self.here, before), self.node(self.length, after, later)]
+        self.neutral = all(_neutral(node) for node in nodes)
+        sizes = {key: max(abs(test.value), abs(later[key].value) if key in later else 0.0)
+                 for key, test in before.items()}  # fmt: skip
+        i = 0
+        while i < len(nodes) - 1:
+            one, other = nodes[i : i + 2]
+            along = self._division(one, other)
+            between = None
+            if along is not None and len(nodes) < SETTINGS.most:
+                between = self.at(along[1])
+            if between is None:
+                if along is not None:
+                    self.doubts.append((along[0], one.point.at))
+                i += 1
+            else:
+                nodes.insert(i + 1, between)
+        found = [crossing for one, other in pairwise(nodes) for crossing in self._signs(one, other)]
+        self._touching(nodes, sizes, {crossing.kind for crossing in found})
+        return found
+
+    def _touching(self, nodes: list[Node], sizes: dict[Key, float], crossed: set[str]) -> None:
+        """Note functions that were computed at an extremum which is 0 up to rounding."""
+        for node in nodes[1:-1]:
+            for key, size in sizes.items():
+                test = node.tests.get(key)
+                flat = test is not None and abs(test.value) < SETTINGS.rounding * size
+                if flat and key[0] not in crossed and not (self.neutral and key[0] == "torus"):
+                    self.doubts.append((key, node.point.at))
+
+    def _division(self, one: Node, other: Node) -> tuple[Key, float] | None:
+        """Where a piece is to be divided, and for which function; None where it has nothing more to show."""
+        width = other.along - one.along
+        if width <= SETTINGS.least * self.length:
+            return None
+        for keys in _paired(one.tests, other.tests):
+            tests = one.tests[keys[0]], other.tests[keys[1]]
+            if self._is_neutral(keys[0], one, other):
+                continue
+            share = turning(*(number for test in tests for number in (test.value, test.rate * width)))
+            if share is not None:
+                return keys[0], one.along + width * min(max(share, 1e-3), 1 - 1e-3)
+        if width > SETTINGS.born * self.length and self._impacts(one) and self._impacts(other):
+            for key in _unpaired(one, other, width):
+                return key, one.along + width / 2
+        return None
+
+    def _impacts(self, node: Node) -> bool:
+        """Whether every impact has a velocity: at a graze minima begin at the wall."""
+        n = self.tests.closing.n
+        return not n or float(node.point.at[n : 2 * n].min()) > 0
+
+    def _is_neutral(self, key: Key, one: Node, other: Node) -> bool:
+        """Whether the torus test is no function to look at: 0 at an end of the step, or all along it."""
+        ends = [node for node in (one, other) if node.along in (0.0, self.length)]
+        return key[0] == "torus" and (self.neutral or any(_neutral(node) for node in ends))
+
+    def _signs(self, one: Node, other: Node) -> Iterator[Crossing]:
+        """Functions that change sign between two points."""
+        for keys in _paired(one.tests, other.tests):
+            before, after = one.tests[keys[0]], other.tests[keys[1]]
+            if before.value != 0 and before.value * after.value <= 0 and not self._is_neutral(keys[0], one, other):
+                yield Crossing(keys, one, other)
+
+    def located(self, crossing: Crossing) -> tuple[float, Point] | None:
+        """The distance and the point at which the test vanishes; None where it, or the curve, has no value."""
+        points = {node.along: node.point for node in (crossing.low, crossing.high)}
+        ends = crossing.ends
+
+        def value(along: float) -> float:
+            if along not in points:
+                step = self.curve.beyond(self.here, along)
+                if step is None:
+                    raise ArithmeticError
+                points[along] = step[0]
+            return self._value(crossing, along, points[along])
+
+        low, high = crossing.low.along, crossing.high.along
+        try:
+            along = root_between(value, low, high, (ends[0].value, ends[1].value))
+            value(along)
+        except ArithmeticError:
+            return None
+        return along, points[along]
+
+    def _value(self, crossing: Crossing, along: float, point: Point) -> float:
+        """One test function at a point of the step."""
+        kind, impact, _ = crossing.keys[0]
+        n = self.tests.closing.n
+        if kind in MINIMA and isfinite(crossing.ends[0].share):
+            turn = self.turn(crossing, along, point)
+            return np.nan if turn is None else turn[1]
+        if kind == "graze":
+            return float(point.at[n + impact])
+        if kind == "fold":
+            return float(point.tangent[-1])
+        zero, one, two = self.tests.loop(point.at).characteristic()
+        return zero - two if kind == "torus" else zero - one + two
+
+    def turn(self, crossing: Crossing, along: float, point: Point) -> tuple[float, float] | None:
+        """Time and height of the minimum that a crossing is about."""
+        low, high = crossing.low.along, crossing.high.along
+        part = (along - low) / (high - low) if high > low else 0.0
+        one, other = (test.share for test in crossing.ends)
+        share = one + part * _gap(other - one, not self.tests.closing.n)
+        flight = crossing.keys[0][1]
+        span = self.tests.closing.span(point.at, flight)
+        turns = self.tests.minima(point.at)[flight]
+        free = not self.tests.closing.n
+        return min(turns, key=lambda turn: abs(_gap(turn[0] / span - share, free)), default=None)
+
+
+def turning(before: float, rate: float, after: float, later: float) -> float | None:
+    """Where a function may have two zeros more than its ends show, as a part of a piece of length 1.
+
+    Parameters
+    ----------
+    before, rate : value and derivative at 0. after, later : at 1.
+
+    Returns
+    -------
+    float : an extremum of the cubic through them that lies near 0 or beyond it. None : there is none.
+
+    Examples
+    --------
+    >>> turning(1.0, -4.1, 1.0, 4.1), turning(1.0, -0.5, 1.0, 0.5), turning(1.0, 0.0, -1.0, 0.0)
+    (0.5, None, None)
+    """
+    rise = after - before
+    square, cube = 3 * rise - 2 * rate - later, rate + later - 2 * rise
+    root = square * square - 3 * cube * rate
+    if not root > 0:  # no extremum, or no value
+        return None
+    root = sqrt(root)
+    far = -square - root if square > 0 else -square + root
+    places = [place for place in ((far / (3 * cube) if cube else -1.0), rate / far if far else -1.0) if 0 < place < 1]
+    values = [before + place * (rate + place * (square + place * cube)) for place in places]
+    size, least = max(abs(before), abs(after)), min(abs(before), abs(after))
+    for place, value in zip(places, values, strict=True):
+        towards = value * (square + 3 * cube * place) > 0
+        if towards and abs(value) < SETTINGS.near * size and abs(value) < SETTINGS.computed * least:
+            return place
+        if before * after > 0 and value * before < 0:
+            return place
+    if before * after <= 0 and len(places) == 2 and values[0] * values[1] < 0:
+        first = min(zip(places, values, strict=True))
+        if first[1] * before < 0 or (before == 0 and first[1] * after > 0):
+            return first[0]
+    return None
+
+
+def _neutral(node: Node) -> bool:
+    """Whether the product of the multipliers is 1 at a point, up to rounding."""
+    return any(key[0] == "torus" and not abs(test.value) >= SETTINGS.neutral * test.share
+               for key, test in node.tests.items())  # fmt: skip
+
+
+def _paired(one: Tests, other: Tests) -> list[tuple[Key, Key]]:
+    """Each function at one point with the same function at another."""
+    return _pairs(one, other)[0]
+
+
+def _pairs(one: Tests, other: Tests) -> tuple[list[tuple[Key, Key]], list[Key], list[Key]]:
+    """Functions at both points, and minima at one of them alone.
+
+    Two minima of a flight are the same where each is the nearest to the other.
+    """
+    plain = [(key, key) for key, test in one.items() if key in other and not _minimum(key, test)]
+    pairs, first, second = [], [], []
+    for flight in sorted({key[:2] for tests in (one, other) for key, test in tests.items() if _minimum(key, test)}):
+        here, there = ([key for key, test in tests.items() if key[:2] == flight and _minimum(key, test)]
+                       for tests in (one, other))  # fmt: skip
+        free = flight[0] == "graze"
+        mates = {key: min(there, key=lambda mate: abs(_gap(one[key].share - other[mate].share, free)), default=None)
+                 for key in here}  # fmt: skip
+        back = {key: min(here, key=lambda mate: abs(_gap(other[key].share - one[mate].share, free)), default=None)
+                for key in there}  # fmt: skip
+        same = [(key, mate) for key, mate in mates.items() if mate is not None and back[mate] == key]
+        pairs += same
+        first += [key for key in here if key not in {pair[0] for pair in same}]
+        second += [key for key in there if key not in {pair[1] for pair in same}]
+    return plain + pairs, first, second
+
+
+def _minimum(key: Key, test: Test) -> bool:
+    return key[0] in MINIMA and isfinite(test.share)
+
+
+def _gap(shares: float, around: bool) -> float:
+    """A difference of two parts of a flight; of an orbit without impact, which has no first one, around it."""
+    return shares - round(shares) if around else shares
+
+
+def _unpaired(one: Node, other: Node, width: float) -> Iterator[Key]:
+    """Minima at one end alone that may pass the wall on their way."""
+    _, first, second = _pairs(one.tests, other.tests)
+    for keys, tests, sign in ((first, one.tests, 1.0), (second, other.tests, -1.0)):
+        for key in keys:
+            test = tests[key]
+            if test.value * (test.value + sign * SETTINGS.forecast * width * test.rate) < 0:
+                yield key

@@ -1,0 +1,250 @@
+"""The form of a certificate: the keys, types and ranges of all that a file may say, before anything is built from it.
+
+A form is a function that refuses a value; a dictionary of forms, whose keys are the keys of the value, those that end
+in "?" may be missing; or a list [form, least, most] of values of one form.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from .formulas import FUNCTIONS, Refused, Wrong, need
+
+SCHEMA = "singimpact certificate 1"
+BYTES = 2_000_000  # of a file
+CHARACTERS, BRACKETS = 10_000, 64  # of a formula: its length and its depth
+DIGITS, EXPONENT = 4_000, 3_000  # of a number: characters, and the largest power of ten
+ROUGH = 20  # a radius is at most this part of a number
+NUMBER = re.compile(r"-?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d{1,4})?(/0*[1-9]\d*)?", re.ASCII)
+WHOLE = re.compile(r"\d{1,6}", re.ASCII)
+FORMULA = re.compile(r"[\w.+\-*/() ]+", re.ASCII)
+SIGNS = re.compile(r"(?:[-+*/]\s*){8}")  # so many in a row
+EXPONENTS = re.compile(r"(?<!\w)([\d.]+)[eE]([-+]?\d+)", re.ASCII)
+NAME = re.compile(r"[A-Za-z_]\w{0,60}", re.ASCII)
+DIGEST_TEXT = re.compile(r"[0-9a-f]{64}")
+RESERVED = {"x", "xdot", "t", "v", "pi", *FUNCTIONS}
+CURVED, TOUCHING = ("fold", "period-doubling", "torus"), ("graze", "hidden impact")
+KINDS = (*CURVED, *TOUCHING)
+
+Form = Any  # a function, a dictionary of forms, or [form, least, most]
+
+
+def expect(holds: Any, why: str) -> None:
+    """Refuse what has not the form of a certificate; a condition on its truth has a name: see `need`."""
+    if not holds:
+        raise Wrong(why)
+
+
+def read(path: str) -> Any:
+    """What a file says, as JSON whose objects have each key once, without numbers that JSON does not have."""
+    expect(not Path(path).exists() or Path(path).is_file(), "it is no file")
+    with Path(path).open("rb") as file:
+        data = file.read(BYTES + 1)
+    expect(len(data) <= BYTES, f"the file has more than {BYTES} bytes")
+    try:
+        return json.loads(data.decode("utf-8"), parse_constant=refuse_number, parse_int=refuse_number,
+                          parse_float=refuse_number, object_pairs_hook=once)  # fmt: skip
+    except UnicodeDecodeError:
+        raise Refused("it is not text in UTF-8") from None
+    except RecursionError:
+        raise Refused("its lists are too deep") from None
+    except json.JSONDecodeError as error:
+        raise Refused(f"{error}: not JSON") from None
+
+
+def refuse_number(text: str) -> Any:
+    raise Refused(f"not JSON as certificates have it: the number {text[:20]} is no text")
+
+
+def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    expect(len({name for name, _ in pairs}) == len(pairs), "a key occurs twice")
+    return dict(pairs)
+
+
+def require(form: Form, value: Any, where: str = "the file") -> None:
+    """Refuse a value that has not the form."""
+    if isinstance(form, dict):
+        expect(isinstance(value, dict), f"{where} is no record of names and values")
+        names = {name.rstrip("?") for name in form}
+        unknown, missing = set(value) - names, {name for name in form if not name.endswith("?")} - set(value)
+        need("unknown", not unknown, f"{where} has the unknown field {min(unknown, default='')!r:.60}")
+        expect(not missing, f"{where} has no {min(missing, default='')!r}")
+        for name, part in form.items():
+            if name.rstrip("?") in value:
+                require(part, value[name.rstrip("?")], f"{where}.{name.rstrip('?')}".removeprefix("the file."))
+    elif isinstance(form, list):
+        inner, least, most = form
+        expect(isinstance(value, list), f"{where} is no list")
+        expect(least <= len(value) <= most, f"{where} has {len(value)} entries: {least} to {most} are accepted")
+        for n, part in enumerate(value):
+            require(inner, part, f"{where}[{n}]")
+    else:
+        form(value, where)
+
+
+def text(value: Any, where: str, pattern: re.Pattern[str] = FORMULA, most: int = CHARACTERS) -> None:
+    expect(isinstance(value, str), f"{where} is no text")
+    expect(0 < len(value) <= most, f"{where} has {len(value)} characters: 1 to {most} are accepted")
+    expect(pattern.fullmatch(value), f"{where} = {value!r:.60} is not understood")
+
+
+def formula(value: Any, where: str) -> None:
+    """A formula, whose brackets and signs are not too deep to be read, and whose numbers are not too long."""
+    text(value, where)
+    depth = deepest = 0
+    for sign in value:
+        depth += (sign == "(") - (sign == ")")
+        deepest = max(deepest, depth)
+    expect(deepest <= BRACKETS and not SIGNS.search(value), f"{where} has more than {BRACKETS} brackets in one another")
+    powers = [power for _, power in EXPONENTS.findall(value)]
+    expect(not any(len(power) > 5 for power in powers), f"{where} has a number that is too long")
+    expect(sum(abs(int(power)) for power in powers) <= EXPONENT, f"{where} has exponents beyond {EXPONENT}")
+
+
+def number(low: Any = None, high: Any = None, *, least: Any = None) -> Callable[[Any, str], None]:
+    """A decimal or a fraction; low < it < high, or least <= it."""
+
+    def form(value: Any, where: str) -> None:
+        text(value, where, NUMBER, DIGITS)
+        power = re.search(r"[eE]([-+]?\d+)", value)
+        expect(not power or abs(int(power[1])) <= EXPONENT, f"{where} has an exponent beyond {EXPONENT}")
+        need("above", low is None or Fraction(value) > low, f"{where} = {value:.40} is not above {low}")
+        expect(high is None or Fraction(value) < high, f"{where} = {value:.40} is not below {high}")
+        expect(least is None or Fraction(value) >= least, f"{where} = {value:.40} is less than {least}")
+
+    return form
+
+
+def whole(least: int, most: int) -> Callable[[Any, str], None]:
+    def form(value: Any, where: str) -> None:
+        text(value, where, WHOLE, 6)
+        expect(least <= int(value) <= most, f"{where} = {value}: {least} to {most} are accepted")
+
+    return form
+
+
+def one_of(*words: str) -> Callable[[Any, str], None]:
+    def form(value: Any, where: str) -> None:
+        expect(isinstance(value, str) and value in words, f"{where} is not {' or '.join(words)}")
+
+    return form
+
+
+def ball(sign: int = 0, *, exact: bool = False) -> Callable[[Any, str], None]:
+    """A number with its radius; with a sign, all numbers of the ball have it; `exact` : the value is 0."""
+
+    def form(told: Any, where: str) -> None:
+        require({"value": number(), "radius": number(low=0)}, told, where)
+        value, radius = Fraction(told["value"]), Fraction(told["radius"])
+        size = sign * value if sign else max(abs(value), Fraction(1))
+        need("rough", radius * ROUGH <= size, f"{where} = {told['value']:.40} has the radius {told['radius']:.40}")
+        expect(not exact or value == 0, f"{where} is not 0")
+
+    return form
+
+
+def interval(low: Any, high: Any) -> Callable[[Any, str], None]:
+    def form(value: Any, where: str) -> None:
+        require([number(low, high), 2, 2], value, where)
+        need("reversed", Fraction(value[0]) < Fraction(value[1]), f"{where} is reversed")
+
+    return form
+
+
+def name(value: Any, where: str) -> None:
+    text(value, where, NAME)
+
+
+def digest(value: Any, where: str) -> None:
+    text(value, where, DIGEST_TEXT, 64)
+
+
+def touching(told: dict[str, Any]) -> Form:
+    """Of an orbit that touches the wall in its first state; a hidden impact is one between impacts."""
+
+    def form(states: Any, where: str) -> None:
+        expect(isinstance(states, list) and states, f"{where} has no state")
+        require(TOUCH, states[0], f"{where}[0]")
+        require([STATE, int(told["kind"] == "hidden impact"), 999], states[1:], f"{where} after the first")
+
+    return form
+
+
+def after(told: dict[str, Any]) -> Form:
+    """What may be said of the time after a contact point; nothing where a certificate names the fastest launch."""
+    names = ("near", "time") if str(told.get("order"))[-1:] in tuple("13579") else ("launch", "speed", "first", "end")
+    return dict.fromkeys(names if told.get("after") and "fastest" not in told else (), SIZE)
+
+
+def parameters(value: Any, where: str) -> None:
+    expect(isinstance(value, dict) and len(value) <= 40, f"{where} is no record of at most 40 names")
+    for name, part in value.items():
+        text(name, f"a name in {where}", NAME)
+        expect(name not in RESERVED, f"{where} has the name {name}")
+        formula(part, f"{where}.{name}")
+
+
+STATE = {"tau": ball(), "v": ball(1)}
+TOUCH = {"tau": ball(), "v": {"value": one_of("0"), "radius": number(low=0)}}
+SIZE = number(low=0, high=10**9)
+MODEL = {"f": formula, "g": formula, "clearance": formula, "restitution": formula, "parameters?": parameters,
+         "period?": formula}  # fmt: skip
+LAUNCH = {"tau": formula, "v": formula}
+ORBIT = {"period": formula, "periods": whole(1, 1000)}
+EVENT = {"kind": one_of(*KINDS), "over": name, "parameter": ball(), **ORBIT}
+BOX = {
+    "lambda": interval(0, 1), "N": whole(2, 200), "D": whole(3, 400), "pieces": whole(1, 20_000), "eta": SIZE,
+    "M": SIZE, "R": number(least=0), "Kl": number(least=0), "grow": number(low=1), "series": [ball(), 2, 200],
+    "tree": lambda value, where: text(value, where, re.compile("[Sl.]+"), 10**6),
+}  # fmt: skip
+STATEMENTS: dict[str, Callable[[dict[str, Any]], Form]] = {
+    "first impact": lambda _: {
+        "launch": LAUNCH, "flight_time": ball(1), "velocity": ball(-1), "tau": ball(), "v": ball(1)
+    },
+    "periodic orbit": lambda _: {
+        **ORBIT, "states": [STATE, 1, 1000], "unique_within": number(0, 1),
+        "multipliers": [{"real": ball(), "imaginary": ball()}, 0, 2],
+    },
+    "chatter limit": lambda _: {"launch": LAUNCH, "ends": one_of("accumulation", "lift-off"), "tau": ball()},
+    "horseshoe": lambda _: {
+        "period": formula, "loops": [whole(1, 1000), 2, 2], "entropy": ball(1),
+        "sets": [{"centre": [number(), 2, 2], "frame": [[number(), 2, 2], 2, 2], "radii": [SIZE, 2, 2]}, 2, 1000],
+    },
+    "event": lambda told: EVENT | (
+        {"states": touching(told), "unique_within": number(0, 1)} if told.get("kind") in TOUCHING
+        else {"states": [STATE, 1, 1000]}
+    ),
+    "border orbit": lambda _: {
+        "over": name, "parameter": ball(), "release": number(), "end": number(), "impacts": whole(1, 10_000),
+        "completes": one_of("above", "below"),
+    },
+    "invariant arc": lambda told: {
+        "order": whole(1, 12), "tau": ball(), "reach": SIZE, "after": after(told), "boxes": [BOX, 1, 2000],
+        **({"fastest": SIZE} if "fastest" in told else {}),
+        **({"restitution": one_of("model"), "threshold": ball(1)} if told.get("restitution") == "model"
+           else {"restitution": interval(0, 1)}),
+    },
+}  # fmt: skip
+"""What the file of each statement says beside its schema, statement, model and digest."""
+
+
+def require_statement(told: Any) -> None:
+    """Refuse a file that is none of these statements."""
+    only = f"only certificates {SCHEMA!r} of these are checked here: {', '.join(STATEMENTS)}"
+    expect(isinstance(told, dict) and told.get("schema") == SCHEMA, only)
+    expect(isinstance(told.get("statement"), str) and told["statement"] in STATEMENTS, only)
+
+
+def require_form(told: dict[str, Any]) -> None:
+    """Refuse a file that is not of the form of its statement."""
+    head = {"schema": one_of(SCHEMA), "statement": one_of(*STATEMENTS), "model": MODEL, "digest": digest}
+    require(head | STATEMENTS[told["statement"]](told), told)
+    model = told["model"]
+    used = re.findall(r"[A-Za-z_]\w*", " ".join(model[part] for part in ("f", "g", "clearance", "restitution")))
+    unused = set(model.get("parameters", ())) - set(used)
+    expect(not unused, f"model has the parameter {min(unused, default='')!r}, which it does not use")

@@ -1,0 +1,256 @@
+"""Where states settle: on a periodic orbit, in chatter that completes, or not within the impacts that are flown.
+
+Chaotic transients are long where impacts lose little: x'' + x = cos 3.3t with c = 0.03 and r = 0.95 settles on one
+(2, 2) orbit after 600, 3800 and 15 360 impacts (5, 50 and 95 % of the states).  So a state that has not settled when
+the slowest plain chatter would be over is followed on, and compared with the attractors found meanwhile.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import ceil, log
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import as_float
+from singimpact.dynamics.attractors import (
+    AWAY,
+    CHAOS,
+    CHATTER,
+    GONE,
+    OTHER,
+    STUCK,
+    Attractor,
+    caught,
+    new_attractors,
+    periodic_codes,
+)
+from singimpact.dynamics.fractional_chatter import rest_after
+from singimpact.dynamics.long_run import chaotic, next_lift_off
+from singimpact.flights.orbits import iterate
+from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class SettlingSettings:
+    """When the class of an orbit is decided."""
+
+    # v of an impact in complete chatter where a_c < 0, as a share of the largest v of the window
+    rest: float = 1e-7
+    # the same if the remaining chatter is shorter than `lasting` and a_c stays negative until then
+    slow: float = 1e-2
+    lasting: float = 0.02  # periods of the forcing
+    # impacts before the first test, in addition to those that chatter needs to become so slow
+    transient: int = 40
+    block: int = 6  # impacts between two tests
+    sample: int = 24  # undecided orbits that are tested for a new attractor after each block
+    # of a Taylor step: at 1e-6 no class of 18 000 states changes; a flight costs a quarter less than at full accuracy
+    tolerance: float = 1e-10
+    limit: int = 3000  # impacts of the first stage; r = 0.99 needs 2000
+    # of the second stage: impacts between two comparisons with known attractors, and blocks between two searches
+    long_block: int = 200
+    searched: int = 5
+    # impacts of the longest period that a search in the second stage, and the last look, tell apart
+    long_period: int = 64
+    longest_period: int = 256
+    # impacts after which a class is checked by a neighbour: an exponent of 0.5 an impact makes 1e-2 of 1e-15 in 60
+    sensitive: int = 60
+    # relative distance of this neighbour, a few roundings; impacts between two looks; distance when both have parted
+    neighbour: float = 1e-15
+    watched: int = 10
+    parted: float = 1e-2
+
+
+SETTINGS = SettlingSettings()
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a study of states fixes: the model, the phases at which the mass lifts off, the fastest launch, impacts."""
+
+    model: Oscillator
+    phases: tuple[float, ...]
+    fast: float
+    impacts: int
+
+    @property
+    def period(self) -> float:
+        """The period of the forcing."""
+        assert self.model.period is not None
+        return as_float(self.model.period)
+
+
+def classified(
+    fields: Mapping[str, Any], study: tuple[tuple[float, ...], float, int], states: tuple[tuple[float, ...], ...]
+) -> Array:
+    """`classify` of some states (tau, v). A module-level function, so that it can be pickled."""
+    return classify(Study(Oscillator(**fields), *study), np.array(states[0]), np.array(states[1]))
+
+
+def classify(study: Study, tau: Array, v: Array) -> Array:
+    """Rows (code, tau, v, impacts), shape (n, 4): of a periodic orbit n * PLACES + k and one of its states; CHATTER and
+    the place of the lift-off that follows; else one of the other codes of `attractors`. Impacts are those flown before
+    the class was decided.
+    """
+    run = _Run(study, tau, v)
+    run.settle()
+    return np.column_stack([run.rows, run.flown])
+
+
+def settles(rows: Array) -> Array:
+    """Whether rows of `classify` have reached an attractor."""
+    return np.asarray((rows[:, 0] >= CHATTER) & (rows[:, 0] != CHAOS))
+
+
+def parted(study: Study, tau: Array, v: Array, impacts: Array) -> Array:
+    """Whether a neighbour a few roundings away parts from an orbit within so many impacts.
+
+    Parameters
+    ----------
+    tau, v, impacts : of each state, shape (n,).
+    """
+    apart, left = np.zeros(tau.size, dtype=bool), np.arange(tau.size)
+    sides = np.array([[0.0], [SETTINGS.neighbour]])
+    at, speed, count = tau + sides * study.period, v * (1 + sides), 0
+    while left.size:
+        ends = iterate(study.model, at[:, left], speed[:, left], SETTINGS.watched, SETTINGS.tolerance)
+        count += SETTINGS.watched
+        at[:, left], speed[:, left] = ends.tau - study.period * np.floor(ends.tau / study.period), ends.v
+        away = np.abs(np.diff(at[:, left], axis=0)[0] / study.period)
+        distance = np.maximum(np.abs(away - np.rint(away)), np.abs(np.diff(speed[:, left], axis=0)[0]) / study.fast)
+        flying = (ends.status == 0).all(axis=0)
+        # one ends its flights where the other goes on
+        torn = (ends.status[0] == 0) != (ends.status[1] == 0)
+        apart[left] = torn | (flying & (distance > SETTINGS.parted))
+        left = left[flying & ~apart[left] & (count < impacts[left])]
+    return apart
+
+
+class _Run:
+    """States on their way to an attractor."""
+
+    def __init__(self, study: Study, tau: Array, v: Array) -> None:
+        self.study, self.tau, self.v = study, tau.copy(), v.copy()
+        self.rows, self.open = np.zeros((tau.size, 3)), np.arange(tau.size)
+        # impacts after which each was decided
+        self.flown = np.zeros(tau.size, dtype=np.int64)
+        self.known: list[Attractor] = []
+        self.count = 0
+
+    def settle(self) -> None:
+        """Follow all states to a class."""
+        self._first_stage()
+        if self.open.size:
+            self._look(SETTINGS.longest_period if self.count >= self.study.impacts else 0)
+        if self.open.size:
+            self._second_stage()
+        self._last_look()
+
+    def _first_stage(self) -> None:
+        """As long as a plain chatter takes to become slow, with searches at doubling distances."""
+        r = as_float(self.study.model.slope_at_rest())
+        slowest = ceil(log(SETTINGS.rest) / log(r)) if r < 1 else 0
+        most = min(SETTINGS.transient + slowest, SETTINGS.limit, self.study.impacts)
+        block = SETTINGS.block
+        while self.open.size and self.count < most:
+            block = min(block, most - self.count)
+            self._fly(block)
+            if self.open.size and self.count < most:
+                # a search in vain is dear, and the next one more so
+                block *= 1 if self._catch(True) else 2
+
+    def _second_stage(self) -> None:
+        blocks = 0
+        while self.open.size and self.count < self.study.impacts:
+            self._fly(min(SETTINGS.long_block, self.study.impacts - self.count))
+            blocks += 1
+            if self.open.size:
+                self._catch(blocks % SETTINGS.searched == 0, SETTINGS.long_period)
+
+    def _last_look(self) -> None:
+        """Of states that are left: a long period, else neighbours that separate."""
+        if self.open.size:
+            self._look(SETTINGS.longest_period)
+        if self.open.size:
+            study, at = self.study, self.open
+            self.rows[at] = 0.0
+            self.rows[at[chaotic(study.model, self.tau[at], self.v[at], study.fast)], 0] = CHAOS
+            self.flown[at] = self.count
+
+    def _look(self, most: int) -> None:
+        """States that close by themselves within so many impacts; 0: within few."""
+        study, at = self.study, self.open
+        few = (most,) if most else ()
+        codes = periodic_codes(study.model, self.tau[at], self.v[at], study.fast, *few)
+        self._decide(codes != OTHER, np.stack([codes, self.tau[at], self.v[at]], axis=1))
+
+    def _decide(self, chosen: Array, rows: Array) -> None:
+        """Put rows in for the chosen of the open states."""
+        self.rows[self.open[chosen]] = rows[chosen]
+        self.flown[self.open[chosen]] = self.count
+        self.open = self.open[~chosen]
+
+    def _fly(self, impacts: int) -> None:
+        """Impacts of all open states; those whose flights end are decided."""
+        study, at = self.study, self.open
+        ends = iterate(study.model, self.tau[at], self.v[at], impacts, SETTINGS.tolerance)
+        self.count += impacts
+        # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
+        self.tau[at], self.v[at] = ends.tau - study.period * np.floor(ends.tau / study.period), ends.v
+        rests = chattering(study, self.tau[at], ends.v)
+        rows = np.zeros((at.size, 3))
+        rows[:, 0] = STUCK
+        for status, code in ((Status.no_return, AWAY), (Status.escaped, GONE)):
+            rows[ends.status == status, 0] = code
+        rows[rests, 0] = CHATTER
+        rows[rests, 1] = next_lift_off(study.phases, _at_rest(study, self.tau[at[rests]], self.v[at[rests]]))
+        self._decide(rests | (ends.status != 0) | ~np.isfinite(ends.tau) | ~(ends.v > 0), rows)
+
+    def _catch(self, searching: bool, most: int = 0) -> bool:
+        """Whether some open states are near a known attractor, or one that a sample has reached."""
+        study, at = self.study, self.open
+        places = caught(self.known, study.model, self.tau[at], self.v[at], study.fast)
+        if searching:
+            left = np.flatnonzero(places < 0)
+            sample = left[:: max(left.size // SETTINGS.sample, 1)]
+            before, few = len(self.known), (most,) if most else ()
+            self.known += new_attractors(study.model, self.tau[at[sample]], self.v[at[sample]], study.fast, *few)
+            again = caught(self.known[before:], study.model, self.tau[at[left]], self.v[at[left]], study.fast)
+            places[left] = np.where(again < 0, -1, again + before)
+        rows = np.zeros((at.size, 3))
+        for place in np.unique(places[places >= 0]).tolist():
+            orbit = self.known[place]
+            rows[places == place] = orbit.code, orbit.tau[0], orbit.v[0]
+        self._decide(places >= 0, rows)
+        return bool((places >= 0).any())
+
+
+def _at_rest(study: Study, tau: Array, v: Array) -> Array:
+    """The phase, within a period, at which the remaining chatter ends, to first order."""
+    left = rest_after(study.model, v, acceleration(study.model, tau))
+    return np.asarray((tau + left) - study.period * np.floor((tau + left) / study.period))
+
+
+def chattering(study: Study, tau: Array, v: Array) -> Array:
+    """Where an orbit is slow, a_c < 0, and the mass comes to rest before a_c can become positive.
+
+    What is left of chatter lasts about 2 v/((1 - r)|a|), see `rest_after`; over eight times that, a_c must keep its
+    sign.
+    """
+    model, fast = study.model, study.fast
+    rests = np.zeros(tau.size, dtype=bool)
+    slow = np.flatnonzero(np.isfinite(tau) & np.isfinite(v) & (np.nan_to_num(v) <= SETTINGS.slow * fast))
+    now, speed = acceleration(model, tau[slow]), v[slow]
+    with np.errstate(all="ignore"):
+        rest = np.where(now < 0, rest_after(model, speed, now), np.inf)
+    short = (now < 0) & (rest < SETTINGS.lasting * study.period)
+    pressed = [acceleration(model, tau[slow] + np.where(short, k * rest, 0.0)) < now / 2 for k in (2, 4, 8)]
+    settled = (now < 0) & (speed <= SETTINGS.rest * fast)
+    rests[slow] = settled | (short & np.all(pressed, axis=0))
+    return rests

@@ -1,0 +1,206 @@
+"""One false certificate for each condition of the second program, which that condition alone refuses."""
+
+from __future__ import annotations
+
+import json
+import re
+from fractions import Fraction
+from pathlib import Path
+
+import flint
+import pytest
+from second_program import FOLDER, dropped, renewed
+
+from singimpact.certificates import checker
+from singimpact.certificates.checker import chatter_limit, files, formulas, motion
+
+EXAMPLES = Path(__file__).parent / "examples"
+
+
+def changed(content, path, value):
+    """In place; a function is applied to what was there."""
+    for key in path[:-1]:
+        content = content[key]
+    content[path[-1]] = value(content[path[-1]]) if callable(value) else value
+
+
+def forged(example, *changes):
+    content = json.loads((EXAMPLES / f"{example}.json").read_text(encoding="utf-8"))
+    for path, value in changes:
+        changed(content, path, value)
+    return renewed(content)
+
+
+def times(factor):
+    return lambda text: repr(float(Fraction(text)) * factor)
+
+
+def box(name, value):
+    return ("boxes", 0, name), value
+
+
+def after(name, value):
+    return ("after", name), value
+
+
+def number(value, radius):
+    return {"value": value, "radius": radius}
+
+
+FIRST = ("sets", 0)
+FORGERIES = {
+    "unknown": ("fold", (("unique_within",), "10")),
+    "above": ("gamma", (("after",), {"near": "-0.01", "time": "-1"})),
+    "reversed": ("gamma_of_interval", (("restitution",), lambda ends: ends[::-1])),
+    "rough": ("horseshoe", (("entropy",), number("0.9", "0.8"))),
+    "launch": ("accumulation", (("launch", "v"), "-0.000001"), (("tau",), number("0.9", "1e-4"))),
+    "restitution": ("graze", (("model", "restitution"), "-0.5")),
+    "compared": ("impact", (("v", "value"), times(1.001))),
+    "period": ("orbit_linear", (("period",), "1.57079632679489661923132169163975144209858469968755291")),
+    "Krawczyk": ("orbit", (("states", 0, "v", "value"), "0.66"), (("multipliers",), [])),
+    "shortest": ("orbit_linear", (("states",), lambda states: [
+        states[0], {**states[0], "tau": {**states[0]["tau"], "value": "4.31968989868596570"}}]),
+        (("periods",), "4"), (("multipliers",), [])),
+    "over": ("fold", (("model", "clearance"), "0.1 + (A - A)")),
+    "fates": ("border", (("completes",), "below")),
+    "loops": ("horseshoe", (("loops",), ["1", "16"]), (("entropy",), number("0.131", "0.001"))),
+    "entropy": ("horseshoe", (("entropy", "value"), "0.2")),
+    "long": ("horseshoe", (("period",), lambda text: f"-({text})")),
+    "apart": ("horseshoe", (("sets",), lambda sets: sets[:1] * 2), (("loops",), ["1", "2"]),
+              (("entropy",), number("0.481211825059603447", "1e-15"))),
+    "width": ("horseshoe", (("sets", 2, "radii", 0), times(4))),
+    "height": ("horseshoe", (("sets", 5, "radii", 1), times(0.25))),
+    "L": ("gamma", (("boxes", 0, "series", 2, "value"), times(1.001))),
+    "series": ("gamma", (("boxes", 0, "series"), lambda series: series[:-1])),
+    "fastest": ("gamma_duffing", (("fastest",), "700")),
+    "touch": ("gamma_of_interval", (("boxes", 1, "lambda", 0), times(1.0001))),
+    "lambda": ("gamma_of_interval", (("restitution", 1), "0.6")),
+    "cones": ("gamma", box("M", times(0.1))),
+    "residual": ("gamma", box("R", times(0.8))),
+    "Kl": ("gamma", box("Kl", times(0.8))),
+    "wide": ("gamma", box("eta", "1e-9")),
+    "grow": ("gamma", box("grow", times(1.1))),
+    "lemma 1": ("gamma", box("tree", ".")),
+    "covered": ("gamma", box("tree", lambda tree: tree[:-1])),
+    "reached": ("gamma", after("near", "0.26")),
+    "lost": ("gamma", after("time", "1.27")),
+    "landed": ("gamma_at_swan", after("speed", "0.01")),
+    "completes": ("gamma_at_swan", after("end", "0.4")),
+    "order": ("gamma_at_swan", (("model", "clearance"), "1 - 1e-27")),
+    "ends": ("lift_off", (("ends",), "accumulation")),
+    "orders": ("gamma", box("D", "5"), box("R", "0"), box("Kl", "1e-9")),
+}  # fmt: skip
+
+
+def names():
+    """All conditions that the second program has."""
+    texts = "\n".join(path.read_text(encoding="utf-8") for path in FOLDER.glob("*.py"))
+    direct = set(re.findall(r'\bneed\(\s*"([^"]+)"', texts))
+    return direct | set(re.findall(r'require_positive\(.*"([^"]+)"\)', texts))
+
+
+QUICK = {"gamma", "impact", "orbit_linear", "graze", "lift_off", "accumulation"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [each if FORGERIES[each][0] in QUICK else pytest.param(each, marks=pytest.mark.slow) for each in FORGERIES],
+)
+def test_a_condition_alone_refuses_a_forgery(name, monkeypatch):
+    content = forged(*FORGERIES[name])
+    with pytest.raises(checker.Refused):
+        checker.check(content)
+    dropped(monkeypatch, name)
+    checker.check(content)
+
+
+# ---- bounds that no condition names, each taken out of the source
+
+
+def without(module, function, text, instead):
+    """A function of a file of the second program with a part of its source replaced."""
+    source = Path(module.__file__).read_text(encoding="utf-8")
+    assert source.count(text) == 1
+    namespace = {"__name__": "weak", "__package__": checker.__name__}
+    exec(compile(source.replace(text, instead), "weak", "exec"), namespace)
+    return namespace[function]
+
+
+@pytest.mark.parametrize("power", [50, 60])
+def test_the_factor_of_gronwall_bounds_a_step(power):
+    """x = sin(t) + d sinh(w t)/w with a small d: the polynomial misses more than the residual has."""
+    weak = without(motion, "step", "(B * length + A * length * length / 2).exp()", "1")
+    before = flint.ctx.prec, flint.ctx.cap
+    flint.ctx.prec, flint.ctx.cap = 1000, files.TERMS
+    try:
+        model = motion.Model({"f": "-10000*x", "g": "-10001*sin(t)", "clearance": "0", "restitution": "1"})
+        d, w = flint.arb(10) ** -power, flint.arb(100)
+        for step, holds in ((motion.step, True), (weak, False)):
+            (X,), h, K = step(model, flint.arb(0), [flint.arb(0)], [1 + d], 80)
+            missed = abs(h.cos() + d * (w * h).cosh() - flint.arb_poly(motion.derived(X))(h))
+            assert bool(missed < K * h ** (len(X) - 1)) is holds
+    finally:
+        flint.ctx.prec, flint.ctx.cap = before
+
+
+FALLING = {"f": "0", "g": "-0.4 - 0.6*exp(-60*(t - 20)) + exp(60*(t - 20.65))", "clearance": "0", "restitution": "0.3"}
+"""a_c falls from -1 to -0.4 at once, and is positive after 20.65: before that the chatter does not complete."""
+RISING = {"f": "x", "g": "cos(2.8*t)", "clearance": "0", "restitution": "0.97"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("model", "tau", "v", "text", "instead"),
+    [
+        (FALLING, "20", "0.1", "least.union(most) if most < window else None", "least.union(most)"),
+        (RISING, "0.9 + 100*pi/2.8", "0.001", "q < 2 and r * q < 1", "q < 2"),
+    ],
+)
+def test_each_bound_of_chatter_refuses_an_accumulation(model, tau, v, text, instead, monkeypatch):
+    """Where a bound does not close, what the others give is false; it is accepted without that bound alone."""
+    weak = without(chatter_limit, "rest", text, instead)
+    before = flint.ctx.prec, flint.ctx.cap
+    flint.ctx.prec, flint.ctx.cap = 112, files.TERMS
+    try:
+        told, state = motion.Model(model), [formulas.Formula(part, {})() for part in (tau, v)]
+        a = told.push(state[0], state[1] * 0)
+        assert chatter_limit.rest(told, *state, a, told.ratio()) is None
+        end = state[0] + weak(told, *state, a, told.ratio())
+    finally:
+        flint.ctx.prec, flint.ctx.cap = before
+    low, high = float(end.lower()), float(end.upper())
+    content = renewed({
+        "schema": checker.SCHEMA, "statement": "chatter limit", "model": model, "launch": {"tau": tau, "v": v},
+        "ends": "accumulation", "tau": number(repr((low + high) / 2), repr((high - low) / 2 + 1e-6)),
+    })  # fmt: skip
+    with pytest.raises(checker.Refused):
+        checker.check(content, seconds=2)
+    monkeypatch.setattr(chatter_limit, "rest", weak)
+    checker.check(content)
+
+
+UNFORGED = {
+    "complex": "no example is near a neutral saddle",
+    "curve": "the search for the event fails before it",
+    "on curve": "the search for the event fails before it",
+    "change of sign": "test_event_certificate drops it, with the search that comes before it",
+    "before": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",
+    "just before": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",
+    "off the wall": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",
+    "rises": "without it Newton's method has no zero to come to",
+    "back": "an orbit that is past the end meets a_c > 0 before this is asked",
+    "slow": "a longer reach is not within the discs of the series, which is asked first",
+    "strip": "a wider strip has no bound Kl, which is asked as well",
+    "annulled": "the series is made by the second program itself",
+    "zero of a_c": "without it Newton's method has no zero to come to",
+    "short": "a_c of no example is positive for so long",
+    "a_c > 0 after tau": "a_c of no example vanishes within its reach",
+    "|A| increases after tau": "it does so in all examples",
+    "|A| decreases before tau": "it does so in all examples",
+}
+"""Conditions without a forgery here, and why."""
+
+
+def test_every_condition_is_in_one_of_the_two_tables():
+    assert names() == FORGERIES.keys() | UNFORGED.keys()
+    assert not FORGERIES.keys() & UNFORGED.keys()
