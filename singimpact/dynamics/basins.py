@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
+from math import log
 from typing import Any
 
 import numpy as np
@@ -42,7 +43,10 @@ Array = np.ndarray[Any, Any]
 class BasinSettings:
     """Sizes of blocks, and when two orbits are one."""
 
-    rows: int = 10  # of the grid in a case; a call costs 3 ms before its first flight
+    # of the grid, together in a case: at most so many cases where there are so many states; fewer states leave lanes of
+    # a batch idle while the last of them settle
+    cases: int = 64
+    states: int = 1250
     same: float = 1e-3  # relative distance below which two periodic orbits are one
     impacts: int = 20_000  # at most, of an orbit that does not settle
 
@@ -200,7 +204,10 @@ def basins(
 def _classes(study: Study, states: tuple[Array, Array], size: int, pool: Any, output: Any) -> Array:
     """The rows of `classify` of states, some rows of the grid in a case."""
     tau, v = states
-    long = size * (SETTINGS.rows if size % SETTINGS.rows == 0 else 1)
+    states = max(SETTINGS.states, size * size / SETTINGS.cases)
+    # whole rows, and as many in each case
+    rows = [n for n in range(1, size + 1) if size % n == 0]
+    long = size * min(rows, key=lambda n: abs(log(n * size / states)))
     cases = [(tuple(tau[i : i + long].tolist()), tuple(v[i : i + long].tolist())) for i in range(0, tau.size, long)]
     work = partial(classified, dict(study.model.to_dict()), (study.phases, study.fast, study.impacts))
     return np.concatenate([np.asarray(part) for part in sweep(work, cases, pool, output)])

@@ -27,6 +27,7 @@ from singimpact.dynamics.attractors import (
     new_attractors,
     periodic_codes,
 )
+from singimpact.dynamics.attractors import SETTINGS as ATTRACTORS
 from singimpact.dynamics.fractional_chatter import rest_after
 from singimpact.dynamics.long_run import chaotic, next_lift_off
 from singimpact.flights.orbits import iterate
@@ -53,9 +54,10 @@ class SettlingSettings:
     # of a Taylor step: at 1e-6 no class of 18 000 states changes; a flight costs a quarter less than at full accuracy
     tolerance: float = 1e-10
     limit: int = 3000  # impacts of the first stage; r = 0.99 needs 2000
-    # of the second stage: impacts between two comparisons with known attractors, and blocks between two searches
-    long_block: int = 200
-    searched: int = 5
+    # of the second stage: impacts between two looks, a number with many divisors, for a state that an attractor of n
+    # impacts has caught is back after it if n divides it; and looks between two searches for other n
+    long_block: int = 240
+    searched: int = 20
     # impacts of the longest period that a search in the second stage, and the last look, tell apart
     long_period: int = 64
     longest_period: int = 256
@@ -163,15 +165,23 @@ class _Run:
             self._fly(block)
             if self.open.size and self.count < most:
                 # a search in vain is dear, and the next one more so
-                block *= 1 if self._catch(True) else 2
+                block *= 1 if self._catch() else 2
 
     def _second_stage(self) -> None:
-        blocks = 0
+        looks = 0
         while self.open.size and self.count < self.study.impacts:
+            tau, v = self.tau.copy(), self.v.copy()
             self._fly(min(SETTINGS.long_block, self.study.impacts - self.count))
-            blocks += 1
-            if self.open.size:
-                self._catch(blocks % SETTINGS.searched == 0, SETTINGS.long_period)
+            looks += 1
+            if not self.open.size:
+                return
+            places = self._caught()
+            back = places < 0
+            if looks % SETTINGS.searched:
+                back &= self._near(tau[self.open], v[self.open])
+            if back.any():
+                places = self._search(places, np.flatnonzero(back), SETTINGS.long_period)
+            self._take(places)
 
     def _last_look(self) -> None:
         """Of states that are left: a long period, else neighbours that separate."""
@@ -212,23 +222,40 @@ class _Run:
         rows[rests, 1] = next_lift_off(study.phases, _at_rest(study, self.tau[at[rests]], self.v[at[rests]]))
         self._decide(rests | (ends.status != 0) | ~np.isfinite(ends.tau) | ~(ends.v > 0), rows)
 
-    def _catch(self, searching: bool, most: int = 0) -> bool:
-        """Whether some open states are near a known attractor, or one that a sample has reached."""
+    def _catch(self) -> bool:
+        """Whether some open states are near a known attractor, or one that a sample of them has reached."""
+        places = self._caught()
+        places = self._search(places, np.flatnonzero(places < 0))
+        self._take(places)
+        return bool((places >= 0).any())
+
+    def _caught(self) -> Array:
+        """Of each open state, the place of the known attractor that it is near, or -1."""
+        return caught(self.known, self.study.model, self.tau[self.open], self.v[self.open], self.study.fast)
+
+    def _near(self, tau: Array, v: Array) -> Array:
+        """Whether open states are where they were before."""
         study, at = self.study, self.open
-        places = caught(self.known, study.model, self.tau[at], self.v[at], study.fast)
-        if searching:
-            left = np.flatnonzero(places < 0)
-            sample = left[:: max(left.size // SETTINGS.sample, 1)]
-            before, few = len(self.known), (most,) if most else ()
-            self.known += new_attractors(study.model, self.tau[at[sample]], self.v[at[sample]], study.fast, *few)
-            again = caught(self.known[before:], study.model, self.tau[at[left]], self.v[at[left]], study.fast)
-            places[left] = np.where(again < 0, -1, again + before)
-        rows = np.zeros((at.size, 3))
+        away = (self.tau[at] - tau) / study.period
+        near = np.abs(away - np.rint(away)) < ATTRACTORS.close
+        return np.asarray(near & (np.abs(self.v[at] - v) < ATTRACTORS.close * study.fast))
+
+    def _search(self, places: Array, chosen: Array, *most: int) -> Array:
+        """The places with those of attractors that a sample of the chosen open states has reached."""
+        study, at = self.study, self.open
+        sample = chosen[:: max(chosen.size // SETTINGS.sample, 1)]
+        before = len(self.known)
+        self.known += new_attractors(study.model, self.tau[at[sample]], self.v[at[sample]], study.fast, *most)
+        again = caught(self.known[before:], study.model, self.tau[at], self.v[at], study.fast)
+        return np.where((places < 0) & (again >= 0), again + before, places)
+
+    def _take(self, places: Array) -> None:
+        """Decide the open states that are near an attractor."""
+        rows = np.zeros((places.size, 3))
         for place in np.unique(places[places >= 0]).tolist():
             orbit = self.known[place]
             rows[places == place] = orbit.code, orbit.tau[0], orbit.v[0]
         self._decide(places >= 0, rows)
-        return bool((places >= 0).any())
 
 
 def _at_rest(study: Study, tau: Array, v: Array) -> Array:

@@ -175,6 +175,7 @@ def false_changes(old: Any, true: Any, new: Any, whole: Any, path: tuple[Any, ..
             # about the swan at pi the forcing cos(2t) is even: every second coefficient of gamma is 0
             zero = whole.get("order") == "2" and path[-2:-1] == ("series",) and path[-1] % 2 == 1
             zero |= path[-1] == "v" and whole.get("kind") == "graze"  # the velocity of an orbit that touches at rest
+            zero |= path[-1] == "imaginary" and distinct(whole)
             middle, spread = (Fraction(0 if zero else true[part]) for part in ("value", "radius"))
             if not abs(middle - value) + spread <= radius:
                 yield path
@@ -191,6 +192,14 @@ def false_changes(old: Any, true: Any, new: Any, whole: Any, path: tuple[Any, ..
             yield from false_changes(one, exact, other, whole, (*path, n))
     elif not (is_number(old) and is_number(new) and weaker(path, Fraction(old), Fraction(new), whole)):
         yield path
+
+
+def distinct(whole: Any) -> bool:
+    """Whether the multipliers have different real parts: they are no conjugate pair then, so both are real."""
+    (one, some), (other, more) = (
+        (Fraction(each["real"]["value"]), Fraction(each["real"]["radius"])) for each in whole["multipliers"]
+    )
+    return abs(one - other) > some + more
 
 
 def weaker(path: tuple[Any, ...], old: Fraction, new: Fraction, whole: Any) -> bool:
