@@ -1,12 +1,17 @@
 """The command in this process, with what it writes and the code it leaves with; how much work a call is."""
 
 import shutil
+import signal
 import sys
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 from click.testing import CliRunner
+
+# a background job of a shell ignores the signal that tests of interruptions send, and hands that on to its children
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

@@ -45,6 +45,8 @@ def kick():
     global sent
     sent = time.perf_counter()
     os.kill(os.getpid(), signal.SIGINT)
+# a background job of a shell ignores the signal, and so would the flights
+signal.signal(signal.SIGINT, signal.default_int_handler)
 threading.Timer(0.5, kick).start()
 try:
     osc.iterate(tau, v, 1_000_000)
