@@ -93,6 +93,17 @@ def test_impact_map_and_its_derivative_keep_their_digits(name, place):
     assert [cell for cell in stressed(chosen([name], place), QUICK) if cell.failed] == []
 
 
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_function_keeps_its_digits_at_two_of_its_places(name):
+    """Two trials each; `singimpact stress` has all of them, and steep layers, which take half a minute."""
+    function = FUNCTIONS[name]
+    smooth = [place for place in function.sweeps if place != "steep layers"]
+    places = list(dict.fromkeys([smooth[0], smooth[-1]]))
+    cells = [worst(name, place, function.sweeps[place], 2) for place in places]
+    assert [cell for cell in cells if cell.failed] == []
+    assert sum(cell.trials for cell in cells) >= 2 * len(places)
+
+
 def test_derivatives_of_steep_landings_are_those_of_the_linear_oscillator():
     """Differences of balls against the variations of the closed form, on a model that both know."""
     launch = SteepLaunch("linear", 1.7, 0.2, tau=0.4, v=0.8, force="x", forcing="cos(1.7*t)")
