@@ -204,10 +204,10 @@ def basins(
 def _classes(study: Study, states: tuple[Array, Array], size: int, pool: Any, output: Any) -> Array:
     """The rows of `classify` of states, some rows of the grid in a case."""
     tau, v = states
-    states = max(SETTINGS.states, size * size / SETTINGS.cases)
+    wanted = max(SETTINGS.states, size * size / SETTINGS.cases)
     # whole rows, and as many in each case
     rows = [n for n in range(1, size + 1) if size % n == 0]
-    long = size * min(rows, key=lambda n: abs(log(n * size / states)))
+    long = size * min(rows, key=lambda n: abs(log(n * size / wanted)))
     cases = [(tuple(tau[i : i + long].tolist()), tuple(v[i : i + long].tolist())) for i in range(0, tau.size, long)]
     work = partial(classified, dict(study.model.to_dict()), (study.phases, study.fast, study.impacts))
     return np.concatenate([np.asarray(part) for part in sweep(work, cases, pool, output)])
