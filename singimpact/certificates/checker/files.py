@@ -66,6 +66,7 @@ def check(told: dict[str, Any], seconds: float = SECONDS) -> None:
             Clock.start(seconds * max(1.0, wanted / ORDINARY) ** 2)
             decide(told, wanted)
         finally:
+            Clock.stop()
             ctx.prec, ctx.cap = before
 
 
