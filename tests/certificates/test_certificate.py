@@ -71,6 +71,13 @@ def test_any_changed_number_is_refused(name, certificates):
             refuses(forged)
 
 
+def test_a_check_leaves_no_limit_behind(certificates, monkeypatch):
+    """What a program computes after it has checked a certificate may take as long as it likes."""
+    checker.check(certificates["linear"].content)
+    monkeypatch.setattr(formulas, "process_time", lambda: 1e9)
+    formulas.Clock.look()
+
+
 def test_a_radius_that_is_too_small_is_refused(certificates):
     content = json.loads(json.dumps(certificates["duffing"].content))
     content["velocity"]["radius"] = "1e-60"
