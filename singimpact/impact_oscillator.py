@@ -147,8 +147,7 @@ class ImpactOscillator(Oscillator):
         if isinstance(order, bool) or not isinstance(order, int) or not 0 <= order <= 60:
             raise refuse("order", order, "a whole number from 0 to 60")
         states = States.read(tau, 0.0).in_period(self)
-        times = states.tau
-        return acceleration(self, times, order).reshape(states.shape)[()]
+        return acceleration(self, states.tau, order).reshape(states.shape)[()]
 
     def iterate(self, tau: Any, v: Any, impacts: int = 100, *, keep: bool = False) -> Iterates:
         """Many impacts of each of many states: iterates of the impact map G.

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
-from singimpact.branches.branch_walk import SETTINGS, TOUCHES, BranchWalk
-from singimpact.branches.events import Event
+from singimpact.branches.branch_walk import SETTINGS, BranchWalk
+from singimpact.branches.events import TOUCHES, Event
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import closing_of, orbit_of
 from singimpact.inputs import InputError, refuse, whole

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.branches.closing import Closing
-from singimpact.branches.continuation import Curve, Point, null_plane, root_between
+from singimpact.branches.continuation import Curve, Point, cubic_between, null_plane, root_between
 from singimpact.branches.event_tests import EventTests
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of
@@ -121,12 +121,12 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
     start = curve.begin(guess)
     if start is None:
         return None
-    known = start.at, _doubling_test(half, start.at)
+    known = start.at, half.at(start.at).characteristic().doubling
     moved = curve.beyond(start, 1e-6)
     lengths = 0.0, 1e-6
     if moved is None:
         return None
-    latest = moved[0].at, _doubling_test(half, moved[0].at)
+    latest = moved[0].at, half.at(moved[0].at).characteristic().doubling
     for _ in range(SETTINGS.secants):
         slope = (latest[1] - known[1]) / (lengths[1] - lengths[0]) if lengths[1] != lengths[0] else 0.0
         if not slope:
@@ -135,7 +135,7 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
         step = curve.beyond(start, length) if abs(length) < 1 else None
         if step is None:
             return None
-        known, latest = latest, (step[0].at, _doubling_test(half, step[0].at))
+        known, latest = latest, (step[0].at, half.at(step[0].at).characteristic().doubling)
         lengths = lengths[1], length
         if abs(lengths[1] - lengths[0]) <= SETTINGS.arrived:
             break
@@ -153,11 +153,6 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
     following = others("period-doubling", orbit, closing.over[0], float(root[-1])) if equal else [orbit]
     along = float(search.here.tangent @ ((at - search.here.at) / scales))
     return BranchPoint("pitchfork", along, at, following[0] if following else None)
-
-
-def _doubling_test(half: AnyClosing, at: Array) -> float:
-    zero, one, two = half.at(at).characteristic()
-    return zero - one + two
 
 
 def _crossing(search: StepSearch, crossing: Crossing) -> BranchPoint | None:
@@ -186,11 +181,10 @@ def _cubic_root(low: Node, high: Node) -> float:
     """Where the cubic through the branch point test at two points vanishes."""
     width = high.along - low.along
     one, other = (node.tests["branch point", 0, 0] for node in (low, high))
-    rise = other.value - one.value
     rates = one.rate * width, other.rate * width
-    square, cube = 3 * rise - 2 * rates[0] - rates[1], rates[0] + rates[1] - 2 * rise
+    square, cube = cubic_between(one.value, rates[0], other.value, rates[1])
     if not np.isfinite(square + cube):
-        return low.along - one.value / rise * width
+        return low.along - one.value / (other.value - one.value) * width
     share = root_between(lambda s: one.value + s * (rates[0] + s * (square + s * cube)), 0.0, 1.0,
                          (one.value, other.value))  # fmt: skip
     return low.along + share * width
@@ -203,8 +197,7 @@ def _between(low: Node, high: Node, along: float, search: StepSearch) -> Array:
     scales = search.tests.scales
     rates = [node.point.tangent * scales * width / float(node.point.tangent @ search.here.tangent)
              for node in (low, high)]  # fmt: skip
-    rise = high.point.at - low.point.at
-    square, cube = 3 * rise - 2 * rates[0] - rates[1], rates[0] + rates[1] - 2 * rise
+    square, cube = cubic_between(low.point.at, rates[0], high.point.at, rates[1])
     return np.asarray(low.point.at + s * (rates[0] + s * (square + s * cube)))
 
 

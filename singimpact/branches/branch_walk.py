@@ -13,7 +13,7 @@ from singimpact.branches.branch_points import BranchPoint, branch_point, repeats
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.event_tests import EventTests, Tests
-from singimpact.branches.events import Event
+from singimpact.branches.events import TOUCHES, Event
 from singimpact.branches.kept import KeptSide
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, orbit_of, orbit_period
@@ -39,15 +39,13 @@ class BranchSettings:
     touching: float = 1e-12
     # the same at a located event
     located: float = 1e-9
-    # |product of the multipliers| - 1 that is a rounding error: for r = 1 without damping it is 0 everywhere
+    # distance of a multiplier from the unit circle that may be a rounding error
     neutral: float = 1e-9
     # events of a step that are nearer to each other, of its length, have no point between them
     together: float = 1e-7
 
 
 SETTINGS = BranchSettings()
-TOUCHES = ("graze", "hidden impact")
-"""Events at which the orbit touches the wall."""
 
 
 class Row(NamedTuple):
@@ -278,12 +276,10 @@ class BranchWalk:
             self.notes.append(f"a {kind} near {crossing.low.point.at[-1]:.9g} could not be located")
             return None
         along, point = root
-        if kind == "torus":
-            zero, one, two = self.tests.loop(point.at).characteristic()
-            if not one * one < 4 * zero * two:
-                return None  # the multipliers are real where their product is 1, so this is no torus bifurcation
+        if kind == "torus" and not self.tests.loop(point.at).characteristic().are_complex:
+            return None  # the multipliers are real where their product is 1, so this is no torus bifurcation
         time = np.nan
-        if np.isfinite(crossing.ends[0].share) and kind in ("graze", "hidden impact"):
+        if np.isfinite(crossing.ends[0].share) and kind in TOUCHES:
             turn = search.turn(crossing, along, point)
             size = max(abs(test.value) for test in crossing.ends)
             # a minimum that is not the lowest of its flight has its zero behind the wall

@@ -11,10 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from singimpact.branches.continuation import cubic_between
 from singimpact.flights.determinant import log_determinant
 from singimpact.flights.family import Family
 
@@ -27,6 +28,29 @@ SETTLED = 1e-9
 """The last step of Newton's method for the time of a minimum, of that time."""
 Turn = tuple[float, float]
 """A local minimum of x - c in a flight: its time after the launch, and x - c there."""
+
+
+class Characteristic(NamedTuple):
+    """a_0, a_1, a_2 of a_0 + a_1 mu + a_2 mu^2, whose zeros are the multipliers of an orbit."""
+
+    zero: float
+    one: float
+    two: float
+
+    @property
+    def doubling(self) -> float:
+        """Its value at -1: 0 at a period doubling."""
+        return self.zero - self.one + self.two
+
+    @property
+    def torus(self) -> float:
+        """0 where the product of the multipliers is 1: at a Neimark-Sacker bifurcation, if they are complex."""
+        return self.zero - self.two
+
+    @property
+    def are_complex(self) -> bool:
+        """Whether the multipliers are a conjugate pair."""
+        return self.one * self.one < 4 * self.zero * self.two
 
 
 @dataclass(frozen=True)
@@ -51,10 +75,10 @@ class Loop:
             return np.nan
         return float(np.linalg.det(square + (multiplier - 1) * self.wrap))
 
-    def characteristic(self) -> tuple[float, float, float]:
+    def characteristic(self) -> Characteristic:
         """a_0, a_1, a_2 with det(J(mu)) = a_0 + a_1 mu + a_2 mu^2; a_2 = 0 where the last flight ends in a graze."""
         zero, plus, minus = (self.determinant(mu) for mu in (0.0, 1.0, -1.0))
-        return zero, (plus - minus) / 2, (plus + minus) / 2 - zero
+        return Characteristic(zero, (plus - minus) / 2, (plus + minus) / 2 - zero)
 
     def multipliers(self, product: Callable[[], float] | None = None) -> Array:
         """The two multipliers, the larger first; inf at a graze.
@@ -248,8 +272,7 @@ def minima_of(family: Family, values: dict[str, float], flight: tuple[float, flo
 
 def _cubic_minimum(ends: tuple[float, float], slopes: tuple[float, float]) -> tuple[float, float]:
     """Where the cubic with these values and slopes (the first negative) at 0 and 1 is least between, and its value."""
-    rise = ends[1] - ends[0]
-    square, cube = 3 * rise - 2 * slopes[0] - slopes[1], slopes[0] + slopes[1] - 2 * rise
+    square, cube = cubic_between(ends[0], slopes[0], ends[1], slopes[1])
     # slopes[0] + 2 square s + 3 cube s^2 = 0, the root at which it rises
     root = sqrt(max(square * square - 3 * cube * slopes[0], 0.0))
     share = -slopes[0] / (square + root) if square + root > 0 else 1.0

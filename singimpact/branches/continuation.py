@@ -240,6 +240,22 @@ def null_plane(slopes: Array, tangent: Array) -> Array:
     return np.asarray(across / np.linalg.norm(across) * (1.0 if across[np.argmax(np.abs(across))] > 0 else -1.0))
 
 
+def cubic_between(before: Any, rate: Any, after: Any, later: Any) -> tuple[Any, Any]:
+    """The coefficients of s^2 and s^3 of the cubic with these values and derivatives at 0 and 1 (Hermite).
+
+    Parameters
+    ----------
+    before, rate : value and derivative at 0, numbers or arrays. after, later : at 1.
+
+    Examples
+    --------
+    >>> cubic_between(0.0, 0.0, 1.0, 0.0)  # 3 s^2 - 2 s^3
+    (3.0, -2.0)
+    """
+    rise = after - before
+    return 3 * rise - 2 * rate - later, rate + later - 2 * rise
+
+
 def root_between(test: Callable[[float], float], low: float, high: float, ends: tuple[float, float]) -> float:
     """Where a test changes sign between two lengths, by Brent's method.
 

@@ -117,10 +117,10 @@ class EventTests:
             except np.linalg.LinAlgError:
                 tangent = before
             tangent = tangent / np.linalg.norm(tangent)
-        zero, one, two = loop.characteristic()
+        multipliers = loop.characteristic()
         crossing = float(np.linalg.det(np.vstack([slopes, tangent])))
-        return {"fold": float(tangent[-1]), "period-doubling": zero - one + two, "torus": zero - two,
-                "branch point": crossing, "zero": zero, "two": two}  # fmt: skip
+        return {"fold": float(tangent[-1]), "period-doubling": multipliers.doubling, "torus": multipliers.torus,
+                "branch point": crossing, "zero": multipliers.zero, "two": multipliers.two}  # fmt: skip
 
 
 SMOOTH = ("fold", "period-doubling", "torus", "branch point")

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from singimpact.branches.enclosed_event import EnclosedEvent
 
 
+TOUCHES = ("graze", "hidden impact")
+"""Kinds of events at which the orbit touches the wall."""
 NEAR = 1e-6
 """How far, relative to 1 or the parameter, an event in doubles is from the one that is proved."""
 
@@ -63,7 +65,7 @@ class Event:
     @property
     def graze_time(self) -> float:
         """When the orbit touches the wall, of a graze or a hidden impact: `at` of `singimpact.theory.grazing_map`."""
-        if self.kind not in ("graze", "hidden impact"):
+        if self.kind not in TOUCHES:
             raise refuse("event", self.kind, "a graze or a hidden impact")
         return graze_time(self.kind, self.orbit)
 
@@ -98,8 +100,8 @@ class Event:
         from singimpact.branches.enclosed_event import enclosed_event
         from singimpact.branches.event_function import SIGNS
 
-        touches = self.kind in ("graze", "hidden impact")
-        if self.kind not in (*SIGNS, "graze", "hidden impact"):
+        touches = self.kind in TOUCHES
+        if self.kind not in (*SIGNS, *TOUCHES):
             raise InputError(f"{self!r} is not certified: no proof covers a {self.kind}, only a fold, period-doubling, "
                              f"torus, graze or hidden impact{self._instead()}")  # fmt: skip
         if not (touches or self.orbit.n):

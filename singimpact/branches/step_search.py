@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.branches.continuation import Curve, Point, root_between
+from singimpact.branches.continuation import Curve, Point, cubic_between, root_between
 from singimpact.branches.event_tests import EventTests, Key, Test, Tests
+from singimpact.branches.events import TOUCHES
 
 Array = np.ndarray[Any, Any]
-MINIMA = ("hidden impact", "graze")
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class SearchSettings:
     forecast: float = 1.5
     # an extremum this near to 0, of the values at the ends of the step, may hide two zeros: two that are 1e-3 of the
     # interval apart leave a dip of 6e-4 on a step of 2 %, and are found (2000 branches); nearer ones may not be
-    rounding: float = 1e-3
+    doubtful: float = 1e-3
     # torus test, of its terms, that is a rounding error: for r = 1 without damping it is 0 everywhere
     neutral: float = 1e-9
 
@@ -130,7 +130,7 @@ class StepSearch:
         for node in nodes[1:-1]:
             for key, size in sizes.items():
                 test = node.tests.get(key)
-                flat = test is not None and abs(test.value) < SETTINGS.rounding * size
+                flat = test is not None and abs(test.value) < SETTINGS.doubtful * size
                 if flat and key[0] not in crossed and not (self.neutral and key[0] == "torus"):
                     self.doubts.append((key, node.point.at))
 
@@ -193,15 +193,15 @@ class StepSearch:
         """One test function at a point of the step."""
         kind, impact, _ = crossing.keys[0]
         n = self.tests.closing.n
-        if kind in MINIMA and isfinite(crossing.ends[0].share):
+        if kind in TOUCHES and isfinite(crossing.ends[0].share):
             turn = self.turn(crossing, along, point)
             return np.nan if turn is None else turn[1]
         if kind == "graze":
             return float(point.at[n + impact])
         if kind == "fold":
             return float(point.tangent[-1])
-        zero, one, two = self.tests.loop(point.at).characteristic()
-        return zero - two if kind == "torus" else zero - one + two
+        multipliers = self.tests.loop(point.at).characteristic()
+        return multipliers.torus if kind == "torus" else multipliers.doubling
 
     def turn(self, crossing: Crossing, along: float, point: Point) -> tuple[float, float] | None:
         """Time and height of the minimum that a crossing is about."""
@@ -232,8 +232,7 @@ def turning(before: float, rate: float, after: float, later: float) -> float | N
     >>> turning(1.0, -4.1, 1.0, 4.1), turning(1.0, -0.5, 1.0, 0.5), turning(1.0, 0.0, -1.0, 0.0)
     (0.5, None, None)
     """
-    rise = after - before
-    square, cube = 3 * rise - 2 * rate - later, rate + later - 2 * rise
+    square, cube = cubic_between(before, rate, after, later)
     root = square * square - 3 * cube * rate
     if not root > 0:  # no extremum, or no value
         return None
@@ -289,7 +288,7 @@ def _pairs(one: Tests, other: Tests) -> tuple[list[tuple[Key, Key]], list[Key], 
 
 
 def _minimum(key: Key, test: Test) -> bool:
-    return key[0] in MINIMA and isfinite(test.share)
+    return key[0] in TOUCHES and isfinite(test.share)
 
 
 def _gap(shares: float, around: bool) -> float:

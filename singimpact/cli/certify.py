@@ -13,7 +13,7 @@ from singimpact.store import require_writable
 
 State = tuple[str, str] | None
 EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact", "pitchfork", "transcritical")
-"""Kinds of events that have certificates; a test compares them with those of the checker."""
+"""Kinds of events of a branch: those that the checker knows, as a test compares, then those refused in a sentence."""
 
 
 @click.command(short_help="a proved result with a certificate that a second program checks")
