@@ -76,10 +76,8 @@ def _returns(model: Oscillator, tau: Array, v: Array, fast: float, most: int) ->
         # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
         passed = np.floor(ends.tau / period)
         at, speed, turns = ends.tau - passed * period, ends.v, turns + passed
-        around = np.rint((at - home) / period)
-        near = np.abs(at - home - around * period) < SETTINGS.close * period
-        near &= np.abs(speed - v) < SETTINGS.close * fast
-        k = turns + around
+        k = turns + np.rint((at - home) / period)
+        near = apart((at, speed), (home, v), period, fast) < SETTINGS.close
         new = near & (codes == OTHER) & (k > 0) & (k < PLACES)
         codes[new] = (n * PLACES + k[new]).astype(np.int32)
     return codes
@@ -97,10 +95,21 @@ def within(attractor: Attractor, model: Oscillator, tau: Array, v: Array, fast: 
     """Whether states lie nearer than `size`, relative, to a state of the attractor."""
     assert model.period is not None
     period, near = as_float(model.period), np.zeros(tau.size, dtype=bool)
-    for place, speed in zip(attractor.tau.tolist(), attractor.v.tolist(), strict=True):
-        away = (tau - place) / period
-        near |= (np.abs(away - np.rint(away)) < size) & (np.abs(v - speed) < size * fast)
+    for state in zip(attractor.tau.tolist(), attractor.v.tolist(), strict=True):
+        near |= apart((tau, v), state, period, fast) < size
     return near
+
+
+def apart(states: Any, others: Any, period: float, fast: float) -> Array:
+    """How far states (tau, v) are from others: phases in periods, velocities in units of `fast`; the larger counts.
+
+    Examples
+    --------
+    >>> apart((np.array([7.1, 0.5]), np.array([1.0, 2.0])), (0.1, 1.0), 7.0, 4.0).round(9).tolist()
+    [0.0, 0.25]
+    """
+    turns = (states[0] - others[0]) / period
+    return np.asarray(np.maximum(np.abs(turns - np.rint(turns)), np.abs(states[1] - others[1]) / fast))
 
 
 def new_attractors(

@@ -14,6 +14,7 @@ from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
+from singimpact.dynamics.attractors import apart
 from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
@@ -180,12 +181,11 @@ def _repeats(found: Orbit) -> bool:
     if found.phases and found.phases[-1][0] == "sticking" and not np.isfinite(found.phases[-1][2]):
         return True
     shown = np.isin(found.kind, ("impact", "graze", "complete"))
-    tau, v = found.tau[shown] / as_float(found.oscillator.period), found.v[shown]  # type: ignore[arg-type]
-    fast = max(float(v.max(initial=0.0)), 1e-300)
+    tau, v = found.tau[shown], found.v[shown]
+    period, fast = as_float(found.oscillator.period), max(float(v.max(initial=0.0)), 1e-300)  # type: ignore[arg-type]
     for n in range(1, min(SETTINGS.period, tau.size // 2) + 1):
-        turns = tau[-n:] - tau[-2 * n : -n]
-        away = np.maximum(np.abs(turns - np.rint(turns)), np.abs(v[-n:] - v[-2 * n : -n]) / fast)
-        if away.max() < SETTINGS.close:
+        last, before = slice(-n, None), slice(-2 * n, -n)
+        if apart((tau[last], v[last]), (tau[before], v[before]), period, fast).max() < SETTINGS.close:
             return True
     return False
 

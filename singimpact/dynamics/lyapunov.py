@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, compare
+from singimpact.dynamics.attractors import apart
 from singimpact.dynamics.chatter import ENDING, chatter_limit
 from singimpact.dynamics.fractional_chatter import chatter_completes
 from singimpact.dynamics.release import periods_between, release
@@ -220,8 +221,7 @@ class _Run:
         if not self.v > 0 or not self.before or self.osc.period is None:
             return False
         ahead = orbit_segment(self.osc, self.tau, self.v, SETTINGS.period)
-        turns = (ahead.tau - self.tau) / as_float(self.osc.period)
-        away = np.maximum(np.abs(turns - np.rint(turns)), np.abs(ahead.v / self.v - 1))
+        away = apart((ahead.tau, ahead.v), (self.tau, self.v), as_float(self.osc.period), self.v)
         return bool((away < SETTINGS.close).any())
 
     def fly(self, most: int, keep: bool) -> None:

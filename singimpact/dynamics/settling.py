@@ -23,6 +23,7 @@ from singimpact.dynamics.attractors import (
     OTHER,
     STUCK,
     Attractor,
+    apart,
     caught,
     new_attractors,
     periodic_codes,
@@ -117,21 +118,21 @@ def parted(study: Study, tau: Array, v: Array, impacts: Array) -> Array:
     ----------
     tau, v, impacts : of each state, shape (n,).
     """
-    apart, left = np.zeros(tau.size, dtype=bool), np.arange(tau.size)
+    separated, left = np.zeros(tau.size, dtype=bool), np.arange(tau.size)
     sides = np.array([[0.0], [SETTINGS.neighbour]])
     at, speed, count = tau + sides * study.period, v * (1 + sides), 0
     while left.size:
         ends = iterate(study.model, at[:, left], speed[:, left], SETTINGS.watched, SETTINGS.tolerance)
         count += SETTINGS.watched
         at[:, left], speed[:, left] = ends.tau - study.period * np.floor(ends.tau / study.period), ends.v
-        away = np.abs(np.diff(at[:, left], axis=0)[0] / study.period)
-        distance = np.maximum(np.abs(away - np.rint(away)), np.abs(np.diff(speed[:, left], axis=0)[0]) / study.fast)
+        one, other = ((at[side, left], speed[side, left]) for side in (0, 1))
+        distance = apart(one, other, study.period, study.fast)
         flying = (ends.status == 0).all(axis=0)
         # one ends its flights where the other goes on
         torn = (ends.status[0] == 0) != (ends.status[1] == 0)
-        apart[left] = torn | (flying & (distance > SETTINGS.parted))
-        left = left[flying & ~apart[left] & (count < impacts[left])]
-    return apart
+        separated[left] = torn | (flying & (distance > SETTINGS.parted))
+        left = left[flying & ~separated[left] & (count < impacts[left])]
+    return separated
 
 
 class _Run:
@@ -148,9 +149,8 @@ class _Run:
     def settle(self) -> None:
         """Follow all states to a class."""
         self._first_stage()
-        if self.open.size:
-            self._look(SETTINGS.longest_period if self.count >= self.study.impacts else 0)
-        if self.open.size:
+        if self.open.size and self.count < self.study.impacts:
+            self._look()
             self._second_stage()
         self._last_look()
 
@@ -193,11 +193,10 @@ class _Run:
             self.rows[at[chaotic(study.model, self.tau[at], self.v[at], study.fast)], 0] = CHAOS
             self.flown[at] = self.count
 
-    def _look(self, most: int) -> None:
-        """States that close by themselves within so many impacts; 0: within few."""
+    def _look(self, most: int = ATTRACTORS.most_impacts) -> None:
+        """States that close by themselves within so many impacts."""
         study, at = self.study, self.open
-        few = (most,) if most else ()
-        codes = periodic_codes(study.model, self.tau[at], self.v[at], study.fast, *few)
+        codes = periodic_codes(study.model, self.tau[at], self.v[at], study.fast, most)
         self._decide(codes != OTHER, np.stack([codes, self.tau[at], self.v[at]], axis=1))
 
     def _decide(self, chosen: Array, rows: Array) -> None:
@@ -235,17 +234,15 @@ class _Run:
 
     def _near(self, tau: Array, v: Array) -> Array:
         """Whether open states are where they were before."""
-        study, at = self.study, self.open
-        away = (self.tau[at] - tau) / study.period
-        near = np.abs(away - np.rint(away)) < ATTRACTORS.close
-        return np.asarray(near & (np.abs(self.v[at] - v) < ATTRACTORS.close * study.fast))
+        now = self.tau[self.open], self.v[self.open]
+        return apart(now, (tau, v), self.study.period, self.study.fast) < ATTRACTORS.close
 
-    def _search(self, places: Array, chosen: Array, *most: int) -> Array:
+    def _search(self, places: Array, chosen: Array, most: int = ATTRACTORS.most_impacts) -> Array:
         """The places with those of attractors that a sample of the chosen open states has reached."""
         study, at = self.study, self.open
         sample = chosen[:: max(chosen.size // SETTINGS.sample, 1)]
         before = len(self.known)
-        self.known += new_attractors(study.model, self.tau[at[sample]], self.v[at[sample]], study.fast, *most)
+        self.known += new_attractors(study.model, self.tau[at[sample]], self.v[at[sample]], study.fast, most)
         again = caught(self.known[before:], study.model, self.tau[at], self.v[at], study.fast)
         return np.where((places < 0) & (again >= 0), again + before, places)
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.bench.selftest.draws import Flown
+from singimpact.bench.selftest.draws import Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS
 from singimpact.bench.truth.plain_orbits import PlainOrbits
@@ -52,13 +52,10 @@ def compiled(osc: ImpactOscillator) -> None:
                 part.compile_here()
 
 
-def lanes(flown: Flown) -> Row:
+@against_plain_orbits(LANES)
+def lanes(flown: Flown, plain: PlainOrbits) -> Row:
     """`osc.iterate` of an array, each state against its own flights."""
     tally = Tally(LANES)
-    try:
-        plain = flown.plain
-    except TypeError as reason:
-        return Row(LANES, note=f"does not apply: {reason}")
     hit = np.flatnonzero(flown.step.status == Status.hit)
     if not hit.size:
         return Row(LANES, note="no flight that was drawn returns")
@@ -105,13 +102,11 @@ def _lane(plain: PlainOrbits, state: tuple[float, float], ends: Any, place: tupl
         tally.judge(float(max(abs(passed - true[0]) / late, abs(ends.v[at] - true[1]) / fast)), call)
 
 
-def grazes(flown: Flown) -> Row:
+@against_plain_orbits(GRAZES)
+def grazes(flown: Flown, plain: PlainOrbits) -> Row:
     """`osc.impact_map` and `osc.iterate` of states on both sides of a launch that grazes."""
     tally = Tally(GRAZES)
-    try:
-        tau, v = grazing_states(flown)
-    except TypeError as reason:
-        return Row(GRAZES, note=f"does not apply: {reason}")
+    tau, v = grazing_states(flown, plain)
     if not tau.size:
         return Row(GRAZES, note="no launch that grazes lies among those looked at")
     compiled(flown.osc)
@@ -123,7 +118,7 @@ def grazes(flown: Flown) -> Row:
         if tally.late:
             tally.leave("CPU time used up", tau.size - at)
             break
-        _graze(flown.plain, (float(tau[at]), float(v[at])), (step, ends), at, tally)
+        _graze(plain, (float(tau[at]), float(v[at])), (step, ends), at, tally)
     return tally.row()
 
 
@@ -148,9 +143,9 @@ def _graze(plain: PlainOrbits, state: tuple[float, float], answers: tuple[Any, A
             tally.judge(float(off / allowed), call)
 
 
-def grazing_states(flown: Flown) -> tuple[Array, Array]:
+def grazing_states(flown: Flown, plain: PlainOrbits) -> tuple[Array, Array]:
     """Launches beside those that graze: where the flight time jumps with v, on both sides, at falling distances."""
-    plain, units, found = flown.plain, flown.scales, list[tuple[float, float]]()
+    units, found = flown.scales, list[tuple[float, float]]()
     speeds = units.fast * (np.arange(BATCHES.speeds) + 0.5) / BATCHES.speeds
     for tau in (units.low + (units.high - units.low) * (np.arange(BATCHES.phases) + 0.5) / BATCHES.phases).tolist():
         times = [plain.quick_impact(tau, v).time for v in speeds.tolist()]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import wraps
 from math import isfinite, pi, sqrt
 from typing import Any, NamedTuple
 
@@ -12,7 +14,7 @@ from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
-from singimpact.bench.selftest.rows import Tally
+from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.plain_orbits import PlainOrbits, plain_orbits
 from singimpact.flights.results import Step
 from singimpact.impact_oscillator import ImpactOscillator
@@ -80,6 +82,23 @@ class Flown(NamedTuple):
     def call(self, at: int, name: str = "impact_map") -> str:
         """A state as it is typed."""
         return f"osc.{name}({float(self.tau[at])!r}, {float(self.v[at])!r}, horizon={self.scales.horizon:.6g})"
+
+
+def against_plain_orbits(name: str) -> Callable[[Callable[[Flown, PlainOrbits], Row]], Callable[[Flown], Row]]:
+    """A row that compares with `Flown.plain`, which a model with an algebraic number given as a root does not have."""
+
+    def row_of(judge: Callable[[Flown, PlainOrbits], Row]) -> Callable[[Flown], Row]:
+        @wraps(judge)
+        def row(flown: Flown) -> Row:
+            try:
+                plain = flown.plain
+            except TypeError as reason:
+                return Row(name, note=f"does not apply: {reason}")
+            return judge(flown, plain)
+
+        return row
+
+    return row_of
 
 
 def scales(osc: ImpactOscillator) -> Scales:

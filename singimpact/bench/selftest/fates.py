@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import inf, isfinite
 
-from singimpact.bench.truth.graded_steps import HIT, MISS
+from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
 from singimpact.bench.truth.plain_orbits import PlainOrbits
 
 
@@ -31,6 +31,8 @@ class FollowedSettings:
 
 
 FOLLOWED = FollowedSettings()
+State = tuple[float, float, float]
+"""tau within a period, v, and the periods before."""
 
 
 @dataclass(frozen=True)
@@ -80,15 +82,13 @@ class Follower:
 
     def first(self, tau: float, v: float) -> Fate:
         """The first behaviour of an orbit: a chatter that completes counts."""
-        begun, turns, wait = tau, 0.0, 0
+        begun, wait = tau, 0
         states = deque([(tau, v, 0.0)], FOLLOWED.periods + 1)
         for count in range(1, self.impacts + 1):
-            hit = self.plain.quick_impact(tau, v, self.horizon)
-            if hit.status != HIT or not hit.v > 0:
-                return Fate("no impact" if hit.status == MISS else "undecided", impacts=count)
-            v, passed = hit.v, (tau + hit.time) // self.period
-            tau, turns = tau + hit.time - passed * self.period, turns + passed
-            states.append((tau, v, turns))
+            status = self._fly(states)
+            if status != HIT:
+                return Fate("no impact" if status == MISS else "undecided", impacts=count)
+            tau, v, turns = states[-1]
             wait -= 1
             if wait <= 0 and self._slow(tau, v):
                 end = self.plain.chatter(tau, v, FOLLOWED.most)
@@ -100,13 +100,23 @@ class Follower:
                 return Fate("orbit", *self._fewest(tau, v, closed), tau, v, count)
         return Fate("unsettled", 0, 0, tau, v, self.impacts)
 
+    def _fly(self, states: deque[State]) -> int:
+        """Put the state after the next impact behind the others; MISS or UNDECIDED where there is none."""
+        tau, v, turns = states[-1]
+        hit = self.plain.quick_impact(tau, v, self.horizon)
+        if hit.status != HIT or not hit.v > 0:
+            return MISS if hit.status == MISS else UNDECIDED
+        passed = (tau + hit.time) // self.period
+        states.append((tau + hit.time - passed * self.period, hit.v, turns + passed))
+        return HIT
+
     def _slow(self, tau: float, v: float) -> bool:
         if v > FOLLOWED.slow * self.fast or not self.plain.slope < 1:
             return False
         a = self.plain.push(tau)
         return a < 0 and 2 * v / (-a * (1 - self.plain.slope)) < FOLLOWED.short * self.period
 
-    def _closed(self, states: deque[tuple[float, float, float]]) -> tuple[int, int] | None:
+    def _closed(self, states: deque[State]) -> tuple[int, int] | None:
         """(n, k) of the last states, where the last one is near the one n impacts before it."""
         tau, v, turns = states[-1]
         for n in range(1, len(states)):
@@ -122,14 +132,9 @@ class Follower:
         n, k = closed
         if n == 1:
             return closed
-        states, turns = deque([(tau, v, 0.0)], n + 1), 0.0
-        for _ in range(FOLLOWED.again * n):
-            hit = self.plain.quick_impact(tau, v, self.horizon)
-            if hit.status != HIT or not hit.v > 0:
-                return closed
-            v, passed = hit.v, (tau + hit.time) // self.period
-            tau, turns = tau + hit.time - passed * self.period, turns + passed
-            states.append((tau, v, turns))
+        states = deque([(tau, v, 0.0)], n + 1)
+        if any(self._fly(states) != HIT for _ in range(FOLLOWED.again * n)):
+            return closed
         later = self._closed(states)
         return later if later and later[0] < n and later[0] * k == n * later[1] else closed
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.bench.selftest.draws import Flown
+from singimpact.bench.selftest.draws import Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
 from singimpact.bench.truth.plain_orbits import Impact, PlainOrbits
@@ -45,13 +45,10 @@ class OrbitSettings:
 ORBITS = OrbitSettings()
 
 
-def orbits(flown: Flown) -> Row:
+@against_plain_orbits(ORBIT_NAME)
+def orbits(flown: Flown, plain: PlainOrbits) -> Row:
     """All events of `osc.orbit`: impacts, ends of chatter, lift-offs, and what comes last."""
     tally = Tally(ORBIT_NAME)
-    try:
-        plain = flown.plain
-    except TypeError as reason:
-        return Row(ORBIT_NAME, note=f"does not apply: {reason}")
     for at in _starts(flown):
         if tally.late:
             break
@@ -168,12 +165,9 @@ def _last(plain: PlainOrbits, phase: tuple[str, float, float], last: tuple[float
         tally.leave(f"ends in {phase[0]}")
 
 
-def limits(flown: Flown) -> Row:
+@against_plain_orbits(LIMIT_NAME)
+def limits(flown: Flown, plain: PlainOrbits) -> Row:
     """`osc.chatter_limit` of slow states."""
-    try:
-        plain = flown.plain
-    except TypeError as reason:
-        return Row(LIMIT_NAME, note=f"does not apply: {reason}")
     if not plain.slope < 1:
         return Row(LIMIT_NAME, note="does not apply: rho is not smooth at rest, or has slope -1: no geometric series")
     tally = Tally(LIMIT_NAME)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.bench.selftest.draws import Flown
+from singimpact.bench.selftest.draws import Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.status import Status
@@ -38,13 +38,10 @@ class ResponseSettings:
 RESPONSES = ResponseSettings()
 
 
-def derivatives(flown: Flown) -> Row:
+@against_plain_orbits(DERIVATIVE)
+def derivatives(flown: Flown, plain: PlainOrbits) -> Row:
     """All four entries of `osc.derivative`."""
     tally = Tally(DERIVATIVE)
-    try:
-        plain = flown.plain
-    except TypeError as reason:
-        return Row(DERIVATIVE, note=f"does not apply: {reason}")
     places = np.flatnonzero(flown.step.status == Status.hit)[: RESPONSES.states]
     if not places.size:
         return Row(DERIVATIVE, note="no flight that was drawn returns")
@@ -74,13 +71,10 @@ def _matrix(flown: Flown, plain: PlainOrbits, at: int, matrix: Array, tally: Tal
     tally.judge(ratio, f"{state}: {matrix.round(9).tolist()}, differences {true.round(9).tolist()}")
 
 
-def rebounds(flown: Flown) -> Row:
+@against_plain_orbits(REBOUND)
+def rebounds(flown: Flown, plain: PlainOrbits) -> Row:
     """The state after a hit: tau + T, and rho of the velocity."""
     tally, step = Tally(REBOUND), flown.step
-    try:
-        plain = flown.plain
-    except TypeError as reason:
-        return Row(REBOUND, note=f"does not apply: {reason}")
     for at in np.flatnonzero((step.status == Status.hit) | (step.status == Status.no_rebound)).tolist():
         velocity, v = float(step.velocity[at]), float(step.v[at])
         true = plain.rebound(velocity)
