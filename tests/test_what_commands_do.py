@@ -129,7 +129,7 @@ def test_the_page_is_saved(tmp_path):
         (lambda: si.explore(OSC, steps=1), "steps = 1 is not accepted: give a whole number from 2 to 1001"),
         (lambda: si.plot(3), "thing to plot = 'int' is not accepted: give an orbit"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_used_ends_in_one_sentence(call, message):
     with pytest.raises(InputError, match=message):
         call()

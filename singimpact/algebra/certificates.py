@@ -326,7 +326,7 @@ def identical(left: Any, right: Any) -> bool:
         "left": [_data(part, variables) for part in sides[0]],
         "right": [_data(part, variables) for part in sides[1]],
         "relation": [_data(part, variables) for part in _related(sides, relation, w)] if root else None,
-    }  # fmt: skip
+    }
     return established(data)
 
 

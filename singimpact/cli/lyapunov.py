@@ -22,7 +22,7 @@ from singimpact.status import Status
 @output_options
 def command(
     tau: str, v: str, impacts: int, transient: int | None, as_json: bool, output: str | None, **options: Any
-) -> None:  # fmt: skip
+) -> None:
     """Lyapunov exponents per unit of time and per impact, with standard errors.
 
     An orbit that comes to rest again and again is superstable: its exponents are -inf.

@@ -32,7 +32,7 @@ from singimpact.cli.pictures import PICTURES
 @output_options
 def command(
     tau: str, v: str, impacts: int, at: str, skip: int, as_json: bool, output: str | None, **options: Any
-) -> None:  # fmt: skip
+) -> None:
     """x and x' of an orbit once in each period of the forcing: a stroboscopic section.
 
     With -o FILE.png (or .pdf, .svg) the section is drawn. Numbers may be expressions such as pi/2.8.

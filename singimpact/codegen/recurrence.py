@@ -155,7 +155,7 @@ def _columns(writer: _Writer, motion: list[str], force: Expression, push: Expres
 
 def _motion(writer: _Writer, force: Expression, forcing: Expression) -> list[str]:
     pulls = _terms(writer, forcing, "") + _terms(writer, force, "-")
-    return [*writer.lines, "total = 0.0", *pulls, "X[k + 2] = total * (one / ((k + 1) * (k + 2)))"]  # fmt: skip
+    return [*writer.lines, "total = 0.0", *pulls, "X[k + 2] = total * (one / ((k + 1) * (k + 2)))"]
 
 
 def _function(head: str, body: list[str], unpacked: str = "") -> str:

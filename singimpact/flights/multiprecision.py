@@ -156,7 +156,7 @@ def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float
 
 def _march(
     osc: Oscillator, states: States, index: int, v: Any, removed: int, limits: tuple[float, int], mp: Any
-) -> Outcome:  # fmt: skip
+) -> Outcome:
     space = over_mpmath(mp, _flow(osc), exact_restart=False)
     order = degree_for(float(mp.eps)) if mp.prec < 1000 else int(mp.prec / 2.15)
     order += removed - 1

@@ -15,7 +15,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.codegen import radii
 from singimpact.codegen.javascript import formula, translated
 from singimpact.codegen.scalar import scalar
-from singimpact.flights.horizons import horizon_of
+from singimpact.flights.horizons import horizon_of, reach_of
 from singimpact.flights.kernels import roots, steps, taylor
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import numbers_of_flow, recurrence_of
@@ -59,6 +59,7 @@ def model_in_javascript(osc: Oscillator) -> str:
         "safety": LIMITS.safety,
         "budget": LIMITS.steps,
         "horizon": horizon_of(osc, None),
+        "reach": reach_of(osc),
         "period": None if osc.period is None else as_float(osc.period),
         "clearance": as_float(osc.clearance),
         "r": as_float(osc.slope_at_rest()),

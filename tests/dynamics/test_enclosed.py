@@ -25,7 +25,7 @@ STATES = {
     "two waves": (ImpactOscillator("x", "cos(2*t) + sin(6*t)/9", "0.4", "0.5"), "1.2", "0.02"),
     "from rest": (linear("2", "0.99", "0.5"), "0", "0"),
     "bouncing ball": (ImpactOscillator("0", "-9.81", 0, "0.9"), "sqrt(2/9.81)", "0.9*sqrt(2*9.81)"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", STATES)

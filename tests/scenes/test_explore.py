@@ -287,6 +287,14 @@ def test_a_ball_rests_for_ever(opened):
     assert found["tau"][-1] == pytest.approx(2, rel=1e-12)
 
 
+def test_a_fast_launch_against_a_weak_mean_force_is_followed_until_it_is_back(opened):
+    """Its flight is longer than the horizon of slow launches."""
+    model = si.ImpactOscillator("0", "cos(2*t) - 1/2000", "0", "1/2")
+    hit, found = model.first_hit(0.0, 3.0), flown(opened(model.replace(clearance="0.15")), model, 0.0, 3.0, 1)
+    assert hit.flight_time > 10_000
+    assert found["tau"][1] == pytest.approx(float(hit.flight_time), rel=1e-10)
+
+
 def test_a_touch_that_doubles_do_not_decide_ends_the_orbit(opened):
     """x = t (t - 1)^2 up to a rounding: x'' = 6 t - 4 from v = 1."""
     model = si.ImpactOscillator("0", "6*t - 4", 0, "1/2")

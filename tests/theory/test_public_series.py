@@ -180,7 +180,7 @@ REFUSED = [
     (lambda: si.theory.gamma(order=3).valid_within(0.1), "valid_within needs numbers"),
     (lambda: si.theory.gamma(order=3, model=linear()).valid_within(0), "tolerance = 0 is not accepted"),
     (lambda: si.theory.gamma(order=3, model=linear(), digits=0), "digits = 0 is not accepted"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("call", "told"), REFUSED)

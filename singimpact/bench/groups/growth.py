@@ -113,7 +113,7 @@ def _alone(run: Callable[[int], Any], size: int) -> list[None]:
 
 def _grown(
     case: str, name: str, sizes: Sequence[int], run: Callable[[int], Any], *peers: list[Method], skipped: Any = ()
-) -> Case:  # fmt: skip
+) -> Case:
     return Case(case, [*_line(name, sizes, run), *(method for peer in peers for method in peer)], skipped=skipped)
 
 

@@ -19,7 +19,7 @@ from singimpact.flights.kernels.roots import first_root
 
 def taylor_flight(
     launch: Any, v: Any, removed: int, acceleration: Any, p: Any, rules: Any, work: Any, trace: Any
-) -> Any:  # fmt: skip
+) -> Any:
     """(status, flight time, velocity, depth, bound) of the flight from x = c, or from above, with velocity v.
 
     Parameters

@@ -122,7 +122,7 @@ def _ends(surface: ImpactSurface, tau: tuple[float, float]) -> int:
 
 def _drawn(
     row: Row, place: Point, tau: tuple[float, float], made: list[tuple[ImpactSurface, float, str]]
-) -> list[Panel]:  # fmt: skip
+) -> list[Panel]:
     shift = _shift(row, place, tau, made)
     panels, box = [], (tau, row.v)
     if row.degree:
@@ -155,7 +155,7 @@ def _inside(curves: list[Curve], tau: tuple[float, float]) -> list[Array]:
 
 def _shift(
     row: Row, place: Point, tau: tuple[float, float], made: list[tuple[ImpactSurface, float, str]]
-) -> Callable[[Array], Array]:  # fmt: skip
+) -> Callable[[Array], Array]:
     """(tau, v) -> (tau, v - q(tau)), q fitted to the visible arcs."""
     if not row.degree:
         return lambda points: points

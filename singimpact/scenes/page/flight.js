@@ -24,7 +24,9 @@ function flyer(clearance, restitution, given, period) {
   const room = MODEL.order + 16;
   const row = () => new Float64Array(room);
   const work = { X: row(), W: Array.from({ length: MODEL.rows }, row), q: row() };
-  const rules = { order: MODEL.order, ulp: MODEL.safety * EPSILON, horizon: MODEL.horizon, reach: 0, budget: MODEL.budget };
+  const rules = {
+    order: MODEL.order, ulp: MODEL.safety * EPSILON, horizon: MODEL.horizon, reach: MODEL.reach, budget: MODEL.budget,
+  };
   const law = law_of(given, restitution);
   return { p, work, rules, w: law.w, r: law.r, period };
 }

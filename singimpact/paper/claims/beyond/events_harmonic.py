@@ -104,7 +104,7 @@ def _exactly_two(stated: tuple[Any, Any, Any, dict[int, Any]]) -> Check:
             (f"dc/du = {slope} vanishes at u in {critical}: rests pi = T apart, once a period", critical == [0]),
             (f"there c = {found}; upwards and x >= c for g in {upwards} alone", found == values and upwards == [-1]),
         ]
-    )  # fmt: skip
+    )
 
 
 def _critical_values(stated: tuple[Any, Any, Any]) -> Check:

@@ -43,14 +43,19 @@ def closed_forms() -> list[tuple[str, bool]]:
     coefficient = j + 1 - i  # of l^i in P: second differences vanish, which leaves the ends of (1 - l)^2 P
     second = sympy.expand(coefficient - 2 * coefficient.subs(i, i - 1) + coefficient.subs(i, i - 2))
     reversed_ = coefficient.subs(i, j - i)  # of l^i in Q
+    # coefficients of 1, l, l^(j+1) and l^(j+2) in (1 - l)^2 P and (1 - l)^2 Q
     ends = all(
         same(found, stated)
-        for each, first, last in ((coefficient, j + 1, (0, 1)), (reversed_, 1, (-(j + 2), j + 1)))
-        for found, stated in (
-            (each.subs(i, 0), first),
-            (each.subs(i, 1) - 2 * each.subs(i, 0), -(j + 2) if first != 1 else 0),
-            (each.subs(i, j - 1) - 2 * each.subs(i, j), last[0]),
-            (each.subs(i, j), last[1]),
+        for each, closed in ((coefficient, (j + 1, -(j + 2), 0, 1)), (reversed_, (1, 0, -(j + 2), j + 1)))
+        for found, stated in zip(
+            (
+                each.subs(i, 0),
+                each.subs(i, 1) - 2 * each.subs(i, 0),
+                each.subs(i, j - 1) - 2 * each.subs(i, j),
+                each.subs(i, j),
+            ),
+            closed,
+            strict=True,
         )
     )
     return [
@@ -163,7 +168,7 @@ def rising(power: int = 1) -> list[tuple[str, bool]]:
             f"E/(P Q) is l d/dl log(l^(j {power}) (P/Q)^3), and l^(j {power}) (P/Q)^3 is 1 at l = 1: below 1 on (0, 1)",
             half and is_zero((CLOSED_P - CLOSED_Q).subs({ell: 1, L: 1})),
         ),
-    ]  # fmt: skip
+    ]
 
 
 def _smaller(power: int) -> Check:

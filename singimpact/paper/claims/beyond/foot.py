@@ -71,7 +71,7 @@ def _rises(stated: tuple[int, int, int]) -> Check:
             ),
         ],
         witness=lambda: {"signs": str(found), "stated": str(stated)},
-    )  # fmt: skip
+    )
 
 
 @cache

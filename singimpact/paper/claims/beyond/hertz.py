@@ -88,7 +88,7 @@ def _balanced(stated: tuple[Any, Any]) -> Check:
         ],
         "formal",
         witness=lambda: sample(factor, found) if same(stated_n * (1 - q), j + 1) else sample(stated_n, EXPONENT),
-    )  # fmt: skip
+    )
 
 
 def _repelled(stated: Any) -> Check:
@@ -103,7 +103,7 @@ def _repelled(stated: Any) -> Check:
         ],
         "formal",
         witness=lambda: sample(stated, found),
-    )  # fmt: skip
+    )
 
 
 def _second(stated: Any) -> Check:

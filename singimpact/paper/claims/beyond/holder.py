@@ -38,7 +38,7 @@ def _between(stated: tuple[int, int, int]) -> Check:
             (f"3/(3 + 2j) is at least {p}/({q} + {s}j) for every j", enough),
         ],
         witness=lambda: _fails(p, q, s),
-    )  # fmt: skip
+    )
 
 
 def _fails(p: int, q: int, s: int) -> dict[str, str]:

@@ -44,7 +44,7 @@ def _rises(stated: Any) -> Check:
             ),
         ],
         witness=lambda: {"function": str(stated), "change": str(change)},
-    )  # fmt: skip
+    )
 
 
 def _hop(stated: tuple[Any, Any, Any, Any]) -> Check:
@@ -92,7 +92,7 @@ def _orbit(stated: tuple[float, float, float, float]) -> Check:
                     "period, the same from other starts",
                     near and again,
                 )
-            )  # fmt: skip
+            )
             if not (near and again):
                 worst = {"model": lift.name, "r": rate_, "ratios": ratios}
     return every(checks, "supported", witness=lambda: worst)
