@@ -8,8 +8,6 @@ import pytest
 
 import singimpact as si
 
-RNG = np.random.default_rng(20)
-
 
 def settled_class(osc, tau, v, impacts=100_000, longest=64):
     """What one orbit does after many impacts, from its events alone."""
@@ -50,7 +48,8 @@ def compare(seed, models, pixels):
             row, column = divmod(place, 8)
             run = found.attractors[found.codes[row, column]]
             if run.kind in ("chaotic", "not decided", "sensitive", "unresolved"):
-                assert run.name not in ("chaotic", "not decided")  # the name says what was seen, or what decides
+                # the name says what was seen, or what would decide
+                assert any(words in run.name for words in ("in 20 000 impacts", "rounding decides", "osc.orbit says"))
                 continue
             seen = settled_class(drawn, float(found.tau[column]), float(found.v[row]))
             told = ("orbit", run.n, run.k) if run.kind == "orbit" else ("chatter", 0, 0)
