@@ -114,7 +114,7 @@ def every(
     kind: str = "proved",
     witness: Callable[[], dict[str, str]] | None = None,
     modulo: tuple[str, ...] = (),
-    tried: Sequence[tuple[str, bool]] = (),
+    tried: Callable[[], tuple[str, bool]] | None = None,
 ) -> Check:
     """One check from several named ones; all must pass.
 
@@ -123,18 +123,27 @@ def every(
     checks : (what was tested, whether it passed).
     witness : numbers for a failure; without it the parts that failed are named.
     modulo : names of theorems that take the checks for their hypotheses.
-    tried : the same of true orbits, which decide nothing: a failing integrator makes no theorem wrong.
+    tried : a trial on true orbits, run where the checks pass. It decides nothing: an integrator that fails or raises
+        makes no theorem wrong, and the evidence names it.
 
     Examples
     --------
     >>> every([("0 < mu < 1", True)], modulo=("the stable manifold theorem",)).kind
     'proved modulo'
-    >>> every([("0 < mu < 1", True)], tried=[("two orbits agree to 1e-9", False)]).evidence
+    >>> every([("0 < mu < 1", True)], tried=lambda: ("two orbits agree to 1e-9", False)).evidence
     '0 < mu < 1; a trial apart from the argument FAILS: two orbits agree to 1e-9'
     """
     failed = [name for name, passed in checks if not passed]
     if not failed:
-        apart = [f"a trial apart from the argument{'' if passed else ' FAILS'}: {name}" for name, passed in tried]
+        apart = [] if tried is None else [_apart(tried)]
         return Check(True, kind, "; ".join([*(name for name, _ in checks), *apart]), modulo=modulo)
     shown = witness() if witness else {"fails": "; ".join(failed)}
     return Check(False, kind, f"fails: {'; '.join(failed)}", shown, modulo)
+
+
+def _apart(trial: Callable[[], tuple[str, bool]]) -> str:
+    try:
+        name, passed = trial()
+    except Exception as error:  # whatever ends an integrator, the argument stands
+        name, passed = f"{type(error).__name__}: {error}", False
+    return f"a trial apart from the argument{'' if passed else ' FAILS'}: {name}"

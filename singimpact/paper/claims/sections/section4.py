@@ -167,12 +167,12 @@ def _leading(j: int, order: int) -> Any:
         check = exact(stated)
         if not check.holds:
             return check
+        return every([(check.evidence, True)], tried=trial)
+
+    def trial() -> tuple[str, bool]:
         slopes = crosscheck.remainders(j, order)
         lines = "; ".join(case.line() for case in slopes)
-        return every(
-            [(check.evidence, True)],
-            tried=[(f"remainder on true orbits: {lines}", all(case.agrees for case in slopes))],
-        )
+        return f"remainder on true orbits: {lines}", all(case.agrees for case in slopes)
 
     return verify
 

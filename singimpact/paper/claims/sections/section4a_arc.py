@@ -35,10 +35,20 @@ def _discontinuity(stated: tuple[Any, int]) -> Check:
     turned = sympy.cancel(slope / (line - t))  # > 0: v_c rises before the horizon and falls after it
     at_horizon = sympy.cancel(fold.horizon()[1] / (6 * fold.k * route.sigma**2))
     behind = all(value < 0 for value in sympy.Poly(sympy.expand(launch / fold.k), route.sigma, t).coeffs())
-    found = arcs.jumps()
-    near = [case for case in found if case.side == -1]
-    far = [case for case in found if case.side == 1]
-    good = [case for case in near if case.count == 1 and abs(case.coefficient - float(coefficient)) < 1e-3]
+
+    def trial() -> tuple[str, bool]:
+        near, far = ([case for case in arcs.jumps() if case.side == side] for side in (-1, 1))
+        good = [case.count == 1 and abs(case.coefficient - float(coefficient)) < 1e-3 for case in near]
+        name = (
+            f"true flights: one jump on each line sigma = const < 0, at v/(a' sigma^2) -> {near[0].coefficient:.6f} on "
+            f"{len(near)} models, and none on the other side"
+        )
+        return name, all(good) and all(case.count == 0 for case in far)
+
+    def witness() -> dict[str, str]:
+        case = arcs.jumps()[0]
+        return {"model": case.name, "v/(a' sigma^2) at the jump": f"{case.coefficient:.9f}"}
+
     return every(
         [
             (
@@ -46,13 +56,9 @@ def _discontinuity(stated: tuple[Any, int]) -> Check:
                 turned.is_positive and is_zero(at_horizon - coefficient) and side == -1,
             ),
             ("for sigma >= 0 v_c < 0 for t > 0: no low-velocity hit there, and no jump", behind),
-            (
-                f"true flights: one jump on each line sigma = const < 0, at v/(a' sigma^2) -> {near[0].coefficient:.6f} on {len(near)} models",
-                bool(near) and len(good) == len(near),
-            ),
-            ("and none on the other side", all(case.count == 0 for case in far) and bool(far)),
         ],
-        witness=lambda: {"model": found[0].name, "v/(a' sigma^2) at the jump": f"{found[0].coefficient:.9f}"},
+        tried=trial,
+        witness=witness,
     )
 
 
@@ -60,9 +66,6 @@ def _exists(stated: tuple[int, int, Any]) -> Check:
     """(power, side, bound of C/a'): a hyperbolic saddle for every r, and gamma on true orbits; the bound is that of P_*."""
     power, side, bound = stated
     coefficient = leading_coefficient(1)  # beside a' sigma^2
-    cases = true_orbits.gamma_cases(1)
-    worst = max(case.error for case in cases)
-    curved = all(abs(case.found) > 0 for case in cases) and power == 2
     rate = r_of_lambda(1)
     jump = sympy.cancel(fold.horizon()[1] / (6 * fold.k * route.sigma**2))  # of P_*, beside a' sigma^2 too
     ends = tuple(value_at(coefficient, lambda_, end) for end in (0, 1))
@@ -84,10 +87,10 @@ def _exists(stated: tuple[int, int, Any]) -> Check:
                 f"it falls from {ends[0]} to {ends[1]} as r grows from 0 to 1",
                 negative_on(sympy.diff(coefficient, lambda_), lambda_, 0, 1) and ends == (sympy.Rational(1, 3), 0),
             ),
-            ("quadratic, from sigma < 0", curved and side == -1),
+            ("quadratic, from sigma < 0", (power, side) == (2, -1)),
         ],
         modulo=(orbits.STABLE,),
-        tried=[(f"on true orbits {cases[0].line()}; worst relative error {worst:.0e}", worst < REACHED)],
+        tried=lambda: on_gamma(1),
     )
 
 
@@ -114,7 +117,12 @@ def _unique(stated: tuple[Any, int]) -> Check:
     )
     with_axis = bool(region.subs(v, 0)) and is_zero(fold.fixed_point_equation().subs(m, THREE_HALVES))
     found = int(bool(region.subs(v, 1))) + int(with_axis)
-    leaving = arcs.leaves_gamma()
+
+    def trial() -> tuple[str, bool]:
+        leaving = arcs.leaves_gamma()
+        name = f"true orbits beside gamma leave it on both models (v/gamma off by 1e-3 grows {leaving:.3g}-fold)"
+        return name, leaving > 10
+
     return every(
         [
             ("exactly one fixed ray m3 in (1/2, 3/2) for every r in (0, 1)", one),
@@ -129,12 +137,7 @@ def _unique(stated: tuple[Any, int]) -> Check:
             ),
         ],
         modulo=(orbits.STABLE,),
-        tried=[
-            (
-                f"true orbits beside gamma leave it on both models (v/gamma off by 1e-3 grows {leaving:.3g}-fold)",
-                leaving > 10,
-            )
-        ],
+        tried=trial,
         witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(found)},
     )
 
@@ -142,8 +145,6 @@ def _unique(stated: tuple[Any, int]) -> Check:
 def _attracting(stated: tuple[int, int]) -> Check:
     """On gamma sigma -> lambda sigma + ..., and lambda lies in the stated interval for every r in (0, 1)."""
     low, high = stated
-    cases = true_orbits.gamma_cases(1)
-    worst = max(abs(case.ratio / case.multiplier - 1) for case in cases)
     return every(
         [
             (
@@ -152,7 +153,7 @@ def _attracting(stated: tuple[int, int]) -> Check:
             ),
             ("it is the rate of h' at m3", is_zero(fold.r_of_m().subs(m, lambda_ + HALF) - r_of_lambda(1))),
         ],
-        tried=[(f"sigma'/sigma on true orbits agrees to {worst:.0e}", worst < REACHED)],
+        tried=lambda: rate_on_gamma(1),
     )
 
 
@@ -181,14 +182,22 @@ def _repelling(stated: int) -> Check:
 def _at_rest(stated: Any) -> Check:
     """x_c - c on the motion from (tau_*, 0), to third order in t: 0 if w_* is fixed; a' t^3/6 lifts off."""
     leading = sympy.expand(t * route.at_contact(route.y_c(2), 1).subs({route.sigma: 0, route.v: 0}))
-    flights = arcs.lift_off()
-    away = all(time > 0.5 for _, time in flights)
+
+    def trial() -> tuple[str, bool]:
+        flights = arcs.lift_off()
+        name = f"first hit from (tau_*, 0) after {flights[0][1]:.6f} ({flights[0][0]}): F(w_*) is not w_*"
+        return name, all(time > 0.5 for _, time in flights)
+
+    def witness() -> dict[str, str]:
+        model, time = arcs.lift_off()[0]
+        return {"model": model, "v": "0", "flight time from (tau_*, 0)": f"{time:.12g}"}
+
     return every(
         [
             (f"from w_* x_c - c = {leading} + ..., above 0 for a' > 0; stated: {stated}", same(leading, stated)),
         ],
-        tried=[(f"first hit from (tau_*, 0) after {flights[0][1]:.6f} ({flights[0][0]}): F(w_*) is not w_*", away)],
-        witness=lambda: {"model": flights[0][0], "v": "0", "flight time from (tau_*, 0)": f"{flights[0][1]:.12g}"},
+        tried=trial,
+        witness=witness,
     )
 
 
@@ -196,14 +205,21 @@ def _sides(stated: tuple[str, str]) -> Check:
     """(below, above) gamma: "chatter" to rest before tau_*, or "lost" contact after finitely many impacts."""
     behind, reason = orbits.after(1)
     proved = ("chatter", behind) if orbits.drift(1) == 1 else (behind, "chatter")
-    found = arcs.sides()
-    good = all((case.below, case.above) == stated for case in found)
-    shown = "; ".join(f"{case.name}: {case.line()}" for case in found)
+
+    def trial() -> tuple[str, bool]:
+        found = arcs.sides()
+        shown = "; ".join(f"{case.name}: {case.line()}" for case in found)
+        return f"on true orbits, {shown}", all((case.below, case.above) == stated for case in found)
+
+    def witness() -> dict[str, str]:
+        case = arcs.sides()[0]
+        return {"model": case.name, "below": case.below, "above": case.above}
+
     return every(
         [*orbits.before(1), (reason[0], reason[1] and proved == stated)],
         modulo=(orbits.STABLE,),
-        tried=[(f"on true orbits, {shown}", good)],
-        witness=lambda: {"model": found[0].name, "below": found[0].below, "above": found[0].above},
+        tried=trial,
+        witness=witness,
     )
 
 
@@ -227,25 +243,27 @@ def _limit(stated: Any) -> Check:
     matrix = DG_on_ray(1)
     residual = stated**2 - matrix.trace() * stated + matrix.det()
     larger = eigenvalues_on_gamma(1)[0]
-    cases = arcs.eigenvalues()
-    values = [float(sympy.N(stated.subs(lambda_, true_orbits.lambda_of(case.r, 1)))) for case in cases]
-    worst = max(abs(case.found / value - 1) for case, value in zip(cases, values, strict=True))
+
+    def trial() -> tuple[str, bool]:
+        cases = arcs.eigenvalues()
+        values = [float(sympy.N(stated.subs(lambda_, true_orbits.lambda_of(case.r, 1)))) for case in cases]
+        worst = max(abs(case.found / value - 1) for case, value in zip(cases, values, strict=True))
+        name = (
+            f"true orbits give {cases[0].found:.8f} at r = {cases[0].r} ({cases[0].name}), the statement is off by "
+            f"{worst:.0e}"
+        )
+        return name, worst < REACHED
+
     return every(
         [
             ("it is a root of the characteristic polynomial of DG on gamma for every r", is_zero(residual)),
             ("and the one above 1: so it is at lambda = 1/2, and no root passes 1", above_one(stated, 1)),
         ],
-        tried=[
-            (
-                f"true orbits give {cases[0].found:.8f} at r = {cases[0].r} ({cases[0].name}), the statement is off by "
-                f"{worst:.0e}",
-                worst < REACHED,
-            )
-        ],
+        tried=trial,
         witness=lambda: {
             "r": "1/2",
             "limit of the eigenvalue": str(sympy.N(larger.subs(lambda_, _lambda_half()), 20)),
-            "found on true orbits": f"{cases[0].found:.8f}",
+            "found on true orbits": f"{arcs.eigenvalues()[0].found:.8f}",
         },
     )
 
@@ -266,6 +284,19 @@ def limit_in_words(j: int) -> str:
 def _lambda_half() -> Any:
     equation = sympy.Poly(sympy.fraction(sympy.together(r_of_lambda(1) - HALF))[0], lambda_)
     return next(root for root in equation.nroots(n=30) if 0 < root < 1)
+
+
+def on_gamma(j: int) -> tuple[str, bool]:
+    """A trial: the leading coefficient of gamma at contact order j on true orbits."""
+    cases = true_orbits.gamma_cases(j)
+    worst = max(case.error for case in cases)
+    return f"on true orbits {cases[0].line()}; worst relative error {worst:.0e}", worst < REACHED
+
+
+def rate_on_gamma(j: int) -> tuple[str, bool]:
+    """A trial: sigma'/sigma of true orbits along gamma, against its limit lambda."""
+    worst = max(abs(case.ratio / case.multiplier - 1) for case in true_orbits.gamma_cases(j))
+    return f"sigma'/sigma on true orbits agrees to {worst:.0e}", worst < REACHED
 
 
 CLAIMS = (
