@@ -1,12 +1,13 @@
-"""The page of the documentation on run time: what one run measured, with what a reader needs to read it."""
+"""The pages of the documentation on run time and on numerical stability, each written by one command."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from singimpact.bench.timed_sources import timed_digest
+
 COMMAND = "singimpact bench --format page --plots docs/benchmarks -o docs/benchmarks.md"
-ABOUT = f"""<!-- written by `{COMMAND}`; do not edit -->
-# Run time against error
+ABOUT = """# Run time against error
 
 CPU time of singimpact, and of the tools that a user would choose instead, against the error of the result. Lower and
 further left is better."""
@@ -45,6 +46,39 @@ TITLES = {
     "branches": "Periodic orbits and their branches",
     "start": "A new process",
 }
+STRESS_COMMAND = "singimpact stress --format page -o docs/stress.md"
+STRESS_ABOUT = f"""# Stress: next to every bad place
+
+Each public numerical function is driven towards each place that is hard for it, geometrically, on both sides where
+there are two, and its error is measured against 60 digits: $v \\to 0$, $t \\to 0$, resonance, $r \\to 0$ and $r
+\\to 1$, a tangency ($a \\to 0$), a swan ($a' \\to 0$), the outline $P$, the zero set $Z$, phases far from zero,
+long flights. One unit is what rounding of the inputs alone must cost: $\\varepsilon$ times the size of the value
+and of what a relative change of each input does to it. Over 100 units is a failure, and the command ends with exit
+code 1; `inf` would be a wrong status.
+
+These are the results of one run of
+
+```sh
+{STRESS_COMMAND}
+```
+
+`--quick` takes fewer points, and a name or `--place` restricts it."""
+
+
+def opening(command: str, digest: str) -> str:
+    """The first line of a page: the command that wrote it, and the digest of the sources that it measured."""
+    return f"<!-- written by `{command}` from sources {digest}; do not edit -->"
+
+
+def stress_page(tables: str) -> str:
+    """The page on numerical stability, from its tables as Markdown.
+
+    Examples
+    --------
+    >>> print(stress_page("| a |").splitlines()[1])
+    # Stress: next to every bad place
+    """
+    return f"{opening(STRESS_COMMAND, timed_digest())}\n{STRESS_ABOUT}\n\n{tables}"
 
 
 def page(sections: Sequence[tuple[str, str]], pictures: str | None) -> str:
@@ -82,4 +116,5 @@ def page(sections: Sequence[tuple[str, str]], pictures: str | None) -> str:
             plots.append(f"**{title}** ([table](#{title.lower().replace(' ', '-')}))")
             plots.append(f"![{title}: time against error]({pictures.format(group)})")
         tables += [f"### {title}", f"`singimpact bench {group}`", text]
-    return "\n\n".join([ABOUT, *(["## Plots", *plots] if plots else []), READING, "## Tables", *tables])
+    about = f"{opening(COMMAND, timed_digest())}\n{ABOUT}"
+    return "\n\n".join([about, *(["## Plots", *plots] if plots else []), READING, "## Tables", *tables])

@@ -15,7 +15,8 @@ from singimpact.progress import ProgressLine
 @click.argument("functions", metavar="[FUNCTION]...", nargs=-1)
 @click.option("--place", metavar="PLACE", help="One row of the table alone, such as 'a -> 0'.")
 @click.option("--quick", is_flag=True, help="Fewer points in every sequence.")
-@click.option("--format", "form", type=click.Choice(["text", "markdown"]), default="text", show_default=True)
+@click.option("--format", "form", type=click.Choice(["text", "markdown", "page"]), default="text", show_default=True,
+              help="`page` writes the page of the documentation.")  # fmt: skip
 @output_options
 def command(
     functions: tuple[str, ...], place: str | None, quick: bool, form: str, as_json: bool, output: str | None
@@ -24,13 +25,16 @@ def command(
 
     The exit code is 1 if an error exceeds 100 units of condition times epsilon, or a status is wrong.
     """
+    from singimpact.bench.page import stress_page
     from singimpact.bench.stress.table import NOTE, POINTS, QUICK, as_data, chosen, stressed, table, worst_states
 
     pairs = chosen(functions, place)
     with ProgressLine() as line:
         cells = stressed(pairs, QUICK if quick else POINTS, lambda done, text: line.show(done, len(pairs), text))
-    laid_out = markdown if form == "markdown" else columns
+    laid_out = columns if form == "text" else markdown
     text = "\n\n".join([laid_out(*table(cells)), NOTE, laid_out(*worst_states(cells))])
+    if form == "page":
+        text = stress_page(text)
     emit(as_json_text({"quick": quick, "cells": as_data(cells)}) if as_json else text, output)
     if any(cell.failed for cell in cells):
         sys.exit(1)
