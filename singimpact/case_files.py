@@ -17,12 +17,13 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.case_journal import OTHERS, Journal, Record, unwritable
+from singimpact.case_journal import OTHERS, Journal, Record, require_file, writing
 from singimpact.inputs import InputError, shown
 from singimpact.store import require_writable, written
 
 Array = np.ndarray[Any, Any]
 NUMBERS = "biufc"  # kinds of arrays that are written
+DIGEST = 32  # bytes of the digest of a chunk's cases
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,7 @@ class NpzFile(InMemory):
     def __init__(self, path: Path, key: str) -> None:
         super().__init__()
         self.path, self.key = path, key
+        require_file(path)
         require_writable(path)
         if path.exists():
             self._load()
@@ -137,10 +139,13 @@ class NpzFile(InMemory):
 
     def leave(self) -> None:
         """Put what there is into the file."""
-        if self.done != self.written:
-            self._write()
-        self.journal.close()
-        self.journal.path.unlink(missing_ok=True)
+        try:
+            if self.done != self.written:
+                self._write()
+        finally:
+            self.journal.close()
+        with writing(self.path):
+            self.journal.path.unlink(missing_ok=True)
 
     def finish(self) -> Array:
         """Put all into the file."""
@@ -166,7 +171,9 @@ class NpzFile(InMemory):
                 if str(found["key"]) != self.key:
                     raise InputError(f"output = {shown(str(self.path))} {OTHERS}: name another file")
                 result, chunks, cases = found["result"], found["chunks"], found["cases"]
-                _check(result, chunks, cases)
+                if cases.ndim != 1 or cases.dtype.kind != "U":
+                    raise ValueError(f"cases of type {cases.dtype}")
+                _check(result.shape, result.dtype, chunks, len(cases))
         except InputError:
             raise
         except (OSError, ValueError, KeyError, EOFError, TypeError, MemoryError, zipfile.BadZipFile) as error:
@@ -177,16 +184,22 @@ class NpzFile(InMemory):
             InMemory.add(self, Record(start, count, str(case)), result[end - count : end])
 
 
-def _check(result: Array, chunks: Array, cases: Array) -> None:
+def _check(shape: tuple[int, ...], dtype: np.dtype[Any], chunks: Array, cases: int) -> None:
+    """Whether results of a shape and type can be those of some chunks of cases, each with a digest.
+
+    Raises
+    ------
+    ValueError : they cannot.
+    """
     if chunks.ndim != 2 or chunks.shape[1:] != (2,) or chunks.dtype.kind not in "iu" or (chunks[:, 1] < 1).any():
-        raise ValueError(f"chunks of shape {chunks.shape}")
+        raise ValueError(f"chunks of shape {chunks.shape} and type {chunks.dtype}")
     order = chunks[np.argsort(chunks[:, 0])].astype(float)
     if (chunks[:, 0] < 0).any() or (order[1:, 0] < order[:-1].sum(axis=1)).any():
         raise ValueError("chunks that overlap or begin before the first case")
-    if result.ndim < 1 or len(result) != chunks[:, 1].sum() or cases.shape != chunks.shape[:1]:
-        raise ValueError(f"results of shape {result.shape} for {chunks[:, 1].sum()} cases")
-    if result.dtype.kind not in NUMBERS:
-        raise ValueError(f"results of type {result.dtype}")
+    if not shape or shape[0] != chunks[:, 1].sum() or cases != len(chunks):
+        raise ValueError(f"results of shape {shape} for {chunks[:, 1].sum()} cases")
+    if dtype.kind not in NUMBERS:
+        raise ValueError(f"results of type {dtype}")
 
 
 class ZarrStore(InMemory):
@@ -225,21 +238,25 @@ class ZarrStore(InMemory):
             group = self.zarr.open_group(self.path, mode="r")
             key, chunks, cases = group.attrs["key"], group["chunks"][:], group["cases"][:]
             self.shape, self.dtype = group["result"].shape[1:], group["result"].dtype
-            length = group["result"].shape[0]
+            if cases.ndim != 2 or cases.shape[1] != DIGEST or cases.dtype != np.uint8:
+                raise ValueError(f"cases of shape {cases.shape} and type {cases.dtype}")
+            _check(group["result"].shape, self.dtype, chunks, len(cases))
         except Exception as error:
             told = f"output = {shown(str(self.path))} is not a store of results ({error}): name another"
             raise InputError(told) from None
         if key != self.key:
             raise self.refuse_others()
-        if length != chunks[:, 1].sum() or len(chunks) != len(cases):
-            raise InputError(f"output = {shown(str(self.path))} is not a store of results: name another")
         for (start, count), case in zip(chunks.tolist(), cases, strict=True):
             self._know(Record(start, count, bytes(case).hex()))
 
     def _open(self) -> None:
         try:
             self.array = self.zarr.open_group(self.part, mode="r+")["result"]
+            cases = max((each.start + each.count for each in self.records.values()), default=0)
+            if self.array.dtype.kind not in NUMBERS or self.array.shape[0] < cases:
+                raise ValueError(f"results of shape {self.array.shape} and type {self.array.dtype}")
         except Exception as error:
+            self.journal.close()
             told = f"{shown(str(self.part))} is damaged ({error}): remove it, or name another output"
             raise InputError(told) from None
         self.shape, self.dtype = self.array.shape[1:], self.array.dtype
@@ -274,7 +291,7 @@ class ZarrStore(InMemory):
 
     def _take(self, record: Record, values: Array) -> None:
         require_numbers(values)
-        try:
+        with writing(self.path):
             if self.array is None:
                 self._begin(values)
             if not np.can_cast(values.dtype, self.dtype, "safe"):
@@ -286,8 +303,6 @@ class ZarrStore(InMemory):
             if end > self.array.shape[0]:
                 self.array.resize((max(self.total, end, 2 * self.array.shape[0]), *values.shape[1:]))
             self.array[record.start : end] = values
-        except OSError as error:
-            raise unwritable(self.path, error) from None
         self.journal.append(record)
 
     def refuse_others(self) -> InputError:
@@ -306,22 +321,26 @@ class ZarrStore(InMemory):
 
     def finish(self) -> Any:
         """Give the store its name; the array, which is read when it is indexed."""
-        if not self.whole:
-            if self.array is None:
-                self._begin(np.empty(0))
-            group = self.zarr.open_group(self.part, mode="r+")
-            self.array.resize((self.done, *(self.shape or ())))
-            records = [self.records[start] for start in sorted(self.records)]
-            chunks = np.array([(each.start, each.count) for each in records], dtype=np.int64).reshape(-1, 2)
-            cases = np.array([list(bytes.fromhex(each.cases)) for each in records], dtype=np.uint8).reshape(-1, 32)
-            group.create_array("chunks", data=chunks, overwrite=True)
-            group.create_array("cases", data=cases, overwrite=True)
-            group.attrs["key"] = self.key
-            os.rename(self.part, self.path)
-            self.whole = True
-        self.journal.close()
-        (self.path / "journal").unlink(missing_ok=True)
+        with writing(self.path):
+            if not self.whole:
+                self._complete()
+            self.journal.close()
+            (self.path / "journal").unlink(missing_ok=True)
         return self.zarr.open_array(self.path / "result", mode="r")
+
+    def _complete(self) -> None:
+        if self.array is None:
+            self._begin(np.empty(0))
+        group = self.zarr.open_group(self.part, mode="r+")
+        self.array.resize((self.done, *(self.shape or ())))
+        records = [self.records[start] for start in sorted(self.records)]
+        chunks = np.array([(each.start, each.count) for each in records], dtype=np.int64).reshape(-1, 2)
+        cases = np.array([list(bytes.fromhex(each.cases)) for each in records], dtype=np.uint8).reshape(-1, DIGEST)
+        group.create_array("chunks", data=chunks, overwrite=True)
+        group.create_array("cases", data=cases, overwrite=True)
+        group.attrs["key"] = self.key
+        os.rename(self.part, self.path)
+        self.whole = True
 
 
 def kept(output: str | Path | None, key: str | None) -> InMemory:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import zlib
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -40,6 +40,7 @@ class Journal:
     """
 
     def __init__(self, path: Path, key: str, output: Path) -> None:
+        require_file(path)
         self.path, self.key, self.output = path, key, output
         self._stream: BinaryIO | None = None
 
@@ -69,13 +70,11 @@ class Journal:
         stream = self._opened()
         head = f"{record.start} {record.count} {record.cases} {len(content)} ".encode()
         line = head + f"{zlib.crc32(content, zlib.crc32(head)):08x}\n".encode()
-        try:
+        with writing(self.output):
             if not stream.tell():
                 stream.write(HEAD + self.key.encode() + b"\n")
             stream.write(line + content)
             stream.flush()
-        except OSError as error:
-            raise unwritable(self.output, error) from None
 
     def close(self) -> None:
         """Let another process have it."""
@@ -86,12 +85,10 @@ class Journal:
 
     def _opened(self) -> BinaryIO:
         if self._stream is None:
-            try:
+            with writing(self.output):
                 stream = os.fdopen(
                     os.open(self.path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+b"
                 )
-            except OSError as error:
-                raise unwritable(self.output, error) from None
             if not lock(stream.fileno()):
                 stream.close()
                 raise InputError(
@@ -122,8 +119,18 @@ def _record(stream: BinaryIO) -> tuple[Record, bytes] | None:
     return Record(start, count, cells[2].decode("ascii", "replace")), content
 
 
-def unwritable(path: Path, error: OSError) -> InputError:
-    """The refusal of a disk that is full, or of a place that was taken away."""
-    return InputError(
-        f"output = {shown(str(path))} cannot be written ({error.strerror or error}): give a place that can"
-    )
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """A full disk, or a place that was taken away, is refused with the name of the output."""
+    try:
+        yield
+    except OSError as error:
+        raise InputError(
+            f"output = {shown(str(path))} cannot be written ({error.strerror or error}): give a place that can"
+        ) from None
+
+
+def require_file(path: Path) -> None:
+    """Refuse a pipe, a device or a folder in the place of a file; reading a pipe would not end."""
+    if path.exists() and not path.is_file():
+        raise InputError(f"output: {shown(str(path))} is not a file: remove it, or name another output")

@@ -99,10 +99,10 @@ def sweep(
             work = _Work(function, _Source(cases, store), store, line, count)
             work.run(executor)
         work.refuse_fatal()
+        return store.finish()
     except BaseException:
         store.leave()
         raise
-    return store.finish()
 
 
 @dataclass

@@ -42,7 +42,8 @@ def written(path: str | Path) -> Iterator[Path]:
     except OSError as error:
         raise _unwritable(path, error) from None
     finally:
-        draft.unlink(missing_ok=True)
+        with suppress(OSError):  # a file system that is read-only refuses this too
+            draft.unlink()
 
 
 def write_text(path: str | Path, text: str) -> None:
