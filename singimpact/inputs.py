@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import difflib
+import math
+import os
 from collections.abc import Callable, Iterable
 from functools import wraps
 from numbers import Integral
@@ -55,6 +57,29 @@ def whole(name: str, value: object, least: int, most: int) -> int:
     if isinstance(value, bool) or not counts or not least <= int(value) <= most:  # type: ignore[call-overload]
         raise refuse(name, value, f"a whole number from {least} to {most}")
     return int(value)  # type: ignore[call-overload,no-any-return]
+
+
+def require_memory(name: str, shape: tuple[int, ...], size: int, remedy: str = "give fewer") -> None:
+    """Refuse arrays whose results no memory holds; the system would end the process while it fills them.
+
+    Parameters
+    ----------
+    name : of the arguments. shape : of their broadcast. size : bytes that the result of one number needs.
+
+    Examples
+    --------
+    >>> require_memory("tau and v", (1000, 1000), 34)
+    """
+    try:
+        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):  # Windows
+        return
+    count = math.prod(shape)
+    if count * size > memory:
+        raise InputError(
+            f"{name} of shape {shape} are {count} states, whose results need {count * size / 1e9:.3g} GB of "
+            f"{memory / 1e9:.3g}: {remedy}"
+        )
 
 
 def shown(value: object, limit: int = 60) -> str:

@@ -169,3 +169,33 @@ def test_any_frequency_is_flown(omega):
 def test_states_that_no_memory_holds_are_refused():
     with pytest.raises(InputError, match="10000000000 states, whose results need 340 GB of"):
         si.linear(2, 0, "0.5").impact_map(np.zeros((100_000, 1)), np.ones(100_000))
+
+
+BIG = np.broadcast_to(0.1, (10**5, 10**5))
+COLUMN, ROW = BIG[:, :1], BIG[:1]
+"""10^10 numbers, and two arrays that broadcast to as many; neither needs memory."""
+ARRAY_CALLS = {
+    "impact_map": lambda osc: osc.impact_map(BIG, 0.1),
+    "first_hit": lambda osc: osc.first_hit(COLUMN, ROW),
+    "derivative": lambda osc: osc.derivative(BIG, 0.1),
+    "inverse_map": lambda osc: osc.inverse_map(COLUMN, ROW),
+    "iterate": lambda osc: osc.iterate(COLUMN, ROW),
+    "iterate, kept": lambda osc: osc.iterate(ROW, 0.1, impacts=10**6, keep=True),
+    "chatter_limit": lambda osc: osc.chatter_limit(BIG, 0.001),
+    "chatter_limit of two": lambda osc: osc.chatter_limit(COLUMN, ROW),
+    "launch": lambda osc: osc.launch(BIG, 0.5, 0.1),
+    "launch of two": lambda osc: osc.launch(0.5, COLUMN, ROW),
+    "release": lambda osc: osc.release(BIG),
+    "acceleration": lambda osc: osc.acceleration(BIG),
+    "flight": lambda osc: osc.flight(0.1, 0.2, BIG),
+    "sample": lambda osc: osc.orbit(0.1, 0.1, impacts=10).sample(BIG),
+    "threshold": lambda osc: si.threshold(osc, BIG),
+    "bifurcation": lambda osc: bifurcation(osc, "clearance", ("0.3", "0.4"), 10**10),
+}
+
+
+@pytest.mark.parametrize("name", ARRAY_CALLS)
+@pytest.mark.parametrize("osc", [si.linear(2, "0.7", "0.5"), si.ImpactOscillator("x + x**3", "cos(2*t)", "0.3", "0.5")])
+def test_more_states_than_memory_holds_are_refused_in_one_line(name, osc):
+    with pytest.raises(InputError, match=r"whose results need [\d.e+]+ GB of [\d.e+]+: give fewer"):
+        ARRAY_CALLS[name](osc)

@@ -16,7 +16,7 @@ import numpy as np
 
 from singimpact.algebra.expressions import Expression, Number, Pi, Product, evaluate, names_in, number
 from singimpact.algebra.parsing import from_sympy, parse
-from singimpact.inputs import InputError, refuse, shown
+from singimpact.inputs import InputError, refuse, require_memory, shown
 
 ACCEPTED = "a finite real number, or text such as '0.3', '1/3' or 'pi/2.8'"
 
@@ -239,6 +239,7 @@ def float_array(name: str, values: Any) -> np.ndarray[Any, np.dtype[np.float64]]
     """
     require_unmasked(name, values)
     raw = np.asarray(values)
+    require_memory(name, raw.shape, 16)  # itself and a result
     if raw.dtype.kind not in "iuf":
         flat = [as_float(constant(name, item)) for item in raw.ravel().tolist()]
         raw = np.array(flat).reshape(raw.shape)

@@ -16,7 +16,7 @@ from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
 from singimpact.dynamics.attractors import apart
 from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
-from singimpact.inputs import refuse
+from singimpact.inputs import refuse, require_memory
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import with_number
 from singimpact.store import write_table
@@ -117,6 +117,7 @@ def bifurcation(
             raise refuse(name, value, f"a whole number from {least}")
     settle = sweeping.pop("settle", SETTINGS.settle)
     low, high = window_ends(over, between)
+    require_memory("values with their last events", (points, kept), 48)  # three doubles each, and a copy
     values = np.linspace(low, high, points)
     periods = _periods(model, over, values)
     if direction is not None:

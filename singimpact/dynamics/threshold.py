@@ -22,6 +22,7 @@ from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.kernels.gamma import TERMS_OF_GAMMA
 from singimpact.flights.orbits import orbit_segment
+from singimpact.flights.states import require_room
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
@@ -100,6 +101,7 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     0.1008699912693
     """
     if isinstance(tau, list | tuple | np.ndarray) and np.ndim(tau):
+        require_room(("tau", tau))
         each = [threshold(osc, one, digits=digits, impacts=impacts) for one in np.asarray(tau).ravel().tolist()]
         return gathered(Threshold, each, np.shape(tau))  # type: ignore[no-any-return]
     place, most = constant("tau", tau), whole("impacts", impacts, 1, 10**7)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.flights.results import Flight
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, require_memory
 
 Array = np.ndarray[Any, Any]
 SPARSE = ("depth", "bound")
@@ -55,19 +54,6 @@ def many(tau: Any, v: Any, out: Mapping[str, Array] | None = None, digits: int |
         return False  # refused where the states are read
 
 
-def _require_memory(shape: tuple[int, ...], size: int) -> None:
-    """Refuse results that no memory holds; the system would end the process while it fills them."""
-    try:
-        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):  # Windows
-        return
-    if size * LEAST > memory:
-        raise InputError(
-            f"tau and v of shape {shape} are {size} states, whose results need {size * LEAST / 1e9:.3g} GB of "
-            f"{memory / 1e9:.3g}: give fewer, or out= with arrays on disk (numpy.memmap)"
-        )
-
-
 def in_blocks(fly: Callable[[Any, Any], Any], tau: Any, v: Any, out: Mapping[str, Array] | None = None) -> Any:
     """The result of `fly` on `many` states.
 
@@ -86,7 +72,7 @@ def in_blocks(fly: Callable[[Any, Any], Any], tau: Any, v: Any, out: Mapping[str
     shape = np.broadcast_shapes(np.shape(tau), np.shape(v))
     size = int(np.prod(shape))
     if out is None:
-        _require_memory(shape, size)
+        require_memory("tau and v", shape, LEAST, "give fewer, or out= with arrays on disk (numpy.memmap)")
     columns = [_flat(value, shape) for value in (tau, v)]
     parts = _Parts(shape, out)
     for begin in range(0, max(size, 1), BLOCKS.states):

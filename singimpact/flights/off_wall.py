@@ -28,7 +28,7 @@ from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, has_table, recurrence_of
 from singimpact.flights.path import off_wall_places
 from singimpact.flights.rebound_law import rebound
-from singimpact.flights.states import States
+from singimpact.flights.states import States, require_room
 from singimpact.flights.undecided import Fates, escapes
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
@@ -104,6 +104,7 @@ def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -
     >>> float(ball.tau), float(ball.v), float(ball.velocity)
     (2.0, 2.0, -4.0)
     """
+    require_room(("x", x), ("xdot", xdot), ("t", t))
     parts = [_objects(name, value) for name, value in (("x", x), ("xdot", xdot), ("t", t))]
     try:
         places, speeds, times = np.broadcast_arrays(*parts)

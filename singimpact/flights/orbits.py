@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.flights.blocks import in_blocks, many
+from singimpact.flights.blocks import LEAST, in_blocks, many
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import EPSILON, allowed, compiled_model
 from singimpact.flights.kernels.entries import AT_REST
 from singimpact.flights.kernels.hits import PRESSED
 from singimpact.flights.phase import reduced
 from singimpact.flights.states import States
+from singimpact.inputs import require_memory
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status, status_array
@@ -141,6 +142,7 @@ def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool) -> End
         found = iterate(osc, tau, v, impacts)
         return Ends(found.tau, found.v, status_array(found.status))
     states = States.read(tau, v).in_period(osc)
+    require_memory("iterates kept", (impacts + 1, *states.shape), 2 * LEAST)  # rows, and rows put together
     start = compiled_model(osc).near(states.tau)
     rows = [Ends(start, states.v, np.zeros(states.v.size, np.int8))]
     for _ in range(impacts):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -19,15 +20,20 @@ from singimpact.algebra.numbers import (
     require_unmasked,
     sign_of,
 )
+from singimpact.flights.blocks import LEAST
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.phase import phase_of
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, refuse, require_memory
 from singimpact.oscillator.acceleration import sign_of_acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.nearest_zero import Zero, zero_beside
 
 FAR = 2.0**25
 """Periods from which on launch times are reduced exactly: kernels reduce those before, to twice a double's bits."""
+
+
+FEW = 1 << 22
+"""Numbers that every machine holds: of fewer the memory is not looked at."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +78,7 @@ class States:
     @staticmethod
     def read(tau: Any, v: Any) -> States:
         """Check and broadcast a caller's tau and v."""
+        require_room(("tau", tau), ("v", v))
         if _plain(tau) and _plain(v) and tau.shape == v.shape and (v >= 0).all():  # arrays of doubles as they stand
             return States(tau.ravel(), v.ravel(), tau.shape, (tau.ravel(), v.ravel()))
         raw = _raw("tau", tau), _raw("v", v)
@@ -148,6 +155,26 @@ class States:
     def exact_v(self, index: int) -> Expression:
         """v as it was written."""
         return constant("v", self.written[1][index])
+
+
+def require_room(*numbers: tuple[str, Any]) -> None:
+    """Refuse arguments with so many numbers together that no memory holds their results.
+
+    Examples
+    --------
+    >>> require_room(("tau", np.zeros((1000, 1))), ("v", 0.1))
+    """
+    arrays = [value for _, value in numbers if isinstance(value, np.ndarray)]
+    if not arrays:
+        return
+    if math.prod(array.size for array in arrays) < FEW:
+        return
+    names = " and ".join(filter(None, (", ".join(name for name, _ in numbers[:-1]), numbers[-1][0])))
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in arrays))
+    except ValueError:
+        return  # refused where they are used
+    require_memory(names, shape, LEAST)
 
 
 def _plain(values: Any) -> bool:
