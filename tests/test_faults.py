@@ -325,3 +325,26 @@ def test_old_drafts_are_taken_away(tmp_path):
     cache.keep(Path(tmp_path) / "entry", b"1")
     assert not old.exists()
     assert new.exists()
+
+
+CONFINED = """
+import resource
+resource.setrlimit(resource.RLIMIT_AS, (500 << 20, 500 << 20))
+import numpy as np
+import singimpact as si
+for model in (si.linear(2, "0.7", "0.5"), si.ImpactOscillator("x + x**3", "cos(1.7*t)", "0.1", "0.8")):
+    orbit, ends = model.orbit("1.2", "0.3", impacts=1500), model.iterate(np.linspace(0, 1, 300), 0.3, impacts=4)
+    print(orbit.kind.size > 1, ends.v.size)
+"""
+
+
+def test_little_address_space_costs_machine_code_alone(tmp_path):
+    """A compiling process of 500 MB imports libraries without end: none is started, and one line says so."""
+    run = started(["-c", CONFINED], tmp_path)
+    answer, told = run.communicate(timeout=300)
+    assert answer == "True 300\nTrue 300\n"
+    assert told == (
+        "singimpact: no process can be started that compiles the model's flights (it needs 750 MB of address space, "
+        "and 500 MB are allowed (ulimit -v)): they are slower; the work goes on\n"
+    )
+    assert not list((tmp_path / "cache").rglob("*.asked"))

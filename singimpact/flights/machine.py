@@ -44,6 +44,8 @@ class CompilingSettings:
     silent: tuple[float, float] = (1.0, 30.0)
     # seconds after which the request of a process that was killed is removed
     stale: float = 86_400.0
+    # bytes of address space that a process needs to compile; with 450 MB one was seen to import scipy without end
+    space: int = 750 << 20
 
 
 SETTINGS = CompilingSettings()
@@ -70,7 +72,7 @@ class Machine:
         self._lock = Lock()
         self._looked: dict[str, float] = {}
         self._asked, self._tried = "", -1e9
-        self._killed = False  # the process that compiled it, as where memory is short
+        self._killed = _is_confined()  # the process that compiled it, as where memory is short
         self._given_up = False  # that process has ended without an entry: nothing waits for another one
 
     def entry(self, name: str) -> Entry | None:
@@ -197,6 +199,8 @@ class Machine:
 
         Where no process can be started, one line says so and flights stay interpreted.
         """
+        if _is_confined():
+            return True
         if not _STARTING.acquire(timeout=SETTINGS.lock):
             return False
         try:
@@ -244,6 +248,21 @@ def withdraw(request: Path) -> None:
 @lru_cache(maxsize=1)
 def _not_started(reason: str) -> None:
     tell(f"no process can be started that compiles the model's flights ({reason}): they are slower; the work goes on")
+
+
+@lru_cache(maxsize=1)
+def _is_confined() -> bool:
+    """Whether this process and its children may use less address space than compiling needs; one line says so."""
+    try:
+        import resource
+
+        most = resource.getrlimit(resource.RLIMIT_AS)[0]
+    except (ImportError, OSError):  # Windows
+        return False
+    if most == resource.RLIM_INFINITY or most >= SETTINGS.space:
+        return False
+    _not_started(f"it needs {SETTINGS.space >> 20} MB of address space, and {most >> 20} MB are allowed (ulimit -v)")
+    return True
 
 
 @dataclass(frozen=True)
