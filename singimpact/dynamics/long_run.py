@@ -15,13 +15,11 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.attractors import CHATTER, OTHER
-from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.release import release
 from singimpact.flights.orbits import iterate
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
 
@@ -30,12 +28,14 @@ Array = np.ndarray[Any, Any]
 class LongRunSettings:
     """apart : of two orbits, relative, whose distance is watched. block, rounds : impacts between two looks, and looks.
     least : exponent per impact from which on an orbit is called chaotic, if it is three standard errors above 0 too.
+    flown : impacts after a lift-off within which a chatter that completes is looked for.
     """
 
     apart: float = 1e-7
     block: int = 5
     rounds: int = 60
     least: float = 0.01
+    flown: int = 50_000
 
 
 SETTINGS = LongRunSettings()
@@ -78,12 +78,21 @@ def futures(model: Oscillator, phases: tuple[float, ...], classify: Callable[[Ar
             continue
         tau, v = float(first.tau[1]), float(first.v[1])
         row = tuple(classify(np.array([tau]), np.array([v]))[0].tolist())
-        time = np.nan
-        if row[0] == CHATTER and row[1] >= 0:
-            end = chatter_limit(model, tau, v)
-            time = release(model, float(end.tau)) - lifted if end.status == Status.complete else np.nan
+        time = _rest_of(model, lifted) - lifted if row[0] == CHATTER and row[1] >= 0 else np.nan
         found.append(Future(row, time))
     return found
+
+
+def _rest_of(model: Oscillator, lifted: float) -> float:
+    """The next lift-off of a mass that lifts off at a time, whose chatter completes; nan where no chatter is seen to."""
+    flown = 1
+    while flown <= SETTINGS.flown:  # most chatters complete at once, others after long transients
+        flown *= 16
+        found = orbit(model, lifted, 0, impacts=flown)
+        rests = found.tau[found.kind == "complete"]
+        if rests.size:
+            return release(model, float(rests[0]))
+    return np.nan
 
 
 def _lifted(model: Oscillator, phase: float) -> float:

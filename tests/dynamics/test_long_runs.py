@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import singimpact as si
+from singimpact.bench.selftest.fates import Follower
+from singimpact.bench.truth.plain_orbits import plain_orbits
 
 
 def settled_class(osc, tau, v, impacts=100_000, longest=64):
@@ -66,6 +68,33 @@ def test_pixels_of_random_models_are_what_single_orbits_do():
 @pytest.mark.slow
 def test_pixels_of_many_random_models_are_what_single_orbits_do():
     assert compare(2, 16, 5) > 40
+
+
+@pytest.mark.slow
+def test_chatter_for_ever_comes_back_as_plain_orbits_do():
+    """Also where the impacts after a lift-off do not accumulate at once: periods of the cycle by fixed steps."""
+    rng, compared, late = np.random.default_rng(8), 0, 0
+    drawn = [("4.3365", "0.1677", "0.394")]
+    drawn += [
+        (f"{rng.uniform(3, 5):.3f}", f"{rng.uniform(0, 0.3):.3f}", f"{rng.uniform(0.3, 0.5):.3f}") for _ in range(40)
+    ]
+    for numbers in drawn:
+        model = si.linear(*numbers)
+        found = si.basins(model, size=4)
+        for run in found.attractors:
+            assert run.kind != "not decided" or "chatter" not in {each.kind for each in found.attractors}, (
+                numbers,
+                found,
+            )
+            if run.kind != "chatter":
+                continue
+            follower = Follower(plain_orbits(model, float(numbers[0]), 200.0, 2.0), 2.0, 20_000, 200.0)
+            first = follower.first(float(found.tau[0]), float(found.v[-1]))
+            if first.kind == "chatter":
+                assert follower.last(first).k == run.k, (numbers, run.name)
+                compared, late = compared + 1, late + (run.k > 2)
+    assert compared > 10
+    assert late > 1
 
 
 def test_a_long_chaotic_transient_ends_on_its_orbit():

@@ -29,8 +29,8 @@ import singimpact as si
 
 PERIODIC = ("cos(w*t)", "cos(w*t) + sin(2*w*t)/5", "cos(w*t)**3", "1/(2 - cos(w*t))", "exp(cos(w*t)) - 1")
 FORCES = (
-    "x + x**3/3", "sin(x) + xdot/10", "x - xdot*(1 - x**2)/4", "x + tanh(5*xdot)/10", "x + xdot**3/5", "x**3", "x/(1 + x**2)",
-    "x*sqrt(1 + x**2) + xdot/20",
+    "x + x**3/3", "sin(x) + xdot/10", "x - xdot*(1 - x**2)/4", "x + tanh(5*xdot)/10", "x + xdot**3/5", "x**3",
+    "x/(1 + x**2)", "x*sqrt(1 + x**2) + xdot/20",
 )  # fmt: skip
 LAWS = ("0.5", "0.8", "0.95", "-v*(1 - v/10)/2", "-tanh(v/2)", "-v/2*exp(v/20)")
 
@@ -81,7 +81,7 @@ def local_calls(model: Any, rng: np.random.Generator) -> dict[str, Callable[[], 
         "orbit": lambda: model.orbit(one, speed, impacts=60),
         "orbit sampled": lambda: model.orbit(one, speed, impacts=10).sample([float(tau[0]) + 0.3, float(tau[0]) + 2.5]),
         "release": lambda: [model.release(float(t)) for t in tau[:4]],
-        "launch": lambda: model.launch(float(model.clearance_value if hasattr(model, "clearance_value") else 1) + 1, tau[:4], v[:4]),
+        "launch": lambda: model.launch(2, v[:4], tau[:4]),
         "tangency_points": lambda: si.tangency_points(model),
     }  # fmt: skip
 
