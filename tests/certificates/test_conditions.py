@@ -191,7 +191,6 @@ UNFORGED = {
     "back": "an orbit that is past the end meets a_c > 0 before this is asked",
     "slow": "a longer reach is not within the discs of the series, which is asked first",
     "strip": "a wider strip has no bound Kl, which is asked as well",
-    "annulled": "the series is made by the second program itself",
     "zero of a_c": "without it Newton's method has no zero to come to",
     "short": "a_c of no example is positive for so long",
     "a_c > 0 after tau": "a_c of no example vanishes within its reach",

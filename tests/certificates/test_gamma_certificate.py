@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import flint
 import pytest
-from second_program import changed, copied, is_read_back, no_number_may_change, refuses, renewed
+from second_program import changed, copied, dropped, is_read_back, no_number_may_change, refuses, renewed
 
 import singimpact as si
 from singimpact.certificates import checker
-from singimpact.certificates.checker import gravity, nonlinear
+from singimpact.certificates.checker import gravity, invariant_arc, nonlinear
 from singimpact.certificates.checker.growing import Growing
 
+EXAMPLES = Path(__file__).parent / "examples"
 TANGENCY = si.linear(2, "0.3", "0.5")
 CASES = {
     "tangency": (TANGENCY, {"reach": "1/4"}),
@@ -145,6 +147,33 @@ def test_a_growing_series_is_that_of_flint():
         (u * u + 1, whole * whole + 1), (u * flint.arb(3) + u, 4 * whole),
     ):  # fmt: skip
         assert all(found.at(n)[0].overlaps(true[n]) for n in range(6))
+
+
+@pytest.mark.parametrize(
+    "name", ["gamma", *(pytest.param(f"gamma_{each}", marks=pytest.mark.slow) for each in ("of_interval", "duffing"))]
+)
+def test_the_series_annuls_the_residual(name, monkeypatch):
+    """Below S^N, for all lambda of a box; a series with a wrong factor does not."""
+    residuals, true = [], invariant_arc.Folded.residual
+
+    def seen(ring, o, L, ratio):
+        found = true(ring, o, L, ratio)
+        residuals.append((found.over(), len(L)))
+        return found
+
+    def annulled(content):
+        residuals.clear()
+        checker.check(content)
+        return [all(found[i].contains(0) for i in range(N)) for found, N in residuals]
+
+    content = json.loads((EXAMPLES / f"{name}.json").read_text(encoding="utf-8"))
+    monkeypatch.setattr(invariant_arc.Folded, "residual", seen)
+    assert all(annulled(content))
+    parts = invariant_arc.parts_of
+    monkeypatch.setattr(invariant_arc, "parts_of", lambda j: (*parts(j)[:2], [0, *parts(j)[2][:-1]]))
+    monkeypatch.setattr(invariant_arc.Box, "require_series", lambda *_: None)
+    dropped(monkeypatch, "residual", "Kl", "wide", "compared")
+    assert not all(annulled(content))
 
 
 @pytest.mark.slow
