@@ -195,7 +195,6 @@ UNFORGED = {
     "short": "a_c of no example is positive for so long",
     "a_c > 0 after tau": "a_c of no example vanishes within its reach",
     "|A| increases after tau": "it does so in all examples",
-    "|A| decreases before tau": "it does so in all examples",
 }
 """Conditions without a forgery here, and why."""
 

@@ -3,8 +3,9 @@
 Where a_c > 0 the motion y is convex in s, so it meets the wall at most once more.  After a negative swan |A| increases
 with s up to some place.  There each flight is at most r times as long as the one before: from sigma to e it lands with
 at most |A(e)| (e - sigma)/2, and is launched from e with at least |A(e)| (e1 - e)/2.  A flight from -S <= 0 that is
-launched with at most V, below int (e + x)|A| dx/(e + S) over -S < s < e, lands before e; the next one, launched from e0
-with v, lands within d if alpha d (e0^2/2 + e0 d/3 + d^2/12) >= v, |A| >= alpha s^2.  All end before e0 + d/(1 - r).
+launched with at most V, below int (e + x)|A| dx/(e + S) over -S < s < e, lands before e, with at most max |A| (e + S)/2;
+the next one, launched from e0 with v, lands within d if alpha d (e0^2/2 + e0 d/3 + d^2/12) >= v, |A| >= alpha s^2.  All
+end before e0 + d/(1 - r).
 """
 
 from __future__ import annotations
@@ -80,7 +81,6 @@ def require_settled(o: Gravity, numbers: dict[str, Any], r: Any) -> None:
     """Chatter completes before s = end, of all launches with S <= launch and y' <= speed that pass tau."""
     launch, speed, first, end = (numbers[name] for name in ("launch", "speed", "first", "end"))
     require_positive(lambda s: series(o, s, lambda k: k), end, "|A| increases after tau")
-    require_positive(lambda s: series(o, -s, lambda k: k), launch, "|A| decreases before tau")
     right = first ** (o.j + 2) * series(o, first, lambda k: arb(1) / ((k + 1) * (k + 2)))
     for n in range(LAUNCHES):
         S = (launch * n / LAUNCHES).union(launch * (n + 1) / LAUNCHES)
@@ -101,8 +101,8 @@ def require_settled(o: Gravity, numbers: dict[str, Any], r: Any) -> None:
 
 def ends_before(o: Gravity, cell: tuple[Any, Any], r: Any, end: Any, ratios: list[Any]) -> bool:
     S, e = cell
-    sizes = [abs(x) ** 2 * series(o, x, lambda _: 1) for x in (e, -S)]
-    landing = arb((sizes[0].max(sizes[1]) * (e + S) / 2).upper())
+    x = (-S).union(e)
+    landing = arb((x * x * series(o, x, lambda _: 1) * (e + S) / 2).upper())
     exact = (moment(o, e, 2) + S * (moment(o, e, 1) + moment(o, -S, 1)) - moment(o, -S, 2)) / (e + S)
     if exact.is_finite():
         landing = landing.min(arb(exact.upper()))
