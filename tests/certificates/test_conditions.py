@@ -186,7 +186,6 @@ UNFORGED = {
     "change of sign": "test_event_certificate drops it, with the search that comes before it",
     "before": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",
     "just before": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",
-    "off the wall": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",
     "rises": "without it Newton's method has no zero to come to",
     "back": "an orbit that is past the end meets a_c > 0 before this is asked",
     "slow": "a longer reach is not within the discs of the series, which is asked first",

@@ -104,7 +104,6 @@ def test_a_touch_that_is_not_the_first_is_what_the_pieces_refuse(graze, monkeypa
     refuses(twice)
     for module in (motion, impacts):
         monkeypatch.setattr(module, "first_root", lambda *_: None)
-    monkeypatch.setattr(motion.Flight, "require_above", lambda _: None)
     checker.check(renewed(twice))
 
 

@@ -267,15 +267,10 @@ class Flight:
         self.passed, self.removed = self.passed + s, 0
 
     def advance(self, s: Any) -> None:
-        """To the end of a step, at which x > c."""
+        """To a time of the step up to which no root was found: x > c there, as on all the way."""
         self.move(s)
-        self.require_above()
         if not self.passed < HORIZON:
             raise Refused(f"no hit before {HORIZON:g}")
-
-    def require_above(self) -> None:
-        """Refuse the end of a step that may be on the wall."""
-        need("off the wall", self.x[0] - self.c > 0, "x - c is lost at the end of a step", Refused)
 
     def first_hit(self) -> tuple[Any, Any, list[tuple[Any, Any]]]:
         """The time of the first hit, x' there, and psi, psi' of the derivatives."""
