@@ -182,7 +182,6 @@ def test_each_bound_of_chatter_refuses_an_accumulation(model, tau, v, text, inst
 UNFORGED = {
     "complex": "no example is near a neutral saddle",
     "curve": "the search for the event fails before it",
-    "on curve": "the search for the event fails before it",
     "change of sign": "test_event_certificate drops it, with the search that comes before it",
     "before": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",
     "just before": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",

@@ -21,7 +21,7 @@ from typing import Any
 from flint import arb
 
 from .formulas import Formula, Refused, Wrong, ball, need
-from .motion import Model, size
+from .motion import Model, size, within
 from .periodic_orbit import Orbits, require_shortest, return_map
 from .periods import require_period
 from .schema import CURVED, TOUCHING
@@ -93,30 +93,37 @@ class Curve:
                 return self.solved(self.moved(point, step))[0]
         raise Refused("no orbit is found at which the test vanishes")
 
-    def inside(self, point: list[Any], radius: Any, half: Any = None) -> tuple[list[Any], list[Any]]:
-        """D G and the orbits less the centre, where one orbit is shown in the box for each value of the held one."""
+    def inside(self, point: list[Any], radius: Any, half: Any) -> list[Any]:
+        """The orbits less the centre, where one is shown in the box for each value of the held unknown."""
         slopes, image = self.orbits.krawczyk(point, [radius] * len(point), half)
         inside = all(abs(part) < radius for part in image)
         need("curve", inside, "Krawczyk's operator does not map the box of the curve into itself", Refused)
-        return slopes, image
+        self.test(slopes)  # along the whole curve a torus has complex multipliers
+        return image
+
+    def sign(self, point: list[Any], radius: Any) -> int:
+        """That of the test of the one orbit in a box; 0 : not shown.  Krawczyk's operator narrows the box round it."""
+        box = [x if k == self.orbits.held else x + within(radius) for k, x in enumerate(point)]
+        while True:
+            centre = [arb(x.mid()) for x in box]
+            slopes, image = self.orbits.krawczyk(centre, [arb(x.rad()) for x in box])
+            test = self.test(slopes)
+            narrower = [x.intersection(middle + part) for x, middle, part in zip(box, centre, image, strict=True)]
+            if test > 0 or test < 0 or not any(a.rad() * 2 < b.rad() for a, b in zip(narrower, box, strict=True)):
+                return 1 if test > 0 else -1 if test < 0 else 0
+            box = narrower
 
     def event(self, point: list[Any], radii: list[Any]) -> list[Any]:
         """Balls of the event, within the radii round a point if all goes well."""
         narrow = arb((min(radii, key=float) / 4).mid())
-        half, own, signs = arb((narrow / PART).mid()), arb(2) ** -(self.bits - 20), []
-        if not own < half / PART:
+        half = arb((narrow / PART).mid())
+        if not arb(2) ** -(self.bits - 20) < half / PART:
             raise Refused("too few bits")
         written, point = point, self.crossing(point, half)
         if not all(abs(x - centre) < 4 * radius for x, centre, radius in zip(point, written, radii, strict=True)):
             raise Wrong("the test does not vanish near the orbit that is written")
-        slopes, image = self.inside(point, narrow, half * arb(1.01))  # its ends are beyond those below
-        self.test(slopes)  # along the whole curve a torus has complex multipliers
-        for side in (-1, 1):
-            end, _ = self.solved(self.moved(point, side * half))
-            on_curve = all(abs(a - b) + own < narrow for a, b in zip(end, point, strict=True))
-            need("on curve", on_curve, "an orbit beside the event is not shown to lie on the curve", Refused)
-            test = self.test(self.inside(end, own)[0])
-            signs.append(1 if test > 0 else -1 if test < 0 else 0)
+        image = self.inside(point, narrow, half * arb(1.01))  # its ends are beyond those below
+        signs = [self.sign(self.moved(point, side * half), narrow) for side in (-1, 1)]
         error = Wrong if abs(sum(signs)) == 2 else Refused
         need("change of sign", sorted(signs) == [-1, 1], "the test is not shown to change its sign", error)
         return [x + part for x, part in zip(point, image, strict=True)]
