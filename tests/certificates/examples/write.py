@@ -48,6 +48,12 @@ def _torus(digits):
     return _event(model, "A", (0.5, 1.6), "torus", lambda osc: osc.periodic(1, 1, start=start)[0], digits, step=0.1)
 
 
+def _torus_linear(digits):
+    """At this number every orbit of one impact has multipliers with the product 1."""
+    model = si.ImpactOscillator("x + mu*xdot", "0.05*cos(2.8*t)", "0.1", "0.9", {"mu": "-0.08"})
+    return _event(model, "mu", (-0.12, -0.05), "torus", lambda osc: osc.periodic(1, 1)[1], digits)
+
+
 def _border(digits):
     (found,) = si.border_orbits(si.linear("2.8", 0, "0.5"), between=("0.6", "0.61"), points=5, digits=digits)
     return found
@@ -74,6 +80,7 @@ EXAMPLES = {
     "fold": (lambda digits: _linear_event("fold", digits), 8),
     "doubling": (lambda digits: _linear_event("period-doubling", digits), 8),
     "torus": (_torus, 6),
+    "torus_linear": (_torus_linear, 8),
     "graze": (_graze, 10),
     "hidden": (_hidden, 10),
 }  # fmt: skip
