@@ -70,6 +70,10 @@ FORGERIES = {
     "change of sign": ("doubling", (("model", "g"), "(1.50219111778953378 + p**2)*cos(2.8*t)"),
         (("model", "parameters"), {"p": "0"}), (("over",), "p"), (("parameter",), number("0", "1e-5")),
         state("2.185377274", "0.5855502720", "1e-5")),
+    "before": ("two_minima", (("model", "parameters", "e"), "-0.001"), (("parameter", "value"), "1.0005999142"),
+        (("states", 0, "tau", "value"), "5.64079872159")),
+    "just before": ("two_minima", (("parameter", "value"), "1.0005999142"),
+        (("states", 0, "tau", "value"), "0.642386585588")),
     "fates": ("border", (("completes",), "below")),
     "loops": ("horseshoe", (("loops",), ["1", "16"]), (("entropy",), number("0.131", "0.001"))),
     "entropy": ("horseshoe", (("entropy", "value"), "0.2")),
@@ -107,7 +111,7 @@ def names():
     return direct | set(re.findall(r'require_positive\(.*"([^"]+)"\)', texts))
 
 
-QUICK = {"torus_linear", "gamma", "impact", "orbit_linear", "graze", "lift_off", "accumulation"}
+QUICK = {"torus_linear", "two_minima", "gamma", "impact", "orbit_linear", "graze", "lift_off", "accumulation"}
 
 
 @pytest.mark.parametrize(
@@ -188,8 +192,6 @@ def test_each_bound_of_chatter_refuses_an_accumulation(model, tau, v, text, inst
 
 
 UNFORGED = {
-    "before": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",
-    "just before": "test_event_certificate: the pieces of a flight refuse a touch that is not the first",
     "rises": "without it Newton's method has no zero to come to",
     "back": "an orbit that is past the end meets a_c > 0 before this is asked",
     "slow": "a longer reach is not within the discs of the series, which is asked first",

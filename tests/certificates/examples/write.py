@@ -35,6 +35,13 @@ def _graze(digits):
     return _event(model, "A", (0.3, 0.5), "graze", lambda osc: osc.periodic(1, 1)[0], digits)
 
 
+def _two_minima(digits):
+    """x = p ((cos t - 4/5)^2 - 1 + e sin t): two minima of nearly the same height, the lower one touches the wall."""
+    g = "p*(0.14 + 0.16*sin(t) - 1.5*cos(2*t) - 0.1*sin(2*t) + e*cos(t)/10)"
+    model = si.ImpactOscillator("x + 0.1*xdot", g, -1, "0.8", {"p": "0.99", "e": "0.001"})
+    return _event(model, "p", (0.9, 1.2), "graze", lambda osc: osc.periodic(0, 1)[0], digits)
+
+
 def _hidden(digits):
     model = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "A*cos(w*t)", "0.3", "0.6", {"w": "1.7", "A": 1})
     start = (1.95786, 0.662042)
@@ -82,6 +89,7 @@ EXAMPLES = {
     "torus": (_torus, 6),
     "torus_linear": (_torus_linear, 8),
     "graze": (_graze, 10),
+    "two_minima": (_two_minima, 10),
     "hidden": (_hidden, 10),
 }  # fmt: skip
 """name -> the result, and its digits; 0 where there is no choice."""
