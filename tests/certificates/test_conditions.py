@@ -74,6 +74,8 @@ FORGERIES = {
         (("states", 0, "tau", "value"), "5.64079872159")),
     "just before": ("two_minima", (("parameter", "value"), "1.0005999142"),
         (("states", 0, "tau", "value"), "0.642386585588")),
+    "rises": ("border_by_stiffness", (("release",), "2.0789281946880105050879")),
+    "back": ("border_by_stiffness", (("parameter",), number("0.853176", "0.005"))),
     "fates": ("border", (("completes",), "below")),
     "loops": ("horseshoe", (("loops",), ["1", "16"]), (("entropy",), number("0.131", "0.001"))),
     "entropy": ("horseshoe", (("entropy", "value"), "0.2")),
@@ -111,7 +113,17 @@ def names():
     return direct | set(re.findall(r'require_positive\(.*"([^"]+)"\)', texts))
 
 
-QUICK = {"torus_linear", "two_minima", "gamma", "impact", "orbit_linear", "graze", "lift_off", "accumulation"}
+QUICK = {
+    "border_by_stiffness",
+    "torus_linear",
+    "two_minima",
+    "gamma",
+    "impact",
+    "orbit_linear",
+    "graze",
+    "lift_off",
+    "accumulation",
+}
 
 
 @pytest.mark.parametrize(
@@ -192,8 +204,6 @@ def test_each_bound_of_chatter_refuses_an_accumulation(model, tau, v, text, inst
 
 
 UNFORGED = {
-    "rises": "without it Newton's method has no zero to come to",
-    "back": "an orbit that is past the end meets a_c > 0 before this is asked",
     "slow": "a longer reach is not within the discs of the series, which is asked first",
     "strip": "a wider strip has no bound Kl, which is asked as well",
     "zero of a_c": "without it Newton's method has no zero to come to",

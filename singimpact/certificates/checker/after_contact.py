@@ -3,9 +3,9 @@
 Where a_c > 0 the motion y is convex in s, so it meets the wall at most once more.  After a negative swan |A| increases
 with s up to some place.  There each flight is at most r times as long as the one before: from sigma to e it lands with
 at most |A(e)| (e - sigma)/2, and is launched from e with at least |A(e)| (e1 - e)/2.  A flight from -S <= 0 that is
-launched with at most V, below int (e + x)|A| dx/(e + S) over -S < s < e, lands before e, with at most max |A| (e + S)/2;
-the next one, launched from e0 with v, lands within d if alpha d (e0^2/2 + e0 d/3 + d^2/12) >= v, |A| >= alpha s^2.  All
-end before e0 + d/(1 - r).
+launched with at most V, below int (e + x)|A| dx/(e + S) over -S < s < e, lands before e; if at e0, then with at most
+max |A| (e0 + S)/2.  The next one, launched from e0 with v, lands within d if alpha d (e0^2/2 + e0 d/3 + d^2/12) >= v,
+|A| >= alpha s^2.  All end before e0 + d/(1 - r).
 """
 
 from __future__ import annotations

@@ -151,7 +151,7 @@ class Box:
         self.require_series(told["series"])
 
     def take(self, ring: Folded, L: list[Part], ratio: Part, inverse: Part) -> None:
-        """L, (1 - L)/(1 - lambda) and the residual over the box; its coefficients below N are 0, as L is made of them."""
+        """L, (1 - L)/(1 - lambda) and the residual over the box, whose coefficients below N are 0: L is made so."""
         found = ring.residual(self.o, L, ratio).over()
         self.E = [found[i] for i in range(self.N, ring.D + 1)]
         self.L: Any = arb_poly([part.over()[0] for part in L])

@@ -66,6 +66,14 @@ def _border(digits):
     return found
 
 
+def _border_by_stiffness(digits):
+    """a_c does not depend on the number; r is so small that the orbit comes back just before the end."""
+    numbers = {"h": "0.02", "k": "0.86"}
+    model = si.ImpactOscillator("k*x", "h - (1 - cos(t))*(cos(t) + 1/2)", 0, "0.00001", numbers)
+    (found,) = si.border_orbits(model, "k", between=("0.85", "0.9"), points=6, digits=digits)
+    return found
+
+
 EXAMPLES = {
     "impact": (lambda digits: DUFFING.impact_map("1.4", "0.6", digits=digits), 12),
     "impact_by_law": (lambda digits: LAW.impact_map("1.4", "0.6", digits=digits), 12),
@@ -84,6 +92,7 @@ EXAMPLES = {
     ),
     "horseshoe": (lambda _: si.homoclinic_points(LINEAR.periodic(1, 1)[0])[0].horseshoe(), 0),
     "border": (_border, 14),
+    "border_by_stiffness": (_border_by_stiffness, 12),
     "fold": (lambda digits: _linear_event("fold", digits), 8),
     "doubling": (lambda digits: _linear_event("period-doubling", digits), 8),
     "torus": (_torus, 6),
