@@ -170,6 +170,11 @@ def test_the_factor_of_gronwall_bounds_a_step(power):
 FALLING = {"f": "0", "g": "-0.4 - 0.6*exp(-60*(t - 20)) + exp(60*(t - 20.65))", "clearance": "0", "restitution": "0.3"}
 """a_c falls from -1 to -0.4 at once, and is positive after 20.65: before that the chatter does not complete."""
 RISING = {"f": "x", "g": "cos(2.8*t)", "clearance": "0", "restitution": "0.97"}
+PULLED = {
+    "f": "4.5 - 7/pi*atan(1000*(xdot + 0.3)) + 10000*(pi/2 - atan(100000*(xdot + 2.2)))",
+    "g": "0", "clearance": "0", "restitution": "0.1",
+}  # fmt: skip
+"""x'' = -1 where the mass rises, -8 where it falls, -30000 where it falls faster than 2.2: it lands faster each time."""
 
 
 @pytest.mark.slow
@@ -178,6 +183,7 @@ RISING = {"f": "x", "g": "cos(2.8*t)", "clearance": "0", "restitution": "0.97"}
     [
         (FALLING, "20", "0.1", "least.union(most) if most < window else None", "least.union(most)"),
         (RISING, "0.9 + 100*pi/2.8", "0.001", "q < 2 and r * q < 1", "q < 2"),
+        (PULLED, "100", "1", "q < 2 and r * q < 1", "r * q < 1"),
     ],
 )
 def test_each_bound_of_chatter_refuses_an_accumulation(model, tau, v, text, instead, monkeypatch):
