@@ -267,6 +267,7 @@ def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:  # noq
     """That gamma is as the certificate says, for the r of the model or for all r of an interval."""
     j, reach = int(told["order"]), ball(Fraction(told["reach"]))
     tau = contact(model, read(told["tau"]), j)
+    compared({"tau": (tau, told["tau"])})
     o = Flights(model, tau, j, reach) if "fastest" in told else Gravity(model, tau, j, reach)
     fast = isinstance(o, Gravity) or ball(Fraction(told["fastest"])) <= o.fastest
     need("fastest", fast, "the launch speeds go beyond what is shown")
