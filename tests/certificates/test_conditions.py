@@ -84,6 +84,7 @@ FORGERIES = {
               (("entropy",), number("0.481211825059603447", "1e-15"))),
     "width": ("horseshoe", (("sets", 2, "radii", 0), times(4))),
     "height": ("horseshoe", (("sets", 5, "radii", 1), times(0.25))),
+    "zero of a_c": ("gamma", (("tau",), number("2.57104081720004368303428288200507267902139574289322", "0.0625"))),
     "L": ("gamma", (("boxes", 0, "series", 2, "value"), times(1.001))),
     "series": ("gamma", (("boxes", 0, "series"), lambda series: series[:-1])),
     "fastest": ("gamma_duffing", (("fastest",), "700")),
@@ -212,7 +213,6 @@ def test_each_bound_of_chatter_refuses_an_accumulation(model, tau, v, text, inst
 UNFORGED = {
     "slow": "a longer reach is not within the discs of the series, which is asked first",
     "strip": "a wider strip has no bound Kl, which is asked as well",
-    "zero of a_c": "without it Newton's method has no zero to come to",
     "short": "a_c of no example is positive for so long",
     "a_c > 0 after tau": "a_c of no example vanishes within its reach",
     "|A| increases after tau": "it does so in all examples",

@@ -14,12 +14,14 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 from flint import acb, arb, arb_poly, arb_series
 
 from .formulas import Formula, Refused, Wrong, need
 from .motion import Model, size, within
+from .told import lies_within, read
 
 MOST = 240  # terms
 SMALL = 2.0**-36  # tail, in units of b_j
@@ -51,25 +53,26 @@ def affine(f: Formula, node: ast.expr) -> tuple[Any, Any, Any]:
     raise Wrong(f"f = {f.text} is not linear")
 
 
-def contact(model: Model, told: Any, j: int) -> Any:
+def contact(model: Model, told: dict[str, str], j: int) -> Any:
     """A ball of the zero of a_c of order j in [told]: simple, or at the clearance for which it has this order.
 
-    For j > 1 no number of digits shows that a_c vanishes: what is shown holds for the clearance at which it does.
+    Newton's method shows it: with no zero in the ball, an end of the ball is an end of all that follows.  For j > 1 no
+    number of digits shows that a_c vanishes: what is shown holds for the clearance at which it does.
     """
-
-    force = model.f(x=model.c(), xdot=arb(0))
+    force, why = model.f(x=model.c(), xdot=arb(0)), "that tau is a zero of a_c of its order is not shown"
 
     def jet(at: Any) -> list[Any]:
         found = model.g(t=arb_series([at, 1], prec=j + 1)) - force
         return [found[k] for k in range(j + 1)]
 
-    whole, sign = told, 1 if j % 2 else -1
-    low, high = (sign * jet(arb(end))[j - 1] for end in (told.lower(), told.upper()))
-    zero = low < 0 < high and sign * jet(whole)[j] > 0
-    need("zero of a_c", zero, "that tau is a zero of a_c of its order is not shown", Refused)
+    whole, inner = read(told), {**told, "radius": Fraction(told["radius"]) * 99 / 100}
     for _ in range(6):
         middle = arb(whole.mid())
-        whole = whole.intersection(middle - jet(middle)[j - 1] / (j * jet(whole)[j]))
+        closer = middle - jet(middle)[j - 1] / (j * jet(whole)[j])
+        if not (closer.is_finite() and closer.overlaps(whole)):
+            raise Refused(why)
+        whole = whole.intersection(closer)
+    need("zero of a_c", lies_within(whole, inner), why, Refused)
     vanishes = all(part.contains(0) for part in jet(whole)[: j - 1])
     need("order", vanishes, "a_c does not vanish at tau to the order that is written")
     return whole
