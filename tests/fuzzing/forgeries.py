@@ -140,7 +140,7 @@ def moved(content: Any, path: tuple[Any, ...], rng: Random) -> None:
 
 PROOF = {"eta", "M", "pieces", "D", "tree", "R", "impacts", "frame", "centre", "radii", "first"}
 """Fields of a proof, wherever they stand: the second program shows the statement with them, or refuses."""
-SMALLER, LARGER = {"grow", "near", "time", "launch", "speed", "reach", "unique_within"}, {"Kl", "end"}
+SMALLER, LARGER = {"grow", "fastest", "near", "time", "launch", "speed", "reach", "unique_within"}, {"Kl", "end"}
 """Numbers that make a weaker statement when they are smaller, or larger."""
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582")
 ALONE = Fraction(1, 100)  # the orbits of the examples have no others of so many impacts and periods so near

@@ -268,8 +268,10 @@ def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:  # noq
     j, reach = int(told["order"]), ball(Fraction(told["reach"]))
     tau = contact(model, told["tau"], j)
     o = Flights(model, tau, j, reach) if "fastest" in told else Gravity(model, tau, j, reach)
-    fast = isinstance(o, Gravity) or ball(Fraction(told["fastest"])) <= o.fastest
-    need("fastest", fast, "the launch speeds go beyond what is shown")
+    if isinstance(o, Flights):
+        fastest = ball(Fraction(told["fastest"]))
+        need("slow", o.launched < fastest, "the launch speeds do not go beyond those of the flights that are enclosed")
+        need("fastest", fastest <= o.fastest, "the launch speeds go beyond what is shown")
     cuts = [[Fraction(end) for end in box["lambda"]] for box in told["boxes"]]
     single = told["restitution"] == "model"
     r = model.ratio() if single else None

@@ -18,6 +18,9 @@ FOLDER = Path(__file__).parent
 DUFFING = si.ImpactOscillator("0.1*xdot + x + e*x**3", "cos(1.7*t)", "0.3", "3/5", {"e": "0.3"})
 LAW = si.ImpactOscillator("x + atan(x)/3", "exp(-cos(t))", "0.3", "-0.8*v*exp(-v**2/10)")
 LINEAR = si.linear("2.8", "0", "0.8")
+STIFF = si.ImpactOscillator("100*x", "sin(t)", 0, "0.5")
+DIP = si.ImpactOscillator("x", "0.9998*sin(t) - sin(2*t - 0.2)/2 - sin(0.2)/2", 0, "0.05")
+"""a_c = sin(t) (1 - cos(t - 0.2) - 0.0002) is negative for a short time after it has risen through zero."""
 
 
 def _event(model, over, between, kind, orbit, digits, **options):
@@ -86,6 +89,8 @@ EXAMPLES = {
         lambda _: si.linear(2, "0.3", "0.5").certified_gamma(reach="1/8", restitution=("0.48", "0.52")), 0,
     ),
     "gamma_at_swan": (lambda _: si.linear(2, 1, "0.5").certified_gamma(tau=2, reach="1/4"), 0),
+    "gamma_stiff": (lambda _: STIFF.certified_gamma(tau="6.2", reach="1/40"), 0),
+    "gamma_before_dip": (lambda _: DIP.certified_gamma(tau="6.25", reach="3/10"), 0),
     "gamma_duffing": (
         lambda _: si.ImpactOscillator("x + x**3/5 + xdot/10", "cos(2*t)", "0.3", "0.5")
         .certified_gamma(tau=2, reach="1/8"), 0,
