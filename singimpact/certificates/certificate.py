@@ -220,7 +220,7 @@ def _of_gamma(found: CertifiedGamma) -> dict[str, Any]:
     boxes = [{"lambda": [str(box.low), str(box.high)], "N": str(box.settings.N), "D": str(box.settings.D),
               "pieces": str(box.settings.pieces), "eta": f"{float(box.eta):.6g}", "M": f"{float(box.M):.6g}",
               "series": [_with_room(from_ball(part, SERIES_DIGITS)) for part in box.series],
-              "R": _bound(box.R, loose), "Kl": _bound(box.Kl, LOOSER * loose),
+              "R": _bound(box.R, loose), "Kl": _bound(box.Kl, LOOSER**2 * loose),
               "grow": _bound(box.grow, 2 - LOOSER), "tree": box.tree} for box in found.boxes]  # fmt: skip
     after = found.lost or found.settled
     told = {

@@ -214,7 +214,6 @@ def test_each_bound_of_chatter_refuses_an_accumulation(model, tau, v, text, inst
 
 
 UNFORGED = {
-    "strip": "a wider strip has no bound Kl, which is asked as well",
     "|A| increases after tau": "it does so in all examples",
 }
 """Conditions without a forgery here, and why."""

@@ -5,9 +5,11 @@ L(S) = lambda + L_1 S + ... annuls E(S) = l^(j+1) (1-L(lS)) W(lS, L(lS)) - r (1-
 E <= R S^N.  With q = (1-l)/(1-L(S)), K = (1-L(lS))/(1-L(S)) and m = 1-(1-l) K three things are shown for all lambda of
 a box.
 
-1. l^(j+1) K W(lS, m)/U(S, l) increases in l: its logarithmic derivative times l is positive.  So q decreases along
-   orbits that start with l > L + Kl S^N and increases along those with l < L - Kl S^N.
-2. Kl = R/(slope U) with bounds on the strip |l - L| <= eta, which is wider.
+1. l^(j+1) K W(lS, m)/U(S, l) increases in l: its logarithmic derivative times l is positive.  So q decreases where
+   l > L + k S^N and increases where l < L - k S^N, k = R/(slope U) with bounds on the strip |l - L| <= eta.
+2. Kl >= k max(G)/G, G = (1-L(S))/(1-lambda), and the strip is wider than Kl S^N.  Orbits that start with
+   |l - L| > Kl S^N have |1-q| > Kl S^N/((1-lambda) max(G)); this gives what 1 asks, and stays true as |1-q| increases and
+   S decreases.
 3. The relation of two flights, F(S, y, y1) = 0, y = l - L(S), maps the cones |dS| <= M |dy| of the strip into
    themselves and expands them.
 
@@ -205,8 +207,8 @@ class Box:
         need("covered", not todo, "the boxes of lemma 1 do not cover the square")
         return least
 
-    def cones(self, a: Any, b: Any) -> tuple[Any, Any, Any]:
-        """Lemma 3 on a piece: bounds of (H + r)/l, of U times 1 - l, and of the growth."""
+    def cones(self, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
+        """Lemma 3 on a piece: bounds of (H + r)/l, of U times 1 - l, of G, and of the growth."""
         Clock.look()
         o, j, eta, M, L = self.o, self.o.j, self.eta, self.slope, self.L
         S = (a - 2 * M * eta).max(arb(0)).union((b + 2 * M * eta).min(o.s0))
@@ -214,10 +216,10 @@ class Box:
         x = L(S) + y
         S1 = x * S
         x1 = L(S1) + y
-        K = self.gap(S1) / self.gap(S)
+        G = self.gap(S)
+        K = self.gap(S1) / G
         m = 1 - (1 - x) * K
-        inside = 0 < x < 1 and 0 < x1 < 1 and -1 < m < 1 and self.N * (1 - L(S)) + S * dL(S) > 0
-        need("strip", inside, "the strip leaves 0 < l < 1", Refused)
+        inside = 0 < x < 1 and 0 < x1 < 1 and -1 < m < 1
         there = o.speeds(S1, x1)
         W1, _, WS1, _, _, _ = there
         fall = o.fall(there, x1)
@@ -229,9 +231,10 @@ class Box:
         by_S = x ** (j + 2) * along - self.r * (1 - x) * US + by_l * dL(S)
         d, g, e = -by_l / by_y1, -by_S / by_y1, x + S * dL(S)
         up = d - abs(g) * M
-        expanded = U > 0 and fall > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0
+        # the cones are expanded nowhere on l = 0, by 1/0, and l = 1, by r - S L' where L first comes to 1 - eta
+        expanded = inside and U > 0 and fall > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0
         need("cones", expanded, "lemma 3 is not shown: the cones are not expanded into themselves", Refused)
-        return rate, (1 - x) * U, up
+        return rate, (1 - x) * U, G, up
 
     def require(self) -> None:
         """Refuse the box unless the three lemmas hold with its numbers."""
@@ -244,10 +247,12 @@ class Box:
             need("residual", abs(E) <= R, f"the residual is not shown to be below {R.str(8)}", error)
         least = self.least_drift()
         bounds = [self.cones(a, b) for a, b in self.steps()]
-        rate, U = (lowest(each[k] for each in bounds) for k in (0, 1))
-        need("Kl", R / (rate * least * U) <= Kl, "Kl is not shown to bound the distance from the series")
+        high = -lowest(-each[2] for each in bounds)
+        push = lowest(lowest([rate]) * lowest([U]) * lowest([G]) for rate, U, G, _ in bounds)
+        bounded = push > 0 and R * high / (least * push) <= Kl
+        need("Kl", bounded, "Kl is not shown to bound the distance from the series")
         need("wide", Kl * self.o.s0**self.N < self.eta, "the strip is narrower than the bound")
-        grown = lowest(each[2] for each in bounds) >= grow
+        grown = lowest(each[3] for each in bounds) >= grow
         need("grow", grown, "that distances grow as fast as is written is not shown")
 
     def threshold(self, S: Any) -> Any:
