@@ -8,8 +8,8 @@ a box.
 1. l^(j+1) K W(lS, m)/U(S, l) increases in l: its logarithmic derivative times l is positive.  So q decreases where
    l > L + k S^N and increases where l < L - k S^N, k = R/(slope U) with bounds on the strip |l - L| <= eta.
 2. Kl >= k max(G)/G, G = (1-L(S))/(1-lambda), and the strip is wider than Kl S^N.  Orbits that start with
-   |l - L| > Kl S^N have |1-q| > Kl S^N/((1-lambda) max(G)); this gives what 1 asks, and stays true as |1-q| increases and
-   S decreases.
+   |l - L| > Kl S^N have |1-q| > Kl S^N/((1-lambda) max(G)); this gives what 1 asks, and stays true as |1-q| increases
+   and S decreases.
 3. The relation of two flights, F(S, y, y1) = 0, y = l - L(S), maps the cones |dS| <= M |dy| of the strip into
    themselves and expands them.
 
