@@ -84,7 +84,7 @@ def futures(model: Oscillator, phases: tuple[float, ...], classify: Callable[[Ar
 
 
 def _rest_of(model: Oscillator, lifted: float) -> float:
-    """The next lift-off of a mass that lifts off at a time, whose chatter completes; nan where no chatter is seen to."""
+    """The second lift-off of a mass whose chatter completes after the first; nan where none is seen to complete."""
     flown = 1
     while flown <= SETTINGS.flown:  # most chatters complete at once, others after long transients
         flown *= 16
