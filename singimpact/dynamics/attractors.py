@@ -24,7 +24,7 @@ class AttractorSettings:
     catch : how near to an attractor an orbit is looked upon as caught, relative, when the corners of that neighbourhood
         are seen to come in; a tenth of it is tried next, down to `close`.
     turns : of the attractor, in which they must come into half of it; the later ones where multipliers are near 1.
-    spiral : turns of an orbit of several impacts after which it is looked again whether fewer close it. A state that
+    spiral : turns of an orbit after which it is looked again whether its impacts, or fewer, close it. A state that
         still spirals in comes back nearer after two turns than after one, where a multiplier is near +-i.
     """
 
@@ -49,16 +49,20 @@ class Attractor:
 
 
 def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float, most: int = SETTINGS.most_impacts) -> Array:
-    """(n, k) of states that return to themselves, else OTHER; of the orbit they converge to, if its n is smaller."""
+    """(n, k) of states that return to themselves and do so again after many turns, else OTHER.
+
+    A chaotic orbit comes back by chance, once in a million pairs of impacts where its attractor is nearly a curve; and
+    a state that still spirals in comes back nearer after two turns than after one.
+    """
     codes = _returns(model, tau, v, fast, most)
-    several = np.flatnonzero(codes // PLACES > 1)
-    if several.size:
-        impacts = SETTINGS.spiral * int(codes[several].max() // PLACES)
-        ends = iterate(model, tau[several], v[several], impacts)
+    back = np.flatnonzero(codes != OTHER)
+    if back.size:
+        impacts = SETTINGS.spiral * int(codes[back].max() // PLACES)
+        ends = iterate(model, tau[back], v[back], impacts)
         later = _returns(model, ends.tau, ends.v, fast, most)
-        (n, k), (of, around) = divmod(codes[several], PLACES), divmod(later, PLACES)
-        fewer = (ends.status == 0) & (later != OTHER) & (of < n) & (of * k == n * around)
-        codes[several[fewer]] = later[fewer]
+        (n, k), (of, around) = divmod(codes[back], PLACES), divmod(later, PLACES)
+        stays = (ends.status == 0) & (later != OTHER) & (of <= n) & (of * k == n * around)
+        codes[back] = np.where(stays, later, OTHER)
     return codes
 
 

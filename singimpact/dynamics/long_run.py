@@ -26,7 +26,8 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class LongRunSettings:
-    """apart : of two orbits, relative, whose distance is watched. block, rounds : impacts between two looks, and looks.
+    """apart : of two orbits, relative, whose distance is watched. block, rounds : impacts between two looks, and looks;
+    extended : times as many are taken while the sign of the exponent lies within its error.
     least : exponent per impact from which on an orbit is called chaotic, if it is three standard errors above 0 too.
     flown : impacts after a lift-off within which a chatter that completes is looked for.
     """
@@ -34,6 +35,7 @@ class LongRunSettings:
     apart: float = 1e-7
     block: int = 5
     rounds: int = 60
+    extended: int = 16
     least: float = 0.01
     flown: int = 50_000
 
@@ -136,31 +138,40 @@ def chaotic(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
     [False]
     """
     assert model.period is not None
-    period = as_float(model.period)
-    first, growth = [np.array(tau), np.array(v)], np.full((SETTINGS.rounds, tau.size), np.nan)
-    second = [first[0] + SETTINGS.apart * period, first[1] * (1 + SETTINGS.apart)]
-    alive = np.ones(tau.size, dtype=bool)
-    for row in growth:
-        ends = [iterate(model, each[0][alive], each[1][alive], SETTINGS.block) for each in (first, second)]
-        away = np.stack([(ends[1].tau - ends[0].tau) / period, (ends[1].v - ends[0].v) / fast])
-        away[0] -= np.rint(away[0])
-        with np.errstate(all="ignore"):
-            # Benettin et al. (1980): the distance is measured, then set back to `apart` along the same direction
-            size = np.hypot(*away)
-            row[alive] = np.log(np.maximum(size, 1e-16) / SETTINGS.apart)
-            step = away * np.where(size > 1e-16, SETTINGS.apart / size, 1.0)
-        good = (ends[0].status == 0) & (ends[1].status == 0) & np.isfinite(row[alive])
-        first[0][alive] = ends[0].tau - period * np.floor(ends[0].tau / period)
-        first[1][alive] = ends[0].v
-        second[0][alive] = first[0][alive] + step[0] * period
-        second[1][alive] = np.maximum(first[1][alive] + step[1] * fast, 0.5 * first[1][alive])
-        alive[np.flatnonzero(alive)[~good]] = False
-        if not alive.any():
-            break
-    # the first quarter, in which the distance turns towards the direction that grows, is left out
-    late = growth[SETTINGS.rounds // 4 :, alive] / SETTINGS.block
-    result = np.zeros(tau.size, dtype=bool)
-    if alive.any():
-        error = late.std(axis=0) / np.sqrt(len(late))
-        result[alive] = late.mean(axis=0) > np.maximum(SETTINGS.least, 3 * error)
-    return result
+    period, above = as_float(model.period), np.zeros(tau.size, dtype=bool)
+    left, first = np.arange(tau.size), (np.array(tau), np.array(v))
+    second = first[0] + SETTINGS.apart * period, first[1] * (1 + SETTINGS.apart)
+    growth = np.zeros((0, tau.size))
+    while left.size and len(growth) < SETTINGS.rounds * SETTINGS.extended:
+        rows = []
+        for _ in range(SETTINGS.rounds):
+            first, second, row = _grown(model, first, second, period, fast)
+            rows.append(row)
+        growth = np.concatenate([growth, rows])
+        # the first quarter, in which the distance turns towards the direction that grows, is left out
+        late = growth[len(growth) // 4 :] / SETTINGS.block
+        mean, error = late.mean(axis=0), 3 * late.std(axis=0) / np.sqrt(len(late))
+        above[left[mean > np.maximum(SETTINGS.least, error)]] = True
+        undecided = (mean <= error) & (mean + error > SETTINGS.least)  # nan where a flight does not come back
+        left, growth = left[undecided], growth[:, undecided]
+        first, second = ((each[0][undecided], each[1][undecided]) for each in (first, second))
+    return above
+
+
+def _grown(
+    model: Oscillator, first: tuple[Array, Array], second: tuple[Array, Array], period: float, fast: float
+) -> tuple[tuple[Array, Array], tuple[Array, Array], Array]:
+    """States and their neighbours after some impacts, neighbours set back to `apart`, and the growth of the distance.
+
+    Benettin et al. (1980): the distance is measured, then set back along the same direction.
+    """
+    ends = [iterate(model, *each, SETTINGS.block) for each in (first, second)]
+    away = np.stack([(ends[1].tau - ends[0].tau) / period, (ends[1].v - ends[0].v) / fast])
+    away[0] -= np.rint(away[0])
+    with np.errstate(all="ignore"):
+        size = np.hypot(*away)
+        row = np.log(np.maximum(size, 1e-16) / SETTINGS.apart)
+        step = away * np.where(size > 1e-16, SETTINGS.apart / size, 1.0)
+    row[(ends[0].status != 0) | (ends[1].status != 0)] = np.nan
+    tau, v = ends[0].tau - period * np.floor(ends[0].tau / period), ends[0].v
+    return (tau, v), (tau + step[0] * period, np.maximum(v + step[1] * fast, 0.5 * v)), row

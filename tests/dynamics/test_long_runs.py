@@ -108,6 +108,12 @@ def test_a_long_chaotic_transient_ends_on_its_orbit():
     assert any("no period in 300 impacts" in name for _, name, _ in early.classes)
 
 
+def test_a_chaotic_orbit_is_no_periodic_one_that_came_back_by_chance():
+    """An attractor that is nearly a curve, with an exponent of 0.05: two orbits of 81 and 228 impacts were seen there."""
+    found = si.basins(si.linear("1.865", "0.384", "0.653", damping="0.48"), size=14)
+    assert {run.kind for run in found.attractors} == {"chaotic"}
+
+
 @pytest.mark.slow
 def test_a_long_chaotic_transient_costs_its_flights():
     """2500 states fly 6000 impacts each until they settle: searches and idle lanes may add three fifths."""
