@@ -109,7 +109,7 @@ def test_a_long_chaotic_transient_ends_on_its_orbit():
 
 
 def test_a_chaotic_orbit_is_no_periodic_one_that_came_back_by_chance():
-    """An attractor that is nearly a curve, with an exponent of 0.05: two orbits of 81 and 228 impacts were seen there."""
+    """An attractor that is nearly a curve, with an exponent of 0.05: orbits of 81 and 228 impacts were seen there."""
     found = si.basins(si.linear("1.865", "0.384", "0.653", damping="0.48"), size=14)
     assert {run.kind for run in found.attractors} == {"chaotic"}
 
