@@ -144,11 +144,6 @@ def _grown(tree: Any, kinds: Mapping[str, type], array: Callable[[], Any]) -> An
     return tuple(parts_in_order) if kind == "tuple" else parts_in_order
 
 
-def _unfollowed(place: str, flags: int) -> int:
-    """An entry is a regular file; a link is not opened."""
-    return os.open(place, flags | getattr(os, "O_NOFOLLOW", 0))
-
-
 def _changeable(place: Path) -> str | None:
     """Why others could change an entry: from the cache's own folder inwards, up to one that is closed to them."""
     inner = [each for each in place.parents if each.is_relative_to(cache_folder())] or [place.parent]

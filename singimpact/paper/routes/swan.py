@@ -106,17 +106,3 @@ def mu_of_m() -> Any:
     found = sympy.factor(sympy.cancel(Dh_bar()[1, 1].subs(r, r_of_m())))
     substitution(At(Dh_bar()[1, 1], {r: r_of_m()}), found)
     return found
-
-
-@equation("s5-mstar")
-def m_star(rate: Any) -> Any:
-    """m_*, the root in (-1, 0) of the fixed-point polynomial, for a rational restitution: an exact algebraic number.
-
-    Examples
-    --------
-    >>> m_star("1/2").evalf(20)
-    -0.25629759628453099805
-    """
-    poly = sympy.Poly(fixed_point_polynomial().subs(r, sympy.Rational(rate)), m)
-    (root,) = [root for root in poly.real_roots() if -1 < root < 0]
-    return root

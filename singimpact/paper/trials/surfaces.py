@@ -85,22 +85,6 @@ def gradients() -> tuple[Gradient, ...]:
     return tuple(found)
 
 
-@lru_cache(maxsize=1)
-def singular_point() -> Gradient:
-    """x'' + x = cos 2t with c = -1/3: at (0, 0; pi) x-dot, x_v and x_tau vanish together."""
-    return _exact_linear_gradient("x'' + x = cos 2t, c = -1/3")
-
-
-def _exact_linear_gradient(name: str) -> Gradient:
-    tau, v, t = sympy.symbols("tau v t")
-    c, gain = -sympy.Rational(1, 3), -sympy.Rational(1, 3)
-    x = gain * sympy.cos(2 * (tau + t)) + (c - gain * sympy.cos(2 * tau)) * sympy.cos(t)
-    x += (v + 2 * gain * sympy.sin(2 * tau)) * sympy.sin(t)
-    at = {tau: 0, v: 0, t: sympy.pi}
-    parts = [abs(float(sympy.diff(x, name_).subs(at))) for name_ in (tau, v, t)]
-    return Gradient(name, max([abs(float((x - c).subs(at))), *parts]), 0.0)
-
-
 @dataclass(frozen=True)
 class ZeroSetPoint:
     """A point of Z found from rest: second derivative of v along the sheet after the involution, found and expected."""
