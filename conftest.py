@@ -93,6 +93,12 @@ TOGETHER = (
 """Files that need the verdicts of all claims: one worker takes them, so that these are decided once and kept."""
 
 
+def pytest_xdist_auto_num_workers():
+    """One worker a core that this process may use; each takes up to 1 GB of memory."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(cores, 16)
+
+
 def pytest_xdist_make_scheduler(config, log):
     if config.getoption("dist") != "loadfile":
         return None

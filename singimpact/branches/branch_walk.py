@@ -105,7 +105,10 @@ class BranchWalk:
             raise InputError("the orbit does not solve its closing conditions: give one of osc.periodic(n, k)")
         rows = [self._row(start)]
         for sign in (-1.0, 1.0):
-            side = self._side(Curve(self, scales, self.step, speeds), Point(start.at, sign * start.tangent))
+            here = Point(start.at, sign * start.tangent)
+            # an event at the start itself belongs to the second side
+            tests = self.tests.at(here) if sign < 0 else self.tests.leaving(here)
+            side = self._side(Curve(self, scales, self.step, speeds), here, tests)
             rows = side[::-1] + rows if sign < 0 else rows + side
             if self.notes and self.notes[-1].startswith("closed"):
                 break
@@ -113,16 +116,16 @@ class BranchWalk:
 
     # ---- one side
 
-    def _side(self, curve: Curve, start: Point) -> list[Row]:
+    def _side(self, curve: Curve, start: Point, before: Tests) -> list[Row]:
         kept = KeptSide(self._key(start))
         try:
-            return self._followed(curve, start, kept)
+            return self._followed(curve, start, before, kept)
         finally:
             kept.write()
 
-    def _followed(self, curve: Curve, start: Point, kept: KeptSide) -> list[Row]:
+    def _followed(self, curve: Curve, start: Point, before: Tests, kept: KeptSide) -> list[Row]:
         rows: list[Row] = []
-        before, last = self.tests.at(start), start
+        last = start
         low, high = self.ends
         for index, (here, length, after) in enumerate(self._steps(curve, start, kept)):
             stored = kept.points[index] if index < len(kept.points) else None

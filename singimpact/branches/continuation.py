@@ -32,6 +32,8 @@ class ContinuationSettings:
     # Newton's method: rounds, and the tolerance relative to the scales
     rounds: int = 8
     arrived: float = 1e-13
+    # the tolerance after two rounds: conditions that are computed from a cubic of the number were off by 1e-12
+    rounded: float = 1e-11
     # numbers of rounds after which the next step is longer, or shorter
     easy: int = 4
     longer: float = 1.5
@@ -89,13 +91,13 @@ class Curve:
         """The point of the curve next to a guess; its tangent points along `towards`."""
         point = at.copy()
         direction = None
-        for _ in range(4 * SETTINGS.rounds):
+        for count in range(1, 4 * SETTINGS.rounds + 1):
             values, slopes = self._scaled(point)
             if not _finite(values, slopes):
                 return None
             change = np.linalg.lstsq(slopes, values, rcond=None)[0]
             point = point - change * self.scales
-            if np.abs(change).max() <= SETTINGS.arrived:
+            if _converged(float(np.abs(change).max()), count):
                 direction = null_vector(self._scaled(point)[1])
                 break
         if direction is None:
@@ -120,7 +122,7 @@ class Curve:
                 return None
             point = point - change * self.scales
             size = float(np.abs(change).max())
-            if size <= SETTINGS.arrived or (count > 2 and size <= 1e-11):
+            if _converged(size, count):
                 return self._with_tangent(point, start.tangent), count
             if size > 4 * max(self.step, abs(length)):
                 return None
@@ -238,6 +240,11 @@ def null_plane(slopes: Array, tangent: Array) -> Array:
     shares = plane @ tangent
     across = plane.T @ np.array([-shares[1], shares[0]])
     return np.asarray(across / np.linalg.norm(across) * (1.0 if across[np.argmax(np.abs(across))] > 0 else -1.0))
+
+
+def _converged(size: float, count: int) -> bool:
+    """Whether Newton's method has come to the end of its digits, by its last change and its number of rounds."""
+    return size <= SETTINGS.arrived or (count > 2 and size <= SETTINGS.rounded)
 
 
 def cubic_between(before: Any, rate: Any, after: Any, later: Any) -> tuple[Any, Any]:

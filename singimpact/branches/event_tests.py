@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import copysign
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,8 @@ Key = tuple[str, int, int]
 """Kind of the event, impact or flight, and which of its minima."""
 NUDGE = 1e-6
 """A forward difference along the tangent, in scaled unknowns: rates then have a relative error of 1e-6 or less."""
+LEAST, RESTING = 1e-300, 1e-8
+"""In place of 0 at the first point; its product with another value is not 0. Of the torus test a part of its terms."""
 REMEMBERED = 8
 """Points whose closing conditions and minima are remembered."""
 
@@ -102,6 +105,16 @@ class EventTests:
             for j, (time, height) in enumerate(turn for turn in turns if np.isfinite(turn[1])):
                 rate = self.closing.rise(point.at, direction, i, time)
                 tests["hidden impact" if n else "graze", i, j] = Test(height, rate, time / span)
+        return tests
+
+    def leaving(self, point: Point) -> Tests:
+        """Every test function at the first point of a branch; one that is 0 there has the sign from which it comes."""
+        tests = self.at(point)
+        for key, test in tests.items():
+            # the torus test is 0 up to rounding of its terms; without losses it is 0 everywhere, and its rate too
+            zero = RESTING * test.share if key[0] == "torus" else LEAST
+            if abs(test.value) < zero and (key[0] != "torus" or abs(test.rate) > NUDGE * test.share):
+                tests[key] = test._replace(value=-copysign(zero, test.rate))
         return tests
 
     def _smooth(self, loop: Loop, tangent: Array | None, before: Array) -> dict[str, float]:

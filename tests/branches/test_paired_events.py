@@ -72,3 +72,23 @@ def test_two_events_that_meet_are_listed_or_noted(share: float) -> None:
     grazes = [event.parameter for event in branch.events if event.kind == "graze" and abs(event.parameter) < 1e-6]
     noted = [note for note in branch.notes if "the test of a graze comes so near to 0" in note]
     assert (len(grazes), len(noted)) in ((2, 0), (0, 1))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", paired_events.KINDS)
+def test_a_branch_from_the_orbit_of_an_event_has_that_event(kind):
+    """A test function is 0 at the start there, up to rounding; of both sides one has the event."""
+    for turn in range(4):
+        pair = paired_events.drawn(kind, np.random.default_rng([41, turn]), (1e-2, 1e-1))
+        for event in si.branch(pair.orbit, "q", pair.between).events:
+            if event.kind in (kind, "period-doubling") and min(abs(event.parameter - at) for at in pair.events) < 1e-6:
+                again = si.branch(event.orbit, "q", pair.between).events
+                same = [
+                    each for each in again if each.kind == event.kind and abs(each.parameter - event.parameter) < 1e-8
+                ]
+                assert same, (pair, event)
+
+
+@pytest.mark.parametrize("turn", [879, 1184])
+def test_a_branch_begins_where_rounding_of_the_number_is_larger_than_that_of_the_orbit(turn):
+    check(paired_events.drawn("fold", np.random.default_rng([1, turn]), (1e-4, 1e-1)))
