@@ -24,6 +24,7 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: takes more than some seconds; runs with --slow, and in .ci/run")
+    config.addinivalue_line("markers", "quick: of a file in QUICK; -m quick collects these files alone, in 20 s")
     plain = "plain_code: reads bytecode or counts calls; .ci/check runs it without the probes that count lines"
     config.addinivalue_line("markers", plain)
     if not hasattr(config, "workerinput"):  # workers of one run share the cache of the first
@@ -71,10 +72,29 @@ def pytest_runtest_teardown(item):  # noqa: ARG001
 
 
 def pytest_sessionstart(session):
-    if not hasattr(session.config, "workerinput") and not session.config.option.collectonly:
+    option = session.config.option
+    if not hasattr(session.config, "workerinput") and not option.collectonly and option.markexpr != "quick":
         import singimpact as si
 
         si.linear(2, 0, "1/2").impact_map(1, "0.1")  # a process begins to compile the kernels of linear models
+
+
+QUICK = (
+    "tests/algebra/test_puiseux.py", "tests/branches/test_continuation.py", "tests/branches/test_family.py",
+    "tests/cli/test_refusals.py", "tests/codegen/test_recurrence.py", "tests/contact/test_contact_orders.py",
+    "tests/dynamics/test_orbit.py", "tests/flights/test_derivative.py", "tests/flights/test_path.py",
+    "tests/germs/test_recognition.py", "tests/oscillator/test_model.py", "tests/scenes/test_style.py",
+    "tests/surface/test_followed_rests.py", "tests/test_public_names.py", "tests/test_store.py",
+    "tests/theory/test_fixed_points.py", "tests/theory/test_sheet.py",
+)  # fmt: skip
+"""One or two files of each room that take less than a second: `python -m pytest -m quick`."""
+
+
+def pytest_ignore_collect(collection_path, config):
+    """With -m quick no other file is even imported."""
+    if config.option.markexpr != "quick" or collection_path.is_dir():
+        return None
+    return None if collection_path.relative_to(config.rootpath).as_posix() in QUICK else True
 
 
 WITHOUT_FLIGHTS = ("tests/paper/claims/", "tests/algebra/", "tests/theory/", "tests/contact/", "tests/architecture/",
@@ -112,6 +132,9 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def pytest_collection_modifyitems(config, items):
+    for item in items:
+        if item.nodeid.partition("::")[0] in QUICK:
+            item.add_marker("quick")
     items.sort(key=lambda item: (not item.nodeid.startswith(WITHOUT_FLIGHTS), item.path.name not in LONGEST))
     left_out = set() if config.getoption("--slow") else {"slow"}
     if os.environ.get("SLIPCOVER_ENABLED"):
