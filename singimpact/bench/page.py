@@ -50,8 +50,8 @@ STRESS_COMMAND = "singimpact stress --format page -o docs/stress.md"
 STRESS_ABOUT = f"""# Stress: next to every bad place
 
 Each public numerical function is driven towards each place that is hard for it, geometrically, on both sides where
-there are two, and its error is measured against 60 digits: $v \\to 0$, $t \\to 0$, resonance, $r \\to 0$ and $r
-\\to 1$, a tangency ($a \\to 0$), a swan ($a' \\to 0$), the outline $P$, the zero set $Z$, phases far from zero,
+there are two, and its error is measured against 60 digits: $v \\to 0$, $t \\to 0$, resonance, $r \\to 0$ and
+$r \\to 1$, a tangency ($a \\to 0$), a swan ($a' \\to 0$), the outline $P$, the zero set $Z$, phases far from zero,
 long flights. One unit is what rounding of the inputs alone must cost: $\\varepsilon$ times the size of the value
 and of what a relative change of each input does to it. Over 100 units is a failure, and the command ends with exit
 code 1; `inf` would be a wrong status.
