@@ -36,10 +36,18 @@ class Certified:
         return f"{type(self).__name__}({self} +- {text_of(self.radius, 2)})"
 
     def as_dict(self) -> dict[str, str]:
-        """value and radius as decimal text; the radius covers the rounding of the text, which has two more digits."""
+        """value and radius as decimal text; the radius covers the rounding of the text, which has two more digits.
+
+        Examples
+        --------
+        >>> import mpmath
+        >>> Certified(mpmath.mpf(0), mpmath.mpf(0), 20).as_dict()
+        {'value': '0.0', 'radius': '1.01e-21'}
+        """
         with bits_at(64) as mp:
-            value, radius = mp.convert(self.value), mp.convert(self.radius)
-            radius = 1.01 * (radius + abs(value) * mp.mpf(10) ** (-self.digits - 1))
+            value, radius, part = mp.convert(self.value), mp.convert(self.radius), mp.mpf(10) ** (-self.digits - 1)
+            # a ball of one point would be no ball for another enclosure to lie in
+            radius = 1.01 * (radius + abs(value) * part or part)
             return {"value": text_of(self.value, self.digits + 2), "radius": text_of(radius, 3)}
 
     def contains(self, number: Any) -> bool:

@@ -243,3 +243,10 @@ def test_bad_command_lines(words, why):
     done = CliRunner().invoke(command, list(words))
     assert isinstance(done.exception, si.InputError)
     assert why in str(done.exception)
+
+
+def test_gamma_that_ends_at_time_zero_is_accepted():
+    """tau_* = 0 is exact: its ball has a radius all the same."""
+    model = si.ImpactOscillator("x", "sin(2*t)", 0, "1/2")
+    text = si.certify(model.certified_gamma("-0.1", reach="1/4")).text
+    checker.check(json.loads(text))
