@@ -94,12 +94,11 @@ class DiscWriter:
     def _product(self, factors: tuple[Expression, ...]) -> str:
         steady = [factor for factor in factors if not moves(factor)]
         moving = [factor for factor in factors if moves(factor)]
-        size, radius = f"abs({self.centre(moving[0])})", self.radius(moving[0])
-        for factor in moving[1:]:
-            other, more = f"abs({self.centre(factor)})", self.radius(factor)
-            # |uv - u0 v0| <= r_u (|v0| + r_v) + |u0| r_v
-            radius = f"({radius} * ({other} + {more}) + {size} * {more})"
-            size = f"{size} * {other}"
+        size, radius, *others = [text for part in moving for text in (f"abs({self.centre(part)})", self.radius(part))]
+        for other, more in zip(others[::2], others[1::2], strict=True):
+            # |uv - u0 v0| <= r_u (|v0| + r_v) + |u0| r_v; one line a factor, as Python nests 200 brackets at most
+            self.lines.append(f"of_all, size = {radius} * ({other} + {more}) + {size} * {more}, {size} * {other}")
+            size, radius = "size", "of_all"
         return f"abs({self.constant(multiply(*steady))}) * {radius}" if steady else radius
 
     def _power(self, tree: Expression, base: Expression, exponent: Expression) -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from random import Random
+from typing import Any
 
 import mpmath
 import pytest
@@ -14,6 +16,7 @@ from singimpact.flights.bind import over_lists
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.kernels.state import Work
 from singimpact.impact_oscillator import ImpactOscillator
+from singimpact.inputs import InputError
 
 
 @pytest.mark.parametrize(
@@ -52,3 +55,46 @@ def test_models_of_one_structure_share_a_text() -> None:
         for c, r, k, w in ((0, 1, 0.3, 1), (0.2, 0.5, 7, "sqrt(2)"))
     )
     assert compiled_model(one).recurrence.machine is compiled_model(two).recurrence.machine
+
+
+def powers(least: int, most: int) -> str:
+    return "+".join(f"x**{power}" for power in range(least, most))
+
+
+def test_products_of_one_pair_are_computed_once() -> None:
+    """A polynomial of degree 99 had 893 rows with its derivatives."""
+    text = "+".join(f"x**{power}/{power}" for power in range(2, 100))
+    assert recurrence(parse(text, ["x"]), parse("0")).rows <= 300
+
+
+@pytest.mark.parametrize(
+    "force",
+    [powers(2, 900), "*".join(["x"] * 2400), "*".join(f"(x + {k})" for k in range(500)),
+     "+".join(f"sin({k}*x)" for k in range(1, 500)), "*".join(f"tanh({k}*x)" for k in range(1, 300))],
+)  # fmt: skip
+def test_a_recurrence_of_too_many_rows_is_refused(force: str, work_of: Any) -> None:
+    tree = parse(force, ["x", "xdot"])
+
+    def refused() -> None:
+        with pytest.raises(InputError, match=r"f = .* is not accepted: give an expression with at most 600 products"):
+            recurrence(tree, parse("cos(t)", ["t"]))
+
+    assert work_of(refused) < 3_000_000
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_text_of_drawn_products_is_a_program(seed: int) -> None:
+    """A product of 250 factors had 250 brackets inside each other, of which Python takes 200."""
+    random = Random(seed)
+    parts = ["x", "xdot", "(x + 1)", "sin(x)"]
+    force = "*".join(random.choice(parts[: random.randrange(1, 5)]) for _ in range(random.randrange(2, 280)))
+    try:
+        compile(recurrence(parse(force, ["x", "xdot"]), parse("t", ["t"])).source, "<emitted>", "exec")
+    except InputError as error:
+        assert "at most 600" in str(error)
+
+
+def test_deep_trees_are_written_soon(work_of: Any) -> None:
+    """Each level asked all levels below it for their names and their hashes."""
+    tree = parse("(1+" * 58 + "x" + ")**2*xdot" * 58, ["x", "xdot"])
+    assert work_of(lambda: recurrence(tree, parse("0"))) < 1_000_000
