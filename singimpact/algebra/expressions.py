@@ -16,12 +16,20 @@ FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "atan", "abs")
 
 @dataclass(frozen=True)
 class Folding:
-    """`bits` of a power of rationals that is multiplied out; (1e-300)**17000 has 17 million bits and takes 4 s."""
+    """What is computed of rationals.
+
+    Parameters
+    ----------
+    bits : of a power that is multiplied out; (1e-300)**17000 has 17 million bits and takes 4 s. rational : bits of a
+        sum or product that is written as one number; a product of 1400 factors 1e4000 took 67 s.
+    """
 
     bits: int = 16_000
+    rational: int = 100_000
 
 
 FOLDING = Folding()
+PLACES = 60  # digits after the point of a number that is written as a decimal
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +60,28 @@ class Name:
         return self.name
 
 
+class Inner:
+    """A part that has parts. Its hash and its names are computed once, because all levels of a deep tree are asked."""
+
+    __slots__ = ("_hash", "_names")
+    _hash: int
+    _names: frozenset[str]
+
+    def _hashed(self) -> int:
+        try:
+            return self._hash
+        except AttributeError:
+            parts = tuple(getattr(self, name) for name in type(self).__match_args__)  # type: ignore[attr-defined]
+            object.__setattr__(self, "_hash", hash((type(self), parts)))
+            return self._hash
+
+
 @dataclass(frozen=True, slots=True)
-class Sum:
+class Sum(Inner):
     """terms[0] + terms[1] + ..."""
 
     terms: tuple[Expression, ...]
+    __hash__ = Inner._hashed
 
     def __str__(self) -> str:
         parts = [str(self.terms[0])]
@@ -67,10 +92,11 @@ class Sum:
 
 
 @dataclass(frozen=True, slots=True)
-class Product:
+class Product(Inner):
     """factors[0] * factors[1] * ...; a factor with exponent -1 prints as a division."""
 
     factors: tuple[Expression, ...]
+    __hash__ = Inner._hashed
 
     def __str__(self) -> str:
         head, *rest = self.factors
@@ -85,11 +111,12 @@ class Product:
 
 
 @dataclass(frozen=True, slots=True)
-class Power:
+class Power(Inner):
     """base ** exponent."""
 
     base: Expression
     exponent: Expression
+    __hash__ = Inner._hashed
 
     def __str__(self) -> str:
         base = str(self.base)
@@ -100,11 +127,12 @@ class Power:
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class Call(Inner):
     """function(argument) for a function of the whitelist."""
 
     function: str
     argument: Expression
+    __hash__ = Inner._hashed
 
     def __str__(self) -> str:
         return f"{self.function}({self.argument})"
@@ -149,12 +177,12 @@ def decimal_text(value: Fraction) -> str:
     if value.denominator == 1:
         return _digits(value.numerator)
     rest, twos, fives = value.denominator, 0, 0
-    while rest % 2 == 0:
+    while rest % 2 == 0 and twos <= PLACES:
         rest, twos = rest // 2, twos + 1
-    while rest % 5 == 0:
+    while rest % 5 == 0 and fives <= PLACES:
         rest, fives = rest // 5, fives + 1
     places = max(twos, fives)
-    if rest != 1 or places > 60:
+    if rest != 1 or places > PLACES:
         return f"{_digits(value.numerator)}/{_digits(value.denominator)}"
     digits = _digits(abs(value.numerator) * 10**places // value.denominator).rjust(places + 1, "0")
     return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"
@@ -175,27 +203,39 @@ def number(value: int | Fraction) -> Number:
 
 
 def add(*terms: Expression) -> Expression:
-    """The sum, with sums flattened and rationals collected."""
+    """The sum, with sums flattened and rationals collected, unless their sum is huge."""
     flat = [part for term in terms for part in (term.terms if isinstance(term, Sum) else (term,))]
-    constant = sum((part.value for part in flat if isinstance(part, Number)), Fraction(0))
-    others: list[Expression] = [part for part in flat if not isinstance(part, Number)]
+    constant, others = Fraction(0), list[Expression]()
+    for part in flat:
+        if isinstance(part, Number) and _is_short(constant, part.value):
+            constant += part.value
+        else:
+            others.append(part)
     if constant or not others:
         others.append(Number(constant))
     return others[0] if len(others) == 1 else Sum(tuple(others))
 
 
 def multiply(*factors: Expression) -> Expression:
-    """The product, with products flattened and rationals collected in front."""
+    """The product, with products flattened and rationals collected in front, unless their product is huge."""
     flat = [part for factor in factors for part in (factor.factors if isinstance(factor, Product) else (factor,))]
-    constant = Fraction(1)
+    constant, others = Fraction(1), list[Expression]()
     for part in flat:
-        constant *= part.value if isinstance(part, Number) else 1
-    others: list[Expression] = [part for part in flat if not isinstance(part, Number)]
+        if isinstance(part, Number) and (not part.value or _is_short(constant, part.value)):
+            constant *= part.value
+        else:
+            others.append(part)
     if not constant:
         return ZERO
     if constant != 1 or not others:
         others.insert(0, Number(constant))
     return others[0] if len(others) == 1 else Product(tuple(others))
+
+
+def _is_short(left: Fraction, right: Fraction) -> bool:
+    """Whether sum and product of two rationals are written as one number."""
+    bits = sum(whole.bit_length() for each in (left, right) for whole in (each.numerator, each.denominator))
+    return bits <= FOLDING.rational
 
 
 def power(base: Expression, exponent: Expression) -> Expression:
@@ -250,7 +290,13 @@ def walk(tree: Expression) -> Iterator[Expression]:
 
 def names_in(tree: Expression) -> frozenset[str]:
     """The names that occur."""
-    return frozenset(part.name for part in walk(tree) if isinstance(part, Name))
+    if not isinstance(tree, Inner):
+        return frozenset((tree.name,)) if isinstance(tree, Name) else frozenset()
+    try:
+        return tree._names
+    except AttributeError:
+        object.__setattr__(tree, "_names", frozenset[str]().union(*map(names_in, children(tree))))
+        return tree._names
 
 
 class Ring(Protocol):

@@ -1,6 +1,7 @@
 """The whitelist parser: what it reads, and that every refusal is one line, at once, without running anything."""
 
 from fractions import Fraction
+from random import Random
 
 import pytest
 import sympy
@@ -8,8 +9,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import Number, evaluate
-from singimpact.algebra.numbers import as_float, compare, constant, exact, float_array
+from singimpact.algebra.expressions import FOLDING, Number, evaluate, walk
+from singimpact.algebra.numbers import as_float, compare, constant, exact, float_array, sign_of
 from singimpact.algebra.parsing import from_sympy, parse
 from singimpact.algebra.rings import EXACT, to_sympy
 from singimpact.impact_oscillator import ImpactOscillator
@@ -182,3 +183,28 @@ def test_each_bound_of_the_parser_stands(accepted, refused):
     parse(accepted, ["x"])
     with pytest.raises(InputError):
         parse(refused, ["x"])
+
+
+def bits_in(tree):
+    """The bits of the longest rational of a tree."""
+    numbers = [part.value for part in walk(tree) if isinstance(part, Number)]
+    return max(max(value.numerator.bit_length(), value.denominator.bit_length()) for value in numbers)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_products_of_many_digits_stay_products(seed):
+    """A product of 1400 factors 1e4000 took 67 s to read."""
+    random = Random(seed)
+    sizes = [random.choice([4000, -3990, 3000, -1]) for _ in range(1200)]
+    tree = parse("*".join(f"1e{size}" for size in sizes))
+    assert bits_in(tree) <= FOLDING.rational
+    ball = Balls(64).evaluate(tree, {})
+    assert abs(ball.log() / Balls(64).evaluate(parse("log(10)"), {}) - sum(sizes)) < 1e-9
+
+
+def test_sums_of_many_digits_stay_sums():
+    """Denominators without a common divisor: their product has 10 million bits."""
+    primes = [n for n in range(9001, 20000, 2) if all(n % d for d in range(3, 142, 2))]
+    tree = parse("+".join(f"1/{prime}**999" for prime in primes[:700]))
+    assert bits_in(tree) <= FOLDING.rational
+    assert sign_of(tree) == 1
