@@ -46,6 +46,11 @@ def test_what_fails_on_a_part_of_the_interval_does_not_hold():
     def above(low):
         return lambda piece: bool(piece > balls.rational(low))
 
-    assert barrier._on_pieces(above(Fraction(-1, 100)), balls, 4.0)
-    assert not barrier._on_pieces(above(Fraction(1, 100)), balls, 4.0)
-    assert not barrier._on_pieces(lambda piece: bool(piece < balls.rational(Fraction(399, 100))), balls, 4.0)
+    assert barrier._on_pieces(above(Fraction(-1, 100)), balls, 4.0, barrier.Operations(MODELS["weak"][0]))
+    assert not barrier._on_pieces(above(Fraction(1, 100)), balls, 4.0, barrier.Operations(MODELS["weak"][0]))
+    assert not barrier._on_pieces(
+        lambda piece: bool(piece < balls.rational(Fraction(399, 100))),
+        balls,
+        4.0,
+        barrier.Operations(MODELS["weak"][0]),
+    )

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import Name, add, evaluate, multiply, number, substitute
+from singimpact.algebra.expressions import Name, add, evaluate, multiply, number, substitute, walk
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
@@ -36,7 +36,10 @@ class BarrierSettings:
     Attributes
     ----------
     slopes, heights : powers of two tried for lambda and kappa, and for Z.
-    grid : points of [0, Z] in doubles, denser towards 0. pieces : of [0, Z] at most, in balls.
+    grid : points of [0, Z] in doubles, denser towards 0. pieces : of [0, Z] at most, in balls. shortest : part of
+        [0, Z] that is not halved any more; without it a proof that fails at one point took all pieces.
+    operations : nodes of f that are evaluated in one search, 2 us each; what is not proved then is not proved. Searches
+        of ordinary models take 1000 to 40 000.
     """
 
     slopes: range = range(-6, 15)
@@ -44,6 +47,8 @@ class BarrierSettings:
     grid: int = 200
     pieces: int = 2000
     bits: int = 96
+    shortest: Fraction = Fraction(1, 2**60)
+    operations: int = 300_000
 
 
 SEARCH = BarrierSettings()
@@ -64,7 +69,7 @@ def kept_up(osc: Oscillator, v: Array) -> Array:
 @lru_cache(maxsize=256)
 def fastest_kept(osc: Oscillator) -> float:
     """The largest launch velocity between proved barriers; 0 without any."""
-    clearance = as_float(osc.clearance)
+    clearance, left = as_float(osc.clearance), Operations(osc)
 
     def force(z: Array, speed: Array) -> Array:
         with np.errstate(all="ignore"):
@@ -85,25 +90,43 @@ def fastest_kept(osc: Oscillator) -> float:
         z = height * part
         if not high - force(z[-1:], nothing)[0] < 0:
             continue
-        below = [s for s in _slopes() if np.all(low - force(z, -s * z) - s * s * z > 0)]
+        below = [s for s in _slopes() if left.spend() and np.all(low - force(z, -s * z) - s * s * z > 0)]
         rest = height - z
-        above = [s for s in _slopes() if np.all(high - force(z, s * rest) + s * s * rest < 0)]
+        above = [s for s in _slopes() if left.spend() and np.all(high - force(z, s * rest) + s * s * rest < 0)]
         for steep in reversed(above):
             for flat in below:
-                if _proved(osc, extremes, height, flat, steep):
+                if _proved(osc, extremes, (height, flat, steep), left):
                     return steep * height
     return 0.0
+
+
+class Operations:
+    """What a search may still evaluate."""
+
+    def __init__(self, osc: Oscillator) -> None:
+        self.price = sum(1 for _ in walk(osc.force()))
+        self.left = SEARCH.operations
+
+    def spend(self) -> bool:
+        """Whether f may be evaluated once more."""
+        self.left -= self.price
+        return self.left >= 0
 
 
 def _slopes() -> list[float]:
     return [2.0**k for k in SEARCH.slopes]
 
 
-def _proved(osc: Oscillator, extremes: tuple[Any, Any], height: float, flat: float, steep: float) -> bool:
-    """Both inequalities on [0, height], in balls."""
+def _proved(osc: Oscillator, extremes: tuple[Any, Any], barriers: tuple[float, float, float], left: Operations) -> bool:
+    """Both inequalities on [0, height], in balls.
+
+    Parameters
+    ----------
+    barriers : the height, and the slopes of the lower and the upper barrier.
+    """
     balls = Balls(SEARCH.bits)
     z = Name("z")
-    top, slope, bar = (number(Fraction(value)) for value in (height, flat, steep))
+    top, slope, bar = (number(Fraction(value)) for value in barriers)
     rest = add(top, multiply(number(-1), z))
     place = add(osc.clearance, z)
     lower = add(
@@ -120,16 +143,18 @@ def _proved(osc: Oscillator, extremes: tuple[Any, Any], height: float, flat: flo
         return bool(extremes[0] + first > 0) and bool(extremes[1] + second < 0)
 
     with balls_at(SEARCH.bits):
-        return _on_pieces(holds, balls, height)
+        return _on_pieces(holds, balls, barriers[0], left)
 
 
-def _on_pieces(holds: Callable[[Any], bool], balls: Balls, height: float) -> bool:
+def _on_pieces(holds: Callable[[Any], bool], balls: Balls, height: float, left: Operations) -> bool:
     """Whether something holds on pieces that cover [0, height]."""
     stack = [(Fraction(0), Fraction(height))]
     for _ in range(SEARCH.pieces):
         if not stack:
             return True
         low, high = stack.pop()
+        if high - low < SEARCH.shortest * Fraction(height) or not left.spend():
+            return False
         if not holds(balls.rational(low).union(balls.rational(high))):
             middle = (low + high) / 2
             stack += [(middle, high), (low, middle)]
