@@ -114,8 +114,12 @@ class Doubles:
 
     def power(self, base: Any, exponent: Fraction) -> Any:
         if exponent.denominator == 1 and abs(exponent) <= 64:
-            return base ** int(exponent) if exponent > 0 else 1.0 / base ** int(-exponent)
-        return np.power(base, float(exponent))
+            try:
+                return base ** int(exponent) if exponent > 0 else 1.0 / base ** int(-exponent)
+            except (OverflowError, ZeroDivisionError):  # Python's floats; numpy's are inf then
+                pass
+        with np.errstate(all="ignore"):
+            return np.power(base, float(exponent))
 
     def call(self, function: str, argument: Any) -> Any:
         return getattr(np, {"atan": "arctan"}.get(function, function))(argument)

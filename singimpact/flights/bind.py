@@ -14,7 +14,7 @@ import math
 import types
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 from singimpact.codegen import radii
@@ -157,10 +157,27 @@ def over_lists(flow: str, rho: str = "", exact_restart: bool = True) -> Callable
 @lru_cache(maxsize=1)
 def floats_of() -> dict[str, Any]:
     """Functions of Python's floats that return inf and nan where compiled ones do, and raise nothing."""
-    found = {name: getattr(math, name) for name in FUNCTIONS}
+    found: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
     found["exp"] = lambda x: math.exp(x) if not x > 709.78 else math.inf
     found["log"] = lambda x: math.log(x) if x > 0 else math.nan
+    found["log1p"] = lambda x: math.log1p(x) if x > -1 else math.nan
+    found["expm1"] = lambda x: math.expm1(x) if not x > 709.78 else math.inf
+    found["sinh"] = lambda x: math.sinh(x) if abs(x) < 710.47 else x * math.inf
+    for name in ("sin", "cos", "tan"):
+        found[name] = partial(_circular, found[name])
     return found
+
+
+def _circular(function: Callable[[float], float], x: float) -> float:
+    return function(x) if -math.inf < x < math.inf else math.nan
+
+
+def _power_of_floats(w: float, q: float) -> float:
+    """`radii.real_power` of floats; Python raises where the power is too large for a double."""
+    try:
+        return float(radii.real_power(w, q))
+    except OverflowError:
+        return math.copysign(math.inf, w) if q % 2 == 1 else math.inf
 
 
 @lru_cache(maxsize=64)
@@ -174,7 +191,9 @@ def over_mpmath(context: Any, flow: str = "", exact_restart: bool = True) -> dic
 @lru_cache(maxsize=64)
 def over_floats(flow: str = "", rho: str = "") -> dict[str, Any]:
     """The kernels on Python's floats and lists of lists, never compiled."""
-    return over_lists(flow, rho)(floats_of())
+    made = over_lists(flow, rho)(floats_of())
+    made["real_power"] = _power_of_floats
+    return made
 
 
 @lru_cache(maxsize=64)
