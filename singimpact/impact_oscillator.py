@@ -49,7 +49,7 @@ class ImpactOscillator(Oscillator):
             exactly 3/10.
         digits : decimal digits of the result, which then holds mpmath numbers. horizon : flight time at which the
             search ends; without it 1000 periods of the forcing, or more where the motion is slow beside it.
-        tolerance : relative error of a step of a nonlinear flight. steps : Taylor steps at most (16000). out : arrays
+        tolerance : relative error of a step of a nonlinear flight. steps : Taylor steps at most. out : arrays
             to write the results to, by field.
 
         Returns

@@ -20,7 +20,7 @@ from singimpact.codegen.recurrence import Recurrence
 from singimpact.codegen.scalar import scalar
 from singimpact.flights import counted
 from singimpact.flights.bind import LAW, Emitted
-from singimpact.flights.horizons import Allowance, horizon_of, reach_of
+from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
 from singimpact.flights.interruptible import LONG, interruptible
 from singimpact.flights.kernels import entries, layout
@@ -82,7 +82,7 @@ PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_
 @lru_cache(maxsize=256)
 def compiled_model(osc: Oscillator) -> CompiledModel:
     """The compiled model of an oscillator with the default horizon, accuracy and number of steps."""
-    return allowed(osc, Allowance(horizon_of(osc, None), reach=reach_of(osc)))
+    return allowed(osc, Allowance(horizon_of(osc, None), steps=steps_of(osc), reach=reach_of(osc)))
 
 
 @lru_cache(maxsize=64)

@@ -10,7 +10,7 @@ import numpy as np
 from singimpact.algebra.expressions import names_in
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import allowed, compiled_model
-from singimpact.flights.horizons import Allowance, horizon_of
+from singimpact.flights.horizons import Allowance, horizon_of, steps_of
 from singimpact.flights.kernels.state import TIME_BY_TAU, VELOCITY_BY_V
 from singimpact.flights.rebound_law import rebound, rebound_slope
 from singimpact.flights.response import response, touching
@@ -44,7 +44,11 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
     if many(tau, v):
         return in_blocks(partial(derivative, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     states = States.of(osc, tau, v)
-    model = compiled_model(osc) if horizon is None else allowed(osc, Allowance(horizon_of(osc, horizon)))
+    model = (
+        compiled_model(osc)
+        if horizon is None
+        else allowed(osc, Allowance(horizon_of(osc, horizon), steps=steps_of(osc)))
+    )
     hit, rows = flights_and_rows(osc, model, states)
     status, velocity = np.asarray(hit.status).copy(), hit.velocity
     known = rows[TIME_BY_TAU : VELOCITY_BY_V + 1]

@@ -12,8 +12,9 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float, constant, sign_of
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.kernels.hits import UNIT as EPSILON
+from singimpact.flights.kernels.state import LATEST
 from singimpact.flights.limits import LIMITS
-from singimpact.flights.model_numbers import fastest_rate
+from singimpact.flights.model_numbers import fastest_rate, has_table, recurrence_of
 from singimpact.inputs import refuse
 from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
@@ -48,7 +49,7 @@ class Allowance:
 
     Parameters
     ----------
-    horizon, reach : a flight with launch velocity v is given up after the time max(horizon, reach v).
+    horizon, reach : a flight with launch velocity v is given up after the time max(horizon, min(reach v, LATEST)).
     epsilon : relative error of a Taylor step. steps : Taylor steps.
     """
 
@@ -59,7 +60,7 @@ class Allowance:
 
     def until(self, v: Any) -> Any:
         """The flight time at which flights with launch velocities v are given up."""
-        return np.maximum(self.horizon, self.reach * v)
+        return np.maximum(self.horizon, np.minimum(self.reach * v, LATEST))
 
 
 def horizon_of(osc: Oscillator, horizon: Any) -> float:
@@ -79,6 +80,19 @@ def horizon_of(osc: Oscillator, horizon: Any) -> float:
             raise refuse("horizon", horizon, f"at most {longest:.3g}, 1e7 radians of the model's fastest motion")
         return as_float(tree)
     return _usual(osc)[0]
+
+
+def steps_of(osc: Oscillator) -> int:
+    """The Taylor steps after which a flight is given up by default; fewer of a long f or g, whose steps take longer.
+
+    Examples
+    --------
+    >>> steps_of(Oscillator("x**3", "cos(t)", 0, 1))
+    16000
+    """
+    if has_table(osc):
+        return LIMITS.steps
+    return min(LIMITS.steps, int(LIMITS.steps_by_price / recurrence_of(osc).price))
 
 
 def reach_of(osc: Oscillator) -> float:

@@ -17,9 +17,8 @@ from singimpact.algebra.numbers import as_float, constant
 from singimpact.flights import undecided
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import EPSILON, CompiledModel, allowed, compiled_model
-from singimpact.flights.horizons import Allowance, horizon_of, reach_of
+from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.kernels.hits import CANCELS
-from singimpact.flights.limits import LIMITS
 from singimpact.flights.rebound_law import rebound
 from singimpact.flights.response import response
 from singimpact.flights.results import SCALAR_STATUS, Flight, Step
@@ -48,8 +47,9 @@ def first_hit(
     tolerance : relative error allowed in a step of a Taylor flow, and, times ten, of a hit before it is refined.
     horizon : time after which a flight is given up. Without it at least 1000 periods of g (1e4 without a period, at
         most 2e5 radians of the fastest motion), 2 periods of a slow g, 64 half turns of the free motion (4 if f is not
-        linear), and 8 v over the mean force. At most 1e7 radians.
-    steps : Taylor steps after which a flight of a model without a closed form is given up, 16000 if not given.
+        linear), and 8 v over the mean force (at most 2e7). At most 1e7 radians.
+    steps : Taylor steps after which a flight of a model without a closed form is given up; without it 16000, or
+        fewer where f and g have many products and functions (700 of 100).
     out : arrays that take the results, by field: {"flight_time": a, "velocity": b}, memory maps too. Of the shape of
         the states, doubles (`status` and `cause`: int8). Other fields than these, `status` and `cause` are not kept.
 
@@ -64,8 +64,9 @@ def first_hit(
     >>> hit.flight_time.tolist(), hit.velocity.tolist(), hit.status.tolist()
     ([0.0, 1.0, 3.0], [0.0, -1.0, -3.0], [2, 0, 0])
     """
+    flown = None
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
-        fields = _quickly(compiled_model(osc), tau, v)
+        fields, flown = _quickly(compiled_model(osc), tau, v)
         if fields is not None:
             later = fields.pop("later")
             return Flight.made(later, **fields)
@@ -73,7 +74,7 @@ def first_hit(
         fly = partial(first_hit, osc, tolerance=tolerance, horizon=horizon, steps=steps)
         return in_blocks(fly, tau, v, out)  # type: ignore[no-any-return]
     states = States.of(osc, tau, v, digits)
-    return _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps))
+    return _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps), flown)
 
 
 def impact_map(
@@ -93,9 +94,10 @@ def impact_map(
     >>> step.tau, step.v, step.status
     (4.0, 1.5, np.int8(0))
     """
+    flown = None
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
         model = compiled_model(osc)
-        fields = _quickly(model, tau, v) if model.constant_restitution else None
+        fields, flown = _quickly(model, tau, v) if model.constant_restitution else (None, None)
         if fields is not None:
             later = fields.pop("later")
             return Step.made(later, tau=tau + fields["flight_time"], v=-model.r * fields["velocity"], **fields)
@@ -103,7 +105,7 @@ def impact_map(
         fly = partial(impact_map, osc, tolerance=tolerance, horizon=horizon, steps=steps)
         return in_blocks(fly, tau, v, out)  # type: ignore[no-any-return]
     states = States.of(osc, tau, v, digits)
-    hit = _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps))
+    hit = _flights(osc, states, digits, _allowance(osc, tolerance, horizon, steps), flown)
     if digits is not None:
         from singimpact.flights import in_digits  # with `multiprecision`: 8 ms that flights in doubles do not need
 
@@ -130,32 +132,34 @@ def landing_times(states: States, times: Any) -> Any:
     return landed if isinstance(states.turns, float) else landed + states.turns.reshape(states.shape)
 
 
-def _quickly(model: CompiledModel, tau: float, v: float) -> dict[str, Any] | None:
-    """The fields of a plain hit of two floats; None for all that needs a closer look."""
+def _quickly(model: CompiledModel, tau: float, v: float) -> tuple[dict[str, Any] | None, undecided.Flown | None]:
+    """The fields of a plain hit of two floats; None for all that needs a closer look, with what was flown of it."""
     if not (0 < v < inf and -model.nearest < tau < model.nearest) or model.sometimes_kept:
-        return None
+        return None, None
     code, hit = model.quick()(tau, v)
     if code == CANCELS:  # a_c at the launch has lost digits: flown with the exact one
         code, hit = model.quick()(tau, v, float(acceleration(model.osc, np.array([tau]))[0]))
     if code != 0:
-        return None
+        return None, (np.array([code], np.int8), np.array(hit).reshape(10, 1))
     fields = {"flight_time": hit[0], "velocity": hit[1], "status": SCALAR_STATUS[0], "depth": np.nan, "bound": np.nan,
               "cause": NONE, "notes": NO_NOTES}  # fmt: skip
     if not model.linear:
-        return fields | {"later": undecided.Judge(model, tau, v, ())}
+        return fields | {"later": undecided.Judge(model, tau, v, ())}, None
     fields["condition"], fields["velocity_condition"], fields["time_error"], fields["velocity_error"] = hit[2:6]
     fields["later"] = None
-    return fields
+    return fields, None
 
 
-def _flights(osc: Oscillator, states: States, digits: int | None, allowance: Allowance | None) -> Flight:
+def _flights(
+    osc: Oscillator, states: States, digits: int | None, allowance: Allowance | None, flown: undecided.Flown | None
+) -> Flight:
     if digits is not None:
         from singimpact.flights import in_digits
 
         allowance = allowance or compiled_model(osc).allowance
         return shaped(in_digits.flights(osc, states, checked_digits(digits), allowance), states.shape)
     model = compiled_model(osc) if allowance is None else allowed(osc, allowance)
-    return shaped(_with_rounded_launches(osc, states, undecided.flights(osc, model, states)), states.shape)
+    return shaped(_with_rounded_launches(osc, states, undecided.flights(osc, model, states, flown)), states.shape)
 
 
 def _with_rounded_launches(osc: Oscillator, states: States, flight: Flight) -> Flight:
@@ -176,7 +180,7 @@ def _allowance(osc: Oscillator, tolerance: Any, horizon: Any, steps: Any) -> All
     if tolerance is horizon is steps is None:
         return None
     reach = reach_of(osc) if horizon is None else 0.0
-    return Allowance(horizon_of(osc, horizon), _tolerance(tolerance), checked_steps(steps), reach)
+    return Allowance(horizon_of(osc, horizon), _tolerance(tolerance), checked_steps(osc, steps), reach)
 
 
 def checked_digits(digits: Any) -> int:
@@ -195,10 +199,10 @@ def _tolerance(tolerance: Any) -> float:
     return value
 
 
-def checked_steps(steps: Any) -> int:
+def checked_steps(osc: Oscillator, steps: Any) -> int:
     """The steps of a flight, between 1 and ten million."""
     if steps is None:
-        return LIMITS.steps
+        return steps_of(osc)
     if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or not 1 <= steps <= 10_000_000:
         raise refuse("steps", steps, "a whole number from 1 to 10000000")
     return int(steps)

@@ -39,10 +39,14 @@ class Limits:
     cancelled: float = 2.0**-10
     # Taylor steps of a flight by default: 0.8 s if interpreted; 1000 periods of an ordinary model take 10 000 steps
     steps: int = 16_000
+    # the same times the price of a step at most, in sums of 10 to 25 us: x + x^3 + tanh(5 x') has a price of 5.5
+    steps_by_price: float = 88_000
     # steps of a linear model, which its horizon ends before
     longest: int = 10_000_000
     # Taylor steps in many digits, at some milliseconds each
     settling_steps: int = 400
+    # the same times the price of a step, at most
+    settling_by_price: float = 2400
     # steps stored for the error estimate; a longer flight, one of 10^4, is flown again with more memory
     traced: int = 400
     # tolerance of the steps of the variational equation, which carries errors and condition numbers

@@ -109,8 +109,11 @@ def _touches(numbers: tuple[Any, Any, Any, Any]) -> bool:
 
 def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[int, list[float]] | None:
     """One flight that doubles left open, as doubles; None when many digits do not settle it either."""
+    steps = LIMITS.settling_steps
+    if linear_form(osc) is None:
+        steps = min(steps, int(LIMITS.settling_by_price / recurrence_of(osc).price))
     for digits in LIMITS.settling_digits:
-        code, numbers = flown(osc, states, index, digits, limit, LIMITS.settling_steps)
+        code, numbers = flown(osc, states, index, digits, limit, steps)
         if code > 20:
             return None
         if code != Status.unresolved:

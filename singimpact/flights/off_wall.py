@@ -20,7 +20,7 @@ from singimpact.algebra.precision import digits_at
 from singimpact.flights.bind import over_mpmath
 from singimpact.flights.causes import decoded, where
 from singimpact.flights.compiled_model import CompiledModel, allowed
-from singimpact.flights.horizons import Allowance, horizon_of, reach_of
+from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.state import Rules
@@ -150,7 +150,7 @@ def _heights(osc: Oscillator, places: Array) -> Array:
 @lru_cache(maxsize=64)
 def stepped(osc: Oscillator, horizon: float, reach: float) -> CompiledModel:
     """A model as Taylor steps fly it, a linear one too."""
-    allowance = Allowance(horizon, reach=reach)
+    allowance = Allowance(horizon, steps=steps_of(osc), reach=reach)
     return CompiledModel(osc, allowance, recurrence_of(osc)) if has_table(osc) else allowed(osc, allowance)
 
 

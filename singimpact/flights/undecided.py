@@ -25,6 +25,8 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status
 
 Array = np.ndarray[Any, Any]
+Flown = tuple[Array, Array]
+"""Codes and columns of hits, as `CompiledModel.hits` returns them."""
 
 
 @dataclass(frozen=True)
@@ -96,20 +98,27 @@ class Shaped:
         return {each: np.asarray(value).reshape(self.shape)[()] for each, value in self.later(name).items()}
 
 
-def flights(osc: Oscillator, model: CompiledModel, states: States) -> Flight:
-    """First hits in doubles, flat."""
-    return flights_and_rows(osc, model, states)[0]
+def flights(osc: Oscillator, model: CompiledModel, states: States, known: Flown | None = None) -> Flight:
+    """First hits in doubles, flat.
+
+    Parameters
+    ----------
+    known : of states with v > 0 that have been flown.
+    """
+    return flights_and_rows(osc, model, states, known)[0]
 
 
-def flights_and_rows(osc: Oscillator, model: CompiledModel, states: States) -> tuple[Flight, Array]:
+def flights_and_rows(
+    osc: Oscillator, model: CompiledModel, states: States, known: Flown | None = None
+) -> tuple[Flight, Array]:
     """First hits in doubles, flat; and the columns of `kernels.state`, nan where they are not known."""
     if model.linear:
-        codes, rows = model.hits(model.near(states.tau), states.v)
+        codes, rows = known or model.hits(model.near(states.tau), states.v)
         if not codes.any():
             return plain(codes, rows), rows
         fates, judge = decided(osc, model, states, codes, rows), None
     else:
-        fates, judge = flown(osc, model, states)
+        fates, judge = flown(osc, model, states, known)
     # first: a flight that left the range of doubles would be followed again in many digits
     escapes(osc, model, states, fates)
     settled = _settled(osc, model, states, fates)
@@ -120,10 +129,11 @@ def flights_and_rows(osc: Oscillator, model: CompiledModel, states: States) -> t
     return result(osc, states, fates, judge, settled), fates.rows
 
 
-def flown(osc: Oscillator, model: CompiledModel, states: States) -> tuple[Fates, Judge]:
+def flown(osc: Oscillator, model: CompiledModel, states: States, known: Flown | None = None) -> tuple[Fates, Judge]:
     """Flights of a Taylor flow, and what judges them."""
     tau = model.near(states.tau)
-    codes, rows = model.hits(tau, states.v)
+    codes, rows = known or model.hits(tau, states.v)
+    rows[4:] = np.nan
     open_ones = np.flatnonzero(codes == CANCELS)
     if open_ones.size:  # a_c at the launch has lost digits: flown with the exact one
         pushes = acceleration(osc, states.tau[open_ones])

@@ -16,6 +16,7 @@ from singimpact.flights.kernels.state import (
     A_COS,
     A_SIN,
     COSINE,
+    LATEST,
     RATE,
     SINE,
     SIZE_STEADY,
@@ -45,7 +46,7 @@ def tabulated_flight(launch: Any, v: float, acceleration: float, model: Any, wor
     launch : cosine and sine of every wave. acceleration : a_c at the launch. model, work : see `state`.
     """
     p, table, W = model.numbers, model.table, work.W
-    step, ulp, horizon = table.step, model.rules.ulp, max(model.rules.horizon, model.rules.reach * v)
+    step, ulp, horizon = table.step, model.rules.ulp, max(model.rules.horizon, min(model.rules.reach * v, LATEST))
     waves, last = len(p.waves), len(table.rows) - 1
     start, z0, u0, base = 0.0, 0.0, v, 0.0
     for j in range(waves):
