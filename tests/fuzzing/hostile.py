@@ -1,0 +1,192 @@
+"""Fly models of hostile expressions: `python tests/fuzzing/hostile.py --models 480 --seed 1`.
+
+Each model is read and flown twice in a process of its own, `impact_map` and `first_hit`, by interpreted kernels: those
+of the first calls.  Both must end in a status or in one line, within the bounds of `Bounds`, and without compiling.
+Prints faults and the slowest models, and exits with 1 when there is a fault; `--show NUMBER` prints one model again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import resource
+import sys
+import time
+from collections import Counter
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from random import Random
+from typing import Any
+
+sys.path[:0] = [str(Path(__file__).parents[2])]
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What one model may take.
+
+    Parameters
+    ----------
+    seconds : of CPU for one call; the first one makes the model too. memory : bytes of the process. killed : seconds of
+        CPU after which the process is ended. address_space : bytes beyond which the process has no memory.
+    """
+
+    seconds: float = 2.0
+    memory: int = 500 * 2**20
+    killed: int = 20
+    address_space: int = 2**31
+
+
+BOUNDS = Bounds()
+NUMBERS = ["1e-65", "1e65", "1e-300", "1e300", "1e-3000", "3/7", "0.1", "2", "1e4", "-1", "pi", "7", "1e-12", "10**300"]
+EXPONENTS = ["1000", "999", "511", "-1000", "-7", "0.5", "(1/3)", "(-997/1000)", "17", "2", "(999/2)", "64", "127"]
+FUNCTIONS = ["sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "atan"]
+
+
+def model(seed: int, number: int) -> dict[str, Any]:
+    """Fields of a model and a state, the same for the same name."""
+    random = Random(f"{seed}:hostile:{number}")
+    f = _grown(random, random.randrange(1, 7), ["x", "xdot"])
+    g = random.choice(["cos(t)", "cos(2*t)", "1", "-1", "0"])
+    if random.random() < 0.3:
+        g = _grown(random, random.randrange(1, 5), ["t"])
+    state = random.uniform(-5, 5), 10 ** random.uniform(-6, 2)
+    return {"f": f, "g": g, "clearance": random.choice(["0", "0.3", "-1"]), "restitution": "0.7", "state": state}
+
+
+def _grown(random: Random, depth: int, names: list[str]) -> str:
+    if depth == 0:
+        return random.choice(names if random.random() < 0.6 else NUMBERS)
+    way = random.random()
+    inner = _grown(random, depth - 1, names)
+    if way < 0.3:
+        return f"({inner})**{random.choice(EXPONENTS)}"
+    if way < 0.5:
+        return f"{random.choice(FUNCTIONS)}({inner})"
+    if way < 0.6:
+        return f"{random.choice(NUMBERS)}*({inner})"
+    if way < 0.65:  # one part many times
+        return random.choice(["+", "*"]).join(f"({inner})**{power}" for power in range(2, random.randrange(4, 40)))
+    return f"({inner}{random.choice(['+', '-', '*', '/'])}{_grown(random, depth - 1, names)})"
+
+
+@dataclass(frozen=True)
+class Flown:
+    """What came of a model: its end in words, seconds of CPU of the longer call and of the process, bytes."""
+
+    number: int
+    end: str
+    seconds: float
+    both: float
+    memory: int
+
+    @property
+    def fault(self) -> bool:
+        """Whether it ended otherwise than in a status or a sentence, or took too much."""
+        told = self.end.startswith(("status", "refused"))
+        return not told or self.seconds > BOUNDS.seconds or self.memory > BOUNDS.memory
+
+
+def flown(seed: int, number: int) -> Flown:
+    """One model in a process of its own."""
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.close(reading)
+        end, times = "no end", [time.process_time()]
+        try:
+            resource.setrlimit(resource.RLIMIT_CPU, (BOUNDS.killed, BOUNDS.killed))
+            resource.setrlimit(resource.RLIMIT_AS, (BOUNDS.address_space, BOUNDS.address_space))
+            end = _end(model(seed, number), times)
+        except BaseException as error:
+            end = f"{type(error).__name__}: {str(error)[:100]}{_places(error)}"
+        finally:
+            times.append(time.process_time())
+            longest = max(after - before for before, after in pairwise(times))
+            os.write(writing, json.dumps([end[:1000], longest]).encode())
+            os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading, "rb") as pipe:
+        text = pipe.read()
+    _, _, used = os.wait4(child, 0)
+    both = used.ru_utime + used.ru_stime
+    end, longest = json.loads(text) if text else ("killed", both)
+    return Flown(number, end, longest, both, used.ru_maxrss * 1024)
+
+
+def _places(error: BaseException) -> str:
+    import traceback
+
+    frames = traceback.extract_tb(error.__traceback__)
+    return f" at {Path(frames[-1].filename).name}:{frames[-1].lineno}"
+
+
+def _end(fields: dict[str, Any], times: list[float]) -> str:
+    from singimpact.impact_oscillator import ImpactOscillator
+    from singimpact.inputs import InputError
+
+    tau, v = fields.pop("state")
+    try:
+        osc = ImpactOscillator(**fields)
+        step = osc.impact_map(tau, v)
+        times.append(time.process_time())
+        hit = osc.first_hit(tau, v)
+    except InputError as error:
+        return f"refused: {error}"
+    if step.status != hit.status:
+        return f"two statuses, {int(step.status)} and {int(hit.status)}"
+    return f"status {int(step.status)} {int(step.cause)}"
+
+
+def prepare() -> None:
+    """Load what every flight loads, and let nothing compile: neither here nor in a process beside."""
+    from singimpact.flights.machine import Machine
+    from singimpact.impact_oscillator import ImpactOscillator
+
+    def compiled(_self: Machine, name: str) -> Any:
+        raise AssertionError(f"{name} is compiled for a first call")
+
+    Machine.compile_here = compiled  # type: ignore[method-assign]
+    Machine._compile_elsewhere = lambda _self, _name: True  # type: ignore[method-assign]
+    for f in ("x + x**3/5", "x"):
+        ImpactOscillator(f, "cos(2*t)", "0.3", "0.5").impact_map(0.3, [0.1, 0.2], digits=None)
+
+
+def main() -> int:
+    """The command."""
+    options = _options()
+    if options.show is not None:
+        print(model(options.seed, options.show))
+        return 0
+    prepare()
+    start, found = time.monotonic(), []
+    numbers = range(options.models) if options.only is None else options.only
+    for number in numbers:
+        each = flown(options.seed, number)
+        found.append(each)
+        if each.fault or options.only:
+            print(f"{each.number}: {each.seconds:.2f} s, {each.memory >> 20} MB, {each.end[:300]}", flush=True)
+    ends = Counter(each.end.split(":")[0] for each in found)
+    print(", ".join(f"{count} {end}" for end, count in ends.most_common()))
+    slow = sorted(found, key=lambda each: -each.seconds)[:8]
+    print("slowest calls:", ", ".join(f"{each.number} {each.seconds:.2f} s ({each.end[:30]})" for each in slow))
+    print(f"longest process: {max(each.both for each in found):.2f} s")
+    print(f"largest: {max(each.memory for each in found) >> 20} MB")
+    faults = sum(each.fault for each in found)
+    print(f"{len(found)} models, seed {options.seed}, {time.monotonic() - start:.0f} s; faults: {faults or 'none'}")
+    return 1 if faults else 0
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--models", type=int, default=480)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", type=int, nargs="+")
+    parser.add_argument("--show", type=int)
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
