@@ -2,16 +2,20 @@
 
 One walk visits the code of the function, its defaults and closure, the globals that its code names, and what these are
 made of: numbers, containers, objects, classes with all their attributes, modules that are not installed packages.
-What has no key is refused, because results of another function must not be returned in silence.
+The name and version of an installed package stand for its code; its numbers, and Python functions that were put in the
+place of its own, are part of the key. What has no key is refused, because results of another function must not be
+returned in silence.
 
-Not here: which names a code has (`case_names`), reading and writing results (`cases`).  Files that a function reads,
-the environment and the state of random generators are not part of the key.
+Not here: which names a code has (`case_names`), reading and writing results (`cases`).  Files that a function reads and
+the state of random generators are not part of the key.
 """
 
 from __future__ import annotations
 
+import copyreg
 import functools
 import hashlib
+import os
 import pkgutil
 import sys
 import types
@@ -23,8 +27,10 @@ import numpy as np
 
 from singimpact.case_names import (
     MISSING,
+    REACHING,
     UNSEEN,
     Chain,
+    attribute_names,
     chains,
     followed,
     imports,
@@ -32,6 +38,7 @@ from singimpact.case_names import (
     is_installed,
     is_written_only,
     name_in_library,
+    precision_of,
 )
 from singimpact.inputs import InputError, shown
 
@@ -220,15 +227,22 @@ class _Digest:
         space = function.__globals__
         library = is_installed(space.get("__name__"))
         self.text("function", _name(function))
-        if library and is_found_by_name(function):
-            self.text("version", _version(function.__module__))
+        # `functools.wraps` gives what a library made of a function the module of this function
+        if library and is_installed(function.__module__) and is_found_by_name(function):
+            self._package(function.__module__)
             return
         self.names.append(function.__name__)
+        if library and isinstance(registry := vars(function).get("registry"), types.MappingProxyType):
+            self._all("of singledispatch", [registry], depth)  # the rest of it repeats this, or is a cache
+            self.names.pop()
+            return
         self._code(function.__code__, depth)
         self._all("defaults", [function.__defaults__, function.__kwdefaults__], depth)
         self._all("closure", function.__closure__ or (), depth)
         self._named(vars(function), depth)
         if not library:  # a version stands for the names of a package
+            for name in sorted(attribute_names(function.__code__) & REACHING):
+                raise self._refused(function, f"{name} reaches what the code does not name")
             for chain in sorted(chains(function.__code__)):
                 self._chain(chain, space, depth)
             package = space.get("__package__") or str(space.get("__name__", "")).rpartition(".")[0]
@@ -247,46 +261,70 @@ class _Digest:
         value, rest, library = followed(chain, space)
         self.text("global", ".".join(chain))
         self.names += chain[: len(chain) - len(rest)]
-        if any(value is each for each in UNSEEN):
-            raise self._refused(value, "it reaches what the code does not name")
+        self._require_seen(value)
         if value is MISSING:
             self.add("unbound")
         elif library:
-            self.text("library", _name(value))
+            self._of_library(value, rest, depth)
         elif is_written_only(value, rest):
             self.add("written only")
         elif (name := None if isinstance(value, type) else name_in_library(value)) is not None:
             self.text("library", name)
+            self._package(name)
         else:
             self.value(value, depth)
         del self.names[len(self.names) - len(chain) + len(rest) :]
 
+    def _require_seen(self, value: Any) -> None:
+        if value is os.environ:  # its text has the values of all variables
+            raise self._refused(os, "the environment may change")
+        if any(value is each for each in UNSEEN):
+            raise self._refused(value, "it reaches what the code does not name")
+
+    def _of_library(self, value: Any, rest: Chain, depth: int) -> None:
+        """What an installed package holds under a name: by its own name and version, if it is the package's.
+
+        Numbers, and functions that a program has put in there, count with their values.
+        """
+        while isinstance(value, types.ModuleType):
+            self._module(value, depth)
+            if not rest:
+                return
+            value, rest = getattr(value, rest[0], MISSING), rest[1:]
+        self._require_seen(value)
+        if value is None or type(value) in (*PLAIN, complex, bytes) or _is_put_in(value) or is_found_by_name(value):
+            self.value(value, depth)
+        else:
+            self.text("library", _name(value))
+
     def _imported(self, module: str, name: str, depth: int) -> None:
         """A module that a function imports when it is called."""
         self.text("import", f"{module} {name}")
-        if is_installed(module):
+        if is_installed(module) and not name:
+            self._package(module)
             return
         try:
             value: Any = pkgutil.resolve_name(module)
         except (ImportError, ValueError, AttributeError):
             self.add("unbound")
             return
-        if not is_installed(module):  # it may not have been loaded before
-            space = {"module": value}
-            self._chain(("module", name) if name else ("module",), space, depth)
+        space = {"module": value}
+        self._chain(("module", name) if name else ("module",), space, depth)
 
     def _module(self, module: types.ModuleType, depth: int) -> None:
         """An installed package by its name, any other module by all its values."""
         self.text("module", module.__name__)
         if is_installed(module.__name__):
-            self.text("version", _version(module.__name__))
+            self._package(module.__name__)
             return
         self._named({name: value for name, value in vars(module).items() if name not in OF_MODULES}, depth)
 
     def _class(self, kind: type, depth: int) -> None:
         self.text("class", _name(kind))
         if is_installed(kind.__module__) and is_found_by_name(kind):
-            self.text("version", _version(kind.__module__))
+            self._package(kind.__module__)
+            replaced = {name: each for name, each in vars(kind).items() if _is_put_in(each)}
+            self._named(replaced, depth)
             return
         self.names.append(kind.__name__)
         self._all("bases", [*kind.__bases__, type(kind)], depth)
@@ -342,6 +380,7 @@ class _Digest:
             return
         function, arguments, state, items, pairs, *rest = (*parts, None, None, None)[: max(5, len(parts))]
         self._all("built", [function, arguments], depth)
+        self._dropped(value, state, depth)
         state = {} if state is None else state  # of an object whose attributes are not computed yet
         if isinstance(state, dict) and all(isinstance(name, str) for name in state):
             self._named({name: each for name, each in state.items() if not _is_cached(type(value), name)}, depth)
@@ -351,6 +390,33 @@ class _Digest:
         self._all("items", list(items or ()), depth)
         self._all("pairs", list(pairs or ()), depth)
         self._all("rest", rest, depth)
+
+    def _dropped(self, value: Any, state: Any, depth: int) -> None:
+        """Attributes that a class of a program leaves out when it is pickled; a lock or a file among them is no data."""
+        if is_installed(type(value).__module__):
+            return
+        slots = copyreg._slotnames(type(value))  # type: ignore[attr-defined]
+        held = getattr(value, "__dict__", {}) | {name: getattr(value, name) for name in slots if hasattr(value, name)}
+        parts = [part for part in (state if isinstance(state, tuple) else (state,)) if isinstance(part, dict)]
+        self.add("dropped")
+        for name in sorted(set(held).difference(*parts)):
+            if not _is_cached(type(value), name):
+                try:
+                    content = self._alone(held[name], depth)
+                except InputError:
+                    continue
+                self.add(f"name {name}", content)
+
+    def _package(self, module: str) -> None:
+        """The version of an installed package, and the precision at which it computes."""
+        self.text("version", f"{_version(module)} {precision_of(module)}")
+
+
+def _is_put_in(value: Any) -> bool:
+    """Whether a Python function or class of no installed package stands where a package has its own."""
+    if isinstance(value, types.FunctionType) and not is_installed(value.__globals__.get("__name__")):
+        return True
+    return isinstance(value, types.FunctionType | type) and not is_installed(value.__module__)
 
 
 def _content(cell: types.CellType) -> list[Any]:

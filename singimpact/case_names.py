@@ -6,6 +6,7 @@ Not here: the key of what is named (`case_keys`).
 from __future__ import annotations
 
 import builtins
+import decimal
 import dis
 import os
 import pkgutil
@@ -36,8 +37,12 @@ UNSEEN = (
     pkgutil.resolve_name("importlib:import_module"),
     sys.modules,
     sys._getframe,
+    os.environ,
+    os.getenv,
 )
 """Through these a function reaches values that its code does not name."""
+REACHING = {"__globals__", "f_globals", "f_locals", "f_builtins"}
+"""Attributes that do."""
 MISSING = object()
 Chain = tuple[str, ...]
 
@@ -62,6 +67,18 @@ def chains(code: types.CodeType) -> set[Chain]:
             names.add(chain)
         chain = (step.argval,) if step.opname in LOADS else ()
     return names.union(*(chains(part) for part in code.co_consts if isinstance(part, types.CodeType)))
+
+
+def attribute_names(code: types.CodeType) -> set[str]:
+    """The global and attribute names of a code and the codes inside it.
+
+    Examples
+    --------
+    >>> sorted(attribute_names(compile("h.__globals__['k']", "<example>", "eval")))
+    ['__globals__', 'h']
+    """
+    inside = (attribute_names(part) for part in code.co_consts if isinstance(part, types.CodeType))
+    return set(code.co_names).union(*inside)
 
 
 def imports(code: types.CodeType, package: str) -> set[tuple[str, str]]:
@@ -161,6 +178,24 @@ def _library_folders() -> tuple[str, ...]:
     roots = [paths[key] for key in ("stdlib", "platstdlib", "purelib", "platlib")]
     roots += [*getattr(site, "getsitepackages", list)(), site.getusersitepackages()]
     return tuple({place for root in roots for place in (os.path.abspath(root), os.path.realpath(root))})
+
+
+def precision_of(module: str) -> str:
+    """The digits at which a package computes, where a program sets them for all of it; "" of other packages.
+
+    Examples
+    --------
+    >>> precision_of("numpy")
+    ''
+    """
+    match module.partition(".")[0]:
+        case "mpmath":
+            contexts = [getattr(sys.modules.get("mpmath"), name, None) for name in ("mp", "iv")]
+            return " ".join(str(getattr(context, "prec", "")) for context in contexts)
+        case "decimal" | "_decimal" | "_pydecimal":
+            context = decimal.getcontext()
+            return " ".join(str(getattr(context, name)) for name in ("prec", "rounding", "Emin", "Emax", "clamp"))
+    return ""
 
 
 def is_found_by_name(value: Any) -> bool:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import decimal
 import json
+import math
 import os
+import pkgutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -68,6 +71,16 @@ VARIANTS = {
     "a cached function": "@functools.lru_cache\ndef h(v): return {1|2}*v\ndef f(v): return h(v)",
     "a decorator": "def d(k):\n    def deco(g):\n        @functools.wraps(g)\n        def inner(v): return k*g(v)\n"
                "        return inner\n    return deco\n@d({1|2})\ndef f(v): return v",
+    "a function that a library has wrapped": "import contextlib\n@contextlib.contextmanager\ndef h(v): yield {1|2}*v\n"
+               "def f(v):\n    with h(v) as k: return k",
+    "a case of a dispatched function": "@functools.singledispatch\ndef f(v): return v\n"
+               "@f.register\ndef _(v: float): return {1|2}*v",
+    "an attribute that pickle leaves out": "class P:\n    def __init__(self, k): self.k = k\n"
+               "    def __getstate__(self): return {}\n    def __call__(self, v): return self.k*v\nf = P({1|2})",
+    "a slot that pickle leaves out": "class P:\n    __slots__ = ('k',)\n    def __reduce__(self): return (P, ())\n"
+               "p = P()\np.k = {1|2}\ndef f(v): return p.k*v",
+    "an attribute of an array": "class A(np.ndarray): pass\np = np.arange(2.0).view(A)\np.k = {1|2}\n"
+               "def f(v): return p.k*v",
     "the function of a function": "def a(v): return {1|2}*v\ndef b(v): return a(v)\ndef f(v): return b(v)",
     "functions that call each other": "def a(n): return {1|2} if n == 0 else b(n - 1)\n"
                "def b(n): return a(n)\ndef f(v): return a(3)*v",
@@ -170,6 +183,48 @@ def test_another_process_has_the_same_keys():
     assert [json.loads(answer) for answer in answers] == [all_keys()] * 2
 
 
+PUT_IN = {
+    # what a program puts in the place of what an installed package holds
+    "a number": ("def f(v): return math.pi*v", "math", "pi", 3.0),
+    "a function": ("def f(v): return math.sin(v)", "math", "sin", lambda v: 5*v),
+    "another function of the package": ("def f(v): return math.sin(v)", "math", "sin", math.cos),
+    "a function of a part": ("def f(v): return float(np.linalg.norm([v]))", "numpy.linalg", "norm", lambda v: 7*v[0]),
+    "a function imported inside": ("def f(v):\n    from math import sin\n    return sin(v)", "math", "sin", abs),
+    "a builtin": ("def f(v): return abs(v)", "builtins", "abs", lambda v: 9*v),
+    "a new builtin": ("def f(v): return k_of_tests*v", "builtins", "k_of_tests", 2.0),
+    "a class": ("def f(v): return float(fractions.Fraction(v))", "fractions", "Fraction", type("Half", (float,), {})),
+    "a method": ("x = fractions.Fraction(1, 3)\ndef f(v): return float(x.limit_denominator(2))*v",
+                 "fractions:Fraction", "limit_denominator", lambda x, n: x/n),
+    "the digits of mpmath": ("import mpmath\ndef f(v): return float((mpmath.mpf(v) + mpmath.mpf(10)**-20 - v)*1e20)",
+                             "mpmath:mp", "dps", 40),
+    "the digits of a context": ("from mpmath import mp\ndef f(v): return float((mp.mpf(v) + mp.mpf(10)**-20 - v)*1e20)",
+                                "mpmath:mp", "dps", 40),
+}  # fmt: skip
+
+
+@pytest.mark.plain_code
+@pytest.mark.parametrize("name", PUT_IN)
+def test_results_are_not_returned_after_an_installed_package_was_changed(name, monkeypatch):
+    text, place, attribute, value = PUT_IN[name]
+    function = built(text)
+    key = function_key(function)
+    with monkeypatch.context() as patch:
+        patch.setattr(pkgutil.resolve_name(place), attribute, value, raising=False)
+        assert function_key(function) != key
+    assert function_key(function) == key
+
+
+@pytest.mark.plain_code
+def test_the_digits_of_decimals_are_part_of_the_key():
+    function = built("def f(v): return float(decimal.Decimal(v)/3)")
+    keys = []
+    for digits in (28, 9, 28):
+        with decimal.localcontext() as context:
+            context.prec = digits
+            keys.append(function_key(function))
+    assert keys[0] == keys[2] != keys[1]
+
+
 CYCLES = """
 class Node:
     def __init__(self, k): self.k, self.next, self.peers = k, self, {self}
@@ -210,6 +265,10 @@ REFUSED = {
     "a generator": "G = (n for n in range(3))\ndef f(v): return next(G)*v",
     "a hidden function": "h = np.frompyfunc(lambda v: 2*v, 1, 1)\ndef f(v): return h(v)",
     "globals": "K = 2\ndef f(v): return globals()['K']*v",
+    "globals of a function": "K = 2\ndef f(v): return f.__globals__['K']*v",
+    "the environment": "import os\ndef f(v): return len(os.environ['PATH'])*v",
+    "the environment by another name": "from os import environ\ndef f(v): return len(environ['PATH'])*v",
+    "a variable of the environment": "import os\ndef f(v): return len(os.getenv('PATH'))*v",
     "text that is run": "K = 2\ndef f(v): return eval('K*v')",
     "a deep list": "D = []\nfor _ in range(1000): D = [D]\ndef f(v): return len(D)*v",
 }
