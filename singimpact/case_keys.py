@@ -392,7 +392,7 @@ class _Digest:
         self._all("rest", rest, depth)
 
     def _dropped(self, value: Any, state: Any, depth: int) -> None:
-        """Attributes that a class of a program leaves out when it is pickled; a lock or a file among them is no data."""
+        """Attributes that an object of a program leaves out when it is pickled; locks and files are no data."""
         if is_installed(type(value).__module__):
             return
         slots = copyreg._slotnames(type(value))  # type: ignore[attr-defined]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
+from singimpact.dynamics.nearby_orbit import nearby_orbits
 from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 
@@ -24,15 +25,14 @@ class AttractorSettings:
     catch : how near to an attractor an orbit is looked upon as caught, relative, when the corners of that neighbourhood
         are seen to come in; a tenth of it is tried next, down to `close`.
     turns : of the attractor, in which they must come into half of it; the later ones where multipliers are near 1.
-    spiral : turns of an orbit after which it is looked again whether its impacts, or fewer, close it. A state that
-        still spirals in comes back nearer after two turns than after one, where a multiplier is near +-i.
+    closed : relative distance of a return below which a state has settled where Newton's method does not converge.
     """
 
     most_impacts: int = 8
     close: float = 1e-6
     catch: float = 1e-2
     turns: tuple[int, ...] = (6, 30, 150)
-    spiral: int = 30
+    closed: float = 1e-10
 
 
 SETTINGS = AttractorSettings()
@@ -49,21 +49,22 @@ class Attractor:
 
 
 def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float, most: int = SETTINGS.most_impacts) -> Array:
-    """(n, k) of states that return to themselves and do so again after many turns, else OTHER.
+    """(n, k) of states that return to themselves, else OTHER; of the orbit they converge to, if its n is smaller."""
+    return closing_orbits(model, tau, v, fast, most)[0]
 
-    A chaotic orbit comes back by chance, once in a million pairs of impacts where its attractor is nearly a curve; and
-    a state that still spirals in comes back nearer after two turns than after one.
-    """
-    codes = _returns(model, tau, v, fast, most)
-    back = np.flatnonzero(codes != OTHER)
-    if back.size:
-        impacts = SETTINGS.spiral * int(codes[back].max() // PLACES)
-        ends = iterate(model, tau[back], v[back], impacts)
-        later = _returns(model, ends.tau, ends.v, fast, most)
-        (n, k), (of, around) = divmod(codes[back], PLACES), divmod(later, PLACES)
-        stays = (ends.status == 0) & (later != OTHER) & (of <= n) & (of * k == n * around)
-        codes[back] = np.where(stays, later, OTHER)
-    return codes
+
+def closing_orbits(
+    model: Oscillator, tau: Array, v: Array, fast: float, most: int = SETTINGS.most_impacts
+) -> tuple[Array, Array, Array]:
+    """(n, k) of the attracting orbit beside states that return to themselves, else OTHER; and its tau and v."""
+    codes, tau, v = _returns(model, tau, v, fast, most), np.array(tau, dtype=float), np.array(v, dtype=float)
+    near = np.flatnonzero(codes != OTHER)
+    beside = nearby_orbits(model, tau[near], v[near], *divmod(codes[near], PLACES), fast)
+    there = beside.found
+    codes[near[there]] = (beside.n * PLACES + beside.k)[there]
+    tau[near[there]], v[near[there]] = beside.tau[there], beside.v[there]
+    codes[near[~there & (beside.residual > SETTINGS.closed)]] = OTHER
+    return codes, tau, v
 
 
 def _returns(model: Oscillator, tau: Array, v: Array, fast: float, most: int) -> Array:
@@ -121,7 +122,7 @@ def new_attractors(
 ) -> list[Attractor]:
     """The attractors that some of these states have reached."""
     found: list[Attractor] = []
-    codes = periodic_codes(model, tau, v, fast, most)
+    codes, tau, v = closing_orbits(model, tau, v, fast, most)
     for index in np.flatnonzero(codes != OTHER).tolist():
         if caught(found, model, tau[index : index + 1], v[index : index + 1], fast)[0] < 0:
             found.append(_surrounded(model, int(codes[index]), tau[index], v[index], fast))

@@ -63,8 +63,9 @@ class LongRun:
     Attributes
     ----------
     kind : "orbit"; "chatter" (it completes again and again); "rest"; "chaotic" (no period within `impacts`, and
-        neighbours separate); "not decided" (no period, and they do not); "sensitive" (there are several attractors, and
-        a neighbour 1e-15 away parts from the orbit: more than doubles would decide); "no impact" (none within
+        neighbours separate); "not decided" (no period, and they do not); "sensitive" (there are several attractors, or
+        chatter comes again after more than 60 impacts, and a neighbour 1e-15 away parts from the orbit: more than
+        doubles would decide); "no impact" (none within
         `horizon`); "never returns" (proved); "unresolved" (a flight is: `osc.orbit` says which).
     n, k : impacts (inf for chatter) in k periods, of an orbit or of chatter; 0 otherwise.
     tau, v : the states of an orbit; of chatter the phase at which the mass lifts off, and 0.
@@ -192,9 +193,12 @@ def basins(
         table = _classes(study, (tau, v), size, pool, output)
     flown, table = table[:, 3], table[:, :3]
     first = table[:, 0] == CHATTER
-    follows = futures(model, study.phases, lambda tau, v: classify(study, tau, v)[:, :3])
+    doubtful = set[tuple[float, ...]]()
+    follows = futures(model, study.phases, partial(_after_lift_off, study, doubtful))
     for place in range(len(study.phases)):
         table[first & (table[:, 1] == place)] = settled(follows, place, as_float(model.period))
+    if _several(study, table[settles(table)]):
+        table[[each in doubtful for each in map(tuple, table.tolist())]] = SENSITIVE, 0.0, 0.0
     late = _open_to_rounding(study, table, flown)
     table[late[parted(study, tau[late], v[late], flown[late])]] = SENSITIVE, 0.0, 0.0
     attractors, codes = _named(study, table)
@@ -216,9 +220,28 @@ def _classes(study: Study, states: tuple[Array, Array], size: int, pool: Any, ou
 def _open_to_rounding(study: Study, table: Array, flown: Array) -> Array:
     """Indices of states that settle late, where there is more than one attractor to settle on."""
     settled = settles(table)
-    if np.unique(_named(study, table[settled])[1]).size < 2:
+    if not _several(study, table[settled]):
         return np.zeros(0, dtype=np.int64)
     return np.flatnonzero(settled & (flown > SETTLING.sensitive))
+
+
+def _several(study: Study, rows: Array) -> bool:
+    """Whether rows of settled states are of more than one attractor."""
+    return np.unique(_named(study, rows)[1]).size > 1
+
+
+def _after_lift_off(study: Study, doubtful: set[tuple[float, ...]], tau: Array, v: Array) -> Array:
+    """`classify` of the first state after a lift-off; SENSITIVE where rounding decides when chatter comes again.
+
+    Rows of other attractors that rounding decides are added to `doubtful`.
+    """
+    table = classify(study, tau, v)
+    rows, flown = table[:, :3], table[:, 3]
+    late = np.flatnonzero(settles(rows) & (flown > SETTLING.sensitive))
+    late = late[parted(study, tau[late], v[late], flown[late])]
+    doubtful.update(map(tuple, rows[late].tolist()))
+    rows[late[rows[late, 0] == CHATTER]] = SENSITIVE, 0.0, 0.0
+    return rows
 
 
 def _named(study: Study, rows: Array) -> tuple[tuple[LongRun, ...], Array]:

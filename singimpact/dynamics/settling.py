@@ -21,12 +21,13 @@ from singimpact.dynamics.attractors import (
     CHATTER,
     GONE,
     OTHER,
+    SENSITIVE,
     STUCK,
     Attractor,
     apart,
     caught,
+    closing_orbits,
     new_attractors,
-    periodic_codes,
 )
 from singimpact.dynamics.attractors import SETTINGS as ATTRACTORS
 from singimpact.dynamics.fractional_chatter import rest_after
@@ -108,7 +109,7 @@ def classify(study: Study, tau: Array, v: Array) -> Array:
 
 def settles(rows: Array) -> Array:
     """Whether rows of `classify` have reached an attractor."""
-    return np.asarray((rows[:, 0] >= CHATTER) & (rows[:, 0] != CHAOS))
+    return np.asarray((rows[:, 0] >= CHATTER) & ~np.isin(rows[:, 0], (CHAOS, SENSITIVE)))
 
 
 def parted(study: Study, tau: Array, v: Array, impacts: Array) -> Array:
@@ -196,8 +197,8 @@ class _Run:
     def _look(self, most: int = ATTRACTORS.most_impacts) -> None:
         """States that close by themselves within so many impacts."""
         study, at = self.study, self.open
-        codes = periodic_codes(study.model, self.tau[at], self.v[at], study.fast, most)
-        self._decide(codes != OTHER, np.stack([codes, self.tau[at], self.v[at]], axis=1))
+        found = closing_orbits(study.model, self.tau[at], self.v[at], study.fast, most)
+        self._decide(found[0] != OTHER, np.stack(found, axis=1))
 
     def _decide(self, chosen: Array, rows: Array) -> None:
         """Put rows in for the chosen of the open states."""

@@ -194,3 +194,68 @@ def test_a_state_that_spirals_in_is_not_taken_for_an_orbit_of_twice_the_period()
     codes = periodic_codes(model, tau, orbit.v[0] + (size * np.sin(angle)).ravel(), 1.0)
     assert (codes == 3003).sum() > 1500
     assert set(codes.tolist()) <= {3003, OTHER}
+
+
+def fold_of_one_impact(omega, r):
+    """c, tau and v at the fold of the (1, 1) orbits of x'' + x = cos(omega t), which exist for |c| up to it.
+
+    (c - K v)^2 + (L v)^2 = gamma^2 with K = (1 + r) cot(T/2)/(2 r), L = (1 - r)/(2 r omega), gamma = 1/(1 - omega^2).
+    """
+    gamma, sharp, flat = 1 / (1 - omega**2), (1 + r) / (2 * r) / np.tan(np.pi / omega), (1 - r) / (2 * r * omega)
+    c = np.sign(sharp) * abs(gamma) * np.hypot(1, sharp / flat)
+    v = c * sharp / (sharp**2 + flat**2)
+    phase = np.arctan2(flat * v / gamma, (c - sharp * v) / gamma)  # of gamma cos(omega t): its place and velocity
+    return c, phase / omega, v
+
+
+def test_a_state_that_passes_slowly_beside_a_fold_is_not_on_an_orbit():
+    """1e-7 beyond the fold a state comes back to 1e-6 for thousands of turns; it was called a (1, 1) orbit."""
+    generator, before = np.random.default_rng(7), 0
+    for _ in range(12):
+        omega, r = round(generator.uniform(2.1, 3.8), 3), round(generator.uniform(0.3, 0.8), 2)
+        c, tau, v = fold_of_one_impact(omega, r)
+        window = ((tau - 0.01, tau + 0.01), (max(v - 0.02, 1e-3), v + 0.02))
+        kinds = []
+        for size in (c * (1 - 1e-5), c * (1 + 1e-7)):
+            found = si.basins(si.linear(str(omega), repr(float(size)), str(r)), window, 4)
+            kinds.append({(each.n, each.k) for each in found.attractors if each.kind == "orbit"})
+        before += (1, 1) in kinds[0]
+        assert (1, 1) not in kinds[1]
+    assert before >= 6
+
+
+@pytest.mark.parametrize(
+    ("omega", "r", "doubling"),
+    [
+        ("2.805", "0.84", 0.071221561), ("2.314", "0.34", -0.170632980), ("3.538", "0.44", 0.271225344),
+        ("2.207", "0.78", -0.231052874), ("2.698", "0.63", 0.019954120), ("2.22", "0.7", -0.224021839),
+    ],
+)  # fmt: skip
+def test_beside_a_doubling_the_orbit_is_that_which_is_stable(omega, r, doubling):
+    """The multiplier is -0.9998: a state comes nearer by every second impact, and was called a (2, 2) orbit."""
+    for offset, n in ((-1e-5, 2), (1e-5, 1)):
+        model = si.linear(omega, repr(doubling + offset), r)
+        orbit = next(each for each in si.linear(omega, repr(doubling + 1e-3), r).periodic(1, 1) if each.stable)
+        tau, v = float(orbit.tau[0]), float(orbit.v[0])
+        found = si.basins(model, ((tau - 0.005, tau + 0.005), (v - 0.005, v + 0.005)), 4)
+        assert {(each.n, each.k) for each in found.attractors} == {(n, n)}
+
+
+def test_the_period_of_chatter_that_comes_again_does_not_rest_on_roundings():
+    """Chatter that comes again after thousands of impacts had a number of periods that no double decides."""
+    generator, doubtful, named = np.random.default_rng(11), 0, 0
+    for _ in range(10):
+        omega, mean = round(generator.uniform(1.4, 2.6), 3), round(generator.uniform(0.3, 0.9), 3)
+        pair = [
+            si.basins(si.ImpactOscillator("0.05*xdot", f"cos({omega}*t)-{mean}{more}", 0, "0.8"), size=8)
+            for more in ("", "-1e-14")
+        ]
+        rows = [[(each.kind, each.k) for each in found.attractors] for found in pair]
+        for codes in zip(*(found.codes.ravel().tolist() for found in pair), strict=True):
+            one, other = (rows[side][code] for side, code in enumerate(codes))
+            doubtful += one[0] == "sensitive"
+            if one[0] == "chatter" == other[0]:
+                assert one == other
+                named += 1
+    assert doubtful
+    assert named
