@@ -10,5 +10,6 @@ exponents), `gamma_proof` (gamma proved, a folder), `release` (when a mass lifts
 `guide` (a velocity on gamma in many digits, not proved),
 `growth` (an invariant curve of a map, cut at discontinuities),
 `invariant_arcs` (gamma and the stable manifolds, grown), `swan_configuration` (the named points of an unfolded swan),
-`attractors`, `nearby_orbit` (beside a state that almost returns), `settling` (which one is reached), `basins`, `long_run` (what follows a rest), `bifurcation`.
+`attractors`, `nearby_orbit` (beside a state that almost returns), `settling` (which one is reached), `basins`,
+`long_run` (what follows a rest), `bifurcation`.
 """

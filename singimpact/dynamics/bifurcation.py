@@ -15,6 +15,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
 from singimpact.dynamics.attractors import apart
+from singimpact.dynamics.nearby_orbit import nearby_orbits
 from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.inputs import refuse, require_memory
 from singimpact.oscillator.model import Oscillator
@@ -38,6 +39,8 @@ class BifurcationSettings:
     # events of the longest period that is looked for, and relative distance of events that repeat
     period: int = 64
     close: float = 1e-6
+    # relative distance of a return that has settled where Newton's method finds no orbit, as next to a graze
+    closed: float = 1e-10
 
 
 SETTINGS = BifurcationSettings()
@@ -54,7 +57,8 @@ class Bifurcation:
         3): phase, v, 1 where chatter ended; nan where an orbit had fewer.
     direction : "up", "down" or "both" where each orbit starts from the last state of the one before: with "both" the
         values go up, then down. Empty where each starts from one state.
-    periods : of the forcing at each of the values. settled : bool of each value: the events repeat, or no more come.
+    periods : of the forcing at each of the values. settled : bool of each value: the events are those of an
+        attracting orbit or repeat, or no impact comes before the horizon; False where a flight is unresolved.
     settle : impacts after which an orbit that has not settled was left.
     """
 
@@ -71,7 +75,7 @@ class Bifurcation:
         ends = f"{self.values.min():.6g} to {self.values.max():.6g}"
         carried = {"": "", "both": ", up and down"}.get(self.direction, f", {self.direction}")
         left = np.count_nonzero(~self.settled)
-        open_ = f"; {left} without a period in {self.settle} impacts" if left else ""
+        open_ = f"; {left} not seen to settle in at most {self.settle} impacts" if left else ""
         return f"Bifurcation(over {self.over}: {count} values from {ends}{carried}, {kept} events of each{open_})"
 
     def to_csv(self, path: Any) -> None:
@@ -167,7 +171,7 @@ def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, bool]:
     flown : impacts of the first orbit, events of the end that are shown, impacts at most.
     """
     last, count, block = first, flown[0], flown[0]
-    while not (repeats := _repeats(last)) and count < flown[2]:
+    while not (repeats := _repeats(last)) and not _is_unresolved(last) and count < flown[2]:
         block = min(2 * block, flown[2] - count)
         period = as_float(last.oscillator.period)  # type: ignore[arg-type]
         last = orbit(last.oscillator, float(np.mod(last.tau[-1], period)), float(last.v[-1]), block)
@@ -175,10 +179,16 @@ def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, bool]:
     return last, repeats
 
 
+def _is_unresolved(found: Orbit) -> bool:
+    return bool(found.phases) and found.phases[-1][0] == "unresolved"
+
+
 def _repeats(found: Orbit) -> bool:
     """Whether the last events are those of a period before, or no other follows."""
-    if found.phases and found.phases[-1][0] in ("no_return", "unresolved"):
+    if found.phases and found.phases[-1][0] == "no_return":
         return True
+    if _is_unresolved(found):
+        return False
     if found.phases and found.phases[-1][0] == "sticking" and not np.isfinite(found.phases[-1][2]):
         return True
     shown = np.isin(found.kind, ("impact", "graze", "complete"))
@@ -187,8 +197,19 @@ def _repeats(found: Orbit) -> bool:
     for n in range(1, min(SETTINGS.period, tau.size // 2) + 1):
         last, before = slice(-n, None), slice(-2 * n, -n)
         if apart((tau[last], v[last]), (tau[before], v[before]), period, fast).max() < SETTINGS.close:
-            return True
+            only_impacts = bool((found.kind[shown][-2 * n :] == "impact").all())
+            return not only_impacts or _is_periodic(found, n, period, fast)
     return False
+
+
+def _is_periodic(found: Orbit, n: int, period: float, fast: float) -> bool:
+    """Whether the last impact is one of an attracting orbit of n impacts, and not on its way past or towards one."""
+    end, v = found.tau[found.kind == "impact"], found.v[found.kind == "impact"]
+    turns = np.rint((end[-1:] - end[-1 - n]) / period).astype(np.int64)
+    tau = np.mod(end[-1:], period)
+    beside = nearby_orbits(found.oscillator, tau, v[-1:], np.array([n]), turns, fast)
+    away = apart((beside.tau, beside.v), (tau, v[-1]), period, fast)
+    return bool(np.where(beside.found, away < SETTINGS.close, beside.residual < SETTINGS.closed)[0])
 
 
 def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tuple[int, int, int]) -> Array:

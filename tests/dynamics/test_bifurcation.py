@@ -65,3 +65,42 @@ def test_what_cannot_be_used_is_refused_in_a_sentence():
         si.bifurcation(osc, "clearance", (0, 1), direction="up", output="kept.npz")
     with pytest.raises(InputError, match="unknown number of the model 'mass'"):
         si.bifurcation(osc, "mass", (0, 1))
+
+
+@pytest.mark.parametrize(
+    ("omega", "r", "doubling"),
+    [("2.805", "0.84", 0.071221561), ("2.314", "0.34", -0.170632980), ("2.22", "0.7", -0.224021839)],
+)
+def test_events_beside_a_doubling_are_settled_on_the_stable_orbit(omega, r, doubling):
+    """The multiplier is -0.9998 at the second value: events that still came nearer by every second one were settled."""
+    orbit = next(each for each in si.linear(omega, repr(doubling + 1e-3), r).periodic(1, 1) if each.stable)
+    start = float(orbit.tau[0]), float(orbit.v[0])
+    ends = doubling - 1e-5, doubling + 1e-5
+    found = si.bifurcation(si.linear(omega, 0, r), "clearance", ends, 2, start=start, kept=8)
+    spread = np.ptp(found.events[:, :, 1], axis=1)
+    assert found.settled[0]
+    assert spread[0] > 1e-5
+    assert not found.settled[1] or spread[1] < 2e-6
+
+
+def test_events_of_a_slow_passage_beside_a_fold_are_not_settled():
+    """1e-7 beyond the fold of the (1, 1) orbits: (c - K v)^2 + (L v)^2 = gamma^2, see `test_basins`."""
+    generator = np.random.default_rng(7)
+    for _ in range(8):
+        omega, r = round(generator.uniform(2.1, 3.8), 3), round(generator.uniform(0.3, 0.8), 2)
+        gamma, sharp, flat = 1 / (1 - omega**2), (1 + r) / (2 * r) / np.tan(np.pi / omega), (1 - r) / (2 * r * omega)
+        c = np.sign(sharp) * abs(gamma) * np.hypot(1, sharp / flat) * (1 + 1e-7)
+        v = c * sharp / (sharp**2 + flat**2)
+        tau = np.arctan2(flat * v / gamma, (c - sharp * v) / gamma) / omega
+        found = si.bifurcation(si.linear(str(omega), 0, str(r)), "clearance", (c, c * (1 + 1e-9)), 2, start=(tau, v))
+        last = found.events[:, -1]
+        beside = (np.abs(last[:, 1] - v) < 1e-2) & (np.ptp(found.events[:, -2:, 1], axis=1) < 1e-6)
+        assert not (beside & found.settled).any()
+
+
+def test_an_orbit_that_ends_in_an_unresolved_flight_is_not_settled():
+    model = si.ImpactOscillator("x + sqrt(x**2)", "cos(2*t)", "-0.3", "0.8")
+    found = si.bifurcation(model, "restitution", ("0.7", "0.8"), 3)
+    ends = [model.replace(restitution=str(r)).orbit(0, "0.1", impacts=200).phases[-1][0] for r in found.values.tolist()]
+    assert "unresolved" in ends
+    assert [end == "unresolved" for end in ends] == (~found.settled).tolist()
