@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from singimpact.bench.measuring import Measured, Row
+from singimpact.bench.report import in_words
 from singimpact.scenes.style import BLACK, BLUE, DASH_DOT, DASHES, DOTS, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
 
 COLORS = (BLUE, VERMILLION, GREEN, PURPLE, BLACK, ORANGE, SKY, GREY)
@@ -31,7 +32,7 @@ class Sheet:
     width: float = 4.6
     height: float = 3.5
     columns: int = 2
-    bar: float = 0.28
+    bar: float = 0.34
     least: float = 1e3
     floor: float = 1e-17
 
@@ -110,12 +111,21 @@ def _widened(axes: Any) -> None:
 
 
 def _bars(axes: Any, rows: Sequence[Row]) -> None:
+    """A bar a row, its name above it and its time beside it: names are too long for an axis."""
     several = len({row.case for row in rows}) > 1
-    labels = [f"{row.case if several else row.method}, {row.setting}" for row in rows]
-    axes.barh(labels, [row.microseconds / 1e6 for row in rows], color=SKY, edgecolor=BLACK, linewidth=0.6)
-    axes.invert_yaxis()
-    axes.set_xlabel("seconds of CPU", fontsize=9)
-    axes.tick_params(labelsize=8)
+    seconds, places = [row.microseconds / 1e6 for row in rows], range(len(rows))
+    axes.barh(places, seconds, height=0.4, color=SKY, edgecolor=BLACK, linewidth=0.6)
+    axes.set_xscale("log")
+    least = min(seconds) / 2
+    axes.set_xlim(least, 3 * max(seconds))  # room for the time beside the longest
+    for place, row in zip(places, rows, strict=True):
+        parts = ([row.case] if several else []) + [row.method, row.setting]
+        axes.text(1.02 * least, place - 0.25, ", ".join(filter(None, parts)), fontsize=7, va="bottom")
+        axes.text(1.05 * row.microseconds / 1e6, place, in_words(row.microseconds), fontsize=7, va="center")
+    axes.set_ylim(len(rows) - 0.4, -0.8)
+    axes.set_yticks([])
+    axes.set_xlabel("seconds of CPU, or of wall time where it says so", fontsize=9)
+    axes.tick_params(which="both", labelsize=8)
     axes.spines[["top", "right"]].set_visible(False)
 
 
