@@ -13,12 +13,14 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.flights import undecided
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import EPSILON, CompiledModel, allowed, compiled_model
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.kernels.hits import CANCELS
+from singimpact.flights.limits import LIMITS
 from singimpact.flights.rebound_law import rebound
 from singimpact.flights.response import response
 from singimpact.flights.results import SCALAR_STATUS, Flight, Step
@@ -26,10 +28,12 @@ from singimpact.flights.states import States
 from singimpact.inputs import refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Status, status_array
+from singimpact.status import Cause, Status, status_array
 
 Array = np.ndarray[Any, Any]
 NONE = np.int8(0)
+LATE = 2.0**22
+"""Launch times from which on the rounding of phases that no period takes in is looked at."""
 NO_NOTES: dict[int, str] = {}
 
 
@@ -136,6 +140,8 @@ def _quickly(model: CompiledModel, tau: float, v: float) -> tuple[dict[str, Any]
     """The fields of a plain hit of two floats; None for all that needs a closer look, with what was flown of it."""
     if not (0 < v < inf and -model.nearest < tau < model.nearest) or model.sometimes_kept:
         return None, None
+    if model.osc.period is None and abs(tau) > LATE:
+        return None, None
     code, hit = model.quick()(tau, v)
     if code == CANCELS:  # a_c at the launch has lost digits: flown with the exact one
         code, hit = model.quick()(tau, v, float(acceleration(model.osc, np.array([tau]))[0]))
@@ -163,16 +169,43 @@ def _flights(
 
 
 def _with_rounded_launches(osc: Oscillator, states: States, flight: Flight) -> Flight:
-    """Errors with what a launch time lost when it became a double, where no period takes it in."""
-    if osc.period is not None or states.written[0].dtype.kind == "f":
+    """Errors with what a late launch loses where no period takes it in: its digits beyond a double, those of phases.
+
+    Where this is more than a hundredth of the flight time or velocity, rounding would decide which impact is the first:
+    such flights are decided in many digits.
+    """
+    if osc.period is not None or not names_in(osc.g):
         return flight
-    time, velocity, low = flight.flight_time, flight.velocity, np.abs(states.below_doubles())
-    late = np.flatnonzero((np.asarray(flight.status) == Status.hit) & (low > EPSILON * np.abs(time)))
+    time, velocity = flight.flight_time, flight.velocity
+    # phases are reduced with twice a double's digits
+    lost = np.abs(states.below_doubles()) + (4 * EPSILON * states.tau) ** 2
+    late = np.flatnonzero((np.asarray(flight.status) == Status.hit) & (lost > EPSILON * np.abs(time)))
     if late.size:
         moved = response(osc, states.tau[late], states.v[late], time[late], velocity[late])
-        flight.time_error[late] += np.abs(moved.time_by_tau) * low[late] / time[late]
-        flight.velocity_error[late] += np.abs(moved.velocity_by_tau) * low[late] / np.abs(velocity[late])
+        flight.time_error[late] += np.abs(moved.time_by_tau) * lost[late] / time[late]
+        flight.velocity_error[late] += np.abs(moved.velocity_by_tau) * lost[late] / np.abs(velocity[late])
+        error = np.maximum(flight.time_error[late], flight.velocity_error[late])
+        for n, index in enumerate(late[~(error < LIMITS.vague)].tolist()):
+            _decide_in_digits(osc, states, flight, index, n < LIMITS.settled)
     return flight
+
+
+def _decide_in_digits(osc: Oscillator, states: States, flight: Flight, index: int, few: bool) -> None:
+    """One flight that doubles leave open, from the time that was written; unresolved after many of them.
+
+    Its errors stay those of a launch from a double, which are what the call's other flights have.
+    """
+    flight.status[index], flight.cause[index] = Status.unresolved, Cause.near_graze
+    numbers, values = (flight.flight_time, flight.velocity), [np.nan, np.nan]
+    if few:
+        exact = first_hit(osc, states.written[0][index], states.written[1][index], digits=20)
+        flight.status[index], flight.cause[index] = exact.status, exact.cause
+        if exact.status == Status.hit:
+            values = [float(exact.flight_time), float(exact.velocity)]
+    if flight.status[index] != Status.hit:
+        flight.time_error[index] = flight.velocity_error[index] = np.nan
+    for array, value in zip(numbers, values, strict=True):
+        array[index] = value
 
 
 def _allowance(osc: Oscillator, tolerance: Any, horizon: Any, steps: Any) -> Allowance | None:

@@ -25,6 +25,9 @@ class Limits:
     likely: float = 4.0
     # relative rounding errors of the flight time and of x' below which a hit is never refined
     rough: tuple[float, float] = (1e-14, 1e-13)
+    # relative error above which a flight of a late launch, whose time no period takes in, is not decided by doubles: at
+    # 0.03 another impact came first
+    vague: float = 1e-2
     # bits of the balls that refine a hit which double-double arithmetic leaves open (70 us)
     refine_bits: int = 192
     # derivatives of a_c that are tested before a mass at rest is said to rest for ever
