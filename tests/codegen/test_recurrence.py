@@ -87,9 +87,7 @@ def test_the_text_of_drawn_products_is_a_program(seed: int) -> None:
     """A product of 250 factors had 250 brackets inside each other, of which Python takes 200."""
     random = Random(seed)
     parts = ["x", "xdot", "(x + 1)", "sin(x)"]
-    force = "*".join(
-        random.choice(parts[: 1 + seed % 2]) for _ in range(random.randrange(2, 140 + 140 * (seed % 2 == 0)))
-    )
+    force = "*".join(random.choice(parts[: 1 + seed % 2]) for _ in range(random.randrange(2, 30 if seed % 2 else 280)))
     compile(recurrence(parse(force, ["x", "xdot"]), parse("t", ["t"])).source, "<emitted>", "exec")
 
 
