@@ -33,6 +33,8 @@ def compile_asked(request: Path) -> None:
     gc.disable()  # a tenth of the time: numba makes millions of objects, and the process ends when it is done
     flow, rho, steps = request.read_text(encoding="utf-8").split("\0")
     machine = Machine(Emitted(flow, rho, bool(steps)))
+    if flow or rho:
+        _limited(*SETTINGS.text_limits)
     held = machine.lock_of_cache
     signals = _heard()
     if not held.take(request.name, SETTINGS.lock):  # another program was a little faster
@@ -52,10 +54,24 @@ def compile_asked(request: Path) -> None:
                 with writing:
                     if request.exists():  # else the cache was removed or emptied meanwhile
                         cache.keep(machine.place(name), code)
+    except MemoryError:
+        signal.raise_signal(signal.SIGKILL)  # whoever waits sees that there is no memory, and does not try it itself
     finally:
         withdraw(request)
         _remove_stale(request.parent)
         held.release()
+
+
+def _limited(seconds: int, memory: int) -> None:
+    """Let the system end this process when it takes more; a stranger's text may take gigabytes."""
+    try:
+        import resource
+    except ImportError:  # Windows has no such limits
+        return
+    for kind, most in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, memory)):
+        hard = resource.getrlimit(kind)[1]
+        with suppress(OSError, ValueError):
+            resource.setrlimit(kind, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 
 
 def _heard() -> tuple[Any, Any]:

@@ -42,6 +42,9 @@ class CompilingSettings:
     # seconds of waiting for a process of another program, and for one of this program, after which a line says so; on
     # a terminal a line of progress does after one second
     silent: tuple[float, float] = (1.0, 30.0)
+    # seconds of CPU and bytes that the process of a text may take, after which the system ends it and flights stay
+    # interpreted: 40, 200, 270 rows take 5, 28, 32 s and 0.25, 0.6, 1.1 GB; 500 took minutes and gigabytes
+    text_limits: tuple[int, int] = (60, 3 * 2**30)
     # seconds after which the request of a process that was killed is removed
     stale: float = 86_400.0
     # bytes of address space that a process needs to compile; with 450 MB one was seen to import scipy without end

@@ -544,3 +544,14 @@ def test_long_calls_hear_an_interruption(compiled, monkeypatch):
     # what the interrupted call wrote into is not lent again
     again = osc.iterate(0.3, 0.5, 100)
     assert again == osc.iterate(0.3, 0.5, 100)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the system has no limits of processes")
+@pytest.mark.parametrize(
+    ("limits", "work", "end"),
+    [((1, 2**40), "while True: pass", -getattr(signal, "SIGXCPU", 0)), ((60, 2**30), "bytearray(2**31)", 1),
+     ((60, 3 * 2**30), "bytearray(2**28)", 0)],
+)  # fmt: skip
+def test_a_process_that_compiles_a_text_has_limits(limits, work, end):
+    text = f"from singimpact.flights.compiler_process import _limited\n_limited{limits}\n{work}"
+    assert subprocess.run([sys.executable, "-c", text], capture_output=True, check=False).returncode == end
