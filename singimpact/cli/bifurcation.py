@@ -80,5 +80,5 @@ def command(
         click.echo(as_json_text({"over": over, "cases": [{"value": value, "events": each} for value, each in rows]}))
     else:
         left = int((~found.settled).sum())
-        open_ = f"; {left} of them not seen to settle in at most {found.settle} impacts" if left else ""
+        open_ = f"; {left} of them without a period seen in at most {found.settle} impacts" if left else ""
         click.echo(f"{output}: {points} values of {over}, {kept} events of each{open_}")

@@ -75,7 +75,7 @@ class Bifurcation:
         ends = f"{self.values.min():.6g} to {self.values.max():.6g}"
         carried = {"": "", "both": ", up and down"}.get(self.direction, f", {self.direction}")
         left = np.count_nonzero(~self.settled)
-        open_ = f"; {left} not seen to settle in at most {self.settle} impacts" if left else ""
+        open_ = f"; {left} without a period seen in at most {self.settle} impacts" if left else ""
         return f"Bifurcation(over {self.over}: {count} values from {ends}{carried}, {kept} events of each{open_})"
 
     def to_csv(self, path: Any) -> None:
@@ -133,12 +133,12 @@ def bifurcation(
             np.concatenate([part[:: 1 if way == "up" else -1] for way in WAYS[direction]]) for part in (values, periods)
         )
         events = _carried(model, over, values, start, (impacts, kept, settle))
-        return _made(over, values, events, direction, periods, settle)
+        return _made(over, values, events, direction, periods, max(settle, impacts))
     ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), (impacts, kept, settle))
     few = sweeping.get("executor") is None and points * impacts <= FEW
     with ThreadPool(1) if few else nullcontext(sweeping.get("executor")) as pool:
         events = sweep(ask, values.tolist(), **(sweeping | {"executor": pool}))
-    return _made(over, values, np.array(events), "", periods, settle)
+    return _made(over, values, np.array(events), "", periods, max(settle, impacts))
 
 
 def _made(over: str, values: Array, events: Array, direction: str, periods: Array, settle: int) -> Bifurcation:

@@ -104,3 +104,10 @@ def test_an_orbit_that_ends_in_an_unresolved_flight_is_not_settled():
     ends = [model.replace(restitution=str(r)).orbit(0, "0.1", impacts=200).phases[-1][0] for r in found.values.tolist()]
     assert "unresolved" in ends
     assert [end == "unresolved" for end in ends] == (~found.settled).tolist()
+
+
+def test_the_impacts_that_are_named_are_those_that_were_flown():
+    """With settle=0 a diagram of 200 impacts said "in 0 impacts"."""
+    found = si.bifurcation(si.linear("3.3", "0.03", "0.95"), "clearance", ("0.029", "0.031"), 3, settle=0, impacts=150)
+    assert not found.settled.any()
+    assert "3 without a period seen in at most 150 impacts" in repr(found)
