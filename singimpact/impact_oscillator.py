@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from singimpact.algebra.numbers import compare, constant, float_array
+import numpy as np
+
+from singimpact.algebra.numbers import compare, constant
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 
@@ -142,12 +144,16 @@ class ImpactOscillator(Oscillator):
         [0.0, -1.860079008832274]
         """
         from singimpact.flights.states import States
-        from singimpact.oscillator.acceleration import acceleration
+        from singimpact.oscillator.acceleration import acceleration, at_exactly
 
         if isinstance(order, bool) or not isinstance(order, int) or not 0 <= order <= 60:
             raise refuse("order", order, "a whole number from 0 to 60")
         states = States.read(tau, 0.0).in_period(self)
-        return acceleration(self, states.tau, order).reshape(states.shape)[()]
+        values = acceleration(self, states.tau, order)
+        if self.period is None:  # nothing takes in what a double loses of a late time
+            for index in np.flatnonzero(states.below_doubles()).tolist():
+                values[index] = at_exactly(self, states.exact_tau(index), order)
+        return values.reshape(states.shape)[()]
 
     def iterate(self, tau: Any, v: Any, impacts: int = 100, *, keep: bool = False) -> Iterates:
         """Many impacts of each of many states: iterates of the impact map G.
@@ -325,9 +331,14 @@ class ImpactOscillator(Oscillator):
         2.508540817200
         """
         from singimpact.dynamics.release import release
+        from singimpact.flights.states import States
 
-        start = float(float_array("tau", tau))
-        return start if self.acceleration(start) > 0 else release(self, start)
+        states = States.read(tau, 0.0).in_period(self)
+        if states.shape:
+            raise refuse("tau", tau, "one number")
+        start = float(states.tau[0])
+        lifted = start if self.acceleration(tau) > 0 else release(self, start)
+        return lifted + float(np.ravel(states.turns)[0])
 
     def launch(self, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -> Launched:
         """The first impact of flights that start off the wall.

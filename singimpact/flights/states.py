@@ -197,8 +197,11 @@ def _raw(name: str, value: Any) -> np.ndarray[Any, Any]:
         array = np.asarray(value)
     except ValueError:
         raise refuse(name, value, "a number or an array of numbers") from None
-    if array.dtype.kind in "USc" or (array.dtype.kind == "O" and isinstance(value, list | tuple)):
-        # numpy turns a list of text and numbers into text of numbers, and a float written out is not that float
+    listed = isinstance(value, list | tuple)
+    whole = listed and array.dtype.kind == "f" and bool((np.abs(array) >= 2.0**53).any())
+    if array.dtype.kind in "USc" or (array.dtype.kind == "O" and listed) or whole:
+        # numpy turns a list of text and numbers into text of numbers, and a float written out is not that float; in a
+        # list with floats it rounds large integers
         array = np.array(value, dtype=object)
     return array
 

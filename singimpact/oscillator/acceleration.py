@@ -50,11 +50,24 @@ def acceleration(osc: Oscillator, tau: np.ndarray[Any, Any], order: int = 0) -> 
     # a big tau loses its phase in double arithmetic, and a derivative has no size to compare with
     doubtful = ~(np.abs(values) >= CANCELLATION * size) | (np.abs(tau) > 64) | (order > 0)
     for index in np.flatnonzero(doubtful):
-        try:
-            values[index] = float(as_ball(osc, Number(Fraction(float(tau[index]))), order).mid())
-        except NotSmooth:  # a_c itself stays inf or nan, as of any numpy function
-            values[index] = np.nan if order else values[index]
+        exactly = at_exactly(osc, Number(Fraction(float(tau[index]))), order)
+        # where it is not smooth a_c itself stays inf or nan, as of any numpy function
+        values[index] = exactly if order or not np.isnan(exactly) else values[index]
     return values
+
+
+def at_exactly(osc: Oscillator, tau: Expression, order: int = 0) -> float:
+    """a_c, or a tau-derivative of it, at an exact time; nan where it is not smooth.
+
+    Examples
+    --------
+    >>> at_exactly(Oscillator("x", "cos(t)", 0, 1), Number(Fraction(2**53 + 1)))
+    0.4287904318447045
+    """
+    try:
+        return float(as_ball(osc, tau, order).mid())
+    except NotSmooth:
+        return float("nan")
 
 
 def largest_push(osc: Oscillator) -> float:

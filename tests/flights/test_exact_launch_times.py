@@ -128,3 +128,30 @@ def test_masked_numbers_are_refused():
         with pytest.raises(si.InputError, match="masked"):
             ask()
     assert osc.first_hit(np.ma.array([0.1, 0.2]), 1).status.shape == (2,)
+
+
+@pytest.mark.parametrize("tau", [2**53 + 1, "1000000000000000.3", Fraction(10**17 + 1, 3)])
+def test_the_acceleration_at_an_exact_time_without_a_period(tau):
+    """Against 50 digits: no double is near enough to these times."""
+    model = si.ImpactOscillator("0", "cos(t) + cos(sqrt(2)*t)", 0, "1/2")
+    exact = Fraction(tau)
+    with mpmath.workdps(50):
+        t, root = mpmath.mpf(exact.numerator) / exact.denominator, mpmath.sqrt(2)
+        value = float(mpmath.cos(t) + mpmath.cos(root * t))
+        slope = float(-mpmath.sin(t) - root * mpmath.sin(root * t))
+    assert model.acceleration(tau) == pytest.approx(value, abs=1e-15)
+    assert model.acceleration([tau, 0.5], order=1)[0] == pytest.approx(slope, abs=1e-15)
+
+
+def test_a_lift_off_after_an_exact_time_is_that_of_its_phase():
+    model = si.linear("2.3", "0.3", "0.6")
+    assert model.release(2**53 + 1) == 2.0**53  # at once: the double next to it
+    for tau in (10**9 + 1, "1000000001.25"):
+        with mpmath.workdps(40):
+            period = 2 * mpmath.pi / mpmath.mpf("2.3")
+            time = mpmath.mpf(Fraction(tau).numerator) / Fraction(tau).denominator
+            turns = mpmath.floor(time / period)
+            phase, begun = float(time - turns * period), float(turns * period)
+        assert model.release(tau) - begun == pytest.approx(model.release(phase), abs=1e-6)
+    with pytest.raises(si.InputError, match="give one number"):
+        model.release([1, 2])
