@@ -12,7 +12,6 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float, constant, sign_of
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.kernels.hits import UNIT as EPSILON
-from singimpact.flights.kernels.state import LATEST
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.model_numbers import fastest_rate, has_table, recurrence_of
 from singimpact.inputs import refuse
@@ -49,7 +48,7 @@ class Allowance:
 
     Parameters
     ----------
-    horizon, reach : a flight with launch velocity v is given up after the time max(horizon, min(reach v, LATEST)).
+    horizon, reach : a flight with launch velocity v is given up after the time max(horizon, reach v).
     epsilon : relative error of a Taylor step. steps : Taylor steps.
     """
 
@@ -60,7 +59,7 @@ class Allowance:
 
     def until(self, v: Any) -> Any:
         """The flight time at which flights with launch velocities v are given up."""
-        return np.maximum(self.horizon, np.minimum(self.reach * v, LATEST))
+        return np.maximum(self.horizon, self.reach * v)
 
 
 def horizon_of(osc: Oscillator, horizon: Any) -> float:

@@ -51,7 +51,7 @@ def first_hit(
     tolerance : relative error allowed in a step of a Taylor flow, and, times ten, of a hit before it is refined.
     horizon : time after which a flight is given up. Without it at least 1000 periods of g (1e4 without a period, at
         most 2e5 radians of the fastest motion), 2 periods of a slow g, 64 half turns of the free motion (4 if f is not
-        linear), and 8 v over the mean force (at most 1e12). At most 1e7 radians.
+        linear), and 8 v over the mean force. At most 1e7 radians.
     steps : Taylor steps after which a flight of a model without a closed form is given up; without it 16000, or
         fewer where f and g have many products and functions (700 of 100).
     out : arrays that take the results, by field: {"flight_time": a, "velocity": b}, memory maps too. Of the shape of

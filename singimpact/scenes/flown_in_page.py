@@ -17,7 +17,6 @@ from singimpact.codegen.javascript import formula, translated
 from singimpact.codegen.scalar import scalar
 from singimpact.flights.horizons import horizon_of, reach_of
 from singimpact.flights.kernels import roots, steps, taylor
-from singimpact.flights.kernels.state import LATEST
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import numbers_of_flow, recurrence_of
 from singimpact.oscillator.model import Oscillator
@@ -68,7 +67,7 @@ def model_in_javascript(osc: Oscillator) -> str:
     }
     # in a scope of their own: the page has functions of the same names
     return "\n".join([
-        f"const {{ {', '.join(USED)} }} = (() => {{", f"const LATEST = {LATEST};",
+        f"const {{ {', '.join(USED)} }} = (() => {{",
         *functions.values(), text, *(f"const {name} = {other};" for name, other in BOUND.items()),
         f"const constants_of = ({GIVEN}) => [{_formulas(flow.constants)}];", law, f"return {{ {', '.join(USED)} }};",
         "})();", as_script("MODEL", model),

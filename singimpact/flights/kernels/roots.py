@@ -113,6 +113,8 @@ def safe_step(a0: Any, a1: Any, a2: Any, third: Any, room: Any) -> Any:
             slope = -a1 + inside**0.5
             if slope > 0:
                 step = 2 * a0 / slope
+                if step <= 0:  # rounding decides the sign here already, and no halving ends
+                    return 0 * step
         elif inside >= 0 and low < 0:
             # with a0 = 1e-300 the other form divides by a difference that is rounded to zero
             step = (a1 + inside**0.5) / -low

@@ -7,9 +7,6 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-LATEST = 1e12
-"""Flight time up to which a weak mean force is waited for; without a limit f = 1e-65 takes 10 million steps."""
-
 X_BY_X, X_BY_V, X_STEADY, V_BY_X, V_BY_V, V_STEADY, SIZE_X, SIZE_STEADY = range(8)
 """Columns of `Table.rows`: x - c and x' by their values at the start and by the constant force; sizes for rounding."""
 
@@ -55,8 +52,7 @@ class Table(NamedTuple):
 class Rules(NamedTuple):
     """When a flight is given up, and the degree and rounding of its steps.
 
-    horizon, reach : a flight is given up after this time, or after `reach` times its launch velocity if that is later,
-    but not later than LATEST.
+    horizon, reach : a flight is given up after this time, or after `reach` times its launch velocity if that is later.
     budget : Taylor steps. order : degree of a Taylor step. short : degree of the shorter steps through
     a table, and of the steps of `variational.judge`. ulp : rounding error allowed for, relative to the size of the
     terms. likely : the same, as it usually is, in roundings. rough_time, rough_velocity : relative errors of a hit

@@ -15,7 +15,6 @@ from typing import Any
 
 from singimpact.flights.kernels.linear import coefficients, quiet, restart, singular_part, step_size
 from singimpact.flights.kernels.roots import first_root
-from singimpact.flights.kernels.state import LATEST
 
 
 def taylor_flight(
@@ -34,7 +33,7 @@ def taylor_flight(
         of the step before; the row of the hit ends it, and entry [0, 3] counts the steps.
     """
     X, W, q, order, ulp = work.X, work.W, work.q, rules.order, rules.ulp
-    horizon, zero = max(rules.horizon, min(rules.reach * v, LATEST)), 0 * v
+    horizon, zero = max(rules.horizon, rules.reach * v), 0 * v
     time, z, u, noise, shift, z_lost, u_lost = zero, zero, v, zero, zero, zero, zero
     if removed == 0:
         z = q[0]
