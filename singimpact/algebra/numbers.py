@@ -18,6 +18,7 @@ from singimpact.algebra.expressions import Expression, Number, Pi, Product, eval
 from singimpact.algebra.parsing import from_sympy, parse
 from singimpact.inputs import InputError, refuse, require_memory, shown
 
+LONGEST = 1_000_000  # bits of a rational that stands for a ball
 ACCEPTED = "a finite real number, or text such as '0.3', '1/3' or 'pi/2.8'"
 
 
@@ -108,12 +109,14 @@ def as_fraction(tree: Expression) -> Fraction | None:
 def rational_near(tree: Expression, bits: int) -> Fraction:
     """A rational within about 2^-bits, relative, of a constant tree; the number itself where it is rational.
 
+    A number below 2^-1000000 that is not written as a rational becomes 0: its digits would take seconds and gigabytes.
+
     Rationals and their products with pi, which is what a model in doubles is made of, need no balls: these take 20
     milliseconds to load.
 
     Raises
     ------
-    OverflowError : the number is out of the range of balls.
+    OverflowError : the number is above 2^1000000, or out of the range of balls.
 
     Examples
     --------
@@ -134,6 +137,10 @@ def rational_near(tree: Expression, bits: int) -> Fraction:
     ball = _ball(tree, bits)
     if not ball.is_finite():  # flint puts 0 where a number is out of its range
         raise OverflowError("out of the range of balls")
+    if abs(exponent := int(ball.mid().man_exp()[1])) > LONGEST:
+        if exponent > 0:
+            raise OverflowError(f"above 2^{LONGEST}")
+        return Fraction(0)
     return as_rational(ball)
 
 

@@ -1,5 +1,6 @@
 """The whitelist parser: what it reads, and that every refusal is one line, at once, without running anything."""
 
+import math
 from fractions import Fraction
 from random import Random
 
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import FOLDING, Number, evaluate, walk
-from singimpact.algebra.numbers import as_float, compare, constant, exact, float_array, sign_of
+from singimpact.algebra.numbers import as_float, compare, constant, exact, float_array, rational_near, sign_of
 from singimpact.algebra.parsing import from_sympy, parse
 from singimpact.algebra.rings import EXACT, to_sympy
 from singimpact.impact_oscillator import ImpactOscillator
@@ -208,3 +209,16 @@ def test_sums_of_many_digits_stay_sums():
     tree = parse("+".join(f"1/{prime}**999" for prime in primes[:700]))
     assert bits_in(tree) <= FOLDING.rational
     assert sign_of(tree) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("((1e-3000*pi)**511)**127", 0.0), ("((1e-300*pi)**9)**5", 0.0), ("(pi/2)**3", (math.pi / 2) ** 3)],
+)
+def test_a_double_of_a_number_of_many_digits(text, value):
+    """A rational of 600 million bits was made on the way to the double 0."""
+    assert as_float(constant("c", text)) == pytest.approx(value, rel=1e-15)
+    if value == 0:
+        assert rational_near(constant("c", text), 64).denominator.bit_length() <= 1_000_100
+        with pytest.raises(InputError, match=r"1\.8e308"):
+            as_float(constant("c", f"1/({text})"))
