@@ -33,8 +33,7 @@ class Bounds:
         CPU after which the process is ended. address_space : bytes beyond which the process has no memory.
     """
 
-    # the longest of 480 takes 2.3 s; a busy machine takes half as much again
-    seconds: float = 4.0
+    seconds: float = 2.0
     memory: int = 500 * 2**20
     killed: int = 20
     address_space: int = 2**31
