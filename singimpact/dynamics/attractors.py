@@ -25,14 +25,12 @@ class AttractorSettings:
     catch : how near to an attractor an orbit is looked upon as caught, relative, when the corners of that neighbourhood
         are seen to come in; a tenth of it is tried next, down to `close`.
     turns : of the attractor, in which they must come into half of it; the later ones where multipliers are near 1.
-    closed : relative distance of a return below which a state has settled where Newton's method does not converge.
     """
 
     most_impacts: int = 8
     close: float = 1e-6
     catch: float = 1e-2
     turns: tuple[int, ...] = (6, 30, 150)
-    closed: float = 1e-10
 
 
 SETTINGS = AttractorSettings()
@@ -48,11 +46,6 @@ class Attractor:
     catch: float
 
 
-def periodic_codes(model: Oscillator, tau: Array, v: Array, fast: float, most: int = SETTINGS.most_impacts) -> Array:
-    """(n, k) of states that return to themselves, else OTHER; of the orbit they converge to, if its n is smaller."""
-    return closing_orbits(model, tau, v, fast, most)[0]
-
-
 def closing_orbits(
     model: Oscillator, tau: Array, v: Array, fast: float, most: int = SETTINGS.most_impacts
 ) -> tuple[Array, Array, Array]:
@@ -63,7 +56,7 @@ def closing_orbits(
     there = beside.found
     codes[near[there]] = (beside.n * PLACES + beside.k)[there]
     tau[near[there]], v[near[there]] = beside.tau[there], beside.v[there]
-    codes[near[~there & (beside.residual > SETTINGS.closed)]] = OTHER
+    codes[near[~there & ~beside.returned]] = OTHER
     return codes, tau, v
 
 

@@ -39,8 +39,6 @@ class BifurcationSettings:
     # events of the longest period that is looked for, and relative distance of events that repeat
     period: int = 64
     close: float = 1e-6
-    # relative distance of a return that has settled where Newton's method finds no orbit, as next to a graze
-    closed: float = 1e-10
 
 
 SETTINGS = BifurcationSettings()
@@ -209,7 +207,7 @@ def _is_periodic(found: Orbit, n: int, period: float, fast: float) -> bool:
     tau = np.mod(end[-1:], period)
     beside = nearby_orbits(found.oscillator, tau, v[-1:], np.array([n]), turns, fast)
     away = apart((beside.tau, beside.v), (tau, v[-1]), period, fast)
-    return bool(np.where(beside.found, away < SETTINGS.close, beside.residual < SETTINGS.closed)[0])
+    return bool(np.where(beside.found, away < SETTINGS.close, beside.returned)[0])
 
 
 def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tuple[int, int, int]) -> Array:

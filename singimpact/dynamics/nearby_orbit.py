@@ -27,6 +27,7 @@ class NearbySettings:
     """steps : of Newton's method; at a doubling each halves the distance. closed : relative residual of an orbit, some
     10^5 roundings. near : relative distance within which it is looked for. neutral : size of a multiplier up to which
     an orbit attracts or is neutral. same : relative residual of an orbit after fewer impacts that close it too.
+    returned : relative residual of a state that has settled where no orbit is found, as next to a graze.
     """
 
     steps: int = 30
@@ -34,6 +35,7 @@ class NearbySettings:
     near: float = 1e-2
     neutral: float = 1 + 1e-7
     same: float = 1e-8
+    returned: float = 1e-10
 
 
 SETTINGS = NearbySettings()
@@ -51,6 +53,11 @@ class Nearby:
     k: Array
     found: Array
     residual: Array
+
+    @property
+    def returned(self) -> Array:
+        """Whether the states that were given return by themselves, up to rounding."""
+        return self.residual < SETTINGS.returned
 
 
 def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, fast: float) -> Nearby:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.attractors import CHATTER, OTHER, SETTINGS, caught, new_attractors, periodic_codes
+from singimpact.dynamics.attractors import CHATTER, OTHER, SETTINGS, caught, closing_orbits, new_attractors
 from singimpact.dynamics.basins import basins
 from singimpact.dynamics.bifurcation import bifurcation
 from singimpact.dynamics.long_run import Future, chaotic, settled
@@ -153,7 +153,7 @@ def to_the_end(model, size, v):
     first = (ends.v < 1e-7 * v) & (acceleration(model, ends.tau) < 0)
     codes = np.zeros(tau.size, dtype=int)
     flying = np.flatnonzero(~first & (ends.status == 0) & (ends.v > 0))
-    codes[flying] = periodic_codes(model, ends.tau[flying], ends.v[flying], v)
+    codes[flying] = closing_orbits(model, ends.tau[flying], ends.v[flying], v)[0]
     early = np.array([int(each.n) * 1000 + each.k if each.kind == "orbit" else 0 for each in found.attractors])
     return found.first_chatter_completes, first.reshape(size, size), np.where(first.reshape(size, size), 0, early[
         found.codes]), codes.reshape(size, size)  # fmt: skip
@@ -191,7 +191,7 @@ def test_a_state_that_spirals_in_is_not_taken_for_an_orbit_of_twice_the_period()
     orbit = next(each for each in model.periodic(3, 3) if each.stable)
     angle, size = np.meshgrid(np.linspace(0, 2 * np.pi, 40), np.geomspace(1e-8, 5e-6, 60))
     tau = orbit.tau[0] + 2 * np.pi / 2.8 * (size * np.cos(angle)).ravel()
-    codes = periodic_codes(model, tau, orbit.v[0] + (size * np.sin(angle)).ravel(), 1.0)
+    codes = closing_orbits(model, tau, orbit.v[0] + (size * np.sin(angle)).ravel(), 1.0)[0]
     assert (codes == 3003).sum() > 1500
     assert set(codes.tolist()) <= {3003, OTHER}
 
