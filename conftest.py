@@ -80,13 +80,24 @@ def pytest_sessionstart(session):
 
 
 QUICK = (
-    "tests/algebra/test_puiseux.py", "tests/branches/test_continuation.py", "tests/branches/test_family.py",
-    "tests/cli/test_refusals.py", "tests/codegen/test_recurrence.py", "tests/contact/test_contact_orders.py",
-    "tests/dynamics/test_orbit.py", "tests/flights/test_derivative.py", "tests/flights/test_path.py",
-    "tests/germs/test_recognition.py", "tests/oscillator/test_model.py", "tests/scenes/test_style.py",
-    "tests/surface/test_followed_rests.py", "tests/test_public_names.py", "tests/test_store.py",
-    "tests/theory/test_fixed_points.py", "tests/theory/test_sheet.py",
-)  # fmt: skip
+    "tests/tool/algebra/test_puiseux.py",
+    "tests/tool/branches/test_continuation.py",
+    "tests/tool/branches/test_family.py",
+    "tests/tool/cli/test_refusals.py",
+    "tests/tool/codegen/test_recurrence.py",
+    "tests/tool/contact/test_contact_orders.py",
+    "tests/tool/dynamics/test_orbit.py",
+    "tests/tool/flights/test_derivative.py",
+    "tests/tool/flights/test_path.py",
+    "tests/tool/germs/test_recognition.py",
+    "tests/tool/oscillator/test_model.py",
+    "tests/tool/scenes/test_style.py",
+    "tests/tool/surface/test_followed_rests.py",
+    "tests/architecture/test_public_names.py",
+    "tests/tool/test_store.py",
+    "tests/tool/theory/test_fixed_points.py",
+    "tests/tool/theory/test_sheet.py",
+)
 """One or two files of each room that take less than a second: `python -m pytest -m quick`."""
 
 
@@ -97,8 +108,14 @@ def pytest_ignore_collect(collection_path, config):
     return None if collection_path.relative_to(config.rootpath).as_posix() in QUICK else True
 
 
-WITHOUT_FLIGHTS = ("tests/paper/claims/", "tests/algebra/", "tests/theory/", "tests/contact/", "tests/architecture/",
-                   "tests/documents/", "tests/paper/", "tests/oscillator/")  # fmt: skip
+WITHOUT_FLIGHTS = (
+    "tests/paper/",
+    "tests/architecture/",
+    "tests/tool/algebra/",
+    "tests/tool/theory/",
+    "tests/tool/contact/",
+    "tests/tool/oscillator/",
+)
 """Tests that come first, while kernels are compiled: flights take a hundred times as long until they are."""
 LONGEST = ("test_faults.py", "test_steep_layers.py", "test_threshold.py")
 """Files that take a minute: handed out next, so that no worker is left with one at the end."""
@@ -107,8 +124,8 @@ LONGEST = ("test_faults.py", "test_steep_layers.py", "test_threshold.py")
 TOGETHER = (
     "tests/paper/claims/",
     "tests/paper/sections/",
-    "tests/cli/test_claims_and_errata.py",
-    "tests/certificates/test_claims",
+    "tests/paper/cli/test_claims_and_errata.py",
+    "tests/paper/certificates/test_claims",
 )
 """Files that need the verdicts of all claims: one worker takes them, so that these are decided once and kept."""
 

@@ -1,4 +1,7 @@
-"""Python functions as JavaScript: what has no translation is refused; `tests/scenes/test_explore.py` runs the texts."""
+"""Python functions as JavaScript: what has no translation is refused.
+
+`tests/tool/scenes/test_explore.py` runs the texts.
+"""
 
 import inspect
 

@@ -1,4 +1,4 @@
-"""No forgery of a certificate is accepted, none ends in a traceback; `python tests/fuzzing/forgeries.py` is the long run."""
+"""No forgery of a certificate is accepted, none ends in a traceback; `python tests/tool/fuzzing/forgeries.py` is the long run."""
 
 import sys
 from pathlib import Path

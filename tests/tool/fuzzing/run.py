@@ -1,4 +1,4 @@
-"""Fuzz everything that takes text from a stranger: `python tests/fuzzing/run.py --inputs 100000 --seed 1`.
+"""Fuzz everything that takes text from a stranger: `python tests/tool/fuzzing/run.py --inputs 100000 --seed 1`.
 
 Kinds in turn: expressions, model files, scene files, ids of claims, command lines.  Prints each fault with the input
 that shows it and exits with 1 when there is one; `--show KIND NUMBER` prints one input again.
@@ -14,7 +14,7 @@ from collections import Counter
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
-sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2])]
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[3])]
 PORTION = 500
 
 

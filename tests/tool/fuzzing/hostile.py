@@ -1,4 +1,4 @@
-"""Fly models of hostile expressions: `python tests/fuzzing/hostile.py --models 480 --seed 1`.
+"""Fly models of hostile expressions: `python tests/tool/fuzzing/hostile.py --models 480 --seed 1`.
 
 Each model is read and flown twice in a process of its own, `impact_map` and `first_hit`, by interpreted kernels: those
 of the first calls.  Both must end in a status or in one line, within the bounds of `Bounds`, and without compiling.
@@ -20,7 +20,7 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-sys.path[:0] = [str(Path(__file__).parents[2])]
+sys.path[:0] = [str(Path(__file__).parents[3])]
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Fuzz the checker with false certificates: `python tests/fuzzing/certificates.py --certificates 100000 --seed 1`.
+"""Fuzz the checker with false certificates: `python tests/tool/fuzzing/certificates.py --certificates 100000 --seed 1`.
 
 True certificates of every kind are made, damaged in one to three places (a number, an end, a sign, two parts exchanged, a
 part of another certificate), and each one that the checker accepts is judged by a route that shares nothing with it:
@@ -16,7 +16,7 @@ from collections import Counter
 from fractions import Fraction
 from pathlib import Path
 
-sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
+sys.path[:0] = [str(Path(__file__).parents[2]), str(Path(__file__).parents[3])]
 
 KINDS = ("positive", "chain", "count", "value", "definite", "identity")
 NUMBERS = (0, 1, -1, 2, -2, 3, "1/2", "-1/3", "0", "1", "-1", "2", "oo", "-oo", "infinite", None, True, [], 7)

@@ -1,4 +1,4 @@
-"""Models of hostile expressions, each flown in a process of its own; `python tests/fuzzing/hostile.py` is the long run."""
+"""Models of hostile expressions, each flown in a process of its own; `python tests/tool/fuzzing/hostile.py` is the long run."""
 
 import subprocess
 import sys

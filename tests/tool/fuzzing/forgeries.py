@@ -1,6 +1,6 @@
-"""Forge certificates of every kind: `python tests/fuzzing/forgeries.py --forgeries 100000 --seed 1`.
+"""Forge certificates of every kind: `python tests/tool/fuzzing/forgeries.py --forgeries 100000 --seed 1`.
 
-Each forgery is a certificate of `tests/certificates/examples` with something changed and its digest made anew: a field
+Each forgery is a certificate of `tests/tool/certificates/examples` with something changed and its digest made anew: a field
 of another type, one more, one less, a number moved, a radius, a list reversed, cut or doubled, a word of another kind.
 Prints those that are accepted and false, those that end otherwise than in a refusal of one line, and those that take
 more than 10 s of CPU; exits with 1 when there is one.
@@ -29,7 +29,7 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-sys.path[:0] = [str(Path(__file__).parents[2])]
+sys.path[:0] = [str(Path(__file__).parents[3])]
 
 from singimpact.certificates import checker  # noqa: E402
 

@@ -1,6 +1,6 @@
 """Write a certificate of every kind, and the same statement with more digits, for the forgeries of the tests.
 
-    python tests/certificates/examples/write.py [NAME]...
+    python tests/tool/certificates/examples/write.py [NAME]...
 
 NAME.json is what the forgeries of the tests are made from; in NAME.true.json its numbers have more digits, by which a
 forged number is known to be true or false.

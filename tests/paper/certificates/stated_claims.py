@@ -1,6 +1,6 @@
 """Write `claims_stated.json` of the second program for claims, the list of what claims state, after a claim changed.
 
-python tests/certificates/stated_claims.py
+python tests/paper/certificates/stated_claims.py
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 from singimpact.certificates.claims_checker import STATED, statement_of
 from singimpact.paper.claims.verdicts import verify
 
-COMMAND = "python tests/certificates/stated_claims.py"
+COMMAND = "python tests/paper/certificates/stated_claims.py"
 
 
 def stated() -> dict[str, Any]:

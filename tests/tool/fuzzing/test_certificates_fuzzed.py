@@ -1,4 +1,4 @@
-"""No damaged certificate that is accepted is false; `python tests/fuzzing/certificates.py` is the long run."""
+"""No damaged certificate that is accepted is false; `python tests/tool/fuzzing/certificates.py` is the long run."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A small run of the fuzzer, and what it has found; `python tests/fuzzing/run.py` is the long run."""
+"""A small run of the fuzzer, and what it has found; `python tests/tool/fuzzing/run.py` is the long run."""
 
 import subprocess
 import sys

@@ -250,7 +250,7 @@ def pairs(count: int, seed: int, distances: tuple[float, float]) -> Iterator[Pai
 
 
 def main() -> None:
-    """Count what is missed: `python tests/branches/paired_events.py 2000 1`."""
+    """Count what is missed: `python tests/tool/branches/paired_events.py 2000 1`."""
     count, seed = (int(text) for text in sys.argv[1:3])
     tally: Counter[tuple[str, int]] = Counter()
     lost: Counter[tuple[str, int]] = Counter()
