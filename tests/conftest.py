@@ -24,7 +24,7 @@ def singimpact():
 @pytest.fixture(scope="session")
 def reference():
     """The table of reference values: name -> digits."""
-    from singimpact.bench.problems import values
+    from singimpact.bench import values
 
     return values()
 

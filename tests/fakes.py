@@ -91,9 +91,8 @@ def oscillator_room():
     """A module with the interface of `singimpact.impact_oscillator`, flights made up."""
     import numpy as np
 
-    from singimpact.algebra.numbers import float_array
-    from singimpact.oscillator.files import read_fields
-    from singimpact.oscillator.model import Oscillator
+    from singimpact.algebra import float_array
+    from singimpact.oscillator import Oscillator, read_fields
 
     class ImpactOscillator(Oscillator):
         def impact_map(self, tau, v, *, digits=None, tolerance=None, horizon=None):  # noqa: ARG002

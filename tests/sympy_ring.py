@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from singimpact.algebra.polynomials import Exponents
-from singimpact.algebra.rings import Exact
+from singimpact.algebra import Exact, Exponents
 
 
 class SympyExact(Exact):

@@ -6,10 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import as_float
-from singimpact.algebra.rings import DOUBLES
-from singimpact.oscillator.model import Oscillator
+from singimpact.algebra import DOUBLES, as_float, evaluate
+from singimpact.oscillator import Oscillator
 
 
 def integrate(

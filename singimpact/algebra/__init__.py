@@ -16,3 +16,35 @@ Proofs: `certificates` (of signs, roots and values) and `derivations` (of substi
 `gathering` has the collection that they join; `checking` believes one only once checked, with `checked_identities` and
 `checked_motions`; `plain` has the checker's polynomials, `sentences` what a certificate says.
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "balls": "Balls Zero as_rational ball_of",
+    "certificates": (
+        "collected definite established identical negative_on positive_in positive_on roots_inside sign_chain value_at"
+    ),
+    "certified": "Certified from_ends",
+    "checking": "accepts",
+    "derivations": "At substitution",
+    "expressions": "FOLDING Number Root evaluate function_of walk",
+    "gathering": "Remembered",
+    "horner": "Horner",
+    "interpolation": "READING interpolated",
+    "jet_maps": "blow_up derivation divided implicit inverse_map",
+    "jets": "Jet JetSpace",
+    "long_sums": "LongSum Monomials Products order_key",
+    "numbers": "as_float as_mpf compare constant exact float_array rational_near sign_of",
+    "parsing": "from_sympy parse",
+    "plain": "times",
+    "polynomials": "Exponents",
+    "precision": "balls_at series_of_any_length",
+    "puiseux": "NoExpansion expansion",
+    "rings": "DOUBLES EXACT Exact Multiprecision SYMBOLIC to_sympy",
+    "roots": "real_roots",
+    "sentences": "sentence",
+    "symbols": "SymbolRing",
+    "taylor": "NotSmooth",
+    "univariate": "precision_of",
+}
+__getattr__ = names_of(__name__, _FILES)

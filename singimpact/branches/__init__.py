@@ -19,3 +19,29 @@ velocities), `homoclinic` (where W^u and W^s cross), `saddle_cones` (wedges that
 beside it), `settled` (the periodic orbit to which an orbit converges), `transitions` (those of P with the orbits
 between them).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "ball_closing": "BallClosing Spans TouchingClosing return_slope",
+    "closing": "Closing",
+    "continuation": "Curve root_between",
+    "cylinder": "distances",
+    "enclosed_closing": "ClosingBoxes SEARCH closed_boxes",
+    "enclosed_crossing": "EnclosedCrossing",
+    "enclosed_orbit": "EnclosedOrbit",
+    "event_function": "rate_of rate_over",
+    "events": "Event",
+    "homoclinic": "Crossing Crossings crossings",
+    "horseshoe": "CrossedSet Horseshoe",
+    "krawczyk": "Krawczyk",
+    "manifold": "Manifold",
+    "orbits": "PeriodicOrbit",
+    "released": "Releases",
+    "saddle_arcs": "expansion local_arc returned",
+    "saddle_cones": "Cones",
+    "settled": "settled_orbit",
+    "starts": "conditions",
+    "transitions": "OrbitTransitions",
+}
+__getattr__ = names_of(__name__, _FILES)

@@ -5,3 +5,24 @@ Files: `certificate` (writes and reads them), `checker` (a folder that stands al
 and encloses the motion again with its own code), `claims_checker` (stands alone too: it checks what claims rest on,
 with the polynomials and rules of `claims_proofs` beside it, and the words of `claims_stated.json`).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "certificate": "CHECKER Certificate",
+    "checker": "KINDS check",
+    "checker.chatter_limit": "rest",
+    "checker.files": "STATEMENTS TERMS",
+    "checker.formulas": "Formula",
+    "checker.gravity": "Gravity",
+    "checker.growing": "Growing",
+    "checker.horseshoe": "Set derivative",
+    "checker.impacts": "impact",
+    "checker.motion": "Flight Model defect taylor",
+    "checker.nonlinear": "Flights",
+    "checker.periodic_orbit": "Orbits",
+    "checker.periods": "require_period",
+    "checker.told": "read",
+    "claims_checker": "Refused STATED STRONGEST_FIRST check_words statement_of",
+}
+__getattr__ = names_of(__name__, _FILES)

@@ -10,3 +10,12 @@ Commands on a model: `map`, `orbit`, `section`, `lyapunov`, `chatter`, `threshol
 """
 
 from singimpact.cli.group import main as main
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "border": "told",
+    "certify": "EVENTS",
+    "events": "on_curve",
+    "group": "COMMANDS main",
+}
+__getattr__ = names_of(__name__, _FILES)

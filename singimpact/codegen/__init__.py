@@ -5,3 +5,15 @@ expression), `formulas` and `rational_series` (polynomials and series), `over_li
 `javascript` (text for a browser), `object_code` (machine code, emitted and loaded).
 Not here: the expressions themselves (`algebra`), what a kernel is for (`flights`), frozen formulas (`generated`).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "javascript": "translated",
+    "over_lists": "FUNCTIONS",
+    "radii": (
+        "atan_radius bell_radius circular_radius exp_radius log_of_square_radius log_radius power_of_square_radius "
+        "power_radius softplus_radius tan_radius tanh_radius whole_power_radius"
+    ),
+}
+__getattr__ = names_of(__name__, _FILES)

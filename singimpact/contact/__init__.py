@@ -5,3 +5,12 @@ flights (`flights`).
 Files: `contact` (the jets at a point), `points` (tangency points, and what a point is), `swans` (swan points as the
 clearance varies), `next_zero` (the next zero of a_c after a phase).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "contact": "Contact NAMED_ORDERS acceleration acceleration_jet contact_order",
+    "points": "MOST_DIGITS TangencyPoints enclosed tangency_points",
+    "swans": "swan_points_over_clearance",
+}
+__getattr__ = names_of(__name__, _FILES)

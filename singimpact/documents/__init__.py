@@ -5,3 +5,16 @@ Files: `steps` (what a document is: sections of steps), `series` (the series of 
 `sympy_source` (expressions as a Python file), `arranging` (an expression laid out as a sum), `breaking` (long lines
 of LaTeX), `escape`, `rendering` (templates), `formats` (as one text or as files), `compiling` (LaTeX into a PDF).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "arranging": "by_degree factored in_powers",
+    "breaking": "PAGE lines_of width",
+    "compiling": "CompileError compiled",
+    "escape": "latex",
+    "formats": "as_files as_text",
+    "rendering": "as_data as_latex as_markdown",
+    "steps": "Mark Section Step claims_of equations_of",
+}
+__getattr__ = names_of(__name__, _FILES)

@@ -14,3 +14,45 @@ makes of them, `determinant` that of D G; `counted` counts flights,
 `blocks` cuts large arrays, `interruptible` makes long calls hear Ctrl-C.
 Not here: flights after flights (`dynamics`), curves of flights (`surface`), power series (`theory`).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "balls": "LinearFlow",
+    "bind": "Compiler Emitted LAW MODULES constants floats_of over_floats over_lists",
+    "certified_flights": "proof",
+    "compiled_model": "CompiledModel allowed recurrence_of",
+    "compiler_process": "first_wanted",
+    "enclosures.analytic_flow": "AnalyticFlow",
+    "enclosures.certified_hit": "Launch certified_hit",
+    "enclosures.clocked_motion": "ClockedMotion",
+    "enclosures.equation": "Equation NoHit Refused equation_of programs_of",
+    "enclosures.free_motion": "FreeMotion",
+    "enclosures.jet_flight": "jet_hit",
+    "enclosures.taylor_step": "Column coefficients step",
+    "enclosures.timed_flight": "timed_flight touches_first",
+    "enclosures.tube": "centre",
+    "family": "exponential",
+    "horizons": "Allowance steps_of",
+    "impact_map": "first_hit",
+    "interpreted": "listed",
+    "inverse_map": "backwards",
+    "kernels.entries": "FOLLOW HITS ITERATE JUDGE PREPARE PREPARE_BATCH RELEASES SEGMENT VARIATIONS",
+    "kernels.gamma": "REACH SERIES TERMS_OF_GAMMA",
+    "kernels.layout": "batch_model linear_model scratch_of",
+    "kernels.roots": "first_root",
+    "kernels.state": "Search TIME_BY_V Work",
+    "machine": "Machine machine_of",
+    "model_numbers": "forcing_phases linear_numbers numbers_of",
+    "no_return.averaged": "stays_up",
+    "no_return.barrier": "SEARCH fastest_kept kept_up",
+    "no_return.linear": "never_returns",
+    "no_return.polynomial": "never_turns",
+    "orbits": "iterate orbit_segment",
+    "path": "places",
+    "rebound_law": "rebound speed_before",
+    "short_balls": "GROWTH ShortFlights",
+    "states": "States",
+    "together": "NotTogether in_step rest_flights runs_on_arrays",
+}
+__getattr__ = names_of(__name__, _FILES)

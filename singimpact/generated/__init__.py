@@ -3,3 +3,10 @@
 Not here: anything a person writes.  The formulas come from `theory`, their translation into source from `codegen`.
 Files: `completion` (the chatter that is left).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "completion": "chatter_terms linear_chatter_terms",
+}
+__getattr__ = names_of(__name__, _FILES)

@@ -3,3 +3,10 @@
 Not here: jets (`algebra`), the maps p and phi whose germs these are (`theory`), curves of singular points (`surface`).
 Files: `recognition`, `normal_form` (fold and cusp forms with the changes that reach them).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "recognition": "recognised",
+}
+__getattr__ = names_of(__name__, _FILES)

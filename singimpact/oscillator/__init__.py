@@ -7,3 +7,13 @@ as formulas), `acceleration` (a_c), `nearest_zero` (the zero of a_c that a doubl
 `equation` (the model in LaTeX), `shaken_wall` (a wall that moves), `moving_number` (a number that a model does not
 name, put in).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "files": "fields_of read_fields",
+    "linear": "linear_form",
+    "model": "Oscillator",
+    "rho_series": "series_of_rho",
+}
+__getattr__ = names_of(__name__, _FILES)

@@ -5,3 +5,48 @@ Not here: the theory for any oscillator (`theory`), flights and orbits (`flights
 Rooms: `claims/` (statements, verifiers, verdicts), `trials/` (true orbits and surfaces on which claims are tried),
 `routes/` (the paper's own steps in sympy), `figures/` (1 to 17), `sections/` (the words of the derivations and errata).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "claims": "CLAIMS INDEX run select",
+    "claims.claim": (
+        "Check Claim IN_MODEL KINDS MODULO PROVED STRENGTH STRONGEST_FIRST Statement Trial Verdict compared told"
+    ),
+    "claims.deciding": "decide effective",
+    "claims.graph": "COLOURS as_svg colour_of",
+    "claims.index": "BEYOND_PLACE PLACE claims_in written_index",
+    "claims.keys": "imported_by key_of",
+    "claims.memory": "keep recall",
+    "claims.next_sigma": "next_sigma",
+    "claims.sections.section6_scaling": "crossing near_the_swan nonzero scaling_check",
+    "claims.verdicts": "VerdictTable verify",
+    "claims.verifiers": "every sample",
+    "figures": "FIGURES picture",
+    "figures.met": "B7 B8 two_waves",
+    "figures.outlines": "CHANGES damped",
+    "figures.rendering": "drawn legend_words",
+    "routes.equations": "derived_from equation watched",
+    "routes.fold": "eta psi_q s",
+    "routes.fold_series": "fold_series",
+    "routes.implicit": "a_symbol phi_c r v_c",
+    "routes.scaling": "WEIGHTS Weights e limit_launch",
+    "routes.swan": "Dh_bar f_map g_map h_bar m mbar mu_of_m r_of_m",
+    "routes.unfolding": "A D E cofactor impact_velocity kappa launch_velocity t u",
+    "sections.cached": "cache kept_sections",
+    "sections.errata": "Erratum",
+    "sections.marks": "marks_of",
+    "sections.notation": "NOTATION",
+    "sections.places": "place_of",
+    "sections.remarks": "GRADES REMARKS",
+    "sections.section4_blowup": "with_Q",
+    "trials.arcs": "sides",
+    "trials.enclosed_swan": "BITS Bracket LAST Side bracket",
+    "trials.first_order": "MODELS measured",
+    "trials.hertz": "POWERS above constant edge",
+    "trials.holder": "STARTS beside",
+    "trials.loop_heights": "SWANS generations heights inner_start",
+    "trials.onset": "clearance",
+    "trials.true_orbits": "gamma_cases scipy_flow",
+}
+__getattr__ = names_of(__name__, _FILES)

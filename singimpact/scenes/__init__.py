@@ -11,21 +11,23 @@ cascade of a border orbit), `both_sides` (of a transition), `label_places` (name
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from singimpact.handed_on import names_of
 
 if TYPE_CHECKING:
     from singimpact.scenes.drawing import plot as plot
     from singimpact.scenes.scene import Scene as Scene
 
-
-def __getattr__(name: str) -> Any:
-    """`plot` and `Scene`, loaded when they are first used: the page needs neither."""
-    if name == "plot":
-        from singimpact.scenes.drawing import plot
-
-        return plot
-    if name == "Scene":
-        from singimpact.scenes.scene import Scene
-
-        return Scene
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+_FILES = {
+    "basins": "class_colors draw_basins draw_first_chatter",
+    "bifurcation": "bifurcation_sheet",
+    "border": "draw_border",
+    "clearance_frames": "clearance_film",
+    "drawing": "plot",
+    "explore": "CURVES explore_page",
+    "layers": "LAYERS",
+    "scene": "LONGEST_TEXT Scene",
+    "style": "BLUE EVENT_PENS LINES MARKS ON_DARK PENS Pen VERMILLION on_dark orbit_color orbit_width",
+}
+__getattr__ = names_of(__name__, _FILES)

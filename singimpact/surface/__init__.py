@@ -8,3 +8,20 @@ grazes), `two_rests` (linear models over the clearance), `followed_rests` (other
 `proved_touches` (that no lips, beaks or swallowtail is missing), `enclosed_touches`, `boxes_from_rest` (the same of
 nonlinear models, by boxes of flights), `classification` (singular points with their germs).
 """
+
+from singimpact.handed_on import names_of
+
+_FILES = {
+    "boxes_from_rest": "FlightFromRest Tangencies",
+    "classification": "classify",
+    "curve": "Curve Window",
+    "enclosed_touches": "EnclosedTouches",
+    "followed_rests": "FollowedRests",
+    "impact_surface": "ImpactSurface",
+    "proved_touches": "RestFlight doubts_left rest_flight",
+    "rest_flights": "RestFlights",
+    "swan_families": "Family swan_curves",
+    "transitions": "Transitions",
+    "two_rests": "linear_rests newton",
+}
+__getattr__ = names_of(__name__, _FILES)

@@ -14,6 +14,7 @@ point, in the best numbers), `letters` (parameters that stay letters), `constant
 
 from typing import TYPE_CHECKING, Any
 
+from singimpact.handed_on import names_of
 from singimpact.theory.formulas import chatter_limit as chatter_limit
 from singimpact.theory.formulas import dynamics_on_gamma as dynamics_on_gamma
 from singimpact.theory.formulas import fibre as fibre
@@ -28,21 +29,33 @@ if TYPE_CHECKING:
     from singimpact.theory.plane_forms import normal_form as normal_form
 
 
+_FILES = {
+    "completion": "leaves symbolic_completion",
+    "contact_points": "multiplier",
+    "fixed_points": "as_dict swan tangency",
+    "frozen": "CURVED MOVED PLACES completion_module curve_module sheet_module",
+    "grazing": "grazing_map",
+    "homogeneous": (
+        "DG_on_ray P Q eigenvalues_on_gamma lambda_ launch_velocity leading_coefficient mu_of_lambda r_of_lambda"
+    ),
+    "invariant_curve": "multiplier_across restitution_of",
+    "involution": "iota",
+    "multipliers": "minimal_polynomial of_m series",
+    "notation": "latex",
+    "plane_forms": "normal_form",
+    "sheet": "Sheet generic_sheet",
+    "symbolic_curve": "rho_names",
+}
+_value_of = names_of(__name__, _FILES)
+
+
 def __getattr__(name: str) -> Any:
-    # these files load sympy
-    if name == "r_of_lambda":
-        from singimpact.theory.homogeneous import r_of_lambda
-
-        return r_of_lambda
-    if name == "normal_form":
-        from singimpact.theory.plane_forms import normal_form
-
-        return normal_form
-    if name == "grazing_map":
-        from singimpact.theory.grazing import grazing_map
-
-        return grazing_map
-    raise AttributeError(f"module 'singimpact.theory' has no attribute {name!r}: it has {', '.join(_PUBLIC)}")
+    """A name of a file that loads sympy, or of those that tests use."""
+    try:
+        return _value_of(name)
+    except AttributeError:
+        offer = ", ".join(_PUBLIC)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}: it has {offer}") from None
 
 
 _PUBLIC = ["Sheet", "chatter_limit", "dynamics_on_gamma", "fibre", "gamma", "grazing_map", "normal_form", "r_of_lambda",

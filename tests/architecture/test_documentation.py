@@ -12,7 +12,7 @@ import threading
 
 import pytest
 
-from singimpact.cli.group import COMMANDS
+from singimpact.cli import COMMANDS
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ import tomllib
 
 import pytest
 
-from singimpact.bench.groups import commands
-from singimpact.cli.group import COMMANDS
+from singimpact.bench import COMMANDS as commands_COMMANDS
+from singimpact.cli import COMMANDS
 
 
 @pytest.fixture
@@ -58,7 +58,7 @@ def test_commands_exist_and_the_bench_has_their_times(readme):
     shown = lines_of(readme)
     assert {line.split()[0] for line in shown} <= set(COMMANDS)
     assert {line.split()[0] for line in shown} == {*WRITES, *SAYS}
-    assert set(shown) <= {command.line for command in commands.COMMANDS}
+    assert set(shown) <= {command.line for command in commands_COMMANDS}
 
 
 @pytest.mark.slow

@@ -9,11 +9,32 @@ import sys
 import numpy as np
 import pytest
 
-from singimpact.bench import page, timed_sources
-from singimpact.bench.drawn import KINDS, RESTITUTIONS, Draws, Fed
-from singimpact.bench.exponents import exponents, fitted
-from singimpact.bench.groups import GROUPS, impact_map, measured, regimes, series, usual
-from singimpact.bench.measuring import FULL, QUICK, Effort, measure
+from singimpact.bench import (
+    ABOUT,
+    CALLS,
+    COMMAND,
+    FED,
+    FULL,
+    GROUPS,
+    KINDS,
+    READING,
+    RESTITUTIONS,
+    TITLES,
+    Draws,
+    Effort,
+    Fed,
+    fitted,
+    measure,
+    measured,
+    of_states,
+    sizes_of,
+    taylor_stepper,
+    timed_digest,
+    usual,
+)
+from singimpact.bench.exponents import exponents
+from singimpact.bench.groups import series
+from singimpact.bench.measuring import QUICK
 
 SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)
 COSTLY = ("series", "figures", "commands", "start", "scale", "branches", "orbit", "growth", "threshold", "sweep")
@@ -65,24 +86,24 @@ def test_growth_is_shown_beside_that_of_the_work():
 
 def test_duffing_too():
     """A quick look leaves this family out."""
-    first, *_ = measure("regimes", regimes.of_states("duffing", "generic", SMALL), SMALL)
+    first, *_ = measure("regimes", of_states("duffing", "generic", SMALL), SMALL)
     assert (first.method, first.wrong) == ("singimpact, a call a state", 0)
 
 
 def test_map_shows_every_way_to_call_it():
     """One state, ten, a hundred, a thousand and arrays, each with its aim and both peers in the same case."""
-    calls = {(each.family, each.kind, each.states) for each in impact_map.CALLS}
+    calls = {(each.family, each.kind, each.states) for each in CALLS}
     assert {("linear", "generic", n) for n in (1, 10, 100, 1000, 0)} <= calls
-    assert {("linear", kind, 0) for kind in ("v from 1e-8 to 1e-2", "tau within 1e6", impact_map.FED)} <= calls
+    assert {("linear", kind, 0) for kind in ("v from 1e-8 to 1e-2", "tau within 1e6", FED)} <= calls
     assert {("duffing", "generic", 1), ("duffing", "generic", 0)} <= calls
-    assert impact_map.sizes_of(FULL).many == 100_000
+    assert sizes_of(FULL).many == 100_000
 
 
 def test_aims_are_judged_by_what_was_measured():
     pytest.importorskip("heyoka")
     rows = measured("map", SMALL).rows
     ours = [row for row in rows if row.method == "singimpact, impact_map" and not row.setting.startswith("tolerance")]
-    assert [row.aim.microseconds for row in ours] == [each.microseconds for each in impact_map.CALLS]
+    assert [row.aim.microseconds for row in ours] == [each.microseconds for each in CALLS]
     assert [row.reached for row in ours] == [row.microseconds <= row.aim.microseconds for row in ours]
     faster = [row for row in rows if row.aim.times is not None]
     assert [row.method for row in faster] == ["heyoka, terminal event"] * 4
@@ -90,10 +111,10 @@ def test_aims_are_judged_by_what_was_measured():
     assert all(row.reached is None for row in rows if row.aim == type(row.aim)())
 
 
-@pytest.mark.parametrize("kind", [*KINDS, impact_map.FED])
+@pytest.mark.parametrize("kind", [*KINDS, FED])
 def test_every_call_has_other_states(kind):
     """And every method has the same ones, in the same order."""
-    made = [(Fed("linear", n) if kind == impact_map.FED else Draws("linear", kind, n)) for n in (50, 20)]
+    made = [(Fed("linear", n) if kind == FED else Draws("linear", kind, n)) for n in (50, 20)]
     first, few = [each() for each in made]
     assert np.array_equal(few.tau, first.tau[:20])
     assert np.array_equal(few.v, first.v[:20])
@@ -124,7 +145,7 @@ def test_peers_miss_what_they_are_known_to_miss():
 
 def test_peer_that_is_not_installed_is_named(monkeypatch, singimpact):
     monkeypatch.setitem(sys.modules, "heyoka", None)
-    impact_map.taylor_stepper.cache_clear()
+    taylor_stepper.cache_clear()
     found = measured("chatter", SMALL)
     assert found.skipped == ["heyoka"]
     assert not [row for row in found.rows if row.method.startswith("heyoka")]
@@ -141,7 +162,7 @@ def test_peer_that_is_not_installed_is_named(monkeypatch, singimpact):
                          ids=lambda task: f"{task.case}, {task.method}")  # fmt: skip
 def test_series_gains_a_digit_and_more_by_orders(task):
     """Against flights: order 2 is off by a twentieth, order 5 by a millionth."""
-    from singimpact.bench.measuring import relative_error
+    from singimpact.bench import relative_error
 
     off = relative_error(task.timed().answers[0], series.TRUTH[task.case][0])
     assert 0 < off < {2: 0.06, 3: 2e-3, 5: 1e-5}[task.order]
@@ -176,23 +197,21 @@ def test_page_of_the_documentation(singimpact, tmp_path):
                       "-o", tmp_path / "docs" / "page.md")  # fmt: skip
     assert told.exit_code == 0, told.output
     text = (tmp_path / "docs" / "page.md").read_text()
-    assert text.startswith(
-        f"<!-- written by `{page.COMMAND}` from sources {timed_sources.timed_digest()}; do not edit -->"
-    )
+    assert text.startswith(f"<!-- written by `{COMMAND}` from sources {timed_digest()}; do not edit -->")
     assert 0 < text.index("![Fixed points: time against error](p/bench-fixed-points.png)") < text.index("\n| case |")
     assert (tmp_path / "docs" / "p" / "bench-fixed-points.png").is_file()
-    assert set(page.TITLES) == set(GROUPS)
+    assert set(TITLES) == set(GROUPS)
 
 
 def test_stored_page_opens_with_its_plots(clone):
     """As the generator orders them: every picture, then how to read the tables, then every table with its heading."""
     text = (clone / "docs" / "benchmarks.md").read_text(encoding="utf-8")
     plots, reading, tables = (text.index(f"\n## {part}") for part in ("Plots", "How to read", "Tables"))
-    assert text[: plots - 1].partition("\n")[2] == page.ABOUT
-    assert text[reading + 1 :].startswith(page.READING)
+    assert text[: plots - 1].partition("\n")[2] == ABOUT
+    assert text[reading + 1 :].startswith(READING)
     assert len(re.findall(r"!\[.*: time against error\]", text[plots:reading])) == text.count("![") > 5
     assert text.index("\n| case |") > tables
-    assert set(re.findall(r"^### (.*)$", text[tables:], re.MULTILINE)) <= set(page.TITLES.values())
+    assert set(re.findall(r"^### (.*)$", text[tables:], re.MULTILINE)) <= set(TITLES.values())
 
 
 def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):

@@ -7,10 +7,23 @@ import time
 import numpy as np
 import pytest
 
-from singimpact.bench.exponents import exponents, fitted
-from singimpact.bench.measuring import EPSILON, Aim, Case, Counted, Effort, Measured, Method, Timed, condition, measure
-from singimpact.bench.plots import plotted
-from singimpact.bench.report import reached, tables
+from singimpact.bench import (
+    EPSILON,
+    Aim,
+    Case,
+    Counted,
+    Effort,
+    Measured,
+    Method,
+    Timed,
+    condition,
+    fitted,
+    measure,
+    plotted,
+    reached,
+    tables,
+)
+from singimpact.bench.exponents import exponents
 
 EFFORT = Effort(rounds=5, least=0, once=100, fresh=5)
 

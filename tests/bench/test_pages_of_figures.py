@@ -6,8 +6,7 @@ import subprocess
 
 import pytest
 
-from singimpact.bench.page import COMMAND, STRESS_ABOUT, STRESS_COMMAND, stress_page
-from singimpact.bench.timed_sources import digest_of, recorded, timed_digest
+from singimpact.bench import COMMAND, STRESS_ABOUT, STRESS_COMMAND, digest_of, recorded, stress_page, timed_digest
 
 MOST = 60  # commits between the measurement and now
 PAGES = {"benchmarks.md": COMMAND, "stress.md": STRESS_COMMAND}

@@ -9,20 +9,22 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.bench.selftest import basin_pixels, batches, orbits, responses, tangencies
-from singimpact.bench.selftest.draws import flown
-from singimpact.contact.points import TangencyPoints
-from singimpact.dynamics.attractors import CHAOS
-from singimpact.flights.compiled_model import CompiledModel, allowed, compiled_model
-from singimpact.flights.kernels import layout, state
+from singimpact.bench import derivatives, flown, grazes, lanes, limits, rebounds
+from singimpact.bench import orbits as orbits_orbits
+from singimpact.bench import row as basin_pixels_row
+from singimpact.bench.selftest import tangencies
+from singimpact.contact import TangencyPoints
+from singimpact.dynamics import CHAOS
+from singimpact.flights import TIME_BY_V, CompiledModel, allowed, batch_model, scratch_of
+from singimpact.flights.compiled_model import compiled_model
 
 LINEAR = si.linear("2.8", "0.1", "0.8")
 CHATTERS = si.linear("2", "0.7", "0.5")
 DUFFING = si.ImpactOscillator("x + xdot/10 + 3*x**3/10", "cos(omega*t)", "0.3", "0.6", {"omega": "1.7"})
 BENT = si.ImpactOscillator("x", "cos(2*t)", "0.3", "-0.8*v/sqrt(1 + v**2)")
 ROWS = {
-    "orbits": orbits.orbits, "limits": orbits.limits, "D G": responses.derivatives, "rebounds": responses.rebounds,
-    "batches": batches.lanes, "grazes": batches.grazes, "basins": basin_pixels.row, "tangencies": tangencies.row,
+    "orbits": orbits_orbits, "limits": limits, "D G": derivatives, "rebounds": rebounds,
+    "batches": lanes, "grazes": grazes, "basins": basin_pixels_row, "tangencies": tangencies.row,
 }  # fmt: skip
 
 
@@ -116,7 +118,7 @@ def sign_in_the_derivative():
         def flights_and_rows(*given):
             hit, rows = true(*given)
             rows = rows.copy()
-            rows[state.TIME_BY_V] *= -1
+            rows[TIME_BY_V] *= -1
             return hit, rows
 
         return flights_and_rows
@@ -206,12 +208,12 @@ def missed_grazes(true):
 @pytest.mark.parametrize("osc", [pytest.param(LINEAR, id="linear"), pytest.param(DUFFING, id="Duffing")])
 def test_a_lane_and_a_missed_graze_are_found(monkeypatch, osc):
     before, true = states(osc), CompiledModel.iterate
-    assert batches.lanes(before).wrong == batches.grazes(before).wrong == 0
+    assert lanes(before).wrong == grazes(before).wrong == 0
     monkeypatch.setattr(CompiledModel, "iterate", one_lane(true))
-    faulty = batches.lanes(before)
+    faulty = lanes(before)
     assert 2 <= faulty.wrong <= 8, faulty
     monkeypatch.setattr(CompiledModel, "iterate", missed_grazes(true))
-    assert batches.grazes(before).wrong > 4
+    assert grazes(before).wrong > 4
 
 
 @pytest.mark.slow
@@ -227,16 +229,16 @@ def test_a_bound_in_the_batch_kernel_is_found(monkeypatch):
         entry = true(self, name, entry)
         if name == "batch_entry":
             scratch = self._new_scratch()
-            work = layout.scratch_of(scratch, self.sizes)
-            self.flat_bound = layout.batch_model(self.flat, scratch, self.sizes, work).table.sixth
+            work = scratch_of(scratch, self.sizes)
+            self.flat_bound = batch_model(self.flat, scratch, self.sizes, work).table.sixth
             self.flat_bound[...] = -1000 * abs(self.flat_bound)
         return entry
 
     before = states(osc)
-    assert batches.lanes(before).wrong == 0
+    assert lanes(before).wrong == 0
     monkeypatch.setattr(CompiledModel, "_ready", ready)
     _new_models()
-    faulty = batches.lanes(before)
+    faulty = lanes(before)
     monkeypatch.undo()
     _new_models()
     assert faulty.wrong > 0, faulty
@@ -267,5 +269,5 @@ def test_nothing_is_wrong_in_drawn_models_and_pixels_are_decided(osc):
 
 def test_pixels_of_usual_models_are_decided():
     for osc in (CHATTERS, BENT):
-        row = basin_pixels.row(states(osc))
+        row = basin_pixels_row(states(osc))
         assert (row.agree, row.wrong) == (16, 0), row

@@ -11,10 +11,23 @@ from types import CodeType, FrameType, ModuleType
 import pytest
 
 import singimpact as si
-from singimpact.bench import fresh
-from singimpact.bench.groups import GROUPS, commands, series, start
-from singimpact.bench.measuring import Case, Effort, Method, cpu_seconds
-from singimpact.cli.group import COMMANDS
+from singimpact.bench import COMMANDS as commands_COMMANDS
+from singimpact.bench import (
+    GROUPS,
+    MODELS,
+    PUBLIC,
+    SERIES,
+    Case,
+    Effort,
+    Method,
+    cost,
+    cpu_seconds,
+    first_answer,
+    first_model,
+    script,
+)
+from singimpact.bench.groups import series
+from singimpact.cli import COMMANDS
 
 pytestmark = pytest.mark.plain_code  # compares code objects, which probes exchange
 PACKAGE = str(Path(si.__file__).parent)
@@ -110,11 +123,11 @@ def _executed(text: str, before: str) -> tuple[list[str], list[str]]:
 
 @pytest.mark.slow
 def test_commands_and_series_in_new_processes_call_public_names_only():
-    for each in commands.SERIES:
-        public, private = _executed(each.made, commands.PUBLIC + each.before)
+    for each in SERIES:
+        public, private = _executed(each.made, PUBLIC + each.before)
         assert len(public) == 1
         assert private == []
-    assert all(command.line.split()[0] in COMMANDS for command in commands.COMMANDS)
+    assert all(command.line.split()[0] in COMMANDS for command in commands_COMMANDS)
 
 
 def test_series_named_for_the_package_call_public_names_only():
@@ -128,9 +141,9 @@ def test_series_named_for_the_package_call_public_names_only():
     assert private == ["/contact/contact.py:generic", "/theory/sheet.py:sheet"]
 
 
-@pytest.mark.parametrize("family", start.MODELS)
+@pytest.mark.parametrize("family", MODELS)
 def test_scripts_of_new_processes_are_public(family):
-    for text in (start.first_model(family), start.first_answer(family), start.script(family, 10)):
+    for text in (first_model(family), first_answer(family), script(family, 10)):
         public, private = _executed(text, "")
         assert public
         assert private == []
@@ -147,4 +160,4 @@ def test_time_of_children_is_counted():
 
 def test_time_of_children_of_a_fresh_process_is_counted():
     child = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {BURN!r}], check=True)"
-    assert fresh.cost(child).seconds > 0.2
+    assert cost(child).seconds > 0.2

@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.bench.selftest import basin_pixels, orbits, round_trip, rows, tangencies, truths
-from singimpact.bench.selftest.draws import flown
-from singimpact.bench.truth import plain_steps
-from singimpact.contact.points import TangencyPoints
+from singimpact.bench import balls, digits, fixed_steps, flown, limits
+from singimpact.bench import motion as plain_steps_motion
+from singimpact.bench import orbits as orbits_orbits
+from singimpact.bench import row as basin_pixels_row
+from singimpact.bench.selftest import round_trip, rows, tangencies
+from singimpact.contact import TangencyPoints
 from singimpact.dynamics import basins
 from singimpact.inputs import InputError
 
@@ -65,7 +67,7 @@ def wrong_model(kind):
     return kind(**DUFFING.to_dict())
 
 
-@pytest.mark.parametrize("row", [round_trip.row, truths.fixed_steps, truths.digits, truths.balls])
+@pytest.mark.parametrize("row", [round_trip.row, fixed_steps, digits, balls])
 def test_flights_that_are_off_are_wrong(row):
     found = row(flown(wrong_model(Shifted), 40, 0))
     assert found.wrong > found.agree
@@ -86,8 +88,8 @@ class Missed(si.ImpactOscillator):
 
 def test_missed_hits_are_wrong():
     states = flown(wrong_model(Missed), 20, 0)
-    assert truths.fixed_steps(states).wrong == 20
-    assert truths.balls(states).wrong == 20
+    assert fixed_steps(states).wrong == 20
+    assert balls(states).wrong == 20
     assert round_trip.row(states).note
 
 
@@ -107,21 +109,21 @@ class Wandering(si.ImpactOscillator):
 
 def test_orbits_and_chatter_that_are_off_are_wrong():
     states = flown(wrong_model(Wandering), 100, 0)
-    assert orbits.orbits(states).wrong > 10
-    assert orbits.limits(states).wrong > 5
+    assert orbits_orbits(states).wrong > 10
+    assert limits(states).wrong > 5
 
 
 @pytest.mark.slow
 def test_pixels_of_a_wrong_class_are_wrong(monkeypatch):
     states, true = flown(si.linear(2, "0.3", "0.5"), 3, 0), basins.basins
-    assert basin_pixels.row(states).agree == 16
+    assert basin_pixels_row(states).agree == 16
 
     def planted(*given):
         found = true(*given)
         return replace(found, first_chatter_completes=~found.first_chatter_completes)
 
     monkeypatch.setattr(basins, "basins", planted)
-    assert basin_pixels.row(states).wrong > 0
+    assert basin_pixels_row(states).wrong > 0
 
 
 def test_missing_and_misnamed_tangency_points_are_wrong(monkeypatch):
@@ -142,11 +144,10 @@ def test_slow_rows_end_and_say_so(monkeypatch):
 
 @pytest.mark.parametrize("f", ["x**-3/8 + sqrt(x**2 + 1)", "x**(1/3)*exp(-xdot**12)", "tanh(x)/(2 + cos(pi*x))"])
 def test_plain_acceleration_is_the_text(f):
-    from singimpact.algebra.expressions import evaluate
-    from singimpact.algebra.rings import DOUBLES
+    from singimpact.algebra import DOUBLES, evaluate
 
     osc = si.ImpactOscillator(f, "sin(t)*atan(t)", "0.3", "1/2")
-    motion = plain_steps.motion(osc, 1.0)
+    motion = plain_steps_motion(osc, 1.0)
     true = evaluate(osc.forcing(), {"t": 0.7}, DOUBLES) - evaluate(osc.force(), {"x": 0.9, "xdot": 0.4}, DOUBLES)
     assert motion.acceleration(0.7, 0.9, 0.4, motion.parameters) == pytest.approx(true, rel=1e-14)
 

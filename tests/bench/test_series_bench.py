@@ -2,7 +2,7 @@
 
 import pytest
 
-from singimpact.bench.groups.series import LIMITED
+from singimpact.bench import LIMITED
 
 QUICK = [task for task in LIMITED if task.limit <= 0.5]
 

@@ -9,11 +9,8 @@ import flint
 import numpy as np
 import pytest
 
-from singimpact.bench import states
-from singimpact.bench.problems import Problem
+from singimpact.bench import Cubic, Linear, Problem, first_hit, states
 from singimpact.bench.problems import states as problems
-from singimpact.bench.truth.first_hit import first_hit
-from singimpact.bench.truth.motions import Cubic, Linear
 
 
 @pytest.mark.parametrize(("family", "made", "each"), [("linear", Linear, 50), ("duffing", Cubic, 70)])

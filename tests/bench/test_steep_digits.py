@@ -6,10 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from singimpact.algebra.certified import Certified
-from singimpact.bench import steep_digits
-from singimpact.bench.steep_families import STEEP
-from singimpact.bench.steep_states import family_of
+from singimpact.algebra import Certified
+from singimpact.bench import STEEP, family_of, steep_digits
 
 
 def test_each_steep_family_is_drawn():

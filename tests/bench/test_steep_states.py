@@ -8,12 +8,23 @@ from math import pi
 import numpy as np
 import pytest
 
-from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.rings import DOUBLES
-from singimpact.bench import steep_balls, steep_states
-from singimpact.bench.steep_families import FAMILIES, NAMES, STEEP, Family
+from singimpact.algebra import DOUBLES, evaluate
+from singimpact.bench import (
+    FAMILIES,
+    HIT,
+    MISS,
+    NAMES,
+    PHASE,
+    POSITION,
+    STEEP,
+    UNDECIDED,
+    VELOCITY,
+    Family,
+    Motion,
+    steep_balls,
+    steep_states,
+)
 from singimpact.bench.truth import enclosed_flight, graded_steps
-from singimpact.bench.truth.graded_steps import HIT, MISS, PHASE, POSITION, UNDECIDED, VELOCITY, Motion
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.status import Status
 

@@ -11,10 +11,21 @@ import pytest
 
 import singimpact as si
 from singimpact import impact_oscillator, theory
-from singimpact.bench.stress.flown import landing
-from singimpact.bench.stress.judging import LIMITS, Function, Trial, moved, worst
-from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch
-from singimpact.bench.stress.table import FUNCTIONS, QUICK, chosen, stressed
+from singimpact.bench import (
+    FUNCTIONS,
+    LIMITS,
+    PLACES,
+    Function,
+    Launch,
+    SteepLaunch,
+    Trial,
+    chosen,
+    landing,
+    moved,
+    stressed,
+    worst,
+)
+from singimpact.bench.stress.table import QUICK
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 

@@ -103,7 +103,7 @@ def global_calls(model: Any, _rng: np.random.Generator) -> dict[str, Callable[[]
 
 def commands() -> dict[str, tuple[str, ...]]:
     """Command lines by names: the help of all, the JSON of some."""
-    from singimpact.cli.group import COMMANDS
+    from singimpact.cli import COMMANDS
 
     numbers = ("--omega", "2.8", "--clearance", "0.1", "--restitution", "0.8")
     told = {f"{name} --help": (name, "--help") for name in COMMANDS}

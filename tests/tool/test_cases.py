@@ -84,7 +84,7 @@ def test_results_of_other_cases_are_refused(tmp_path):
 
 
 def test_models_that_differ_in_numbers_compile_once():
-    from singimpact.flights.machine import machine_of
+    from singimpact.flights import machine_of
 
     for omega in (1.1, 1.7):
         linear(omega, 0.1, 0.5).impact_map(0.2, 0.3)

@@ -16,7 +16,7 @@ import pytest
 from singimpact import cache
 from singimpact.paper.figures import cached as kept_figures
 from singimpact.scenes import cached
-from singimpact.surface.curve import Curve
+from singimpact.surface import Curve
 
 SWEEP = [
     "sweep",

@@ -20,8 +20,7 @@ import sympy
 
 import singimpact as si
 from singimpact import fixed_points, theory
-from singimpact.algebra import precision
-from singimpact.algebra.gathering import Remembered
+from singimpact.algebra import Remembered, precision
 from singimpact.branches import starts
 
 THREADS = 8

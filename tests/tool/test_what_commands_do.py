@@ -8,7 +8,7 @@ import pytest
 
 import singimpact as si
 from singimpact.inputs import InputError
-from singimpact.surface.curve import Window
+from singimpact.surface import Window
 
 OSC = si.linear(2, "0.3", "0.5")
 UNIVERSAL = si.universal(-1, "0.5")

@@ -8,8 +8,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from singimpact.certificates.claims_checker import STATED, statement_of
-from singimpact.paper.claims.verdicts import verify
+from singimpact.certificates import STATED, statement_of
+from singimpact.paper import verify
 
 COMMAND = "python tests/paper/certificates/stated_claims.py"
 

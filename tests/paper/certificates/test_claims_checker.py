@@ -12,11 +12,10 @@ import false_certificates as false
 import pytest
 from tampering import bumped, changed, leaves
 
-from singimpact.algebra.checking import accepts
-from singimpact.algebra.sentences import sentence
+from singimpact.algebra import accepts, sentence
 from singimpact.certificates import claims_checker
 from singimpact.inputs import InputError
-from singimpact.paper.claims.verdicts import verify
+from singimpact.paper import verify
 
 PROGRAM = Path(claims_checker.__file__)
 

@@ -5,10 +5,10 @@ import json
 import pytest
 
 import singimpact as si
-from singimpact.algebra.checking import accepts
-from singimpact.paper.claims import BEYOND, CLAIMS, INDEX, keys, run, select
+from singimpact.algebra import accepts
+from singimpact.paper import BEYOND_PLACE, CLAIMS, INDEX, imported_by, run, select, written_index
+from singimpact.paper.claims import BEYOND
 from singimpact.paper.claims.beyond import BEYOND as FILES
-from singimpact.paper.claims.index import BEYOND_PLACE, written_index
 
 KINDS = {
     "b:cascade-launch": "proved",
@@ -124,7 +124,7 @@ def test_contraction_at_numbers():
 
 
 def test_key_holds_what_a_file_imports():
-    assert {"cascade", "section4a_rays", "section4a_blowup"} <= set(keys.imported_by("cascade"))
+    assert {"cascade", "section4a_rays", "section4a_blowup"} <= set(imported_by("cascade"))
 
 
 @pytest.mark.slow

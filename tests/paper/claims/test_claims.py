@@ -11,15 +11,26 @@ import pytest
 from singimpact import cache
 from singimpact.algebra import gathering
 from singimpact.inputs import InputError
-from singimpact.paper.claims import CLAIMS, run, select
-from singimpact.paper.claims.claim import IN_MODEL, MODULO, Check, Claim, Statement, Trial, compared
-from singimpact.paper.claims.deciding import decide
-from singimpact.paper.claims.memory import recall
+from singimpact.paper import (
+    CLAIMS,
+    IN_MODEL,
+    MODULO,
+    Bracket,
+    Check,
+    Claim,
+    Statement,
+    Trial,
+    compared,
+    decide,
+    derived_from,
+    near_the_swan,
+    recall,
+    run,
+    select,
+    watched,
+)
 from singimpact.paper.claims.sections import section6, section6_negative
-from singimpact.paper.claims.sections.section6_scaling import near_the_swan
 from singimpact.paper.routes import unfolding
-from singimpact.paper.routes.equations import derived_from, watched
-from singimpact.paper.trials import enclosed_swan
 
 MISPRINTED = {
     "e:phi",
@@ -188,7 +199,7 @@ def test_the_mirror_image_of_E_is_rejected(name, monkeypatch):
     assert not CLAIMS[name].verify(CLAIMS[name].printed.value).holds
 
 
-@pytest.mark.parametrize("found", [None, enclosed_swan.Bracket(Fraction(7, 10), Fraction(4, 5), 9)])
+@pytest.mark.parametrize("found", [None, Bracket(Fraction(7, 10), Fraction(4, 5), 9)])
 def test_an_end_of_gamma_that_is_not_enclosed_in_EA_is_rejected(monkeypatch, found):
     monkeypatch.setattr(section6, "bracket", lambda _: found)  # no bracket, or one behind E'
     assert not CLAIMS["s6p-gamma"].verify(CLAIMS["s6p-gamma"].printed.value).holds

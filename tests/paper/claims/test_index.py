@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-from singimpact.paper.claims import CLAIMS, INDEX, index
-from singimpact.paper.claims.index import PLACE, claims_in, written_index
+from singimpact.paper import CLAIMS, INDEX, PLACE, claims_in, written_index
+from singimpact.paper.claims import index
 from singimpact.paper.claims.sections import SECTIONS
 
 

@@ -6,9 +6,8 @@ import dataclasses
 import pytest
 
 from singimpact.cache import recall, unpacked
-from singimpact.paper.claims import CLAIMS, deciding, keys, memory, run, select
-from singimpact.paper.claims.claim import Trial, Verdict
-from singimpact.paper.claims.keys import key_of
+from singimpact.paper import CLAIMS, Trial, Verdict, keep, key_of, run, select
+from singimpact.paper.claims import deciding, keys
 
 
 @pytest.fixture(autouse=True)
@@ -143,5 +142,5 @@ def test_cache_that_cannot_be_written_is_no_failure(monkeypatch, capsys):
 
 def test_error_is_not_kept(cache):
     verdict = dataclasses.replace(run(select(["e:yeq"]))[0], kind="error")
-    memory.keep(verdict, "key")
+    keep(verdict, "key")
     assert not (cache / "verdicts").exists()

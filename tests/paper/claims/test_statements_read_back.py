@@ -4,8 +4,7 @@ import pytest
 import sympy
 from latex_reading import formulas
 
-from singimpact.paper.claims import CLAIMS
-from singimpact.paper.routes.fold import s
+from singimpact.paper import CLAIMS, s
 from singimpact.paper.routes.implicit import sigma
 
 H = sympy.Symbol("H")

@@ -7,14 +7,26 @@ import numpy as np
 import pytest
 import sympy
 
-from singimpact.contact.points import tangency_points
+from singimpact.contact import tangency_points
 from singimpact.impact_oscillator import ImpactOscillator, universal
-from singimpact.paper.claims import CLAIMS
+from singimpact.paper import (
+    CLAIMS,
+    WEIGHTS,
+    A,
+    E,
+    Weights,
+    cofactor,
+    crossing,
+    e,
+    kappa,
+    limit_launch,
+    nonzero,
+    scaling_check,
+    t,
+    u,
+)
 from singimpact.paper.claims.sections import section6_exact as exact
-from singimpact.paper.claims.sections.section6_scaling import crossing, nonzero, scaling_check
-from singimpact.paper.routes import scaling, unfolding
-from singimpact.paper.routes.scaling import WEIGHTS, Weights
-from singimpact.paper.routes.unfolding import kappa, sigma, t, u
+from singimpact.paper.routes.unfolding import sigma
 
 
 def test_the_loop_is_that_of_true_flights():
@@ -80,7 +92,7 @@ def test_launches_near_a_swan_tend_to_those_of_the_model(damping, cubic):
         g = f"1/3 + ({cubic})/27 - 12*(t**2 - {length}**2) + t**3"
         osc = ImpactOscillator(f"x + ({damping})*xdot + ({cubic})*x**3", g, "1/3", "1/2")
         place, time = 1.2, 2.5
-        v = float(scaling.limit_launch().subs({kappa: -1, scaling.e: -1, sigma: place, t: time}))
+        v = float(limit_launch().subs({kappa: -1, e: -1, sigma: place, t: time}))
         shot = osc.first_hit(place * length, v * length**3)
         errors.append(abs(float(shot.flight_time) / length - time))
     assert errors[0] < 1
@@ -106,8 +118,8 @@ def test_other_weights_have_no_limit_or_another(weights):
 
 
 def test_crossings_and_numbers():
-    assert [crossing(point) for point in (unfolding.A, unfolding.E)] == [-48, 48]
+    assert [crossing(point) for point in (A, E)] == [-48, 48]
     assert crossing((sympy.Integer(0), sympy.Integer(0))) == 0
     assert nonzero(sympy.sqrt(3) * kappa**2)
     assert not nonzero(sympy.sqrt(3) * kappa - sympy.sqrt(12) * kappa / 2)
-    assert unfolding.cofactor().subs(u, 0).subs({sigma: 1, t: 0}) == 0
+    assert cofactor().subs(u, 0).subs({sigma: 1, t: 0}) == 0

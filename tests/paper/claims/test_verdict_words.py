@@ -8,12 +8,13 @@ from itertools import pairwise
 import pytest
 import sympy
 
-from singimpact.certificates import claims_checker
-from singimpact.documents.steps import Mark
+from singimpact.certificates import STRONGEST_FIRST as claims_checker_STRONGEST_FIRST
+from singimpact.certificates import Refused, check_words
+from singimpact.documents import Mark
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.paper import trials
-from singimpact.paper.claims import CLAIMS, run
-from singimpact.paper.claims.claim import (
+from singimpact.paper import (
+    CLAIMS,
+    COLOURS,
     IN_MODEL,
     KINDS,
     MODULO,
@@ -24,12 +25,16 @@ from singimpact.paper.claims.claim import (
     Claim,
     Statement,
     Trial,
+    VerdictTable,
+    as_svg,
+    colour_of,
+    effective,
+    every,
+    run,
+    sample,
     told,
+    trials,
 )
-from singimpact.paper.claims.deciding import effective
-from singimpact.paper.claims.graph import COLOURS, as_svg, colour_of
-from singimpact.paper.claims.verdicts import VerdictTable
-from singimpact.paper.claims.verifiers import every, sample
 
 STABLE, TAKENS = "the stable manifold theorem", "Takens' theorem"
 
@@ -53,7 +58,7 @@ def test_the_order():
         "proved", "proved modulo", "proved in the model", "certified", "argued", "formal", "supported", "cited", "open",
         "error",
     )  # fmt: skip
-    assert words == STRONGEST_FIRST == claims_checker.STRONGEST_FIRST
+    assert words == STRONGEST_FIRST == claims_checker_STRONGEST_FIRST
     assert all(STRENGTH[strong] > STRENGTH[weak] for strong, weak in pairwise(words))
     assert set(KINDS) == {*words, "corrected"} - {IN_MODEL}
 
@@ -162,9 +167,9 @@ def written(**changes):
 
 
 def test_the_second_program_reads_the_words():
-    claims_checker.check_words(written())
-    claims_checker.check_words(written(verdict="corrected", corrected_kind="proved", modulo=[]))
-    claims_checker.check_words(written(in_model=True, effective=IN_MODEL))
+    check_words(written())
+    check_words(written(verdict="corrected", corrected_kind="proved", modulo=[]))
+    check_words(written(in_model=True, effective=IN_MODEL))
 
 
 @pytest.mark.parametrize(
@@ -183,8 +188,8 @@ def test_the_second_program_reads_the_words():
     ],
 )
 def test_the_second_program_refuses_words_that_disagree(changes, why):
-    with pytest.raises(claims_checker.Refused, match=why):
-        claims_checker.check_words(written(**changes))
+    with pytest.raises(Refused, match=why):
+        check_words(written(**changes))
 
 
 def test_a_sample_names_its_point_and_fifteen_digits():

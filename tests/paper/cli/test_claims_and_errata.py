@@ -9,9 +9,7 @@ from xml.etree import ElementTree
 import pytest
 
 import singimpact as si
-from singimpact.paper.sections.errata import Erratum
-from singimpact.paper.sections.places import place_of
-from singimpact.paper.sections.remarks import GRADES, REMARKS
+from singimpact.paper import GRADES, REMARKS, Erratum, place_of
 
 
 def test_list_and_show(singimpact):
@@ -34,8 +32,7 @@ def test_graph_as_text_and_svg(singimpact):
     told = json.loads(singimpact("claims", "graph", "--json").stdout)
     assert told["s3-DG"] == ["s3-Dp", "s3-Dphi"]
     assert len(singimpact("claims", "graph").stdout.splitlines()) == 147
-    from singimpact.paper.claims import CLAIMS
-    from singimpact.paper.claims.graph import as_svg
+    from singimpact.paper import CLAIMS, as_svg
 
     picture = ElementTree.fromstring(as_svg(CLAIMS, {"e:yeq": "proved"}))
     names = [element.text for element in picture.iter() if element.tag.endswith("}text")]
@@ -117,7 +114,7 @@ def test_reasons_and_not_the_names_of_checks_are_printed(errata):
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("latexmk") is None, reason="needs latexmk")
 def test_latex_compiles_without_overfull_lines(errata):
-    from singimpact.documents.compiling import compiled
+    from singimpact.documents import compiled
 
     made = compiled(errata.latex())
     assert max(made.overfull, default=0) <= 20

@@ -7,7 +7,7 @@ import sys
 import pytest
 from fakes import CLAIMS, VERDICTS, FakeVerdict, claims_room
 
-from singimpact.paper.claims.verdicts import VerdictTable, verify
+from singimpact.paper import VerdictTable, verify
 
 
 @pytest.fixture(autouse=True)

@@ -6,10 +6,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from singimpact.paper import B7, B8, drawn, legend_words, picture, two_waves
 from singimpact.paper.claims import BEYOND
-from singimpact.paper.figures import picture
-from singimpact.paper.figures.met import B7, B8, two_waves
-from singimpact.paper.figures.rendering import drawn, legend_words
 
 made = lru_cache(maxsize=None)(picture)
 

@@ -10,9 +10,9 @@ from click.testing import CliRunner
 
 import singimpact as si
 from singimpact.inputs import InputError
+from singimpact.paper import CLAIMS, FIGURES, picture
 from singimpact.paper.claims import BEYOND as CLAIMS_BEYOND
-from singimpact.paper.claims import CLAIMS
-from singimpact.paper.figures import BEYOND, FIGURES, picture
+from singimpact.paper.figures import BEYOND
 
 made = lru_cache(maxsize=None)(picture)
 LETTERS = {
@@ -69,7 +69,7 @@ def test_2_cusps_come_and_go():
 
 @pytest.mark.slow
 def test_2_shows_what_the_transitions_are():
-    from singimpact.paper.figures.outlines import CHANGES, damped
+    from singimpact.paper import CHANGES, damped
     from singimpact.surface.transitions import transitions
 
     for change in CHANGES:
@@ -173,9 +173,8 @@ def test_no_such_figure(wrong):
 @pytest.mark.parametrize("number", FIGURES)
 def test_every_line_is_in_the_legend_and_the_figure_has_a_caption(number):
     """A curve that no legend names is the axis t = 0 alone; captions are sentences with closed formulas."""
-    from singimpact.paper.figures.rendering import legend_words
-    from singimpact.scenes.scene import LONGEST_TEXT
-    from singimpact.scenes.style import PENS
+    from singimpact.paper import legend_words
+    from singimpact.scenes import LONGEST_TEXT, PENS
 
     found, words = made(number), legend_words(made(number))
     drawn = {line.words or PENS[line.pen].words for panel in found.panels for line in panel.lines if line.pen != "axis"}

@@ -2,16 +2,16 @@
 
 import sympy
 
-from singimpact.paper.claims.next_sigma import next_sigma
-from singimpact.paper.routes import fold
+from singimpact.paper import eta as fold_eta
+from singimpact.paper import next_sigma, psi_q
 from singimpact.paper.routes.implicit import sigma
 from singimpact.theory.fold_form import fold_form
 
-eta = fold.eta
+eta = fold_eta
 
 
 def test_the_first_component_is_exact_before_the_higher_terms_are_removed():
-    first, _ = fold.psi_q()
+    first, _ = psi_q()
     assert sympy.expand(first - (eta - sigma / 2)) == 0
 
 

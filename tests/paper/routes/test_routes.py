@@ -4,27 +4,28 @@ import mpmath
 import pytest
 import sympy
 
-from singimpact.paper.routes import fold, swan
-from singimpact.paper.routes import implicit as route
-from singimpact.paper.routes.equations import derived_from, equation, watched
+from singimpact.paper import Dh_bar, derived_from, equation, f_map, g_map, h_bar, mbar, mu_of_m, r_of_m, watched
+from singimpact.paper import m as swan_m
+from singimpact.paper import r as route_r
+from singimpact.paper.routes import fold
+from singimpact.theory import eigenvalues_on_gamma, lambda_, mu_of_lambda, r_of_lambda
 from singimpact.theory.fold_form import fold_form
-from singimpact.theory.homogeneous import eigenvalues_on_gamma, lambda_, mu_of_lambda, r_of_lambda
 
-m, r = fold.m, route.r
+m, r = fold.m, route_r
 
 
 def test_saddle_multiplier_is_that_of_the_homogeneous_model():
     half = sympy.Rational(1, 2)
     assert sympy.cancel(fold.N_r_at_fixed_points().subs(m, lambda_ + half) - mu_of_lambda(1)) == 0
     assert sympy.cancel(fold.r_of_m().subs(m, lambda_ + half) - r_of_lambda(1)) == 0
-    assert sympy.cancel(swan.mu_of_m().subs(swan.m, lambda_ - 1) - mu_of_lambda(2)) == 0
-    assert sympy.cancel(swan.r_of_m().subs(swan.m, lambda_ - 1) - r_of_lambda(2)) == 0
+    assert sympy.cancel(mu_of_m().subs(swan_m, lambda_ - 1) - mu_of_lambda(2)) == 0
+    assert sympy.cancel(r_of_m().subs(swan_m, lambda_ - 1) - r_of_lambda(2)) == 0
 
 
 def test_swan_jacobian_at_the_fixed_point_is_f_prime_over_g_prime():
-    f, g = swan.f_map(), swan.g_map()
-    assert sympy.cancel(swan.Dh_bar()[1, 1] - sympy.diff(f, swan.m) / sympy.diff(g, swan.m)) == 0
-    assert sympy.cancel(swan.h_bar() - (f - g.subs(swan.m, swan.mbar)) * (1 + swan.m) ** 3) == 0
+    f, g = f_map(), g_map()
+    assert sympy.cancel(Dh_bar()[1, 1] - sympy.diff(f, swan_m) / sympy.diff(g, swan_m)) == 0
+    assert sympy.cancel(h_bar() - (f - g.subs(swan_m, mbar)) * (1 + swan_m) ** 3) == 0
 
 
 def test_h_prime_is_smooth_across_the_fixed_ray_of_the_axis():

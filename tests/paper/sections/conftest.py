@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from singimpact.paper import marks_of
 from singimpact.paper.sections.derivations import sections
-from singimpact.paper.sections.marks import marks_of
 
 
 @pytest.fixture(scope="session")

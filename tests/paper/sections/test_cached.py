@@ -3,8 +3,8 @@
 import subprocess
 import sys
 
-from singimpact.paper.sections import cached, derivations
-from singimpact.paper.sections.cached import kept_sections
+from singimpact.paper import cache, kept_sections
+from singimpact.paper.sections import derivations
 
 READ = """
 import sys
@@ -26,7 +26,7 @@ def test_kept_sections_are_those_derived_and_need_no_sympy(monkeypatch, tmp_path
 def test_sections_of_another_source_are_derived_again(monkeypatch, tmp_path):
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
     kept_sections(["swan"])
-    monkeypatch.setattr(cached.cache, "source_digest", lambda *_: "another source")
+    monkeypatch.setattr(cache, "source_digest", lambda *_: "another source")
     monkeypatch.setattr(derivations, "sections", lambda _: [])
     assert kept_sections(["swan"]) == []
 

@@ -10,16 +10,11 @@ import sys
 import pytest
 import sympy
 
-from singimpact.documents.compiling import compiled
-from singimpact.documents.formats import as_files, as_text
-from singimpact.documents.rendering import as_data, as_latex
-from singimpact.documents.steps import claims_of, equations_of
-from singimpact.paper.claims import BEYOND, CLAIMS
-from singimpact.paper.claims.claim import STRENGTH
-from singimpact.paper.routes import fold, swan
-from singimpact.paper.routes.implicit import a_symbol
-from singimpact.paper.sections import section4_blowup as blowup
-from singimpact.theory.homogeneous import lambda_, leading_coefficient, mu_of_lambda, r_of_lambda
+from singimpact.documents import as_data, as_files, as_latex, as_text, claims_of, compiled, equations_of
+from singimpact.paper import CLAIMS, STRENGTH, a_symbol, m, mu_of_m, r_of_m, with_Q
+from singimpact.paper.claims import BEYOND
+from singimpact.paper.routes import fold
+from singimpact.theory import lambda_, leading_coefficient, mu_of_lambda, r_of_lambda
 
 REFRESH = "python derivations/freeze.py writes it anew"
 LABELS = [
@@ -123,15 +118,15 @@ def test_the_two_routes_show_one_theory():
             a_symbol(1) * leading_coefficient(1),
             fold.gamma_leading().subs({fold.m: lambda_ + half, fold.k: a_symbol(1) / 6}),
         ),
-        (r_of_lambda(2), swan.r_of_m().subs(swan.m, lambda_ - 1)),
-        (mu_of_lambda(2), swan.mu_of_m().subs(swan.m, lambda_ - 1)),
+        (r_of_lambda(2), r_of_m().subs(m, lambda_ - 1)),
+        (mu_of_lambda(2), mu_of_m().subs(m, lambda_ - 1)),
     ]:
         assert sympy.cancel(stated - derived) == 0
 
 
 def test_writing_Q_is_refused_where_it_does_not_fit():
-    assert "r" not in {str(symbol) for symbol in blowup.with_Q(fold.N_r()).free_symbols}
-    assert blowup.with_Q(sympy.Symbol("r")) == sympy.Symbol("r")
+    assert "r" not in {str(symbol) for symbol in with_Q(fold.N_r()).free_symbols}
+    assert with_Q(sympy.Symbol("r")) == sympy.Symbol("r")
 
 
 _PROGRAM = """

@@ -11,13 +11,22 @@ from fakes import claims_room
 from hypothesis import given
 from hypothesis import strategies as st
 
-from singimpact.documents.breaking import PAGE, lines_of, width
-from singimpact.documents.compiling import CompileError, compiled
-from singimpact.documents.escape import latex
-from singimpact.documents.rendering import as_data, as_latex, as_markdown
-from singimpact.documents.steps import Mark, Section, Step
+from singimpact.documents import (
+    PAGE,
+    CompileError,
+    Mark,
+    Section,
+    Step,
+    as_data,
+    as_latex,
+    as_markdown,
+    compiled,
+    latex,
+    lines_of,
+    width,
+)
+from singimpact.paper import NOTATION
 from singimpact.paper.sections.derivations import SECTIONS, sections
-from singimpact.paper.sections.notation import NOTATION
 
 LONG = "v = " + " + ".join(
     rf"\frac{{{k} a_{{{k}}}}}{{{k + 1}}} \sigma^{{{k}}} \left(1 - \lambda_{{{k}}}\right)" for k in range(1, 30)

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.paper.trials import first_order, holder, loop_heights, onset, universal_foot
+from singimpact.paper import MODELS, STARTS, SWANS, beside, clearance, generations, heights, inner_start, measured
+from singimpact.paper.trials import universal_foot
 
 
 @pytest.mark.slow
@@ -45,13 +46,13 @@ def test_the_elastic_invariant_is_that_of_a_longer_orbit(monkeypatch):
 
 def test_chi_of_a_model_by_hand():
     """x'' + x'/2 + x = cos 2t: a''' = 0 at t = 0, so chi is the damping."""
-    found = first_order.measured(first_order.MODELS[1], "1/2")
+    found = measured(MODELS[1], "1/2")
     assert abs(found.chi - 0.5) < 1e-12
     assert abs(found.limit - 4.0476562833) < 1e-9
 
 
 def test_the_holder_exponent_at_j_1():
-    found = holder.beside(holder.STARTS[0], "1/2")
+    found = beside(STARTS[0], "1/2")
     assert abs(log(1 / found.lambda_) / log(found.mu) - 0.603031) < 1e-6
     assert abs(found.slope - 0.603031) < 1e-5
 
@@ -74,9 +75,7 @@ def test_the_holder_exponent_in_many_digits():
 
 def test_heights_are_ordered_about_their_tears():
     for r in (0.1, 0.3, 0.5, 0.8, 0.95):
-        outer, tears, inner = (
-            loop_heights.generations(start, r, 6) for start in (0.5, 0.375, loop_heights.inner_start(r))
-        )
+        outer, tears, inner = (generations(start, r, 6) for start in (0.5, 0.375, inner_start(r)))
         falling = [w for triple in zip(outer, tears, inner, strict=True) for w in triple]
         assert all(one > two for one, two in pairwise(falling))
         rate = float(si.fixed_points.tangency(str(r)).lambda_.value)
@@ -86,15 +85,15 @@ def test_heights_are_ordered_about_their_tears():
 @pytest.mark.slow
 def test_heights_on_true_orbits_agree_with_the_known_ones():
     """r = 1/2 in the universal model: (true - limit)/h at the first crossings, to four digits."""
-    found = loop_heights.heights(loop_heights.SWANS[0], "1/2")
-    limits = [*loop_heights.generations(0.5, 0.5), *loop_heights.generations(loop_heights.inner_start(0.5), 0.5)]
+    found = heights(SWANS[0], "1/2")
+    limits = [*generations(0.5, 0.5), *generations(inner_start(0.5), 0.5)]
     slopes = (np.array(found.found[0]) - limits) / found.lines[0]
     assert np.allclose(slopes[[0, 1, 4, 5]], [0.1191, 0.0843, 0.1378, 0.0805], atol=1e-4)
 
 
 @pytest.mark.parametrize("depth", [4, 5, 6])
 def test_osc_orbit_shows_the_orbit_that_is_born(depth):
-    osc = si.linear(2, onset.clearance(depth), "0.8")
+    osc = si.linear(2, clearance(depth), "0.8")
     run = osc.orbit(1, 0, 200)
     releases = run.tau[run.kind == "release"]
     assert len(releases) > 3

@@ -2,9 +2,11 @@
 
 import pytest
 
-from singimpact.contact.contact import Contact
-from singimpact.paper.trials import arcs, crosscheck, true_orbits
-from singimpact.theory.sheet import Sheet, sheet
+from singimpact.contact import Contact
+from singimpact.paper import gamma_cases, scipy_flow, sides
+from singimpact.paper.trials import crosscheck
+from singimpact.theory import Sheet
+from singimpact.theory.sheet import sheet
 
 CASES = [(0, 3), (0, 4), (1, 2), (1, 3), (1, 5), (2, 3), (2, 4)]
 
@@ -26,14 +28,14 @@ def test_a_wrong_term_shows():
     place = crosscheck.setting("linear, omega 2", 1)
     right = sheet(Contact.of(place.model, place.tau, 1, 3, crosscheck.DOUBLES), 3)
     wrong = Sheet(right.contact, 3, right.v.scaled(1.01))
-    flow = true_orbits.scipy_flow(place.model, float(place.tau))
+    flow = scipy_flow(place.model, float(place.tau))
     assert crosscheck.measured(right, flow, "v_c", list(crosscheck.STEPS)) > 3.8
     assert crosscheck.measured(wrong, flow, "v_c", list(crosscheck.STEPS)) < 2.2
 
 
 @pytest.mark.parametrize("j", [1, 2])
 def test_leading_coefficient_of_gamma(j):
-    cases = true_orbits.gamma_cases(j)
+    cases = gamma_cases(j)
     assert len(cases) == 3
     for case in cases:
         assert case.error < (1e-10 if "40 digits" in case.name else 1e-3), case.line()
@@ -41,7 +43,7 @@ def test_leading_coefficient_of_gamma(j):
 
 
 def test_gamma_against_the_reference(reference):
-    found = {case.name: case.found for case in true_orbits.gamma_cases(1)}
+    found = {case.name: case.found for case in gamma_cases(1)}
     linear = float(reference["gamma.C2[linear w=2,c=0.3,r=0.5]"])
     duffing = float(reference["gamma.C2[duffing w=1.7,c=0.3,r=0.6,d=0.1,k3=0.3]"])
     assert found["linear, omega 2, tangency, DOP853"] == pytest.approx(linear, rel=1e-8)
@@ -49,4 +51,4 @@ def test_gamma_against_the_reference(reference):
 
 
 def test_sides_of_gamma():
-    assert {(case.below, case.above) for case in arcs.sides()} == {("chatter", "lost")}
+    assert {(case.below, case.above) for case in sides()} == {("chatter", "lost")}

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from flint import arb
 
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import balls_at
 from singimpact.impact_oscillator import universal
+from singimpact.paper import BITS, LAST, Side, bracket
 from singimpact.paper.trials import enclosed_swan
-from singimpact.paper.trials.enclosed_swan import BITS, LAST, Side, bracket
 from singimpact.status import Status
 
 RATES = ["1/10", "1/2", "7/10"]

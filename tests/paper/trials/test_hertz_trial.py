@@ -4,10 +4,11 @@ from fractions import Fraction
 
 import pytest
 
-from singimpact.algebra.rings import DOUBLES
-from singimpact.contact.contact import acceleration_jet
-from singimpact.oscillator.model import Oscillator
-from singimpact.paper.trials.hertz import POWERS, STARTS, above, constant, edge, measured
+from singimpact.algebra import DOUBLES
+from singimpact.contact import acceleration_jet
+from singimpact.oscillator import Oscillator
+from singimpact.paper import POWERS, above, constant, edge
+from singimpact.paper.trials.hertz import STARTS, measured
 
 
 @pytest.mark.slow

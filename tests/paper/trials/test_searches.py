@@ -5,9 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from singimpact.algebra.expressions import evaluate, function_of
-from singimpact.algebra.parsing import parse
-from singimpact.algebra.rings import DOUBLES
+from singimpact.algebra import DOUBLES, evaluate, function_of, parse
 from singimpact.paper.trials import surfaces, unfolded
 
 

@@ -10,12 +10,25 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tampering import bumped, changed, leaves
 
-from singimpact.algebra import certificates, derivations
-from singimpact.algebra.checking import accepts
-from singimpact.algebra.plain import times
-from singimpact.algebra.sentences import sentence
-from singimpact.paper.routes import implicit
-from singimpact.theory import sheet
+from singimpact.algebra import (
+    At,
+    accepts,
+    collected,
+    definite,
+    established,
+    identical,
+    negative_on,
+    positive_in,
+    positive_on,
+    roots_inside,
+    sentence,
+    sign_chain,
+    substitution,
+    times,
+    value_at,
+)
+from singimpact.paper import phi_c
+from singimpact.theory import generic_sheet
 
 x, y, r = sympy.symbols("x y r")
 HALF = sympy.Rational(1, 2)
@@ -26,8 +39,8 @@ QUOTIENT = false.identity([false.poly(-1, 0, 1), false.poly(-1, 1)], [false.poly
 
 def root_of_two():
     e, w = sympy.symbols("e w")
-    moved = derivations.At((x + y) ** 2, {x: w, y: e})
-    derivations.substitution(moved, 2 + 2 * w * e, order=1, small=[e], where=(w**2 - 2, w))
+    moved = At((x + y) ** 2, {x: w, y: e})
+    substitution(moved, 2 + 2 * w * e, order=1, small=[e], where=(w**2 - 2, w))
 
 
 # what a change of these numbers makes is another statement, which happens to be true as well
@@ -38,34 +51,34 @@ STILL_TRUE = {
 
 
 def made(call, *arguments):
-    with certificates.collected() as found:
+    with collected() as found:
         call(*arguments)
     found = [certificate for certificate in found if certificate["kind"] != "motion" or certificate["landing"]][:1]
     return json.loads(json.dumps(found))
 
 
 SHAPES = {
-    "positive": (certificates.positive_on, (1 - x) * (x + 3) / (2 - x), x, 0, 1),
-    "raised": (certificates.positive_on, x**2 - x + HALF, x, 0, 1),
-    "half-line": (certificates.positive_on, x**2 - x + 1, x, 0, sympy.oo),
-    "left": (certificates.negative_on, x**3 - 1, x, -sympy.oo, 0),
-    "box": (certificates.positive_in, 2 - x - r * y / (1 + y), {x: (0, 1), y: (0, sympy.oo), r: (0, 1)}),
-    "chain": (certificates.sign_chain, x**2 - r, x, ((-sympy.oo, 1), (0, -1), (1, 1)), {r: (0, 1)}),
-    "value": (certificates.value_at, (x**2 - y**2) / (x - y), x, 3),
-    "pole": (certificates.value_at, y / (x - 1), x, 1),
-    "far": (certificates.value_at, (3 * x**2 - y) / (2 * x**2 + 1), x, sympy.oo),
-    "vanishing": (certificates.value_at, x / (x**2 + y), x, -sympy.oo),
-    "definite": (certificates.definite, -(6 * x**2) - 4 * x * y - y**2, x, y),
-    "identity": (certificates.established, QUOTIENT),
+    "positive": (positive_on, (1 - x) * (x + 3) / (2 - x), x, 0, 1),
+    "raised": (positive_on, x**2 - x + HALF, x, 0, 1),
+    "half-line": (positive_on, x**2 - x + 1, x, 0, sympy.oo),
+    "left": (negative_on, x**3 - 1, x, -sympy.oo, 0),
+    "box": (positive_in, 2 - x - r * y / (1 + y), {x: (0, 1), y: (0, sympy.oo), r: (0, 1)}),
+    "chain": (sign_chain, x**2 - r, x, ((-sympy.oo, 1), (0, -1), (1, 1)), {r: (0, 1)}),
+    "value": (value_at, (x**2 - y**2) / (x - y), x, 3),
+    "pole": (value_at, y / (x - 1), x, 1),
+    "far": (value_at, (3 * x**2 - y) / (2 * x**2 + 1), x, sympy.oo),
+    "vanishing": (value_at, x / (x**2 + y), x, -sympy.oo),
+    "definite": (definite, -(6 * x**2) - 4 * x * y - y**2, x, y),
+    "identity": (established, QUOTIENT),
     "composed": (
-        derivations.substitution,
-        derivations.At(x**2 + y, {x: x / (1 + y), y: r}),
+        substitution,
+        At(x**2 + y, {x: x / (1 + y), y: r}),
         (x**2 + r * (1 + y) ** 2) / (1 + y) ** 2,
     ),
     "to an order": (root_of_two,),
-    "motion": (implicit.phi_c, 2),
-    "flight": (sheet.generic_sheet, 1, 2),
-    "root": (certificates.identical, sympy.sqrt(x / (1 + y)) ** 3, x / (1 + y) * sympy.sqrt(x / (1 + y))),
+    "motion": (phi_c, 2),
+    "flight": (generic_sheet, 1, 2),
+    "root": (identical, sympy.sqrt(x / (1 + y)) ** 3, x / (1 + y) * sympy.sqrt(x / (1 + y))),
 }
 
 
@@ -80,7 +93,7 @@ def test_each_change_of_a_number_is_rejected(name):
 
 
 def test_a_sturm_chain_is_rejected_when_changed():
-    (certificate,) = made(certificates.roots_inside, x**5 - 4 * x + 1, x, -2, 1)
+    (certificate,) = made(roots_inside, x**5 - 4 * x + 1, x, -2, 1)
     assert certificate["roots"] == 2
     for path in leaves(certificate):
         if path[0] not in ("low", "high"):  # with another end the count may still be right
@@ -99,19 +112,19 @@ def test_a_sturm_chain_is_rejected_when_changed():
     ],
 )
 def test_what_is_not_positive_gets_none(expression, low, high):
-    assert made(certificates.positive_on, expression, x, low, high) == []
-    assert not certificates.positive_on(expression, x, low, high)
+    assert made(positive_on, expression, x, low, high) == []
+    assert not positive_on(expression, x, low, high)
 
 
 def test_nearly_zero_inside_needs_a_higher_degree():
-    assert certificates.positive_on((x - HALF) ** 2 + sympy.Rational(1, 40), x, 0, 1)
+    assert positive_on((x - HALF) ** 2 + sympy.Rational(1, 40), x, 0, 1)
 
 
 def test_what_is_not_found_is_an_error_not_a_no():
     with pytest.raises(ArithmeticError, match="no certificate"):
-        certificates.positive_on((x - HALF) ** 2 + sympy.Rational(1, 10**6), x, 0, 1)
+        positive_on((x - HALF) ** 2 + sympy.Rational(1, 10**6), x, 0, 1)
     with pytest.raises(ArithmeticError, match="multiple root"):
-        certificates.roots_inside((x - HALF) ** 2, x, 0, 1)
+        roots_inside((x - HALF) ** 2, x, 0, 1)
 
 
 @pytest.mark.parametrize(
@@ -122,7 +135,7 @@ def test_damaged_data_prove_nothing(data):
 
 
 def test_a_relation_that_is_no_root_is_refused():
-    (certificate,) = made(certificates.identical, *SHAPES["root"][1:])
+    (certificate,) = made(identical, *SHAPES["root"][1:])
     assert not accepts(certificate | {"relation": [[[[0, 0, 0], 1]], [[[0, 0, 0], 1]], [[[0, 0, 0], 1]]]})
 
 
@@ -143,7 +156,7 @@ def test_a_yes_is_right_and_a_no_too(coefficients):
     ends_and_roots = 0 if poly.degree() < 1 else poly.count_roots(0, 1) - sum(poly.eval(end) == 0 for end in (0, 1))
     positive = ends_and_roots == 0 and poly.eval(HALF) > 0
     try:
-        assert certificates.positive_on(poly.as_expr(), x, 0, 1) == positive
+        assert positive_on(poly.as_expr(), x, 0, 1) == positive
     except ArithmeticError:
         assert positive
 

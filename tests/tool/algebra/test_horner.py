@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.horner import Horner
-from singimpact.algebra.rings import EXACT
-from singimpact.contact.contact import Contact
+from singimpact.algebra import EXACT, Horner
+from singimpact.contact import Contact
 from singimpact.theory.sheet import sheet
 
 EPSILON = 2.0**-52

@@ -6,8 +6,7 @@ import flint
 import pytest
 import sympy
 
-from singimpact.algebra import interpolation
-from singimpact.algebra.interpolation import READING, interpolated
+from singimpact.algebra import READING, interpolated, interpolation
 
 ONE = flint.fmpq_poly([1])
 

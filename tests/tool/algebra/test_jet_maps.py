@@ -7,10 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy_ring import SympyExact
 
-from singimpact.algebra.jet_maps import blow_up, derivation, divided, implicit, inverse_map
-from singimpact.algebra.jets import JetSpace
-from singimpact.algebra.rings import DOUBLES, EXACT
-from singimpact.algebra.symbols import SymbolRing
+from singimpact.algebra import DOUBLES, EXACT, JetSpace, SymbolRing, blow_up, derivation, divided, implicit, inverse_map
 
 ENGINES = [EXACT, SympyExact()]
 rationals = st.fractions(-3, 3, max_denominator=7)

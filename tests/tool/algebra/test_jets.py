@@ -7,13 +7,20 @@ import mpmath
 import pytest
 import sympy
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.certificates import negative_on, positive_on, value_at
-from singimpact.algebra.jets import JetSpace
-from singimpact.algebra.parsing import parse
-from singimpact.algebra.rings import DOUBLES, EXACT, Multiprecision, to_sympy
-from singimpact.algebra.roots import real_roots
-from singimpact.algebra.taylor import NotSmooth
+from singimpact.algebra import (
+    DOUBLES,
+    EXACT,
+    Balls,
+    JetSpace,
+    Multiprecision,
+    NotSmooth,
+    negative_on,
+    parse,
+    positive_on,
+    real_roots,
+    to_sympy,
+    value_at,
+)
 
 TEXTS = ["sin(x)*exp(y)", "sqrt(2 + x)/(1 + y**2)", "log(1.5 + x*y)", "tan(0.3 + x) + tanh(y - 0.2)",
          "atan(0.7 + x + y)", "abs(x - 1)*y", "(1 + x)**(1/3)", "(1.2 + x)**pi", "cos(x + 2*y)**3"]  # fmt: skip

@@ -7,9 +7,8 @@ from itertools import product
 import pytest
 import sympy
 
-from singimpact.algebra.long_sums import LongSum, Monomials, Products, order_key
-from singimpact.algebra.symbols import SymbolRing
-from singimpact.theory.sheet import generic_sheet
+from singimpact.algebra import LongSum, Monomials, Products, SymbolRing, order_key
+from singimpact.theory import generic_sheet
 
 NAMES = ("a", "a_d1", "a_d10", "a_d2", "f_01", "f_10", "rho_2", "lambda")
 RATIONALS = [sympy.Rational(p, q) for p, q in product((-7, -2, -1, 1, 2, 3, 120), (1, 2, 3, 5, 7))]

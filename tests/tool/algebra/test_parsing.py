@@ -9,11 +9,24 @@ import sympy
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import FOLDING, Number, evaluate, walk
-from singimpact.algebra.numbers import as_float, compare, constant, exact, float_array, rational_near, sign_of
-from singimpact.algebra.parsing import from_sympy, parse
-from singimpact.algebra.rings import EXACT, to_sympy
+from singimpact.algebra import (
+    EXACT,
+    FOLDING,
+    Balls,
+    Number,
+    as_float,
+    compare,
+    constant,
+    evaluate,
+    exact,
+    float_array,
+    from_sympy,
+    parse,
+    rational_near,
+    sign_of,
+    to_sympy,
+    walk,
+)
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.inputs import InputError
 

@@ -5,10 +5,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.parsing import parse
-from singimpact.algebra.puiseux import NoExpansion, expansion
-from singimpact.algebra.rings import Multiprecision
+from singimpact.algebra import Multiprecision, NoExpansion, evaluate, expansion, parse
 
 SUMS = {
     "-v*(1 - 0.3*(-v)**(1/5))": 6,

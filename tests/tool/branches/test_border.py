@@ -14,16 +14,12 @@ from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
 import singimpact as si
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.numbers import exact
-from singimpact.algebra.precision import balls_at
-from singimpact.branches import border_digits, cascade, settled
-from singimpact.branches.released import Releases
-from singimpact.cli.border import told
-from singimpact.flights.balls import LinearFlow
-from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
+from singimpact.algebra import Balls, balls_at, exact
+from singimpact.branches import Releases, border_digits, cascade, settled_orbit
+from singimpact.cli import told
+from singimpact.flights import AnalyticFlow, LinearFlow
 from singimpact.inputs import InputError
-from singimpact.scenes.border import draw_border
+from singimpact.scenes import draw_border
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", 0.55, 0.5, {"omega": 2.8})
 LINEAR = {"3/10": (0.47, 0.475), "1/2": (0.6, 0.61), "4/5": (0.81, 0.82)}
@@ -378,12 +374,12 @@ def test_attractors_solve_closing_conditions():
 def test_settled_orbits():
     """Of one impact, with rest, and none at all."""
     (one,) = linear("1/2").replace(omega=4).periodic(1, 2)
-    found = settled.settled_orbit(one.oscillator, 0, 1)
+    found = settled_orbit(one.oscillator, 0, 1)
     assert (found.n, found.k) == (1, 2)
     assert np.abs(found.multipliers - one.multipliers).max() < 1e-8
-    resting = settled.settled_orbit(si.linear(2, "0.7", "0.5"), 0, 0.3)
+    resting = settled_orbit(si.linear(2, "0.7", "0.5"), 0, 0.3)
     assert (resting.kind, resting.k) == ("chatter", 1)
-    assert settled.settled_orbit(si.linear("2.8", 0, "0.8"), 0.1, 0.5) is None
+    assert settled_orbit(si.linear("2.8", 0, "0.8"), 0.1, 0.5) is None
 
 
 def test_aitken_and_edges_of_a_plain_sequence():

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.branches.closing import Closing
-from singimpact.branches.events import Event
+from singimpact.branches import Closing, Event
 from singimpact.flights.family import family
 from singimpact.inputs import InputError
 

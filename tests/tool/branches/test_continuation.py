@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from singimpact.branches.continuation import Curve, root_between
+from singimpact.branches import Curve, root_between
 
 
 class Circle:

@@ -10,13 +10,11 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import balls_at
+from singimpact.branches import Cones, Crossings, EnclosedCrossing, local_arc
 from singimpact.branches import enclosed_crossing as room
-from singimpact.branches.enclosed_crossing import EnclosedCrossing, enclosed_crossing
-from singimpact.branches.homoclinic import Crossings
-from singimpact.branches.saddle_arcs import local_arc
-from singimpact.branches.saddle_cones import Cones
-from singimpact.flights.enclosures.equation import Refused
+from singimpact.branches.enclosed_crossing import enclosed_crossing
+from singimpact.flights import Refused
 from singimpact.inputs import InputError
 
 OSC = si.linear("2.8", 0, "0.8")

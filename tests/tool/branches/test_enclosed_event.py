@@ -13,17 +13,11 @@ from closed_forms import OneImpact
 from witness import integrate
 
 import singimpact as si
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.numbers import constant
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import Balls, balls_at, constant
+from singimpact.branches import BallClosing, Krawczyk, Spans, TouchingClosing, rate_of, rate_over, return_slope
 from singimpact.branches import enclosed_event as room
-from singimpact.branches.ball_closing import BallClosing, Spans, TouchingClosing, return_slope
 from singimpact.branches.enclosed_event import enclosed_event
-from singimpact.branches.event_function import rate_of, rate_over
-from singimpact.branches.krawczyk import Krawczyk
-from singimpact.flights.enclosures.certified_hit import Launch
-from singimpact.flights.enclosures.equation import Refused
-from singimpact.flights.enclosures.timed_flight import timed_flight, touches_first
+from singimpact.flights import Launch, Refused, timed_flight, touches_first
 from singimpact.inputs import InputError
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "A*cos(w*t)", "0.3", "0.6", {"w": "1.7", "A": 1})

@@ -4,8 +4,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from singimpact.branches import ball_closing as room
-from singimpact.branches.enclosed_orbit import EnclosedOrbit, enclosed_orbit
+from singimpact.branches import BallClosing, EnclosedOrbit
+from singimpact.branches.enclosed_orbit import enclosed_orbit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.inputs import InputError
 
@@ -47,7 +47,7 @@ def test_states_that_are_no_orbit_are_refused():
 def test_a_box_without_the_orbit_is_not_accepted(monkeypatch):
     """Krawczyk's condition is what decides: where the last step of Newton's method is forged, the box is refused."""
     (orbit,) = DUFFING.periodic(2, 1)
-    honest = room.BallClosing.miss
+    honest = BallClosing.miss
     calls = []
 
     def forged(self, states):
@@ -55,6 +55,6 @@ def test_a_box_without_the_orbit_is_not_accepted(monkeypatch):
         found = honest(self, states)
         return found * 0 if len(calls) == 1 else found
 
-    monkeypatch.setattr(room.BallClosing, "miss", forged)
+    monkeypatch.setattr(BallClosing, "miss", forged)
     found = enclosed_orbit(DUFFING, orbit.tau + 1e-2, orbit.v, 1, 20)
     assert isinstance(found, str) or not isinstance(found, EnclosedOrbit)

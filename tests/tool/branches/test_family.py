@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from singimpact.flights.family import exponential, family
+from singimpact.flights import exponential
+from singimpact.flights.family import family
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
 DUFFING = ImpactOscillator(

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.branches.homoclinic import Crossing, Crossings, crossings
-from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.branches import Crossing, Crossings, PeriodicOrbit, crossings
 from singimpact.inputs import InputError
 
 CHAOTIC = si.linear("2.8", 0, "0.8")

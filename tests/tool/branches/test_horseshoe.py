@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import singimpact as si
+from singimpact.branches import CrossedSet, Horseshoe
 from singimpact.branches import horseshoe as room
-from singimpact.branches.horseshoe import CrossedSet, Horseshoe, horseshoe
+from singimpact.branches.horseshoe import horseshoe
 from singimpact.inputs import InputError
 
 OSC = si.linear("2.8", 0, "0.8")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.branches.continuation import Curve
+from singimpact.branches import Curve
 
 
 def test_points_are_not_computed_twice(tmp_path, monkeypatch) -> None:

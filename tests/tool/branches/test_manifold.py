@@ -10,11 +10,8 @@ import pytest
 from witness import integrate
 
 import singimpact as si
-from singimpact.branches.cylinder import distances
-from singimpact.branches.manifold import Manifold
-from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.saddle_arcs import expansion, local_arc, returned
-from singimpact.dynamics.invariant_arcs import before, model_step
+from singimpact.branches import Manifold, PeriodicOrbit, distances, expansion, local_arc, returned
+from singimpact.dynamics import before, model_step
 from singimpact.inputs import InputError
 
 TWO_BASINS = si.linear("2.8", "0.1", "0.8", amplitude=-1)

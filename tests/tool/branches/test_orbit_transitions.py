@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.branches.transitions import OrbitTransitions
+from singimpact.branches import OrbitTransitions
 from singimpact.inputs import InputError
-from singimpact.scenes.basins import class_colors
-from singimpact.scenes.style import PENS
+from singimpact.scenes import PENS, class_colors
 
 COCO = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45")
 GRAZE = -float(np.hypot(1 - 0.64, 0.08))  # of the orbit without impact: Recipes for Continuation 15.2

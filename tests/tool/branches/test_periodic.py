@@ -11,12 +11,9 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.precision import balls_at, series_of_any_length
-from singimpact.branches import resting, solutions
-from singimpact.branches.closing import Closing
-from singimpact.branches.enclosed_closing import SEARCH, ClosingBoxes, closed_boxes
+from singimpact.algebra import balls_at, series_of_any_length
+from singimpact.branches import SEARCH, Closing, ClosingBoxes, closed_boxes, conditions, resting, solutions
 from singimpact.branches.periodic import _doubts_in_window, _doubts_of_two, _lacking, periodic
-from singimpact.branches.starts import conditions
 from singimpact.flights.family import family
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.inputs import InputError

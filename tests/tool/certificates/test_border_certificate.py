@@ -8,7 +8,7 @@ import pytest
 from second_program import copied, dropped, is_read_back, no_number_may_change, refuses, renewed
 
 import singimpact as si
-from singimpact.certificates import checker
+from singimpact.certificates import check
 from singimpact.inputs import InputError
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
@@ -42,7 +42,7 @@ def test_a_parameter_of_a_nonlinear_model_has_one():
 
 def test_a_later_impact_and_a_double_beside_the_zero_say_the_same(made):
     for name, value in (("impacts", "4"), ("end", "4.158872105390695")):
-        checker.check(renewed(copied(made.content) | {name: value}))
+        check(renewed(copied(made.content) | {name: value}))
 
 
 def test_values_beside_it_are_refused(made):
@@ -76,7 +76,7 @@ def test_the_second_program_needs_both_ends(made, monkeypatch):
     other["completes"] = "below"
     refuses(other)
     dropped(monkeypatch, "fates")  # the condition that refuses it
-    checker.check(renewed(other))
+    check(renewed(other))
 
 
 def test_what_is_not_certified_has_no_certificate(orbit):

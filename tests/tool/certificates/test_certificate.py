@@ -16,10 +16,21 @@ from scipy.integrate import solve_ivp
 from second_program import changed, dropped, places_of, refuses, renewed, weakened
 
 import singimpact as si
-from singimpact.certificates import checker
-from singimpact.certificates.certificate import CHECKER, Certificate
-from singimpact.certificates.checker import files, formulas, impacts, motion, periods
-from singimpact.certificates.checker.told import read
+from singimpact.certificates import (
+    CHECKER,
+    STATEMENTS,
+    TERMS,
+    Certificate,
+    Flight,
+    Model,
+    checker,
+    defect,
+    impact,
+    read,
+    require_period,
+    taylor,
+)
+from singimpact.certificates.checker import formulas
 from singimpact.inputs import InputError
 
 MODELS = {
@@ -133,15 +144,15 @@ def test_the_program_stands_alone(certificates, tmp_path):
 def test_both_programs_enclose_the_same_impacts(name):
     """At random states, weak and strong: each within the other's radius."""
     osc, rng = MODELS[name], np.random.default_rng(4)
-    model = motion.Model(osc.to_dict())
+    model = Model(osc.to_dict())
     for tau, v in zip(rng.uniform(0, 3, 4), 10.0 ** rng.uniform(-6, 0.3, 4), strict=True):
         found = osc.impact_map(tau, v, digits=20).certified
         if found is None:
             continue
-        flint.ctx.prec, flint.ctx.cap = 160, files.TERMS
+        flint.ctx.prec, flint.ctx.cap = 160, TERMS
         try:
             exact = (formulas.ball(Fraction(part)) for part in (tau, v))
-            time, velocity, _ = motion.Flight(model, *exact, 100).first_hit()
+            time, velocity, _ = Flight(model, *exact, 100).first_hit()
             for ball, told in ((time, found.flight_time), (velocity, found.velocity)):
                 assert ball.overlaps(read(told.as_dict()))
                 assert ball.rad() < 1e-15
@@ -157,20 +168,15 @@ def test_three_traps_of_balls():
     assert not formulas.applied("log", beside).is_finite()
     assert not formulas.applied("sqrt", beside).is_finite()
     assert not formulas.applied("atan", flint.acb(0, flint.arb(1, 0.1))).is_finite()
-    flint.ctx.prec, flint.ctx.cap = 100, files.TERMS
+    flint.ctx.prec, flint.ctx.cap = 100, TERMS
     try:
-        model = motion.Model({"f": "sin(x)", "g": "0", "clearance": "0", "restitution": "1"})
-        (X,) = motion.taylor(model, flint.arb(0), [flint.arb(1)], [flint.arb(1)], 40)
+        model = Model({"f": "sin(x)", "g": "0", "clearance": "0", "restitution": "1"})
+        (X,) = taylor(model, flint.arb(0), [flint.arb(1)], [flint.arb(1)], 40)
         assert len(X) == 41
         assert all(a.mid() != 0 for a in X[11:])
-        kink = motion.Model({"f": "sqrt(x)", "g": "0", "clearance": "0", "restitution": "1"})
-        assert (
-            motion.defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(4)) is None
-        )
-        assert (
-            motion.defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(0.1))
-            is not None
-        )
+        kink = Model({"f": "sqrt(x)", "g": "0", "clearance": "0", "restitution": "1"})
+        assert defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(4)) is None
+        assert defect(kink, flint.arb(0), [[flint.arb(1), flint.arb(0), flint.arb("-0.5")]], flint.arb(0.1)) is not None
     finally:
         flint.ctx.prec, flint.ctx.cap = 53, 10
 
@@ -332,19 +338,19 @@ def test_states_of_a_virtual_orbit_are_refused():
 def test_a_period_is_shown_exactly(g, period, holds):
     formula = formulas.Formula(g, {"w": "1.7"})
     if holds:
-        periods.require_period(formula, period)
+        require_period(formula, period)
         return
     with pytest.raises(checker.Refused, match="not shown to have the period"):
-        periods.require_period(formula, period)
+        require_period(formula, period)
 
 
 @pytest.mark.parametrize("name", ["duffing", "law", pytest.param("layer", marks=pytest.mark.slow)])
 def test_derivatives_of_the_impact_map_contain_differences(name):
     """D G of the second program over a ball of states, against difference quotients of first impacts in doubles."""
     osc, tau, v, h = MODELS[name], 1.4, 0.6, 1e-5
-    flint.ctx.prec, flint.ctx.cap = 130, files.TERMS
+    flint.ctx.prec, flint.ctx.cap = 130, TERMS
     try:
-        rows = impacts.impact(motion.Model(osc.to_dict()), flint.arb(tau, 1e-9), flint.arb(v, 1e-9), 96)
+        rows = impact(Model(osc.to_dict()), flint.arb(tau, 1e-9), flint.arb(v, 1e-9), 96)
         known = [[(float(part.mid()), float(part.rad())) for part in row] for row in rows]
     finally:
         flint.ctx.prec, flint.ctx.cap = 53, 10
@@ -362,7 +368,7 @@ def test_a_checker_without_a_condition_accepts_what_is_false(condition, orbits, 
     if "abs" in condition:
         dropped(monkeypatch, "Krawczyk")
     else:
-        monkeypatch.setitem(files.STATEMENTS, "periodic orbit", weakened("periodic_orbit", condition))
+        monkeypatch.setitem(STATEMENTS, "periodic orbit", weakened("periodic_orbit", condition))
     content = json.loads(json.dumps(orbits["saddle"].content))
     if "abs" in condition:
         content["states"][0]["v"]["value"] = "0.66"

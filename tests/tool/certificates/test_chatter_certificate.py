@@ -10,8 +10,7 @@ import pytest
 from second_program import changed, copied, is_read_back, places_of, refuses, renewed, weakened
 
 import singimpact as si
-from singimpact.certificates import checker
-from singimpact.certificates.checker import chatter_limit, files, motion
+from singimpact.certificates import STATEMENTS, Model, checker, rest
 from singimpact.inputs import InputError
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + e*x**3", "cos(1.7*t)", "0.3", "0.6", {"e": "0.3"})
@@ -72,9 +71,9 @@ def test_a_law_of_restitution_is_refused(made):
 
 def rest_of(name, tau, v):
     osc = STATES[name][0]
-    model = motion.Model(osc.to_dict())
+    model = Model(osc.to_dict())
     tau, v = (flint.arb(Fraction(part).numerator) / Fraction(part).denominator for part in (tau, v))
-    return chatter_limit.rest(model, tau, v, model.push(tau, v * 0), model.ratio())
+    return rest(model, tau, v, model.push(tau, v * 0), model.ratio())
 
 
 @pytest.mark.parametrize("name", ["linear", "duffing"])
@@ -95,11 +94,11 @@ def test_the_rest_is_bounded_from_both_sides(name):
 
 def test_bounds_that_do_not_close_are_none():
     assert rest_of("linear", "0.9", "0.5") is None
-    fast = motion.Model({**LINEAR.to_dict(), "restitution": "0.999"})
+    fast = Model({**LINEAR.to_dict(), "restitution": "0.999"})
     one = flint.arb("0.9")
-    assert chatter_limit.rest(fast, one, flint.arb("1e-3"), fast.push(one, one * 0), fast.ratio()) is None
-    elastic = motion.Model({**LINEAR.to_dict(), "restitution": "1"})
-    assert chatter_limit.rest(elastic, one, flint.arb("1e-3"), elastic.push(one, one * 0), elastic.ratio()) is None
+    assert rest(fast, one, flint.arb("1e-3"), fast.push(one, one * 0), fast.ratio()) is None
+    elastic = Model({**LINEAR.to_dict(), "restitution": "1"})
+    assert rest(elastic, one, flint.arb("1e-3"), elastic.push(one, one * 0), elastic.ratio()) is None
 
 
 @pytest.mark.parametrize(
@@ -112,7 +111,7 @@ def test_bounds_that_do_not_close_are_none():
 def test_a_checker_without_a_condition_says_otherwise(condition, instead, change, made, monkeypatch):
     weak = weakened("chatter_limit", condition, instead)
     content = {**copied(made["duffing"].content), **change}
-    monkeypatch.setitem(files.STATEMENTS, "chatter limit", weak)
+    monkeypatch.setitem(STATEMENTS, "chatter limit", weak)
     if change:
         checker.check(renewed(content))
         monkeypatch.undo()

@@ -11,8 +11,8 @@ import flint
 import pytest
 from second_program import FOLDER, dropped, renewed
 
-from singimpact.certificates import checker
-from singimpact.certificates.checker import chatter_limit, files, formulas, motion
+from singimpact.certificates import TERMS, Formula, checker
+from singimpact.certificates.checker import chatter_limit, motion
 
 EXAMPLES = Path(__file__).parent / "examples"
 
@@ -161,7 +161,7 @@ def test_the_factor_of_gronwall_bounds_a_step(power):
     """x = sin(t) + d sinh(w t)/w with a small d: the polynomial misses more than the residual has."""
     weak = without(motion, "step", "(B * length + A * length * length / 2).exp()", "1")
     before = flint.ctx.prec, flint.ctx.cap
-    flint.ctx.prec, flint.ctx.cap = 1000, files.TERMS
+    flint.ctx.prec, flint.ctx.cap = 1000, TERMS
     try:
         model = motion.Model({"f": "-10000*x", "g": "-10001*sin(t)", "clearance": "0", "restitution": "1"})
         d, w = flint.arb(10) ** -power, flint.arb(100)
@@ -196,9 +196,9 @@ def test_each_bound_of_chatter_refuses_an_accumulation(model, tau, v, text, inst
     """Where a bound does not close, what the others give is false; it is accepted without that bound alone."""
     weak = without(chatter_limit, "rest", text, instead)
     before = flint.ctx.prec, flint.ctx.cap
-    flint.ctx.prec, flint.ctx.cap = 112, files.TERMS
+    flint.ctx.prec, flint.ctx.cap = 112, TERMS
     try:
-        told, state = motion.Model(model), [formulas.Formula(part, {})() for part in (tau, v)]
+        told, state = motion.Model(model), [Formula(part, {})() for part in (tau, v)]
         a = told.push(state[0], state[1] * 0)
         assert chatter_limit.rest(told, *state, a, told.ratio()) is None
         end = state[0] + weak(told, *state, a, told.ratio())

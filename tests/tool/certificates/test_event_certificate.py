@@ -6,8 +6,8 @@ import pytest
 from second_program import changed, copied, dropped, is_read_back, no_number_may_change, places_of, refuses, renewed
 
 import singimpact as si
-from singimpact.certificates import checker
-from singimpact.certificates.checker import event, impacts, motion, periodic_orbit
+from singimpact.certificates import Orbits, check
+from singimpact.certificates.checker import event, impacts, motion
 from singimpact.inputs import InputError
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
@@ -92,8 +92,8 @@ def test_grazes_that_are_none(graze):
 
 def test_krawczyk_is_what_refuses_another_graze(graze, monkeypatch):
     off = shifted(graze.content, "parameter", 1e4)
-    monkeypatch.setattr(periodic_orbit.Orbits, "alone", lambda *_: None)
-    checker.check(renewed(off))
+    monkeypatch.setattr(Orbits, "alone", lambda *_: None)
+    check(renewed(off))
     monkeypatch.undo()
     refuses(off)
 
@@ -104,7 +104,7 @@ def test_a_touch_that_is_not_the_first_is_what_the_pieces_refuse(graze, monkeypa
     refuses(twice)
     for module in (motion, impacts):
         monkeypatch.setattr(module, "first_root", lambda *_: None)
-    checker.check(renewed(twice))
+    check(renewed(twice))
 
 
 @pytest.mark.parametrize("kind", ["fold", "period-doubling", "graze", "hidden impact"])
@@ -172,7 +172,7 @@ def test_without_the_change_of_sign_an_orbit_beside_the_event_passes(made, monke
     refuses(content)
     monkeypatch.setattr(event.Curve, "crossing", lambda curve, point, _: curve.solved(point)[0])
     dropped(monkeypatch, "change of sign")
-    checker.check(renewed(content))
+    check(renewed(content))
 
 
 def test_others_have_no_file(branch):

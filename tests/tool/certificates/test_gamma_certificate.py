@@ -10,9 +10,8 @@ import pytest
 from second_program import changed, copied, dropped, is_read_back, no_number_may_change, refuses, renewed
 
 import singimpact as si
-from singimpact.certificates import checker
-from singimpact.certificates.checker import gravity, invariant_arc, nonlinear
-from singimpact.certificates.checker.growing import Growing
+from singimpact.certificates import Flights, Gravity, Growing, checker
+from singimpact.certificates.checker import invariant_arc
 
 EXAMPLES = Path(__file__).parent / "examples"
 TANGENCY = si.linear(2, "0.3", "0.5")
@@ -123,7 +122,7 @@ def test_of_a_nonlinear_model_more_is_refused(made):
 @pytest.mark.slow
 @pytest.mark.parametrize("where", ["balls", "models", "cut"])
 def test_a_checker_with_wrong_functions_of_a_nonlinear_model_refuses(where, made, monkeypatch):
-    kind = nonlinear.Flights
+    kind = Flights
     if where == "balls":
         true = kind.speeds
         monkeypatch.setattr(kind, "speeds", lambda self, S, x: [true(self, S, x)[k] for k in (1, 0, 3, 2, 5, 4)])
@@ -203,15 +202,15 @@ def test_boxes_of_lambda_must_touch_and_cover(made):
 @pytest.mark.parametrize("where", ["balls", "models", "cut"])
 def test_a_checker_with_wrong_functions_refuses(where, made, monkeypatch):
     """W and U exchanged, in balls or in Taylor models; a tail that is left out makes it accept, as it must."""
-    true = gravity.Gravity.speeds
+    true = Gravity.speeds
     if where == "balls":
-        monkeypatch.setattr(gravity.Gravity, "speeds", lambda self, S, x: [true(self, S, x)[k] for k in
+        monkeypatch.setattr(Gravity, "speeds", lambda self, S, x: [true(self, S, x)[k] for k in
                                                                            (1, 0, 3, 2, 5, 4)])  # fmt: skip
     elif where == "models":
-        twice = gravity.Gravity.folded
-        monkeypatch.setattr(gravity.Gravity, "folded", lambda self, ring, S, x: twice(self, ring, S, x)[::-1])
+        twice = Gravity.folded
+        monkeypatch.setattr(Gravity, "folded", lambda self, ring, S, x: twice(self, ring, S, x)[::-1])
     else:
-        monkeypatch.setattr(gravity.Gravity, "tail", lambda self, power: flint.arb(1))  # noqa: ARG005
+        monkeypatch.setattr(Gravity, "tail", lambda self, power: flint.arb(1))  # noqa: ARG005
     with pytest.raises(checker.Refused):
         checker.check(made["tangency"].content)
 

@@ -10,9 +10,7 @@ import pytest
 from second_program import copied, dropped, is_read_back, no_number_may_change, refuses, renewed
 
 import singimpact as si
-from singimpact.certificates import checker
-from singimpact.certificates.checker import files, impacts, motion
-from singimpact.certificates.checker.horseshoe import Set, derivative
+from singimpact.certificates import TERMS, Model, Set, check, derivative, impact
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 
@@ -125,18 +123,18 @@ def test_a_checker_without_a_condition_accepts_what_is_false(conditions, change,
         content["entropy"]["value"] = "0.2"
     refuses(content)
     dropped(monkeypatch, *conditions)
-    checker.check(renewed(content))
+    check(renewed(content))
 
 
 def test_boxes_flown_beside_their_centre_are_enclosed():
     """Images of members lie in the box, whose derivative contains difference quotients; and it is narrow."""
     osc, rng = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6"), np.random.default_rng(3)
-    model, centre, width = motion.Model(osc.to_dict()), (1.4, 0.6), 1e-3
-    flint.ctx.prec, flint.ctx.cap = 100, files.TERMS
+    model, centre, width = Model(osc.to_dict()), (1.4, 0.6), 1e-3
+    flint.ctx.prec, flint.ctx.cap = 100, TERMS
     try:
         box = [flint.arb(x, width) for x in centre]
-        rows = impacts.impact(model, *box, 64, tuple(map(flint.arb, centre)))
-        plain = impacts.impact(model, *box, 64)
+        rows = impact(model, *box, 64, tuple(map(flint.arb, centre)))
+        plain = impact(model, *box, 64)
         low, high = (np.array([[float(end(part)) for part in row] for row in rows])
                      for end in (flint.arb.lower, flint.arb.upper))  # fmt: skip
         assert (high - low < 1.6 * np.array([[float(part.rad()) for part in row] for row in plain])).all()
@@ -164,8 +162,8 @@ def test_pieces_cover_a_set():
 
 def test_two_impacts_of_a_box():
     """Over the images too: the product of the derivatives at every member."""
-    model, width = motion.Model(OSC.to_dict()), 1e-4
-    flint.ctx.prec, flint.ctx.cap = 100, files.TERMS
+    model, width = Model(OSC.to_dict()), 1e-4
+    flint.ctx.prec, flint.ctx.cap = 100, TERMS
     try:
         D = derivative(model, [flint.arb(2.2, width), flint.arb(0.27, width)], 2, 64)
         low, high = (np.array([[float(end(part)) for part in row] for row in D.table()])

@@ -91,7 +91,7 @@ def test_the_graze_of_an_orbit_without_impact(singimpact):
 
 @pytest.mark.slow
 def test_an_event_of_a_curve_is_known():
-    from singimpact.cli.events import on_curve
+    from singimpact.cli import on_curve
 
     def events(damping):
         osc = si.linear(1, -1, "0.8", damping=damping, amplitude="-0.12")

@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from singimpact.certificates.checker import KINDS
-from singimpact.cli.certify import EVENTS
+from singimpact.certificates import KINDS
+from singimpact.cli import EVENTS
 
 MODEL = ["--omega", "2.8", "--clearance", "0.1", "--restitution", "0.8"]
 

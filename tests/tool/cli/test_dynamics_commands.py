@@ -7,8 +7,7 @@ from importlib import import_module
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.chatter import ENDING
-from singimpact.dynamics.threshold import SEARCH
+from singimpact.dynamics import ENDING, SEARCH
 
 LINEAR = ["--omega", "2.8", "--clearance", "0", "--restitution", "1/2"]
 

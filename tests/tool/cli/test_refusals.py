@@ -70,6 +70,6 @@ def test_no_command_is_help(singimpact):
 
 
 def test_help_of_the_group_and_of_the_command_agree():
-    from singimpact.cli.group import COMMANDS, main
+    from singimpact.cli import COMMANDS, main
 
     assert {name: main.get_command(None, name).short_help for name in COMMANDS} == COMMANDS

@@ -8,38 +8,50 @@ import math
 import numpy as np
 import pytest
 
-from singimpact.algebra.parsing import parse
-from singimpact.codegen import radii
-from singimpact.codegen.over_lists import FUNCTIONS
+from singimpact.algebra import parse
+from singimpact.codegen import (
+    FUNCTIONS,
+    atan_radius,
+    bell_radius,
+    circular_radius,
+    exp_radius,
+    log_of_square_radius,
+    log_radius,
+    power_of_square_radius,
+    power_radius,
+    softplus_radius,
+    tan_radius,
+    tanh_radius,
+    whole_power_radius,
+)
 from singimpact.codegen.recurrence import recurrence
-from singimpact.flights.bind import over_floats
-from singimpact.flights.kernels.state import Work
+from singimpact.flights import Work, over_floats
 
 CIRCLE = np.exp(2j * np.pi * np.arange(64) / 64)
 
 # function of w, its radius from (w, r), where w is drawn from
 CASES = {
-    "w^5": (lambda w: w**5, lambda w, r: radii.whole_power_radius(w, r, 5), (-3, 3)),
-    "1/w": (lambda w: 1 / w, lambda w, r: radii.power_radius(1 / w, w, r, -1.0), (-3, 3)),
-    "w^(1/3)": (lambda w: w ** (1 / 3), lambda w, r: radii.power_radius(w ** (1 / 3), w, r, 1 / 3), (0.1, 3)),
-    "w^2.5": (lambda w: w**2.5, lambda w, r: radii.power_radius(w**2.5, w, r, 2.5), (0.1, 3)),
+    "w^5": (lambda w: w**5, lambda w, r: whole_power_radius(w, r, 5), (-3, 3)),
+    "1/w": (lambda w: 1 / w, lambda w, r: power_radius(1 / w, w, r, -1.0), (-3, 3)),
+    "w^(1/3)": (lambda w: w ** (1 / 3), lambda w, r: power_radius(w ** (1 / 3), w, r, 1 / 3), (0.1, 3)),
+    "w^2.5": (lambda w: w**2.5, lambda w, r: power_radius(w**2.5, w, r, 2.5), (0.1, 3)),
     "1/(0.3 + 2 w^2)": (
         lambda w: 1 / (0.3 + 2 * w * w),
-        lambda w, r: radii.power_of_square_radius(1 / (0.3 + 2 * w * w), w, r, -1.0, 0.3, 2.0), (-2, 2)),
+        lambda w, r: power_of_square_radius(1 / (0.3 + 2 * w * w), w, r, -1.0, 0.3, 2.0), (-2, 2)),
     "sqrt(1 + w^2)": (
         lambda w: cmath.sqrt(1j + w) * cmath.sqrt(-1j + w) if w.real > 0 else cmath.sqrt(-1j - w) * cmath.sqrt(1j - w),
-        lambda w, r: radii.power_of_square_radius(math.sqrt(1 + w * w), w, r, 0.5, 1.0, 1.0), (0.6, 2)),
+        lambda w, r: power_of_square_radius(math.sqrt(1 + w * w), w, r, 0.5, 1.0, 1.0), (0.6, 2)),
     "log(2 + w^2)": (
-        lambda w: cmath.log(2 + w * w), lambda w, r: radii.log_of_square_radius(w, r, 2.0, 1.0), (-0.9, 0.9)),
-    "exp": (cmath.exp, lambda w, r: radii.exp_radius(math.exp(w), w, r), (-5, 5)),
+        lambda w: cmath.log(2 + w * w), lambda w, r: log_of_square_radius(w, r, 2.0, 1.0), (-0.9, 0.9)),
+    "exp": (cmath.exp, lambda w, r: exp_radius(math.exp(w), w, r), (-5, 5)),
     "exp(-3 w^2)": (
-        lambda w: cmath.exp(-3 * w * w), lambda w, r: radii.bell_radius(math.exp(-3 * w * w), w, r, 3.0), (-4, 4)),
-    "sin": (cmath.sin, lambda w, r: radii.circular_radius(math.sin(w), math.cos(w), r), (-5, 5)),
-    "tan": (cmath.tan, lambda w, r: radii.tan_radius(math.tan(w), r), (-1.5, 1.5)),
-    "tanh": (cmath.tanh, radii.tanh_radius, (-30, 30)),
-    "atan": (cmath.atan, radii.atan_radius, (-4, 4)),
-    "log": (cmath.log, radii.log_radius, (0.1, 4)),
-    "log(1 + e^w)": (lambda w: cmath.log(1 + cmath.exp(w)), radii.softplus_radius, (-9, 9)),
+        lambda w: cmath.exp(-3 * w * w), lambda w, r: bell_radius(math.exp(-3 * w * w), w, r, 3.0), (-4, 4)),
+    "sin": (cmath.sin, lambda w, r: circular_radius(math.sin(w), math.cos(w), r), (-5, 5)),
+    "tan": (cmath.tan, lambda w, r: tan_radius(math.tan(w), r), (-1.5, 1.5)),
+    "tanh": (cmath.tanh, tanh_radius, (-30, 30)),
+    "atan": (cmath.atan, atan_radius, (-4, 4)),
+    "log": (cmath.log, log_radius, (0.1, 4)),
+    "log(1 + e^w)": (lambda w: cmath.log(1 + cmath.exp(w)), softplus_radius, (-9, 9)),
 }  # fmt: skip
 
 
@@ -81,10 +93,10 @@ def test_a_radius_that_is_too_small_is_seen(name) -> None:
 
 @pytest.mark.parametrize(
     ("radius", "singular"),
-    [(lambda r: radii.power_radius(2.0, 0.5, r, -1.0), 0.5), (lambda r: radii.log_radius(0.5, r), 0.5),
-     (lambda r: radii.atan_radius(0.0, r), 1.0), (lambda r: radii.tanh_radius(0.0, r), math.pi / 2),
-     (lambda r: radii.tan_radius(0.0, r), math.pi / 2), (lambda r: radii.softplus_radius(0.0, r), math.pi),
-     (lambda r: radii.power_of_square_radius(1.0, 0.0, r, -1.0, 1.0, 4.0), 0.5)],
+    [(lambda r: power_radius(2.0, 0.5, r, -1.0), 0.5), (lambda r: log_radius(0.5, r), 0.5),
+     (lambda r: atan_radius(0.0, r), 1.0), (lambda r: tanh_radius(0.0, r), math.pi / 2),
+     (lambda r: tan_radius(0.0, r), math.pi / 2), (lambda r: softplus_radius(0.0, r), math.pi),
+     (lambda r: power_of_square_radius(1.0, 0.0, r, -1.0, 1.0, 4.0), 0.5)],
 )  # fmt: skip
 def test_a_disc_that_meets_a_singularity_has_no_bound(radius, singular) -> None:
     assert radius(0.99 * singular) < math.inf
@@ -102,7 +114,7 @@ def test_the_bound_of_a_model_holds(force) -> None:
     """|F(s) - F(0)| on circles, with F = g - f along the Taylor polynomial, from f and g as they are defined."""
     made = recurrence(parse(force, ["x", "xdot"]), parse("cos(2*t) + exp(3*(cos(t) - 1))", ["t"]))
     space = over_floats(made.source)
-    from singimpact.algebra.numbers import as_float
+    from singimpact.algebra import as_float
 
     rng, order, tightest = np.random.default_rng(4), 16, 0.0
     for _ in range(20):
@@ -132,7 +144,7 @@ def test_the_bound_of_a_model_holds(force) -> None:
 def test_logistic_and_softplus_do_not_overflow() -> None:
     made = recurrence(parse("1/(1 + exp(900*x)) + log(1 + exp(900*x))", ["x"]), parse("0*t", ["t"]))
     space = over_floats(made.source)
-    from singimpact.algebra.numbers import as_float
+    from singimpact.algebra import as_float
 
     for x, pull in ((1.0, 900.0), (-1.0, 1.0)):
         X, W = [0.0] * 10, [[0.0] * 10 for _ in range(made.rows)]

@@ -12,8 +12,8 @@ import sympy
 from emitted_module import module_of
 
 import singimpact as si
-from singimpact.generated import completion
-from singimpact.theory.frozen import CURVED, MOVED, completion_module, curve_module
+from singimpact.generated import chatter_terms, linear_chatter_terms
+from singimpact.theory import CURVED, MOVED, completion_module, curve_module
 
 EPSILON = 2.0**-52
 curves = module_of(curve_module(), "emitted_curves")
@@ -66,11 +66,11 @@ def test_source_is_what_the_theory_writes(clone):
 
 
 def test_the_terms_of_a_linear_model_are_those_without_the_other_jets():
-    letters = list(inspect.signature(completion.linear_chatter_terms).parameters)
+    letters = list(inspect.signature(linear_chatter_terms).parameters)
     values = {letter: Fraction(n + 2, 9 + n * n) for n, letter in enumerate(letters)}
     absent = {letter: Fraction(0) for letter in names_of("chatter_terms") if letter not in letters}
     assert len(absent) == 6
-    assert completion.linear_chatter_terms(**values) == completion.chatter_terms(**values, **absent)
+    assert linear_chatter_terms(**values) == chatter_terms(**values, **absent)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from emitted_module import module_of
 
-from singimpact.contact.contact import NAMED_ORDERS
-from singimpact.theory.frozen import PLACES, sheet_module
-from singimpact.theory.sheet import generic_sheet
+from singimpact.contact import NAMED_ORDERS
+from singimpact.theory import PLACES, generic_sheet, sheet_module
 
 EPSILON = 2.0**-52
 sheets = module_of(sheet_module(), "emitted_sheets")

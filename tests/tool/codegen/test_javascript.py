@@ -7,7 +7,7 @@ import inspect
 
 import pytest
 
-from singimpact.codegen.javascript import translated
+from singimpact.codegen import translated
 from singimpact.flights.kernels import roots, steps, taylor
 
 

@@ -9,12 +9,11 @@ from typing import Any
 import mpmath
 import pytest
 
-from singimpact.algebra.parsing import parse
-from singimpact.codegen.over_lists import FUNCTIONS
+from singimpact.algebra import parse
+from singimpact.codegen import FUNCTIONS
 from singimpact.codegen.recurrence import recurrence
-from singimpact.flights.bind import over_lists
+from singimpact.flights import Work, over_lists
 from singimpact.flights.compiled_model import compiled_model
-from singimpact.flights.kernels.state import Work
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.inputs import InputError
 
@@ -30,7 +29,7 @@ def test_coefficients_solve_the_equation(force: str) -> None:
     with mpmath.workdps(60):
         functions = {name: getattr(mpmath, {"log": "ln"}.get(name, name)) for name in FUNCTIONS}
         space = over_lists(made.source)(functions)
-        from singimpact.algebra.numbers import as_mpf
+        from singimpact.algebra import as_mpf
 
         p = [mpmath.mpf("0.7"), *(as_mpf(tree, mpmath.mp) for tree in made.constants)]
         order, h = 24, mpmath.mpf("0.001")

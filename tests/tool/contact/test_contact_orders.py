@@ -7,13 +7,11 @@ import mpmath
 import pytest
 
 import singimpact as si
-from singimpact.algebra.balls import Zero
-from singimpact.algebra.parsing import parse
-from singimpact.algebra.precision import balls_at
-from singimpact.contact.contact import Contact, contact_order
-from singimpact.contact.points import MOST_DIGITS, _beside, enclosed
+from singimpact.algebra import Zero, balls_at, parse
+from singimpact.contact import MOST_DIGITS, Contact, contact_order, enclosed
+from singimpact.contact.points import _beside
 from singimpact.inputs import InputError
-from singimpact.theory.sheet import generic_sheet
+from singimpact.theory import generic_sheet
 
 
 @pytest.mark.parametrize(

@@ -7,12 +7,10 @@ import mpmath
 import numpy as np
 import pytest
 
-from singimpact.algebra.rings import EXACT
-from singimpact.contact.contact import Contact
-from singimpact.contact.points import tangency_points
-from singimpact.contact.swans import swan_points_over_clearance
+from singimpact.algebra import EXACT
+from singimpact.contact import Contact, swan_points_over_clearance, tangency_points
 from singimpact.inputs import InputError
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator import Oscillator
 
 
 def test_linear_oscillator():
@@ -34,9 +32,8 @@ def test_none_is_missed_on_random_forcings(seed):
     osc = Oscillator("x", " + ".join(terms).replace("+ -", "- "), f"{rng.normal() / 2:.6f}", 1)
     points = tangency_points(osc)
     times = np.linspace(0, 2 * pi, 20001)[:-1]
-    from singimpact.algebra.expressions import evaluate
-    from singimpact.algebra.rings import DOUBLES
-    from singimpact.contact.contact import acceleration
+    from singimpact.algebra import DOUBLES, evaluate
+    from singimpact.contact import acceleration
 
     values = np.broadcast_to(evaluate(acceleration(osc), {"t": times}, DOUBLES), times.shape)
     assert len(points) == np.count_nonzero(np.sign(values) != np.sign(np.roll(values, 1)))

@@ -8,11 +8,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.balls import ball_of
-from singimpact.algebra.certified import Certified
-from singimpact.algebra.expressions import Root
-from singimpact.algebra.parsing import parse
-from singimpact.algebra.rings import EXACT, SYMBOLIC
+from singimpact.algebra import EXACT, SYMBOLIC, Certified, Root, ball_of, parse
 from singimpact.inputs import InputError
 
 DUFFING = ("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)")

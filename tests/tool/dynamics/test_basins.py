@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.attractors import CHATTER, OTHER, SETTINGS, caught, closing_orbits, new_attractors
+from singimpact.dynamics import CHATTER, OTHER, Future, caught, chaotic, closing_orbits, new_attractors, settled
+from singimpact.dynamics.attractors import SETTINGS
 from singimpact.dynamics.basins import basins
 from singimpact.dynamics.bifurcation import bifurcation
-from singimpact.dynamics.long_run import Future, chaotic, settled
-from singimpact.flights.orbits import iterate
+from singimpact.flights import iterate
 from singimpact.inputs import InputError
-from singimpact.scenes.basins import draw_basins, draw_first_chatter
-from singimpact.scenes.bifurcation import bifurcation_sheet
+from singimpact.scenes import bifurcation_sheet, draw_basins, draw_first_chatter
 from singimpact.status import Status
 
 MODEL = si.linear(2, "0.3", "0.5")

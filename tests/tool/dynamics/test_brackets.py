@@ -5,13 +5,11 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.numbers import constant
+from singimpact.algebra import constant
 from singimpact.contact.next_zero import next_zero
 from singimpact.dynamics import threshold
-from singimpact.flights.bind import over_floats
+from singimpact.flights import REACH, SERIES, TERMS_OF_GAMMA, Search, over_floats
 from singimpact.flights.compiled_model import compiled_model
-from singimpact.flights.kernels.gamma import REACH, SERIES, TERMS_OF_GAMMA
-from singimpact.flights.kernels.state import Search
 from singimpact.status import Status
 
 MODELS = {

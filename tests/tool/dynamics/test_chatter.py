@@ -6,8 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from singimpact.bench.problems import values
-from singimpact.dynamics.chatter import chatter_limit
+from singimpact.bench import values
+from singimpact.dynamics import chatter_limit
 from singimpact.dynamics.threshold import threshold
 from singimpact.impact_oscillator import ImpactOscillator, linear, universal
 from singimpact.inputs import InputError

@@ -7,16 +7,12 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.rings import DOUBLES
-from singimpact.dynamics.chatter import ENDING, _Flown, chatter_limit
+from singimpact.algebra import DOUBLES
+from singimpact.dynamics import ENDING, chatter_limit
+from singimpact.dynamics.chatter import _Flown
 from singimpact.dynamics.remaining import remaining
-from singimpact.flights.bind import over_floats
+from singimpact.flights import Search, States, linear_model, listed, orbit_segment, over_floats
 from singimpact.flights.compiled_model import compiled_model
-from singimpact.flights.interpreted import listed
-from singimpact.flights.kernels import layout
-from singimpact.flights.kernels.state import Search
-from singimpact.flights.orbits import orbit_segment
-from singimpact.flights.states import States
 from singimpact.status import Cause, Status
 
 MODELS = {
@@ -161,7 +157,7 @@ def test_the_kernel_sums_what_the_plain_series_sums():
     """Both are the same terms, those of a linear model without the jets that it does not have."""
     osc = MODELS["damped"]
     model, space = compiled_model(osc), over_floats()
-    numbers = listed(layout.linear_model(model.flat, model.sizes)).numbers
+    numbers = listed(linear_model(model.flat, model.sizes)).numbers
     for tau in (0.9, 1.0, 1.2):
         a = float(osc.acceleration(tau))
         launch = [DOUBLES.call("cos", 2 * tau + 1 / 7), DOUBLES.call("sin", 2 * tau + 1 / 7)]

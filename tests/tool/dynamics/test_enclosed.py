@@ -6,14 +6,11 @@ import mpmath
 import numpy as np
 import pytest
 
-from singimpact.algebra import balls, precision
-from singimpact.algebra.certified import Certified
-from singimpact.algebra.numbers import exact
-from singimpact.bench.problems import values
+from singimpact.algebra import Certified, as_rational, balls_at, exact
+from singimpact.bench import values
 from singimpact.dynamics import chatter, enclosed
 from singimpact.dynamics.threshold import threshold
-from singimpact.flights.balls import LinearFlow
-from singimpact.flights.states import States
+from singimpact.flights import LinearFlow, States
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.inputs import InputError
 from singimpact.status import Status
@@ -221,11 +218,11 @@ def test_what_is_left_of_a_chatter_lies_between_its_bounds():
     """The lemma of the tail: the sum of later flights of a model whose force varies on the way."""
     osc = ANALYTIC["cubic, damped"][0]
     end = osc.chatter_limit("0.9", "0.0005", digits=25).certified
-    with precision.balls_at(200):
+    with balls_at(200):
         flow = enclosed.flow_of(osc, 200)
         left = enclosed.remaining(flow, flow.number(Fraction(9, 10)), flow.number(Fraction(1, 2000)))
         assert left is not None
-        low, high = (balls.as_rational(part) for part in (left.lower(), left.upper()))
+        low, high = (as_rational(part) for part in (left.lower(), left.upper()))
     true = exact("end", end.value) - Fraction(9, 10)
     assert low < true < high
     assert high - low < true / 2

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.chatter import ENDING, _Flown
+from singimpact.dynamics import ENDING
+from singimpact.dynamics.chatter import _Flown
 from singimpact.dynamics.remaining import _coefficients, remaining
-from singimpact.flights.states import States
+from singimpact.flights import States
 
 EPSILON = 2.0**-52
 
@@ -39,7 +40,8 @@ def test_the_error_of_a_threshold_holds_the_rounding_of_the_phase(turns):
 
 def test_slow_states_that_are_not_pressed_do_not_chatter():
     """At rest speed with a_c > 0 a mass lifts off: it is not in complete chatter."""
-    from singimpact.dynamics.settling import SETTINGS, Study, chattering
+    from singimpact.dynamics import Study, chattering
+    from singimpact.dynamics.settling import SETTINGS
 
     model = si.ImpactOscillator("x", "cos(2*t)", "0.3", "1/2")
     slow = SETTINGS.rest / 2

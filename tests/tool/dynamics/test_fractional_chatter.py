@@ -7,12 +7,9 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.chatter import chatter_left
-from singimpact.dynamics.fractional_chatter import chatter_completes, rest_after, sum_of_speeds
-from singimpact.flights.bind import over_floats
+from singimpact.dynamics import chatter_completes, chatter_left, rest_after, sum_of_speeds
+from singimpact.flights import orbit_segment, over_floats, rebound
 from singimpact.flights.compiled_model import compiled_model
-from singimpact.flights.orbits import orbit_segment
-from singimpact.flights.rebound_law import rebound
 from singimpact.inputs import InputError
 from singimpact.status import Cause, Status
 

@@ -10,15 +10,27 @@ import flint
 import pytest
 
 import singimpact as si
-from singimpact.algebra.numbers import constant
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import balls_at, constant
 from singimpact.contact.next_zero import next_zero
-from singimpact.dynamics.gamma_proof import nonlinear, proof
-from singimpact.dynamics.gamma_proof.folded import Models
-from singimpact.dynamics.gamma_proof.gauge import clock_of, place_of, speed_factor
-from singimpact.dynamics.gamma_proof.gravity import gravity
-from singimpact.dynamics.gamma_proof.lemmas import ProofSettings, Undecided, grown, prove_box
-from singimpact.dynamics.gamma_proof.relation import residual
+from singimpact.dynamics import (
+    Models,
+    ProofSettings,
+    Undecided,
+    certified_gamma,
+    clock_of,
+    flights_before,
+    gravity,
+    grown,
+    phase_below,
+    place_of,
+    prove_box,
+    ratio,
+    rational,
+    residual,
+    restitution_at,
+    speed_factor,
+)
+from singimpact.dynamics.gamma_proof import nonlinear
 
 BITS = 160
 TANGENCY = si.linear(2, "0.3", "0.5")
@@ -54,7 +66,7 @@ def proved():
 def prepared(osc, tau, reach, bits=96):
     """The relation of a model."""
     zero = next_zero(osc, constant("tau", tau)).zero
-    return proof.flights_before(osc, zero, reach, bits), zero
+    return flights_before(osc, zero, reach, bits), zero
 
 
 @pytest.mark.parametrize(
@@ -80,12 +92,12 @@ def test_true_flights_satisfy_the_relation(name):
     """No lemma sees a wrong gravity; flights of 40 digits do."""
     osc, tau, reach = MODELS[name]
     if tau is None:
-        tau = str(proof.phase_below(osc))
+        tau = str(phase_below(osc))
     count, random = 15, Random(name)
     with balls_at(BITS):
         relation, zero = prepared(osc, tau, reach, BITS)
         numbers, j = clock_of(osc, zero, BITS), relation.j
-        low = flint.arb(str(proof.certified_gamma(osc, tau, reach=reach).duration.value))
+        low = flint.arb(str(certified_gamma(osc, tau, reach=reach).duration.value))
     hits = 0
     for _ in range(4 * count):
         share, speed = Fraction(random.randint(1, 999), 1000), Fraction(random.randint(1, 999), 1000)
@@ -147,7 +159,7 @@ def test_what_is_false_is_refused(name, spoiled, monkeypatch):
     with balls_at(96):
         relation, _ = prepared(osc, tau, reach)
         half, kind = flint.arb(1) / 2, type(relation)
-        box = proof.ratio(relation.j, half, 25)
+        box = ratio(relation.j, half, 25)
         assert prove_box(relation, box, settings, half).grow > 1
         series, r = None, half
         if spoiled.startswith("L_"):
@@ -172,7 +184,7 @@ def test_what_is_false_is_refused(name, spoiled, monkeypatch):
 
 def spoiled_series(relation, box, settings, n, by):
     """The series of another program, with one coefficient off."""
-    made = grown(relation, *map(proof.rational, box), settings, flint.arb(1) / 2)
+    made = grown(relation, *map(rational, box), settings, flint.arb(1) / 2)
     models = Models(settings.D, relation.s0, flint.arb(0), 0)
     rows = [flint.arb_poly([made.L[i] + (by if i == n else 0)]) for i in range(settings.N)]
     left = residual(relation, models, rows, flint.arb_poly([made.r]))
@@ -227,7 +239,7 @@ def test_an_interval_of_r_is_covered():
     with balls_at(96):
         for one, other in zip(found.boxes, found.boxes[1:], strict=False):
             assert one.high == other.low
-        ends = [proof.restitution_at(1, proof.rational(end)) for end in (found.boxes[0].low, found.boxes[-1].high)]
+        ends = [restitution_at(1, rational(end)) for end in (found.boxes[0].low, found.boxes[-1].high)]
         assert ends[0] <= flint.arb("0.45")
         assert ends[1] >= flint.arb("0.55")
     assert found.grow > 1

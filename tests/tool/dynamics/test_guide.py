@@ -5,10 +5,10 @@ from fractions import Fraction
 import pytest
 
 import singimpact as si
-from singimpact.algebra.numbers import constant
+from singimpact.algebra import constant
 from singimpact.contact.next_zero import next_zero
-from singimpact.dynamics import enclosed, guide
-from singimpact.flights import balls
+from singimpact.dynamics import enclosed, guided, newton
+from singimpact.flights import LinearFlow
 from singimpact.status import Status
 
 MODELS = {
@@ -37,8 +37,8 @@ def test_the_guided_search_finds_what_the_secants_find(name, monkeypatch):
 def test_thirty_digits_take_few_flights_and_one_precision(name, monkeypatch):
     """What a threshold costs: some thirty flights three times for v, and two orbits that leave gamma."""
     osc, tau = MODELS[name]
-    flown, fly = [], balls.LinearFlow.first_hit
-    monkeypatch.setattr(balls.LinearFlow, "first_hit", lambda self, *given: flown.append(self.balls.bits) or fly(
+    flown, fly = [], LinearFlow.first_hit
+    monkeypatch.setattr(LinearFlow, "first_hit", lambda self, *given: flown.append(self.balls.bits) or fly(
         self, *given))  # fmt: skip
     found = si.threshold(osc, tau, digits=30)
     assert found.certified.radius < found.v * 10**-30
@@ -49,7 +49,7 @@ def test_thirty_digits_take_few_flights_and_one_precision(name, monkeypatch):
 def test_a_velocity_beside_gamma_is_not_certified(monkeypatch):
     """The search proves nothing: where it is wrong in the last digits, no enclosure comes out."""
     osc, tau = MODELS["plain"]
-    right = guide.newton
+    right = newton
     monkeypatch.setattr(enclosed, "newton", lambda *given: right(*given) * (1 + Fraction(1, 10**24)))
     place = constant("tau", tau)
     rough, end = si.threshold(osc, tau), next_zero(osc, place).zero
@@ -61,5 +61,5 @@ def test_a_rough_velocity_away_from_gamma_is_not_followed():
     osc, tau = MODELS["plain"]
     place = constant("tau", tau)
     end = next_zero(osc, place).zero
-    assert guide.guided(osc, place, 0.11, end, 30) is None
-    assert guide.guided(osc, place, 0.10086999126925593, end, 30).impacts < 40
+    assert guided(osc, place, 0.11, end, 30) is None
+    assert guided(osc, place, 0.10086999126925593, end, 30).impacts < 40

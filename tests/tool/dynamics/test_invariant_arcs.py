@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.growth import held
-from singimpact.dynamics.invariant_arcs import before, grown_gamma, model_step, stable_manifold
-from singimpact.surface.curve import Window
+from singimpact.dynamics import before, grown_gamma, held, model_step, stable_manifold
+from singimpact.surface import Window
 
 SWAN = si.universal(-1, "0.5")
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.bench.selftest.fates import Follower
-from singimpact.bench.truth.plain_orbits import plain_orbits
+from singimpact.bench import Follower, plain_orbits
 
 
 def settled_class(osc, tau, v, impacts=100_000, longest=64):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from singimpact.bench.problems import values
+from singimpact.bench import values
 from singimpact.dynamics.release import release
 from singimpact.impact_oscillator import ImpactOscillator, linear, universal
 from singimpact.inputs import InputError

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.numbers import constant
+from singimpact.algebra import constant
+from singimpact.contact import swan_points_over_clearance
 from singimpact.contact.next_zero import next_zero
-from singimpact.contact.swans import swan_points_over_clearance
-from singimpact.dynamics.enclosed import end_of_gamma
+from singimpact.dynamics import end_of_gamma
 from singimpact.status import Status
 
 
@@ -121,7 +121,7 @@ def test_the_next_zero_and_its_order(name):
 
 
 def constant_value(tree):
-    from singimpact.algebra.numbers import as_float
+    from singimpact.algebra import as_float
 
     return as_float(tree)
 

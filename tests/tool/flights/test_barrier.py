@@ -7,9 +7,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from singimpact.algebra.balls import Balls
+from singimpact.algebra import Balls
 from singimpact.flights.no_return import barrier
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator import Oscillator
 
 # the model; f at z = x - c and x', and the ends of g
 MODELS = {

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from singimpact.bench.problems import states
+from singimpact.flights import iterate, orbit_segment
 from singimpact.flights.impact_map import impact_map
-from singimpact.flights.orbits import iterate, orbit_segment
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
 UNCOMPILED = """

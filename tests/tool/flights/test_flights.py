@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from witness import integrate
 
-from singimpact.flights.impact_map import first_hit
+from singimpact.flights import first_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear, universal
 from singimpact.inputs import InputError
 from singimpact.status import Status

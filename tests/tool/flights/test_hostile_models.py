@@ -8,16 +8,19 @@ from random import Random
 import numpy as np
 import pytest
 
-from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.parsing import parse
-from singimpact.algebra.rings import DOUBLES
-from singimpact.flights.bind import floats_of, over_floats
-from singimpact.flights.compiled_model import CompiledModel, compiled_model
+from singimpact.algebra import DOUBLES, evaluate, parse
+from singimpact.flights import (
+    SEARCH,
+    CompiledModel,
+    Machine,
+    fastest_kept,
+    floats_of,
+    never_turns,
+    over_floats,
+    steps_of,
+)
+from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.counted import counted
-from singimpact.flights.horizons import steps_of
-from singimpact.flights.machine import Machine
-from singimpact.flights.no_return.barrier import SEARCH, fastest_kept
-from singimpact.flights.no_return.polynomial import never_turns
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Cause, Status
 

@@ -19,12 +19,29 @@ import pytest
 import singimpact as si
 from singimpact import store
 from singimpact.codegen import object_code
-from singimpact.flights import bind, compiler_process, interruptible, machine
-from singimpact.flights.bind import LAW, MODULES, Emitted, constants
-from singimpact.flights.compiled_model import CompiledModel, compiled_model
+from singimpact.flights import (
+    FOLLOW,
+    HITS,
+    ITERATE,
+    JUDGE,
+    LAW,
+    MODULES,
+    PREPARE,
+    PREPARE_BATCH,
+    RELEASES,
+    SEGMENT,
+    VARIATIONS,
+    Allowance,
+    CompiledModel,
+    Compiler,
+    Emitted,
+    constants,
+    first_wanted,
+    interruptible,
+    machine,
+)
+from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.counted import counted
-from singimpact.flights.horizons import Allowance
-from singimpact.flights.kernels import entries
 
 MODELS = {
     "linear": si.linear("2.8", 0, "0.8"),
@@ -148,7 +165,7 @@ def test_tables_are_filled_beside_those_that_other_threads_fly_through(monkeypat
     monkeypatch.setattr(CompiledModel, "_call", watched)
     model.hits(np.array([0.3]), np.array([0.5]))
     model.iterate(np.array([0.3]), np.array([0.5]), 1)
-    assert {entries.PREPARE, entries.PREPARE_BATCH} <= set(kinds)
+    assert {PREPARE, PREPARE_BATCH} <= set(kinds)
 
 
 def test_what_is_read_later_does_not_follow_the_caller_s_arrays(compiled):
@@ -192,7 +209,7 @@ def test_one_state_with_a_law_of_its_own_is_flown_once(compiled):
 @pytest.mark.usefixtures("compiled")
 def test_the_entry_that_is_waited_for_is_compiled_next(tmp_path):
     request = tmp_path / "text.asked"
-    order = compiler_process.first_wanted(request, ("one", "two", "three", "four"))
+    order = first_wanted(request, ("one", "two", "three", "four"))
     assert next(order) == "one"
     request.with_suffix(machine.FIRST).write_text("four")
     assert next(order) == "four"
@@ -502,15 +519,15 @@ def test_a_text_has_one_object_code_whatever_level_numba_is_set_to(monkeypatch):
     texts = []
     for level in (0, 3):
         monkeypatch.setattr(numba.config, "OPT", type(numba.config.OPT)(level))
-        text = bind.Compiler(emitted).text(LAW)
+        text = Compiler(emitted).text(LAW)
         assert level == numba.config.OPT
         texts.append(Counter(re.findall(r"(?m)^ +(?:%\S+ = )?(\w+)", text)))  # instructions, without names
     assert texts[0] == texts[1]
 
 
 def test_the_kinds_of_work_are_told_apart():
-    kinds = (entries.PREPARE, entries.PREPARE_BATCH, entries.HITS, entries.SEGMENT, entries.ITERATE,
-             entries.VARIATIONS, entries.FOLLOW, entries.JUDGE, entries.RELEASES)  # fmt: skip
+    kinds = (PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE,
+             VARIATIONS, FOLLOW, JUDGE, RELEASES)  # fmt: skip
     assert len(set(kinds)) == len(kinds)
 
 

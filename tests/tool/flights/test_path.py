@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from singimpact.algebra.numbers import as_float
-from singimpact.flights.bind import over_floats
-from singimpact.flights.model_numbers import forcing_phases, linear_numbers, numbers_of
-from singimpact.flights.path import path, places
+from singimpact.algebra import as_float
+from singimpact.flights import forcing_phases, linear_numbers, numbers_of, over_floats, places
+from singimpact.flights.path import path
+from singimpact.oscillator import Oscillator
 from singimpact.oscillator.acceleration import acceleration
-from singimpact.oscillator.model import Oscillator
 
 MODELS = {
     "undamped": ("x", "cos(2*t)"),

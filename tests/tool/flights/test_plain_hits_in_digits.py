@@ -3,7 +3,7 @@
 import pytest
 
 import singimpact as si
-from singimpact.flights.certified_flights import proof
+from singimpact.flights import proof
 from singimpact.status import Status
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")

@@ -5,10 +5,8 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.flights.kernels.roots import first_root
-from singimpact.flights.no_return.linear import never_returns
-from singimpact.oscillator.linear import linear_form
-from singimpact.oscillator.model import Oscillator
+from singimpact.flights import first_root, never_returns
+from singimpact.oscillator import Oscillator, linear_form
 from singimpact.status import Status
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.flights.rebound_law import speed_before
+from singimpact.flights import speed_before
 from singimpact.status import Status
 
 LAWS = {

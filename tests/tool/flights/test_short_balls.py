@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.precision import balls_at
-from singimpact.flights import short_balls
-from singimpact.flights.balls import LinearFlow
-from singimpact.flights.short_balls import ShortFlights
+from singimpact.algebra import balls_at
+from singimpact.flights import GROWTH, LinearFlow, ShortFlights
 
 MODELS = {
     "plain": si.linear("2.8", 0, "0.8"),
@@ -100,7 +98,7 @@ def test_the_rest_of_a_polynomial_is_no_larger_than_its_bound():
             y = cut.impulse * v + cut.steady * flow.rest
             for (c, s), (p, q) in zip(cut.waves, pairs, strict=True):
                 y += c * p + s * q
-            bound = short_balls.GROWTH * (v * cut.by_v + cut.alone + reach * cut.forced) * reach ** (degree - 1)
+            bound = GROWTH * (v * cut.by_v + cut.alone + reach * cut.forced) * reach ** (degree - 1)
             return y(reach), bound
 
         for degree in (8, 12, 16):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from singimpact.flights.bind import over_floats
+from singimpact.flights import over_floats
 
 ULP, N = 2.0**-52, 20
 

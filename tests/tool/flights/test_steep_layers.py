@@ -7,7 +7,7 @@ import pytest
 from witness import integrate
 
 import singimpact as si
-from singimpact.flights import compiled_model, model_numbers
+from singimpact.flights import model_numbers, recurrence_of
 from singimpact.status import Cause, Status
 
 LAYERS = [  # f, g, tau, v, flight time by a Runge-Kutta method with steps of 0.002
@@ -45,13 +45,13 @@ def test_layers_are_not_jumped_over(f, g, tau, v, time) -> None:
 
 def test_the_usual_step_rule_jumps_over_them() -> None:
     """The check can fail: with steps chosen by their last terms the same flights are wrong."""
-    from singimpact.bench.peers.last_terms import last_terms
+    from singimpact.bench import last_terms
 
     with last_terms():
         off = [abs(si.ImpactOscillator(f, g, 0, "1/2").first_hit(tau, v).flight_time - time) > 1e-5
                for f, g, tau, v, time in LAYERS]  # fmt: skip
     assert sum(off) >= 4
-    assert compiled_model.recurrence_of is model_numbers.recurrence_of
+    assert recurrence_of is model_numbers.recurrence_of
 
 
 def test_the_derivative_is_that_of_the_flight() -> None:
@@ -130,8 +130,7 @@ def test_a_mass_that_cannot_come_back_is_not_flown() -> None:
 @pytest.mark.slow
 def test_both_bounds_against_flights() -> None:
     """Whatever is said to stay up stays up, by flights: near the edge of both proofs."""
-    from singimpact.flights.no_return.averaged import stays_up
-    from singimpact.flights.no_return.barrier import kept_up
+    from singimpact.flights import kept_up, stays_up
 
     rng = np.random.default_rng(3)
     for _ in range(20):

@@ -7,7 +7,7 @@ import re
 import mpmath
 import pytest
 
-from singimpact.bench.problems import values
+from singimpact.bench import values
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
 DUFFING = ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", "0.3", "0.6", {"omega": "1.7"})

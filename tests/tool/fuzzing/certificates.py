@@ -284,7 +284,7 @@ def fuzzed(count, seed, checker=None):
     """(how many were accepted of each kind, the false ones that were accepted)."""
     from false_certificates import IN_PLAIN, WEAKENED
 
-    from singimpact.algebra.checking import accepts
+    from singimpact.algebra import accepts
 
     checker = accepts if checker is None else checker
     rng = random.Random(seed)

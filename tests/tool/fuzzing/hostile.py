@@ -142,7 +142,7 @@ def _end(fields: dict[str, Any], times: list[float]) -> str:
 
 def prepare() -> None:
     """Load what every flight loads, and let nothing compile: neither here nor in a process beside."""
-    from singimpact.flights.machine import Machine
+    from singimpact.flights import Machine
     from singimpact.impact_oscillator import ImpactOscillator
 
     def compiled(_self: Machine, name: str) -> Any:

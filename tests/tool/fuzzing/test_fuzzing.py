@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from singimpact import InputError, Status
-from singimpact.algebra.numbers import float_array
-from singimpact.algebra.parsing import parse
+from singimpact.algebra import float_array, parse
 from singimpact.impact_oscillator import ImpactOscillator, linear
-from singimpact.oscillator.files import fields_of
-from singimpact.scenes.scene import Scene
-from singimpact.theory.fixed_points import swan
+from singimpact.oscillator import fields_of
+from singimpact.scenes import Scene
+from singimpact.theory import swan
 
 RUN = [sys.executable, str(Path(__file__).parent / "run.py"), "--workers", "1"]
 

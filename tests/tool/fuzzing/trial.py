@@ -79,8 +79,7 @@ class Trial:
     def __init__(self) -> None:
         self.place = Path(tempfile.mkdtemp(prefix="fuzz-"))
         self.watch = Watch()
-        from singimpact.flights.bind import Emitted
-        from singimpact.flights.machine import machine_of
+        from singimpact.flights import Emitted, machine_of
 
         machine_of(Emitted()).compile_here("linear_entry")  # what all linear models share
         for kind, given in USUAL.items():
@@ -129,8 +128,7 @@ class Trial:
             return None if "\n" not in str(error) and len(str(error)) < 2000 else "a refusal of several lines"
 
     def _expression(self, text: str, fly: bool) -> None:  # noqa: ARG002
-        from singimpact.algebra.numbers import float_array
-        from singimpact.algebra.parsing import parse
+        from singimpact.algebra import float_array, parse
         from singimpact.inputs import InputError
 
         try:
@@ -142,7 +140,7 @@ class Trial:
 
     def _model(self, text: str, fly: bool) -> None:
         from singimpact.impact_oscillator import ImpactOscillator
-        from singimpact.oscillator.files import fields_of
+        from singimpact.oscillator import fields_of
 
         model = ImpactOscillator(**fields_of(text))
         if fly:
@@ -150,19 +148,19 @@ class Trial:
             model.impact_map(0.3, 0.1, horizon=2.0)
 
     def _scene(self, text: str, fly: bool) -> None:  # noqa: ARG002
-        from singimpact.scenes.scene import Scene
+        from singimpact.scenes import Scene
 
         path = self.place / "scene.toml"
         path.write_text(text, encoding="utf-8", errors="replace", newline="")
         Scene.read(path)
 
     def _claim(self, text: str, fly: bool) -> None:  # noqa: ARG002
-        from singimpact.paper.claims import select
+        from singimpact.paper import select
 
         select([text])
 
     def _command(self, arguments: list[str]) -> str | None:
-        from singimpact.cli.group import main
+        from singimpact.cli import main
 
         out, err = io.StringIO(), io.StringIO()
         with redirect_stdout(out), redirect_stderr(err):

@@ -7,14 +7,11 @@ import pytest
 import sympy
 
 import singimpact as si
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.jets import Jet, JetSpace
-from singimpact.algebra.rings import EXACT, Multiprecision
-from singimpact.algebra.univariate import precision_of
+from singimpact.algebra import EXACT, Balls, Jet, JetSpace, Multiprecision, precision_of
 from singimpact.germs.normal_form import normal_form
 from singimpact.inputs import InputError
-from singimpact.paper.routes import unfolding
-from singimpact.theory.plane_forms import normal_form as public_form
+from singimpact.paper import D, impact_velocity, kappa, launch_velocity
+from singimpact.theory import normal_form as public_form
 
 ORDERS = [3, 5, 8]
 
@@ -64,9 +61,9 @@ def universal_germ(point, order, of):
     p keeps sigma and its kernel runs along t; phi keeps sigma + t.
     """
     s, e, sigma, t = sympy.symbols("s e sigma t")
-    velocity = unfolding.launch_velocity() if of == "p" else unfolding.impact_velocity()
+    velocity = launch_velocity() if of == "p" else impact_velocity()
     at = {sigma: point[0] + s, t: point[1] + e} if of == "p" else {sigma: point[0] - e, t: point[1] + s + e}
-    poly = sympy.Poly(sympy.expand(velocity.subs(unfolding.kappa, 1).subs(at, simultaneous=True)), s, e)
+    poly = sympy.Poly(sympy.expand(velocity.subs(kappa, 1).subs(at, simultaneous=True)), s, e)
     space = JetSpace(("u", "t"), order, EXACT)
     return space.jet({key: Fraction(int(c.p), int(c.q)) for key, c in poly.terms() if key != (0, 0)})
 
@@ -75,7 +72,7 @@ def universal_germ(point, order, of):
 @pytest.mark.parametrize("of", ["p", "phi"])
 def test_cusps_of_the_unfolded_swan(of, order):
     """p has a cusp at D, where the flight lands on B at rest; phi at its mirror image, which is launched at rest."""
-    point = unfolding.D if of == "p" else (unfolding.D[0] + unfolding.D[1], -unfolding.D[1])
+    point = D if of == "p" else (D[0] + D[1], -D[1])
     found = normal_form(universal_germ(point, order, of), 3)
     assert found.reached
     assert found.invertible

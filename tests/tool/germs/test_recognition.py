@@ -5,10 +5,8 @@ from fractions import Fraction
 import flint
 import pytest
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.jets import JetSpace
-from singimpact.algebra.rings import EXACT
-from singimpact.germs.recognition import recognised
+from singimpact.algebra import EXACT, Balls, JetSpace
+from singimpact.germs import recognised
 from singimpact.theory.sheet import sheet
 
 u, t = JetSpace(("u", "t"), 5, EXACT).generators()
@@ -32,7 +30,7 @@ def test_kind_survives_changes_of_source_and_target(kind):
 
 
 def test_p_at_a_tangency_is_a_fold():
-    from singimpact.contact.contact import Contact
+    from singimpact.contact import Contact
 
     point = Contact(1, EXACT, {k: Fraction(k + 1, 3) for k in range(1, 5)}, {(0, 1): Fraction(1, 7)})
     assert recognised(sheet(point, 4).v) == "fold"

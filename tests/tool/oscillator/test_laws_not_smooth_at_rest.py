@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.rings import EXACT
+from singimpact.algebra import EXACT
 from singimpact.inputs import InputError
-from singimpact.oscillator.rho_series import series_of_rho
+from singimpact.oscillator import series_of_rho
 
 SLOPES = {
     "-v*(1 - 0.3*(-v)**(1/5))": 1,

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from singimpact.oscillator import Oscillator, linear_form
 from singimpact.oscillator.acceleration import acceleration
-from singimpact.oscillator.linear import linear_form
-from singimpact.oscillator.model import Oscillator
 
 
 @pytest.mark.parametrize("f", ["x**2", "x*xdot", "sin(x)", "1/(1 + x)", "exp(xdot)"])

@@ -6,10 +6,10 @@ import re
 import pytest
 import sympy
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra import as_float
 from singimpact.impact_oscillator import ImpactOscillator, linear, read_model
 from singimpact.inputs import InputError
-from singimpact.oscillator.files import fields_of
+from singimpact.oscillator import fields_of
 
 DUFFING = {"f": "x + 0.1*xdot + 0.3*x**3", "g": "cos(omega*t)", "clearance": "0.3", "restitution": "0.6"}
 
@@ -114,7 +114,7 @@ def test_missing_file_is_one_line(tmp_path):
 
 
 def test_a_period_is_asked_for_where_it_is_needed():
-    from singimpact.contact.points import tangency_points
+    from singimpact.contact import tangency_points
 
     with pytest.raises(InputError, match="give period="):
         tangency_points(ImpactOscillator("x", "exp(-t)", 0, 1))

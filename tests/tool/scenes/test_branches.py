@@ -8,7 +8,7 @@ from matplotlib.text import Text
 
 import singimpact as si
 from singimpact.inputs import InputError
-from singimpact.scenes.style import LINES, MARKS, orbit_color
+from singimpact.scenes import LINES, MARKS, orbit_color
 
 
 @pytest.fixture(scope="module")

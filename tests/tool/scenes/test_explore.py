@@ -10,9 +10,7 @@ import pytest
 import singimpact as si
 from singimpact.flights.kernels import roots
 from singimpact.inputs import InputError
-from singimpact.scenes.clearance_frames import clearance_film
-from singimpact.scenes.explore import CURVES, explore_page
-from singimpact.scenes.style import PENS
+from singimpact.scenes import CURVES, PENS, clearance_film, explore_page
 
 NEGATIVE = si.linear(2, "0.9", "0.5")
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", "0.7", "0.6", {"omega": "1.7"})
@@ -390,7 +388,7 @@ def test_a_phone_shows_it_without_scrolling_sideways(opened):
 
 
 def test_the_kernels_in_javascript_are_bit_for_bit_those_of_python(opened):
-    from singimpact.codegen.javascript import translated
+    from singimpact.codegen import translated
 
     text = "\n".join(translated(inspect.getsource(roots)).values())
     rng = np.random.default_rng(3)

@@ -5,8 +5,7 @@ import pytest
 
 import singimpact as si
 from singimpact.inputs import InputError
-from singimpact.scenes import Scene, plot
-from singimpact.scenes.layers import LAYERS
+from singimpact.scenes import LAYERS, Scene, plot
 
 NEGATIVE = si.linear(2, "0.7", "0.5")
 STATES = {"tau": (-1.2, 1), "v": (0, 0.3), "pixels": 300}
@@ -107,9 +106,9 @@ def test_a_coarse_picture_costs_a_third_of_a_fine_one(layers, clearance, window,
 def test_growth_ends_where_the_picture_tells_nothing_new():
     """Loops of W^s accumulate on gamma: a fine picture shows more of them, and none without end."""
     model, window = si.linear(2, "0.95", "0.5"), ((-1.2, 1.0), (0.0, 0.06))
-    from singimpact.dynamics.invariant_arcs import stable_manifold
+    from singimpact.dynamics import stable_manifold
     from singimpact.dynamics.swan_configuration import swan_configuration
-    from singimpact.surface.curve import Window
+    from singimpact.surface import Window
 
     foot = repr(swan_configuration(model, near=0).X)
     coarse, fine = (stable_manifold(model, Window(*window, 1 / pixels), foot) for pixels in (300, 1500))

@@ -5,10 +5,10 @@ import re
 
 import pytest
 
-from singimpact.scenes.layers import LAYERS
-from singimpact.scenes.style import (
+from singimpact.scenes import (
     BLUE,
     EVENT_PENS,
+    LAYERS,
     LINES,
     ON_DARK,
     PENS,

@@ -5,7 +5,7 @@ import pytest
 
 import singimpact as si
 from singimpact.inputs import InputError
-from singimpact.surface.classification import classify
+from singimpact.surface import classify
 
 
 @pytest.mark.parametrize("kappa", [-1, 1])

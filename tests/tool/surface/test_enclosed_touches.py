@@ -11,14 +11,17 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import singimpact as si
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.precision import balls_at, series_of_any_length
-from singimpact.surface import boxes_from_rest, enclosed_touches
+from singimpact.algebra import Balls, balls_at, series_of_any_length
+from singimpact.surface import (
+    EnclosedTouches,
+    Family,
+    FlightFromRest,
+    Tangencies,
+    boxes_from_rest,
+    enclosed_touches,
+    rest_flight,
+)
 from singimpact.surface import transitions as transitions_room
-from singimpact.surface.boxes_from_rest import FlightFromRest, Tangencies
-from singimpact.surface.enclosed_touches import EnclosedTouches
-from singimpact.surface.proved_touches import rest_flight
-from singimpact.surface.swan_families import Family
 from singimpact.surface.transitions import transitions
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + x**3/10", "cos(2.8*t)", 0, "0.8")

@@ -6,7 +6,7 @@ import pytest
 
 import singimpact as si
 from singimpact.inputs import InputError
-from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface import ImpactSurface
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 
@@ -165,7 +165,7 @@ def test_vertices_out_of_order_or_not_settled_are_seen():
 
 
 def test_a_part_of_a_closed_curve_is_open():
-    from singimpact.surface.curve import Curve
+    from singimpact.surface import Curve
 
     angle = np.linspace(0, 2 * np.pi, 41)
     loop = Curve("loop", np.stack([np.cos(angle), np.sin(angle)], axis=1), ("x", "y"), closed=True,

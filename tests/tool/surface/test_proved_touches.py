@@ -7,11 +7,9 @@ import pytest
 
 import singimpact as si
 from singimpact.algebra.isolated_zeros import isolated_zeros
-from singimpact.paper.figures.outlines import damped
-from singimpact.surface.proved_touches import RestFlight, doubts_left, rest_flight
-from singimpact.surface.rest_flights import RestFlights
-from singimpact.surface.swan_families import Family
-from singimpact.surface.transitions import Transitions, transitions
+from singimpact.paper import damped
+from singimpact.surface import Family, RestFlight, RestFlights, Transitions, doubts_left, rest_flight
+from singimpact.surface.transitions import transitions
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 
@@ -64,8 +62,7 @@ def test_the_closed_form_is_the_motion(f, g):
     """Underdamped, overdamped, critical and repelling models against flights in Taylor steps."""
     osc = si.ImpactOscillator(f, g, "0.1", "0.5")
     flight = rest_flight(Family(osc, "clearance"))
-    from singimpact.algebra.expressions import evaluate
-    from singimpact.algebra.rings import DOUBLES
+    from singimpact.algebra import DOUBLES, evaluate
 
     tau, t = np.array([0.3, 1.1, 2.0]), np.array([0.7, 2.5, -1.2])
     x, v = RestFlights(osc).ends(tau, t)
@@ -100,7 +97,7 @@ def test_what_is_not_proved_is_said():
 def test_a_system_whose_zeros_are_known():
     from fractions import Fraction
 
-    from singimpact.algebra.parsing import parse
+    from singimpact.algebra import parse
 
     names, side = ("x", "y", "z"), (Fraction(-2), Fraction(2))
     trees = [parse(text, names) for text in ("x**2 + y**2 + z**2 - 3", "x*y - z", "x - y")]

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.algebra.numbers import as_float
-from singimpact.flights.impact_map import first_hit
-from singimpact.flights.inverse_map import backwards
+from singimpact.algebra import as_float
+from singimpact.flights import backwards, first_hit
 from singimpact.oscillator.acceleration import acceleration
-from singimpact.surface.transitions import Transitions, transitions
+from singimpact.surface import Transitions
+from singimpact.surface.transitions import transitions
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 

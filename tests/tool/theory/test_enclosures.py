@@ -6,8 +6,8 @@ import mpmath
 import pytest
 
 import singimpact as si
-from singimpact.algebra.certified import Certified, from_ends
-from singimpact.bench.problems import values
+from singimpact.algebra import Certified, from_ends
+from singimpact.bench import values
 from singimpact.inputs import InputError
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")

@@ -6,8 +6,7 @@ import mpmath
 import pytest
 
 from singimpact.inputs import InputError
-from singimpact.theory import fixed_points
-from singimpact.theory.fixed_points import as_dict, swan, tangency
+from singimpact.theory import as_dict, fixed_points, swan, tangency
 
 NAMES = {"lambda": "lambda_", "mstar": "m_star"}
 

@@ -98,8 +98,8 @@ def test_the_formula_for_all_grazes_is_the_series_of_each(osc) -> None:
     exec(generic.source(), space)
     from math import factorial
 
-    from singimpact.algebra.rings import DOUBLES
-    from singimpact.contact.contact import Contact
+    from singimpact.algebra import DOUBLES
+    from singimpact.contact import Contact
 
     jets = Contact.of(osc, 0.25, 0, 4, DOUBLES)
     given = {("a" if not k else f"a_d{k}"): float(v) * factorial(k) for k, v in jets.a.items()}

@@ -7,13 +7,11 @@ import pytest
 import sympy
 from sympy_ring import SympyExact
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.rings import DOUBLES, EXACT, Multiprecision
-from singimpact.algebra.univariate import precision_of
-from singimpact.contact.contact import Contact
-from singimpact.paper.routes.fold_series import fold_series
-from singimpact.theory.homogeneous import P, lambda_
-from singimpact.theory.invariant_curve import invariant_curve, multiplier_across, restitution_of
+from singimpact.algebra import DOUBLES, EXACT, Balls, Multiprecision, precision_of
+from singimpact.contact import Contact
+from singimpact.paper import fold_series
+from singimpact.theory import P, lambda_, multiplier_across, restitution_of
+from singimpact.theory.invariant_curve import invariant_curve
 from singimpact.theory.sheet import sheet
 from singimpact.theory.symbolic_curve import symbolic_curve
 

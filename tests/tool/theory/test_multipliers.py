@@ -7,8 +7,7 @@ import pytest
 import sympy
 
 from singimpact.inputs import InputError
-from singimpact.theory.fixed_points import swan, tangency
-from singimpact.theory.multipliers import minimal_polynomial, of_m, series
+from singimpact.theory import minimal_polynomial, of_m, series, swan, tangency
 
 PLACES = {"tangency": (tangency, 1), "swan": (swan, 2)}
 NAMES = {"lambda": "lambda_", "m3": "m3", "m_star": "m_star", "mu": "mu"}

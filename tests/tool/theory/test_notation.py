@@ -5,8 +5,8 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from singimpact.documents.arranging import by_degree, factored, in_powers
-from singimpact.theory.notation import latex
+from singimpact.documents import by_degree, factored, in_powers
+from singimpact.theory import latex
 
 a, a1, a2, b, k, r, m, lam, sigma, eta, t = sympy.symbols("a a_d1 a_d2 b k r m lambda sigma eta t")
 Q = sympy.Symbol("Q")

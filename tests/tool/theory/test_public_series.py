@@ -9,13 +9,10 @@ import pytest
 import sympy
 
 import singimpact as si
-from singimpact.contact.contact import Contact
+from singimpact.contact import Contact
 from singimpact.inputs import InputError
-from singimpact.theory.completion import leaves, symbolic_completion
-from singimpact.theory.contact_points import multiplier
-from singimpact.theory.invariant_curve import restitution_of
+from singimpact.theory import leaves, multiplier, restitution_of, rho_names, symbolic_completion
 from singimpact.theory.sheet import sheet
-from singimpact.theory.symbolic_curve import rho_names
 
 DUFFING = ("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 
@@ -151,7 +148,7 @@ def test_radius_is_honest_under_the_true_map(model, tolerance):
 
 
 def test_multiplier_is_found_when_rational():
-    from singimpact.algebra.numbers import constant
+    from singimpact.algebra import constant
 
     assert multiplier(2, constant("r", restitution_of(2, Fraction(2, 7)))) == Fraction(2, 7)
     assert multiplier(2, constant("r", "1/2")) is None

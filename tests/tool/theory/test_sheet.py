@@ -5,39 +5,49 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from singimpact.contact.contact import Contact
+from singimpact.contact import Contact
 from singimpact.inputs import InputError
-from singimpact.oscillator.model import Oscillator
-from singimpact.paper.routes import implicit as route
-from singimpact.theory import v_c
-from singimpact.theory.homogeneous import P, Q, lambda_, launch_velocity, leading_coefficient, mu_of_lambda, r_of_lambda
-from singimpact.theory.involution import iota
-from singimpact.theory.sheet import generic_sheet, sheet
+from singimpact.oscillator import Oscillator
+from singimpact.paper import a_symbol, phi_c
+from singimpact.paper import v_c as route_v_c
+from singimpact.theory import (
+    P,
+    Q,
+    generic_sheet,
+    iota,
+    lambda_,
+    launch_velocity,
+    leading_coefficient,
+    mu_of_lambda,
+    r_of_lambda,
+    v_c,
+)
+from singimpact.theory.sheet import sheet
 
 sigma, t = sympy.symbols("sigma t")
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4, 5])
 def test_boundary_value_route_is_the_implicit_route(order):
-    assert sympy.expand(v_c(order) - route.v_c(order)) == 0
+    assert sympy.expand(v_c(order) - route_v_c(order)) == 0
 
 
 @pytest.mark.parametrize("order", [3, 4])
 def test_phi_by_the_involution_is_phi_the_long_way(order):
     found = generic_sheet(0, order)
-    assert sympy.expand(found.to_sympy(found.xdot) - route.phi_c(order)[1]) == 0
+    assert sympy.expand(found.to_sympy(found.xdot) - phi_c(order)[1]) == 0
 
 
 @pytest.mark.parametrize(("at", "j"), [("tangency", 1), ("swan", 2), (3, 3)])
 def test_zeros_set_first_are_zeros_set_last(at, j):
-    zeros = {route.a_symbol(n): 0 for n in range(j)}
+    zeros = {a_symbol(n): 0 for n in range(j)}
     assert sympy.expand(v_c(6, at) - v_c(6).subs(zeros)) == 0
 
 
 @pytest.mark.parametrize("j", [0, 1, 2, 3])
 def test_leading_part_is_the_homogeneous_model(j):
     found = generic_sheet(j, j + 1)
-    model = route.a_symbol(j) / sympy.factorial(j) * launch_velocity(j, sigma, sigma + t)
+    model = a_symbol(j) / sympy.factorial(j) * launch_velocity(j, sigma, sigma + t)
     assert sympy.expand(found.to_sympy(found.v) - model) == 0
 
 
@@ -56,7 +66,7 @@ def test_closed_forms_in_lambda(j):
 
 
 def test_model_with_numbers_is_the_generic_one_with_its_jets():
-    from singimpact.algebra.rings import EXACT
+    from singimpact.algebra import EXACT
 
     osc = Oscillator("x + 0.1*xdot + 0.3*x**3", "sin(1.7*t) + 1/2", "0.3", "0.6")
     found = sheet(Contact.of(osc, Fraction(0), 0, 4, EXACT), 4)

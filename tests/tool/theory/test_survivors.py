@@ -6,13 +6,15 @@ import mpmath
 import pytest
 import sympy
 
-from singimpact.algebra.rings import EXACT
-from singimpact.contact.contact import Contact
-from singimpact.paper.routes import swan, unfolding
-from singimpact.theory import fixed_points, homogeneous
+from singimpact.algebra import EXACT
+from singimpact.contact import Contact
+from singimpact.paper import A, E
+from singimpact.paper.routes import swan
+from singimpact.theory import DG_on_ray, eigenvalues_on_gamma, fixed_points, launch_velocity, mu_of_lambda, r_of_lambda
+from singimpact.theory import lambda_ as homogeneous_lambda_
 from singimpact.theory.invariant_curve import invariant_curve
 
-lambda_ = homogeneous.lambda_
+lambda_ = homogeneous_lambda_
 
 
 @pytest.mark.parametrize("j", [1, 2, 3])
@@ -26,8 +28,8 @@ def test_mu_minus_one_is_mu_less_one(j, r):
 def rate_across(j, at):
     """d w'/d w of the blown-up map of x'' = s^j at its fixed point, with w = v/sigma^(j+1): by the landing ratio e."""
     e = sympy.Symbol("e")
-    launch, impact = homogeneous.launch_velocity(j, 1, e), -homogeneous.launch_velocity(j, e, 1)
-    r = homogeneous.r_of_lambda(j).subs(lambda_, at)
+    launch, impact = launch_velocity(j, 1, e), -launch_velocity(j, e, 1)
+    r = r_of_lambda(j).subs(lambda_, at)
     after = sympy.diff(r * impact / e ** (j + 1), e)
     return sympy.cancel(after / sympy.diff(launch, e)).subs(e, at)
 
@@ -37,7 +39,7 @@ def test_mu_is_the_rate_across_the_invariant_curve(j):
     rate = Fraction(3, 5)
     curve = invariant_curve(Contact(j, EXACT, {j: Fraction(2)}, {}), rate, j + 2)
     assert sympy.Rational(curve.mu.numerator, curve.mu.denominator) == rate_across(j, sympy.Rational(3, 5))
-    assert homogeneous.mu_of_lambda(j).subs(lambda_, sympy.Rational(3, 5)) == rate_across(j, sympy.Rational(3, 5))
+    assert mu_of_lambda(j).subs(lambda_, sympy.Rational(3, 5)) == rate_across(j, sympy.Rational(3, 5))
 
 
 def test_the_jacobian_at_the_swan_is_the_derivative_of_the_new_m():
@@ -52,8 +54,8 @@ def test_the_jacobian_at_the_swan_is_the_derivative_of_the_new_m():
 
 @pytest.mark.parametrize("j", [1, 2])
 def test_both_eigenvalues_on_gamma_are_those_of_the_matrix(j):
-    larger, smaller = homogeneous.eigenvalues_on_gamma(j)
-    matrix = homogeneous.DG_on_ray(j)
+    larger, smaller = eigenvalues_on_gamma(j)
+    matrix = DG_on_ray(j)
     at = {lambda_: sympy.Rational(2, 3)}
     assert sympy.simplify((larger * smaller - matrix.det()).subs(at)) == 0
     assert sympy.simplify((larger + smaller - matrix.trace()).subs(at)) == 0
@@ -62,6 +64,6 @@ def test_both_eigenvalues_on_gamma_are_those_of_the_matrix(j):
 
 def test_E_is_a_flight_forward_in_time():
     """On H and Z both, with t > 0, and launched before the first tangency: its mirror image has t < 0."""
-    assert float(unfolding.E[1]) > 0
-    assert float(unfolding.E[0]) < float(unfolding.A[0])
-    assert sympy.expand(unfolding.E[0] + unfolding.E[1]) == sympy.sqrt(3)
+    assert float(E[1]) > 0
+    assert float(E[0]) < float(A[0])
+    assert sympy.expand(E[0] + E[1]) == sympy.sqrt(3)

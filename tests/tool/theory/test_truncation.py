@@ -6,8 +6,8 @@ import mpmath
 import pytest
 
 import singimpact as si
-from singimpact.algebra.balls import Balls, as_rational
-from singimpact.theory.formulas import gamma
+from singimpact.algebra import Balls, as_rational
+from singimpact.theory import gamma
 
 MODELS = {
     "linear": si.linear(2, "0.3", "0.5"),

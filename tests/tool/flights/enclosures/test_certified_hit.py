@@ -8,17 +8,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.numbers import constant, exact
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import Balls, balls_at, constant, exact
+from singimpact.bench import SMOOTH, STEEP, drawn_of
 from singimpact.bench.problems import states
-from singimpact.bench.steep_families import SMOOTH, STEEP
-from singimpact.bench.steep_states import drawn_of
+from singimpact.flights import Launch, NoHit, Refused, certified_hit
 from singimpact.flights.enclosures import ball_flight
-from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
-from singimpact.flights.enclosures.equation import NoHit, Refused
 from singimpact.impact_oscillator import ImpactOscillator, linear
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator import Oscillator
 from singimpact.status import Status
 
 DUFFING = ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(w*t)", "0.3", "0.6", {"w": "1.7"})

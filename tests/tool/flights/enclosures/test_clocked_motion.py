@@ -9,13 +9,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.precision import balls_at, series_of_any_length
-from singimpact.flights.enclosures.clocked_motion import ClockedMotion
-from singimpact.flights.enclosures.equation import Refused, equation_of
-from singimpact.flights.enclosures.free_motion import FreeMotion
-from singimpact.flights.enclosures.tube import centre
-from singimpact.oscillator.model import Oscillator
+from singimpact.algebra import Balls, balls_at, series_of_any_length
+from singimpact.flights import ClockedMotion, FreeMotion, Refused, centre, equation_of
+from singimpact.oscillator import Oscillator
 
 OSC = Oscillator("x + x**3/10 + xdot/20", "cos(2.8*t)", "0.1", "0.8")
 LAUNCH, SPREAD = (1.95, 0.35), (4e-3, 1e-3)

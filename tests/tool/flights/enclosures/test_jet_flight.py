@@ -9,13 +9,9 @@ from itertools import product as pairs
 import pytest
 
 import singimpact as si
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.numbers import constant
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import Balls, balls_at, constant
+from singimpact.flights import Launch, Refused, certified_hit, jet_hit
 from singimpact.flights.enclosures import jet_flight, jets
-from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
-from singimpact.flights.enclosures.equation import Refused
-from singimpact.flights.enclosures.jet_flight import jet_hit
 
 HORIZON = Fraction(100)
 STEP = Fraction(1, 10**8)

@@ -9,13 +9,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from singimpact.algebra import analytic
-from singimpact.algebra.numbers import constant
-from singimpact.algebra.precision import balls_at, series_of_any_length
+from singimpact.algebra import analytic, balls_at, constant, series_of_any_length
+from singimpact.flights import Column, Equation, Refused, coefficients, programs_of, step
 from singimpact.flights.enclosures import certified_hit, taylor_step
-from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
-from singimpact.flights.enclosures.taylor_step import Column, coefficients, step
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator import Oscillator
 
 
 def hit(osc, tau, v, digits, horizon=60):
@@ -152,7 +149,7 @@ def test_functions_are_finite_where_they_are_analytic(function):
 
 
 def test_program_and_its_derivatives_are_those_of_mpmath():
-    from singimpact.algebra.parsing import parse
+    from singimpact.algebra import parse
 
     recorder = analytic.Recorder()
     text = "x**3*tanh(x) + sqrt(2 + x)*y**5 + (1 + x**2)**(-3/2) + abs(y)*atan(x*y) + 2**x/tan(x) + exp(-x)*log(3 + y)"

@@ -1,0 +1,27 @@
+"""Names that a room hands on, each loaded from its file when it is first used.
+
+A room's own files import one another by file; whoever stands outside (the public names, the tests) asks the room.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any
+
+__all__ = ["names_of"]
+
+
+def names_of(room: str, files: Mapping[str, str]) -> Callable[[str], Any]:
+    """The `__getattr__` of a room: `files` has the names of each of its files, divided by blanks.
+
+    A value is looked up in its file each time, so a test that replaces it there replaces it here.
+    """
+    homes = {name: f"{room}.{file}" for file, names in files.items() for name in names.split()}
+
+    def value_of(name: str) -> Any:
+        if name in homes:
+            return getattr(import_module(homes[name]), name)
+        raise AttributeError(f"module {room!r} has no attribute {name!r}")
+
+    return value_of
