@@ -92,6 +92,7 @@ def oscillator_room():
     import numpy as np
 
     from singimpact.algebra import float_array
+    from singimpact.dynamics import Orbit
     from singimpact.oscillator import Oscillator, read_fields
 
     class ImpactOscillator(Oscillator):
@@ -110,12 +111,8 @@ def oscillator_room():
 
         def orbit(self, tau, v, impacts=200, horizon=None):  # noqa: ARG002
             tau, v = float_array("tau", tau), float_array("v", v)
-            return SimpleNamespace(
-                tau=np.array([tau, tau + 0.5]),
-                v=np.array([v, 0]),
-                kind=["impact", "rest"],
-                phases=[("sticking", 1.5, 2)],
-            )
+            kinds = np.array(["impact", "rest"])
+            return Orbit(self, np.array([tau, tau + 0.5]), np.array([v, 0]), kinds, [("sticking", 1.5, 2)], 2.0)
 
     room = ModuleType("singimpact.impact_oscillator")
     room.ImpactOscillator = ImpactOscillator

@@ -13,7 +13,7 @@ from singimpact.cli.pictures import save, save_once, suffix_of
 from singimpact.store import require_writable
 
 
-@click.command(short_help="the attractor of each state of a grid, as a picture")
+@click.command()
 @model_options
 @click.option("--tau", nargs=2, metavar="LOW HIGH", help="Window of launch phases.  [default: one period]")
 @click.option("--v", nargs=2, metavar="LOW HIGH", default=("0", "2"), show_default=True, help="Window of velocities.")
@@ -59,9 +59,9 @@ def command(
         with nullcontext() if workers is None else WorkerPool(workers) as pool:
             found = basins(model, tau, v, size, pool, keep, impacts)
         draw = draw_basins if layer == "for-ever" else draw_first_chatter
-        classes = [{"class": name, "share": share} for _, name, share in found.classes]
-        first = float(found.first_chatter_completes.mean())
-        return draw(found).figure, {"classes": classes, "first_chatter_completes": first}
+        values = found.as_dict()
+        first = float(values["first_chatter_completes"].mean())
+        return draw(found).figure, {"classes": values["classes"], "first_chatter_completes": first}
 
     if keep is None:
         told = save_once(("basins", model, tau, v, size, impacts, layer), output, make)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from singimpact.bench.measuring import Effort, Measured
 
 
-@click.command(short_help="run time against error, compared with other tools")
+@click.command()
 @click.argument("groups", metavar="[GROUP]...", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
 @click.option("--plots", metavar="DIR", help="Write a picture of time against error for each group into this folder.")

@@ -13,7 +13,7 @@ from singimpact.cli.pictures import save, suffix_of
 from singimpact.store import require_writable
 
 
-@click.command(short_help="settled orbits for many values of a parameter, as a picture")
+@click.command()
 @model_options
 @over_option
 @click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from singimpact.branches.border import BorderOrbit
 
 
-@click.command(short_help="where a released orbit returns onto gamma, and the cascade beside it")
+@click.command()
 @model_options
 @over_option
 @click.option("--from", "low", metavar="NUMBER", help="Its least value; half of the model's value without it.")

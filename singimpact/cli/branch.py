@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
 
 
-@click.command(short_help="follow periodic orbits through grazes, folds and doublings")
+@click.command()
 @model_options
 @orbit_options
 @over_option

@@ -16,7 +16,7 @@ EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact", "pitchfo
 """Kinds of events of a branch: those that the checker knows, as a test compares, then those refused in a sentence."""
 
 
-@click.command(short_help="a proved result with a certificate that a second program checks")
+@click.command()
 @click.argument("files", metavar="[FILE.json]... | gamma [MODEL]", nargs=-1)
 @model_options
 @click.option("--tau", metavar="NUMBER", help="Launch time.")

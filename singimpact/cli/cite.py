@@ -16,7 +16,7 @@ ENTRY = f"""@software{{singimpact,
 }}"""
 
 
-@click.command(short_help="references to cite")
+@click.command()
 @output_options
 def command(as_json: bool, output: str | None) -> None:
     """References to cite: this version, with a BibTeX entry, and the paper."""

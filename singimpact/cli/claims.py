@@ -10,7 +10,7 @@ from singimpact.cli.columns import columns
 from singimpact.cli.output import as_json_text, emit, output_options
 
 
-@click.group(short_help="the claims: list, show, graph, impact")
+@click.group()
 def command() -> None:
     """The statements of the paper as claims."""
 

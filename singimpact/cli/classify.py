@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from singimpact.surface.transitions import Transitions
 
 
-@click.command(short_help="tangency, swan, fold and cusp points of a model")
+@click.command()
 @model_options
 @click.option("--window-tau", nargs=2, metavar="LOW HIGH", help="Ends of tau.  [default: one period]")
 @click.option("--window-t", nargs=2, metavar="LOW HIGH", help="Ends of t.  [default: one period to both sides]")
@@ -58,7 +58,7 @@ def command(
     found = classify(oscillator, window_tau, window_t, swans_between)
     changes = None if over is None else _transitions(oscillator, over, between, found.t, orbits)
     if as_json:
-        emit(as_json_text({"model": oscillator.to_dict(), **_told(found, over, changes)}), output)
+        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(found, over, changes)}), output)
     else:
         emit(_text(found, over, changes), output)
 
@@ -88,25 +88,14 @@ def _interval(each: Interval) -> dict[str, Any]:
     return {"from": each.low, "to": each.high, "orbits_in_the_middle": orbits, "changes": events}
 
 
-def _told(found: Classification, over: str | None, changes: Transitions | None) -> dict[str, Any]:
-    told: dict[str, Any] = {
-        "window": {"tau": found.tau, "t": found.t},
-        "points": [{"name": p.name, "maps": p.maps, "kind": p.kind, "tau": p.tau, "t": p.t, "image": p.image}
-                   for p in found.points],
-        "folds": [{"maps": f.maps, "from": f.start, "to": f.end, "bounds": f.bounds} for f in found.folds],
-        "swans": [{"clearance": s.clearance, "tau": s.tau, "kind": s.kind} for s in found.swans],
-        "notes": found.notes,
-        "flights": found.flights,
-    }  # fmt: skip
+def _as_listed(found: Classification, over: str | None, changes: Transitions | None) -> dict[str, Any]:
+    values = found.as_dict()
     if changes is not None:
-        listed = [{"kind": c.kind, "event": c.event, "value": c.value, "tau": c.tau, "t": c.t, "rests": c.rests,
-                   "visible": c.visible, "launch": c.launch, "effect": c.effect} for c in changes]  # fmt: skip
-        told["transitions"] = {"over": over, "found": listed, "swans_complete": changes.swans_complete,
-                               "notes": changes.notes}  # fmt: skip
+        values["transitions"] = {"over": over} | changes.as_dict()
         if _with_orbits(changes):
-            told["transitions"] |= {"intervals": [_interval(each) for each in changes.intervals],
+            values["transitions"] |= {"intervals": [_interval(each) for each in changes.intervals],
                                     "orbit_notes": changes.orbit_notes}  # fmt: skip
-    return told
+    return values
 
 
 def _text(found: Classification, over: str | None, changes: Transitions | None) -> str:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 FORMATS = ("latex", "pdf", "markdown", "json", "sympy", "numpy")
 
 
-@click.command(short_help="write the derivations as LaTeX, PDF, Markdown or JSON")
+@click.command()
 @click.argument("names", metavar="[SECTION]...", nargs=-1)
 @click.option(
     "--format", "form", type=click.Choice(FORMATS), default="latex", show_default=True, help="Format of the output."

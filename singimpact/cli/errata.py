@@ -15,7 +15,7 @@ from singimpact.store import require_writable, written
 FORMATS = ("text", "markdown", "latex", "pdf", "json")
 
 
-@click.command(short_help="misprints of the paper, their corrections, and the reasons")
+@click.command()
 @click.option(
     "--format", "form", type=click.Choice(FORMATS), default="text", show_default=True, help="Format of the output."
 )

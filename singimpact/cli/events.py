@@ -25,7 +25,7 @@ NEAR = 0.05
 KINDS = ("fold", "period-doubling", "graze", "hidden impact")
 
 
-@click.command(short_help="curves of grazes, folds and doublings in two parameters")
+@click.command()
 @model_options
 @orbit_options
 @click.option("--over", nargs=2, metavar="A B", default=("clearance", "restitution"), show_default=True,

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from singimpact.scenes.clearance_frames import ClearanceFilm
 
 
-@click.command(short_help="a page with a slider for the clearance")
+@click.command()
 @click.argument("path", metavar="[MODEL]", required=False)
 @model_options
 @click.option(

@@ -20,7 +20,7 @@ from singimpact.store import folder, require_writable, write_text
 DPI = 200  # of a PNG: figures are as small as they are printed
 
 
-@click.command(short_help="the paper's figures, from computed data")
+@click.command()
 @click.argument("which", metavar="N|all|beyond")
 @click.option("-o", "--output", metavar="DIR", default=".", show_default=True,
               help="A folder for the pictures, or for one figure a file ending in .png, .pdf or .svg.")  # fmt: skip

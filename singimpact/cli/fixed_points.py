@@ -8,7 +8,7 @@ from singimpact.cli.columns import columns
 from singimpact.cli.output import as_json_text, emit, output_options
 
 
-@click.command(short_help="fixed points and multipliers, certified, to any digits")
+@click.command()
 @click.argument("place", metavar="tangency|swan", type=click.Choice(["tangency", "swan"]))
 @click.option("--r", "restitution", metavar="NUMBER", required=True, help="Restitution, a rational in (0, 1).")
 @click.option("--digits", type=int, default=50, show_default=True, help="Significant digits.")
@@ -18,10 +18,11 @@ def command(place: str, restitution: str, digits: int, as_json: bool, output: st
     from singimpact.theory import fixed_points
 
     points = getattr(fixed_points, place)(restitution, digits)
-    found = fixed_points.as_dict(points)
+    enclosures = points.as_dict()
     if as_json:
-        emit(as_json_text(found), output)
+        emit(as_json_text(enclosures), output)
     else:
         emit(
-            columns(["name", "value", "radius"], [[name, x["value"], x["radius"]] for name, x in found.items()]), output
+            columns(["name", "value", "radius"], [[name, x["value"], x["radius"]] for name, x in enclosures.items()]),
+            output,
         )

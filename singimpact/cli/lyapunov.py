@@ -7,11 +7,24 @@ from typing import Any
 import click
 
 from singimpact.cli.model import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.output import as_json_text, emit, lines_of, output_options
 from singimpact.status import Status
 
+SHOWN = (
+    "exponents",
+    "error",
+    "per_impact",
+    "impacts",
+    "time",
+    "superstable",
+    "status",
+    "transient",
+    "converged",
+)
+"""Of the result, in JSON."""
 
-@click.command(short_help="both Lyapunov exponents of an orbit")
+
+@click.command()
 @model_options
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
@@ -30,20 +43,27 @@ def command(
     osc = take_model(options)
     from singimpact.dynamics.lyapunov import lyapunov
 
-    found = lyapunov(osc, tau, v, impacts, transient=transient)
-    status = Status(int(found.status))
-    rows = {"exponents": found.exponents, "error": found.error, "per impact": found.per_impact}
+    result = lyapunov(osc, tau, v, impacts, transient=transient)
+    status = Status(int(result.status))
     if as_json:
-        told = {name.replace(" ", "_"): values.tolist() for name, values in rows.items()}
-        told |= {"impacts": found.impacts, "time": found.time, "superstable": found.superstable, "status": status.name,
-                 "transient": found.transient, "converged": found.converged}  # fmt: skip
-        emit(as_json_text({"model": osc.to_dict(), **told}), output)
+        names = (
+            "exponents",
+            "error",
+            "per_impact",
+            "impacts",
+            "time",
+            "superstable",
+            "status",
+            "transient",
+            "converged",
+        )
+        values = result.as_dict()
+        emit(as_json_text({"model": osc.to_dict(), **{name: values[name] for name in names}}), output)
         return
-    lines = [f"{name:11} {'  '.join(f'{value:.9g}' for value in values.tolist())}" for name, values in rows.items()]
-    lines += [
-        f"impacts     {found.impacts} in a time of {found.time:.9g}, after {found.transient}",
-        f"status      {status.name}: {status.sentence}",
-    ]
-    if not found.converged:
+    numbers = {"exponents": result.exponents, "error": result.error, "per impact": result.per_impact}
+    rows = {name: "  ".join(f"{value:.9g}" for value in values.tolist()) for name, values in numbers.items()}
+    rows["impacts"] = f"{result.impacts} in a time of {result.time:.9g}, after {result.transient}"
+    lines = lines_of(rows, status)
+    if not result.converged:
         lines.append("not converged: the exponents of both halves differ, give more --impacts or a --transient")
-    emit("\n".join([*lines, *(["superstable"] if found.superstable else [])]), output)
+    emit("\n".join([*lines, *(["superstable"] if result.superstable else [])]), output)

@@ -8,14 +8,14 @@ import click
 
 from singimpact.cli.columns import columns
 from singimpact.cli.model import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.output import as_json_text, emit, number_text, output_options
 from singimpact.inputs import InputError
 from singimpact.status import Status
 
 FIELDS = ("tau", "v", "flight_time", "status")
 
 
-@click.command(short_help="fly from an impact to the next one")
+@click.command()
 @model_options
 @click.option("--tau", "taus", metavar="NUMBER", multiple=True, required=True, help="Launch phase; may be repeated.")
 @click.option("--v", "vs", metavar="NUMBER", multiple=True, required=True, help="Launch velocity; may be repeated.")
@@ -57,13 +57,7 @@ def _paired(taus: tuple[str, ...], vs: tuple[str, ...]) -> list[tuple[str, str]]
 
 
 def _row(step: Any, at: int, digits: int | None) -> list[Any]:
-    numbers = [getattr(step, name)[at] for name in FIELDS[:3]]
-    if digits is not None:
-        from mpmath import nstr
-
-        numbers = [nstr(number, digits, strip_zeros=False) for number in numbers]
-    else:
-        numbers = [float(number) for number in numbers]
+    numbers = [number_text(getattr(step, name)[at], digits) for name in FIELDS[:3]]
     return [*numbers, Status(int(step.status[at]))]
 
 
@@ -72,8 +66,7 @@ def _certified(step: Any, at: int) -> dict[str, Any]:
     found = step.certified[at]
     if found is None:
         return {"certified": None, "note": step.notes.get(at, "")}
-    names = ("flight_time", "velocity", "tau", "v")
-    return {"certified": {name: getattr(found, name).as_dict() for name in names}}
+    return {"certified": found.as_dict()}
 
 
 def _told(states: list[tuple[str, str]], rows: list[list[Any]]) -> list[dict[str, Any]]:

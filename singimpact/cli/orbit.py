@@ -15,7 +15,7 @@ from singimpact.inputs import refuse
 from singimpact.store import written
 
 
-@click.command(short_help="fly many impacts; -o draws x(t)")
+@click.command()
 @model_options
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
@@ -37,7 +37,7 @@ def command(
     if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
         draw(orbit, output)
     elif as_json:
-        emit(as_json_text({"model": oscillator.to_dict(), **_told(orbit)}), output)
+        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(orbit)}), output)
     else:
         emit(_table(orbit), output)
 
@@ -64,21 +64,13 @@ def draw(thing: Any, output: str) -> None:
         figure.savefig(draft, format=Path(output).suffix[1:].lower())
 
 
-def _name(kind: Any) -> str:
-    return str(getattr(kind, "name", kind))
-
-
-def _told(orbit: Any) -> dict[str, Any]:
-    impacts = [
-        {"tau": float(tau), "v": float(v), "kind": _name(kind)}
-        for tau, v, kind in zip(orbit.tau, orbit.v, orbit.kind, strict=True)
-    ]
-    phases = [{"kind": _name(kind), "start": float(start), "end": float(end)} for kind, start, end in orbit.phases]
-    return {"impacts": impacts, "phases": phases}
+def _as_listed(orbit: Any) -> dict[str, Any]:
+    """The events of an orbit, one by one, and the phases between them."""
+    return {"impacts": orbit.rows(), "phases": orbit.as_dict()["phases"]}
 
 
 def _table(orbit: Any) -> str:
-    told = _told(orbit)
-    impacts = [[str(at), str(i["tau"]), str(i["v"]), i["kind"]] for at, i in enumerate(told["impacts"])]
-    phases = [[p["kind"], str(p["start"]), str(p["end"])] for p in told["phases"]]
+    listed = _as_listed(orbit)
+    impacts = [[str(at), str(i["tau"]), str(i["v"]), i["kind"]] for at, i in enumerate(listed["impacts"])]
+    phases = [[p["kind"], str(p["start"]), str(p["end"])] for p in listed["phases"]]
     return columns(["", "tau", "v", "kind"], impacts) + "\n\n" + columns(["phase", "from tau", "to tau"], phases)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 import click
 
+from singimpact.results import as_json
+from singimpact.status import Status
 from singimpact.store import require_writable, write_text
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -47,16 +48,26 @@ def as_json_text(data: Any) -> str:
       "flight_time": null
     }
     """
-    return json.dumps(_plain(data), indent=2, allow_nan=False)
+    return json.dumps(as_json(data), indent=2, allow_nan=False)
 
 
-def _plain(data: Any) -> Any:
-    if isinstance(data, dict):
-        return {str(key): _plain(value) for key, value in data.items()}
-    if isinstance(data, list | tuple):
-        return [_plain(item) for item in data]
-    if isinstance(data, float):
-        return float(data) if math.isfinite(data) else None
-    if data is None or isinstance(data, bool | int | str):
-        return data
-    return _plain(data.item()) if hasattr(data, "item") else str(data)
+def number_text(value: Any, digits: int | None) -> Any:
+    """A double, or the text of as many digits as were asked for."""
+    if digits is None:
+        return float(value)
+    from mpmath import nstr
+
+    return nstr(value, digits, strip_zeros=False)
+
+
+def lines_of(rows: Mapping[str, Any], status: Status, plain: tuple[Status, ...] = ()) -> list[str]:
+    """Names and values below one another, and last the status, with its sentence where it is not among `plain`.
+
+    Examples
+    --------
+    >>> lines_of({"tau": 0.5, "impacts": 3}, Status.hit, (Status.hit,))
+    ['tau      0.5', 'impacts  3', 'status   hit']
+    """
+    width = max(map(len, [*rows, "status"]))
+    word = status.name if status in plain else f"{status.name}: {status.sentence}"
+    return [f"{name:{width}}  {value}" for name, value in [*rows.items(), ("status", word)]]

@@ -13,7 +13,7 @@ from singimpact.cli.pictures import save, suffix_of
 from singimpact.store import require_writable
 
 
-@click.command(short_help="draw the layers that a scene file names")
+@click.command()
 @click.argument("file", metavar="FILE.toml")
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")

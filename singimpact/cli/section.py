@@ -14,7 +14,7 @@ from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.cli.pictures import PICTURES
 
 
-@click.command(short_help="the states of an orbit once a period; -o draws them")
+@click.command()
 @model_options
 @click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
 @click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
@@ -39,11 +39,11 @@ def command(
     """
     check_ending(output, as_json)
     osc = take_model(options)
-    found = osc.orbit(tau, v, impacts=impacts).section(at).after(skip)
-    rows = {"t": found.t.tolist(), "x": found.x.tolist(), "xdot": found.xdot.tolist()}
+    section = osc.orbit(tau, v, impacts=impacts).section(at).after(skip)
     if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
-        draw(found, output)
+        draw(section, output)
     elif as_json:
-        emit(as_json_text({"model": osc.to_dict(), "at": at, **rows}), output)
+        emit(as_json_text({"model": osc.to_dict(), "at": at, **section.as_dict()}), output)
     else:
-        emit(columns(list(rows), [list(map(str, row)) for row in zip(*rows.values(), strict=True)]), output)
+        rows = [list(map(str, row.values())) for row in section.rows()]
+        emit(columns(list(section.table()), rows), output)

@@ -12,7 +12,7 @@ from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.inputs import InputError
 
 
-@click.command(short_help="compare random states of your model with independent computations")
+@click.command()
 @click.argument("file", metavar="[MODEL]", required=False)
 @model_options
 @click.option("--states", type=click.IntRange(1, 10**6), default=1000, show_default=True, help="Number of states.")

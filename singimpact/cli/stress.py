@@ -11,7 +11,7 @@ from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.progress import ProgressLine
 
 
-@click.command(short_help="errors near singular points, in units of the rounding error")
+@click.command()
 @click.argument("functions", metavar="[FUNCTION]...", nargs=-1)
 @click.option("--place", metavar="PLACE", help="One row of the table alone, such as 'a -> 0'.")
 @click.option("--quick", is_flag=True, help="Fewer points in every sequence.")

@@ -14,7 +14,7 @@ from singimpact.inputs import InputError
 from singimpact.status import Status
 
 
-@click.command(short_help="the last state of an orbit for many values of a parameter")
+@click.command()
 @model_options
 @click.option("--over", metavar="NAME", required=True, help="clearance, restitution or a parameter.")
 @click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")

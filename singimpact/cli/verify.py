@@ -22,7 +22,7 @@ COLOURS = {
 }
 
 
-@click.command(short_help="check every claim of the paper and print its verdict")
+@click.command()
 @click.argument("ids", metavar="[ID]...", nargs=-1)
 @click.option("--beyond", is_flag=True, help="The claims that are not in the paper, and those they rest on.")
 @click.option("--certificates", metavar="DIR", help="Write one JSON file a claim, with what its proof rests on.")

@@ -20,12 +20,13 @@ from singimpact.algebra.zeros import isolate
 from singimpact.contact.contact import acceleration
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result, Results
 
 MOST_DIGITS = 100_000
 
 
 @dataclass(frozen=True, repr=False)
-class TangencyPoint:
+class TangencyPoint(Result):
     """A zero tau_* of a_c.
 
     Attributes
@@ -40,6 +41,10 @@ class TangencyPoint:
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}(tau={self.tau}, kind={self.kind})"
+
+    def as_dict(self) -> dict[str, Any]:
+        """tau_* as a double, and its kind."""
+        return {"tau": self.tau, "kind": self.kind}
 
     def ball(self, bits: int = 128) -> Any:
         """A ball that contains tau_*."""
@@ -89,9 +94,10 @@ def _checked(digits: Any) -> int:
     return digits
 
 
-class TangencyPoints(tuple[TangencyPoint, ...]):
+class TangencyPoints(Results, tuple[TangencyPoint, ...]):
     """Tangency points in order, with `.tau` and `.kind` as arrays; `digits` of what `certified` gives."""
 
+    called = "points"
     digits: int = 30
 
     def certified(self, digits: int | None = None) -> tuple[Certified, ...]:

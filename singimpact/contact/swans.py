@@ -33,6 +33,7 @@ from singimpact.algebra.zeros import is_one_root, isolate
 from singimpact.contact.points import enclosed, is_polynomial, window
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result, Results
 
 PARTS = 8  # of a period: the zeros of g' that have a name are looked for at its eighths
 GRID = 10**6  # the ends of a root are multiples of 1/GRID where they can be
@@ -41,7 +42,7 @@ SHORT = 1000  # the largest denominator with which c_0 is tried as a rational
 
 
 @dataclass(frozen=True, repr=False)
-class SwanPoint:
+class SwanPoint(Result):
     """A clearance c_0 and a time tau_* at which a_c and a_c' vanish together.
 
     Attributes
@@ -57,6 +58,10 @@ class SwanPoint:
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}(clearance={self.clearance}, tau={self.tau}, kind={self.kind})"
+
+    def as_dict(self) -> dict[str, Any]:
+        """c_0 and tau_* as doubles, and the kind."""
+        return {"clearance": self.clearance, "tau": self.tau, "kind": self.kind}
 
     def tau_ball(self, bits: int = 128) -> Any:
         """A ball that contains tau_*."""
@@ -97,7 +102,7 @@ def evaluate_ball(tree: Expression, bits: int) -> Any:
     return Balls(bits).evaluate(tree, {})
 
 
-class SwanPoints(tuple[SwanPoint, ...]):
+class SwanPoints(Results, tuple[SwanPoint, ...]):
     """The swan points of an interval of clearances, in the order of tau_*.
 
     Attributes
@@ -112,6 +117,7 @@ class SwanPoints(tuple[SwanPoint, ...]):
     ([(1.0, 'negative'), (-1.0, 'positive')], True)
     """
 
+    called = "swans"
     model: Oscillator | None = None
     between: tuple[Fraction, Fraction] | None = None
 

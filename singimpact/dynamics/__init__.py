@@ -17,6 +17,7 @@ exponents), `gamma_proof` (gamma proved, a folder), `release` (when a mass lifts
 from singimpact.handed_on import names_of
 
 _FILES = {
+    "orbit": "Orbit",
     "attractors": "CHAOS CHATTER OTHER caught closing_orbits new_attractors",
     "chatter": "ENDING chatter_left chatter_limit",
     "enclosed": "end_of_gamma",

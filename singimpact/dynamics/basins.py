@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from math import log
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -33,7 +34,7 @@ from singimpact.flights.horizons import horizon_of
 from singimpact.flights.orbits import iterate
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.store import write_table
+from singimpact.results import Result
 from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
@@ -98,7 +99,7 @@ class LongRun:
 
 
 @dataclass(frozen=True)
-class Basins:
+class Basins(Result):
     """The attractors of a grid of states.
 
     Attributes
@@ -107,6 +108,12 @@ class Basins:
     first_chatter_completes : of the same shape, bool: the first chatter of the orbit completes.
     """
 
+    array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "tau": ("tau",),
+        "v": ("v",),
+        "class": ("v", "tau"),
+        "first_chatter_completes": ("v", "tau"),
+    }
     model: Oscillator
     tau: Array
     v: Array
@@ -140,14 +147,16 @@ class Basins:
         more = f", and {len(self.classes) - 4} more" if len(self.classes) > 4 else ""
         return f"Basins({self.tau.size} x {self.v.size} states: {shares}{more})"
 
-    def to_csv(self, path: Any) -> None:
-        """Write one line for each state: tau, v, the class, and whether the first chatter completes."""
-        names = {code: name for code, name, _ in self.classes}
-        tau, v = np.meshgrid(self.tau, self.v)
-        write_table(path, {
-            "tau": tau.ravel().tolist(), "v": v.ravel().tolist(), "class": map(names.get, self.codes.ravel().tolist()),
-            "first_chatter_completes": self.first_chatter_completes.ravel().astype(int).tolist(),
-        })  # fmt: skip
+    def as_dict(self) -> dict[str, Any]:
+        """The axes tau and v, for each state the class and whether the first chatter completes, 0 or 1; the shares."""
+        names = np.array([name for _, name, _ in sorted(self.classes)], dtype=object)
+        return {
+            "tau": self.tau,
+            "v": self.v,
+            "class": names[self.codes],
+            "first_chatter_completes": self.first_chatter_completes.astype(int),
+            "classes": [{"class": name, "share": share} for _, name, share in self.classes],
+        }
 
 
 def basins(

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.inputs import refuse, require_memory
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import with_number
-from singimpact.store import write_table
+from singimpact.results import Result
 from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]
@@ -46,7 +46,7 @@ WAYS = {"up": ("up",), "down": ("down",), "both": ("up", "down")}
 
 
 @dataclass(frozen=True)
-class Bifurcation:
+class Bifurcation(Result):
     """Events of settled orbits.
 
     Attributes
@@ -60,6 +60,12 @@ class Bifurcation:
     settle : impacts after which an orbit that has not settled was left.
     """
 
+    array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "values": ("value",),
+        "periods": ("value",),
+        "settled": ("value",),
+        "events": ("value", "event", "phase_v_ended"),
+    }
     over: str
     values: Array
     events: Array
@@ -76,13 +82,19 @@ class Bifurcation:
         open_ = f"; {left} without a period seen in at most {self.settle} impacts" if left else ""
         return f"Bifurcation(over {self.over}: {count} values from {ends}{carried}, {kept} events of each{open_})"
 
-    def to_csv(self, path: Any) -> None:
-        """Write one line for each event: value, phase, v, and 1 for an end of chatter."""
+    def as_dict(self) -> dict[str, Any]:
+        """The number that moves, its values, and for each value phase, v, 1 for an end of chatter, of every event."""
+        return {"over": self.over, "direction": self.direction, "settle": self.settle} | {
+            name: getattr(self, name) for name in ("values", "events", "periods", "settled")
+        }
+
+    def table(self) -> dict[str, Array]:
+        """One row for each event: value, phase, v, and 1 for an end of chatter."""
         phase, v, ended = self.events.reshape(-1, 3).T
         there = np.isfinite(phase)
         values = np.repeat(self.values, self.events.shape[1])[there]
-        write_table(path, {self.over: values.tolist(), "phase": phase[there].tolist(), "v": v[there].tolist(),
-                           "chatter_ended": ended[there].astype(int).tolist()})  # fmt: skip
+        ends = ended[there].astype(int)
+        return {self.over: values, "phase": phase[there], "v": v[there], "chatter_ended": ends}
 
 
 def bifurcation(

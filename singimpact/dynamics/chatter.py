@@ -28,6 +28,7 @@ from singimpact.flights.states import States
 from singimpact.inputs import whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
+from singimpact.results import Result
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words
 
@@ -59,7 +60,7 @@ ENDING = Ending()
 
 
 @dataclass(frozen=True, repr=False)
-class ChatterLimit:
+class ChatterLimit(Result):
     """The end of a chatter sequence.
 
     Parameters

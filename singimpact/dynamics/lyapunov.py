@@ -28,6 +28,7 @@ from singimpact.flights.rebound_law import rebound_slope
 from singimpact.flights.states import States
 from singimpact.inputs import InputError, refuse, shown, whole
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
@@ -62,7 +63,7 @@ SMALLEST = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, eq=False)
-class Lyapunov:
+class Lyapunov(Result):
     """Both Lyapunov exponents of an orbit.
 
     Parameters
@@ -89,6 +90,15 @@ class Lyapunov:
     superstable: bool
     transient: int = 0
     converged: bool = True
+
+    def as_dict(self) -> dict[str, Any]:
+        """The fields, and the exponents per impact."""
+        values = super().as_dict()
+        return {
+            "exponents": values.pop("exponents"),
+            "error": values.pop("error"),
+            "per_impact": self.per_impact,
+        } | values
 
     @property
     def per_impact(self) -> Array:

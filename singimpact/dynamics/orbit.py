@@ -24,8 +24,8 @@ from singimpact.flights.results import Step
 from singimpact.flights.states import States
 from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result
 from singimpact.status import Status
-from singimpact.store import write_table
 
 EPSILON = 2.0**-52
 Array = np.ndarray[Any, Any]
@@ -49,7 +49,7 @@ ENDINGS = {
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Orbit:
+class Orbit(Result):
     """The states of an orbit just after its events.
 
     Parameters
@@ -133,9 +133,10 @@ class Orbit:
         times = times[(times >= self.tau[0]) & (times <= self.tau[-1])]
         return Section(times, *self.sample(times))
 
-    def to_csv(self, path: Any) -> None:
-        """Write the events, a line each: tau, v, kind. The file appears when it is complete."""
-        write_table(path, {"tau": self.tau.tolist(), "v": self.v.tolist(), "kind": self.kind.tolist()})
+    def as_dict(self) -> dict[str, Any]:
+        """tau, v and kind of every event, and the phases between them."""
+        phases = [{"kind": kind, "start": float(start), "end": float(end)} for kind, start, end in self.phases]
+        return {"tau": self.tau, "v": self.v, "kind": self.kind.astype(object), "phases": phases}
 
     def _later(self, time: float) -> Orbit:
         """The orbit with all times moved on by whole periods."""

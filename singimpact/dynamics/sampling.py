@@ -12,7 +12,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.path import along, dropped
 from singimpact.oscillator.model import Oscillator
-from singimpact.store import write_table
+from singimpact.results import Result
 
 Array = np.ndarray[Any, Any]
 
@@ -31,7 +31,7 @@ SETTINGS = SamplingSettings()
 
 
 @dataclass(frozen=True, eq=False)
-class Section:
+class Section(Result):
     """States of an orbit once a period.
 
     Parameters
@@ -49,10 +49,6 @@ class Section:
     def after(self, states: int) -> Section:
         """The section without its first states, such as those of a transient."""
         return Section(self.t[states:], self.x[states:], self.xdot[states:])
-
-    def to_csv(self, path: Any) -> None:
-        """Write t, x, xdot, a line a state. The file appears when it is complete."""
-        write_table(path, {"t": self.t.tolist(), "x": self.x.tolist(), "xdot": self.xdot.tolist()})
 
 
 def sampled(

@@ -22,6 +22,7 @@ from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.rebound_law import rebound
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result
 from singimpact.status import Status
 from singimpact.surface.impact_surface import Cusp, ImpactSurface
 from singimpact.surface.named_vertices import crossing
@@ -33,7 +34,7 @@ REACH_TAU, REACH_T = 4.0, 6.0  # of the picture, in half distances of A and B: t
 
 
 @dataclass(frozen=True)
-class SwanConfiguration:
+class SwanConfiguration(Result):
     """An unfolded swan.
 
     Attributes

@@ -26,6 +26,7 @@ from singimpact.flights.states import require_room
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
+from singimpact.results import Result
 from singimpact.status import Status
 from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
@@ -66,7 +67,7 @@ SEARCH = Search()
 
 
 @dataclass(frozen=True, repr=False)
-class Threshold:
+class Threshold(Result):
     """The velocity `v`, an estimate of its `error`, and a status: `complete`; `none` where no gamma lies ahead;
     `unresolved` where the next zero of a_c, its contact order or the two sides of gamma are not decided.
 

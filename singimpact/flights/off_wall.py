@@ -32,6 +32,7 @@ from singimpact.flights.states import States, require_room
 from singimpact.flights.undecided import Fates, escapes
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words
 
@@ -50,7 +51,7 @@ SETTINGS = OffWallSettings()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Launched:
+class Launched(Result):
     """First impacts of flights that start off the wall.
 
     Parameters

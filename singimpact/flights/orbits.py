@@ -19,6 +19,7 @@ from singimpact.flights.states import States
 from singimpact.inputs import require_memory
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result, default_axes
 from singimpact.status import Status, status_array
 from singimpact.words import in_words
 
@@ -79,7 +80,7 @@ def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, near_end: f
 
 
 @dataclass(frozen=True, repr=False)
-class Ends:
+class Ends(Result):
     """The states after the last impact flown, and 0, or the status of the flight that ended an orbit before."""
 
     tau: Any
@@ -87,6 +88,13 @@ class Ends:
     status: Any
 
     __repr__ = in_words
+
+    def arrays(self) -> dict[str, tuple[tuple[str, ...], Any]]:
+        """Names of axes and values; of states that were kept the number of the impact is the first axis."""
+        of_one = default_axes(np.ndim(self.status))
+        kept = ("impact",) * (np.ndim(self.tau) - np.ndim(self.status))
+        values = super().arrays()
+        return {name: (of_one if name == "status" else kept + of_one, value) for name, (_, value) in values.items()}
 
 
 def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = EPSILON) -> Ends:

@@ -21,16 +21,25 @@ from singimpact.inputs import InputError
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result, plain
 from singimpact.words import in_words
 
 Array = np.ndarray[Any, Any]
 
 
-class Path(NamedTuple):
-    """x and x' at given times; nan at times that the solution does not reach."""
+class _Place(NamedTuple):
+    """Fields of `Path`."""
 
     x: Any
     xdot: Any
+
+
+class Path(_Place, Result):
+    """x and x' at given times; nan at times that the solution does not reach."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """x and x'."""
+        return {name: plain(value) for name, value in self._asdict().items()}
 
     def __repr__(self) -> str:
         return in_words(self)

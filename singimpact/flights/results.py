@@ -10,8 +10,8 @@ import numpy as np
 
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.expressions import Expression
-from singimpact.notebook import table
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result, plain
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words, value_in_words
 
@@ -21,7 +21,7 @@ SCALAR_STATUS = tuple(np.int8(code) for code in range(len(Status)))
 
 
 @dataclass(frozen=True)
-class CertifiedImpact:
+class CertifiedImpact(Result):
     """A first impact with proved radii: flight time, x' < 0 there, and the state just after it.
 
     Attributes
@@ -58,7 +58,7 @@ class CertifiedImpact:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Flight:
+class Flight(Result):
     """First hits.
 
     Parameters
@@ -155,12 +155,15 @@ class Flight:
         ends = value_in_words(statuses, Status)
         return f"{type(self).__name__} of {statuses.size} states, shape {statuses.shape}: {ends}"
 
-    def _repr_html_(self) -> str:
-        names = [name for name in ("flight_time", "velocity", "tau", "v") if hasattr(self, name)]
-        columns = [np.ravel(getattr(self, name)) for name in names]
-        words = [Status(value).name for value in np.ravel(self.status).tolist()]
-        rows = [[*map(_shown, numbers), word] for *numbers, word in zip(*columns, words, strict=True)]
-        return table([*names, "status"], rows, f"{type(self).__name__} of {len(rows)}")
+    def as_dict(self) -> dict[str, Any]:
+        """Flight time, x' at the hit, the next state, status; the cause of what is unresolved, and what is certified.
+
+        Condition numbers and errors are left out: they may take longer than the flight.
+        """
+        names = [name for name in ("flight_time", "velocity", "tau", "v") if name in self.__dict__]
+        values = {name: plain(getattr(self, name)) for name in [*names, "certified"] if getattr(self, name) is not None}
+        words = {name: plain(getattr(self, name), name) for name in ("status", "cause")}
+        return values | {name: word for name, word in words.items() if word is not None}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -172,7 +175,7 @@ class Step(Flight):
 
 
 @dataclass(frozen=True, repr=False)
-class Derivative:
+class Derivative(Result):
     """D G of the impact map: `matrix` of shape (..., 2, 2) and the `status` of the flight."""
 
     matrix: Any
@@ -188,7 +191,3 @@ def _sentence(status: int, cause: int, note: str | None) -> str:
     if status != Status.unresolved or not cause:
         return Status(status).sentence
     return Cause(cause).sentence if note is None else f"{note}; {Cause(cause).sentence}"
-
-
-def _shown(number: Any) -> str:
-    return f"{number:.12g}" if isinstance(number, float) else str(number)

@@ -21,6 +21,7 @@ from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 from singimpact.surface.rest_flights import RestFlights
@@ -32,7 +33,7 @@ NEAR = 1e-9  # a cusp this near to a degenerate zero in tau stands above it
 
 
 @dataclass(frozen=True)
-class SingularPoint:
+class SingularPoint(Result):
     """A point of V_c' where p or phi is no local diffeomorphism, other than a fold.
 
     Attributes
@@ -49,9 +50,14 @@ class SingularPoint:
     image: Point
     kind: str = ""
 
+    def as_dict(self) -> dict[str, Any]:
+        """Name, map, kind, place on V_c' and its image."""
+        names = ("name", "maps", "kind", "tau", "t")
+        return {name: getattr(self, name) for name in names} | {"image": list(self.image)}
+
 
 @dataclass(frozen=True)
-class FoldLine:
+class FoldLine(Result):
     """A stretch of H (for p) or Z (for phi) between singular points, the edge of the window, or round.
 
     Attributes
@@ -64,9 +70,13 @@ class FoldLine:
     end: Point
     bounds: tuple[str, str]
 
+    def as_dict(self) -> dict[str, Any]:
+        """The map, both ends and what stands there."""
+        return {"maps": self.maps, "from": list(self.start), "to": list(self.end), "bounds": list(self.bounds)}
+
 
 @dataclass(frozen=True)
-class Classification:
+class Classification(Result):
     """The result of `classify`.
 
     Attributes
@@ -82,6 +92,17 @@ class Classification:
     swans: tuple[SwanPoint, ...]
     notes: tuple[str, ...]
     flights: int
+
+    def as_dict(self) -> dict[str, Any]:
+        """The window, its singular points and fold lines, swans over the clearance, notes, and flights computed."""
+        return {
+            "window": {"tau": list(self.tau), "t": list(self.t)},
+            "points": [point.as_dict() for point in self.points],
+            "folds": [line.as_dict() for line in self.folds],
+            "swans": [swan.as_dict() for swan in self.swans],
+            "notes": list(self.notes),
+            "flights": self.flights,
+        }
 
     def __repr__(self) -> str:
         kinds = Counter(point.name for point in self.points)

@@ -15,6 +15,7 @@ from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
+from singimpact.results import Result
 from singimpact.surface.curve import Curve, window_ends
 
 Array = np.ndarray[Any, Any]
@@ -24,7 +25,7 @@ MARGIN = 97  # the window of tau is longer than a period by this part at both en
 
 
 @dataclass(frozen=True)
-class Transition:
+class Transition(Result):
     """A change of P.
 
     Attributes
@@ -52,6 +53,11 @@ class Transition:
     visible: bool | None = None
     launch: tuple[float, float] | None = None
     effect: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """The fields, with `event`; null where visibility is not decided or no launch leads there."""
+        names = ("kind", "event", "value", "tau", "t", "rests", "visible", "launch", "effect")
+        return {name: getattr(self, name) for name in names}
 
     @property
     def event(self) -> str:

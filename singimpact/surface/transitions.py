@@ -26,6 +26,7 @@ from singimpact.contact.points import tangency_points
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
+from singimpact.results import Results
 from singimpact.surface.curve import window_ends
 from singimpact.surface.followed_rests import FollowedRests
 from singimpact.surface.proved_touches import doubts_left
@@ -59,7 +60,7 @@ KINDS = ("swan", "swallowtail", "tangency", "tacnode", "triple point", "periodic
 """What is looked for; "tangency" are lips, beaks and flights from tangency to tangency."""
 
 
-class Transitions(tuple[Transition, ...]):
+class Transitions(Results, tuple[Transition, ...]):
     """Transitions in order, with notes on their completeness.
 
     Swans are isolated by balls.  Lips, beaks and swallowtails are met on a grid of the number; balls then show that
@@ -71,8 +72,13 @@ class Transitions(tuple[Transition, ...]):
     notes : why a swan may be missing.
     """
 
+    called = "found"
     notes: tuple[str, ...] = ()
     _proof: Callable[[Transitions], tuple[str, ...]] | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """What each of them is, whether a swan may be missing, and why."""
+        return super().as_dict() | {"swans_complete": self.swans_complete, "notes": list(self.notes)}
 
     @property
     def swans_complete(self) -> bool:

@@ -7,7 +7,7 @@ As functions of r (`of_m`, `series`, `minimal_polynomial`) they are in `multipli
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -20,6 +20,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.algebra.roots import real_roots
 from singimpact.contact.contact import contact_order
 from singimpact.inputs import InputError, refuse
+from singimpact.results import Result, columns_of
 from singimpact.words import in_words
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
@@ -27,8 +28,22 @@ MOST_DIGITS = 100_000
 LEAST = Fraction(1, 10**308)  # isolating the roots of a smaller r takes minutes, then hours
 
 
+class _Enclosures(Result):
+    """Certified numbers by name."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Names as on the paper's page -> value and radius as text."""
+        return {name.rstrip("_"): enclosure for name, enclosure in super().as_dict().items()}
+
+    def arrays(self) -> dict[str, tuple[tuple[str, ...], Any]]:
+        """A row for each name, with value and radius as text."""
+        values = self.as_dict()
+        rows = [{"name": name, **enclosure} for name, enclosure in values.items()]
+        return {name: (("row",), column) for name, column in columns_of(rows).items()}
+
+
 @dataclass(frozen=True, repr=False)
-class TangencyFixedPoints:
+class TangencyFixedPoints(_Enclosures):
     """At a tangency: solutions of the cubic, multipliers at m3, zeros of Q_r(1, m)."""
 
     m1: Certified
@@ -45,7 +60,7 @@ class TangencyFixedPoints:
 
 
 @dataclass(frozen=True, repr=False)
-class SwanFixedPoints:
+class SwanFixedPoints(_Enclosures):
     """At a swan: the fixed point m_* in (-1, 0) and its multipliers."""
 
     m_star: Certified
@@ -58,7 +73,7 @@ class SwanFixedPoints:
 
 
 @dataclass(frozen=True, repr=False)
-class Multipliers:
+class Multipliers(_Enclosures):
     """On gamma (lambda) and across it (mu) at a contact of any order, and what they lack of 1."""
 
     lambda_: Certified
@@ -71,7 +86,7 @@ class Multipliers:
 
 def as_dict(points: TangencyFixedPoints | SwanFixedPoints | Multipliers) -> dict[str, dict[str, str]]:
     """Names as on the paper's page -> value and radius as text."""
-    return {field.name.rstrip("_"): getattr(points, field.name).as_dict() for field in fields(points)}
+    return points.as_dict()
 
 
 def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:

@@ -67,9 +67,3 @@ def test_no_command_is_help(singimpact):
     result = singimpact()
     assert result.exit_code == 0
     assert "verify" in result.stdout
-
-
-def test_help_of_the_group_and_of_the_command_agree():
-    from singimpact.cli import COMMANDS, main
-
-    assert {name: main.get_command(None, name).short_help for name in COMMANDS} == COMMANDS
