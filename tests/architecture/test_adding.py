@@ -1,0 +1,97 @@
+"""Adding costs as many files as CONTRIBUTING says: a toy of each kind is added to a copy of the package and run."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+MOST_FILES = 3
+
+
+@pytest.fixture(scope="module")
+def copy(clone_of_module, tmp_path_factory):
+    """A copy of the package and of what freezes it, to which all toys are added."""
+    folder = tmp_path_factory.mktemp("copy")
+    skipped = shutil.ignore_patterns("__pycache__")
+    for name in ("singimpact", "derivations"):
+        shutil.copytree(clone_of_module / name, folder / name, ignore=skipped)
+    (folder / "tests/paper/sections/golden").mkdir(parents=True)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def clone_of_module(request):
+    return request.config.rootpath
+
+
+def run(folder, *words):
+    """What a command of the copy prints."""
+    environment = os.environ | {"PYTHONPATH": str(folder)}
+    done = subprocess.run(
+        [sys.executable, *words], cwd=folder, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def put(folder, path, old, new):
+    """Put a text in the place of another, which occurs once."""
+    file = folder / path
+    text = file.read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    file.write_text(text.replace(old, new), encoding="utf-8")
+
+
+def steps(clone, heading):
+    """Files that CONTRIBUTING names in the list of what is added."""
+    text = (clone / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    row = next(line for line in text.splitlines() if line.startswith(f"- **{heading}**"))
+    return re.findall(r"`((?:singimpact|tests|docs)/[^`]*)`", row)
+
+
+@pytest.mark.parametrize("heading", ["an event", "a claim", "a command", "a bench row"])
+def test_at_most_three_files_are_named(clone, heading):
+    assert 0 < len(steps(clone, heading)) <= MOST_FILES
+
+
+def test_a_command(copy, clone):
+    assert steps(clone, "a command")[:2] == ["singimpact/cli/NAME.py", "singimpact/cli/group.py"]
+    (copy / "singimpact/cli/toy.py").write_text(
+        '"""`singimpact toy`: a word."""\n\nimport click\n\n\n@click.command()\ndef command() -> None:\n'
+        '    """Print a word."""\n    click.echo("a word")\n'
+    )
+    put(copy, "singimpact/cli/group.py", '    "cite": ', '    "toy": "a word",\n    "cite": ')
+    assert run(copy, "-m", "singimpact", "toy") == "a word\n"
+    assert "toy           a word" in run(copy, "-m", "singimpact", "--help")
+
+
+def test_a_claim(copy, clone):
+    assert steps(clone, "a claim")[0] == "singimpact/paper/claims/sections/SECTION.py"
+    put(
+        copy,
+        "singimpact/paper/claims/sections/section2.py",
+        '    Claim(\n        id="e:acc",',
+        '    Claim(\n        id="toy",\n        section="2.1",\n        title="one and one",\n'
+        '        printed=Statement("1+1=2", sympy.Integer(2)),\n'
+        "        verify=lambda value: every([('1 + 1', is_zero(value - 2))]),\n"
+        '        mutants=(sympy.Integer(3),),\n    ),\n    Claim(\n        id="e:acc",',
+    )
+    freeze = "import sys; sys.path.insert(0, 'derivations'); import freeze\n"
+    run(copy, "-c", freeze + "for path, content in freeze.claim_index().items():\n    path.write_bytes(content)")
+    verdicts = json.loads(run(copy, "-m", "singimpact", "verify", "toy", "--json"))["claims"]
+    assert {verdict["id"]: verdict["verdict"] for verdict in verdicts} == {"toy": "proved"}
+
+
+def test_a_bench_row(copy, clone):
+    assert steps(clone, "a bench row") == ["singimpact/bench/groups/GROUP.py"]
+    put(
+        copy,
+        "singimpact/bench/groups/fixed_points.py",
+        'ASKED = {"m3',
+        'ASKED = {"m3 and mu, r = 1/3": ("1/3", slice(1, 3)), "m3',
+    )
+    assert "m3 and mu, r = 1/3" in run(copy, "-m", "singimpact", "bench", "fixed-points", "--quick")
