@@ -9,12 +9,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from singimpact.documents.document_steps import Section, equations_of
 from singimpact.documents.formats import as_files
 from singimpact.documents.rendering import Marks
-from singimpact.documents.steps import Section, equations_of
 from singimpact.paper.claims.beyond import BEYOND
 from singimpact.paper.claims.index import BEYOND_PLACE, PLACE, reread, written_index
-from singimpact.paper.sections.derivations import sections
+from singimpact.paper.sections.derivation_sections import sections
 from singimpact.paper.sections.marks import marks_of
 from singimpact.store import folder, written
 

@@ -375,7 +375,7 @@ class ImpactOscillator(Oscillator):
         [parameters]
         omega = "2"
         """
-        from singimpact.oscillator.files import to_toml
+        from singimpact.oscillator.toml_files import to_toml
 
         return to_toml(self.to_dict())
 
@@ -463,6 +463,6 @@ def read_model(path: str | FilePath) -> ImpactOscillator:
     ------
     InputError : a file that cannot be read, or a field that is none of these.
     """
-    from singimpact.oscillator.files import read_fields
+    from singimpact.oscillator.toml_files import read_fields
 
     return ImpactOscillator(**read_fields(path))

@@ -83,7 +83,7 @@ def commands() -> str:
 def figures(place: Path) -> str:
     """The paper's figures with what they show, and the claims that they illustrate; the pictures go beside the page."""
     from singimpact.paper.figures import BEYOND, FIGURES, picture
-    from singimpact.paper.figures.rendering import drawn
+    from singimpact.paper.figures.figure_rendering import drawn
 
     parts = ["# The figures", "", "Drawn from computed data by `singimpact figure all -o FOLDER`; those beyond the "
              "paper, B1, B2, ..., by `singimpact figure beyond -o FOLDER`.", ""]  # fmt: skip
@@ -101,7 +101,7 @@ def border(place: Path) -> None:
     from matplotlib.figure import Figure
 
     import singimpact as si
-    from singimpact.scenes.border import draw_border
+    from singimpact.scenes.border_picture import draw_border
 
     (found,) = si.border_orbits(si.linear("2.8", "0.6", "0.3"), between=(0.47, 0.475), points=5)
     axes = Figure(figsize=(7.2, 5.2), layout="constrained").subplots(2, sharex=True, height_ratios=(3, 2))

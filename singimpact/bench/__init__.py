@@ -1,14 +1,6 @@
 """Run time against error beside what a user would pick instead; stress sweeps; the reference cases as package data.
 
 Not here: what is measured (`flights`, `surface`, `dynamics`), claims of the paper (`paper`), pictures (`scenes`).
-Files: `problems` (the table of reference cases, read by the tests too), `data/` (its numbers); `groups/` (what
-`singimpact bench` measures, one file a group), `measuring` (methods timed in turn and judged), `fresh` (in a process of
-their own), `drawn` (states for every timed call), `compiled` (waiting for object code), `exponents` (how cost grows),
-`first_commands` (CPU of a user's first commands, checked in CI), `report`, `plots`, `page` (the pages of the
-documentation), `timed_sources` (of which commit a page is);
-`states`, `truth/` (random states), `steep_families`, `steep_states`, `steep_balls`, `steep_digits`, `steep_cost` (those
-with steep layers); `peers/`;
-`stress/` (what `singimpact stress` runs); `selftest/` (random states of a user's own model, `singimpact selftest`).
 """
 
 from singimpact.handed_on import names_of
@@ -18,11 +10,11 @@ _FILES = {
     "exponents": "fitted",
     "fresh": "cost",
     "groups": "GROUPS measured usual",
-    "groups.commands": "COMMANDS PUBLIC SERIES",
-    "groups.impact_map": "CALLS FED sizes_of taylor_stepper",
-    "groups.regimes": "of_states",
-    "groups.series": "LIMITED",
-    "groups.start": "MODELS first_answer first_model script",
+    "groups.command_rows": "COMMANDS PUBLIC SERIES",
+    "groups.impact_map_rows": "CALLS FED sizes_of taylor_stepper",
+    "groups.regime_rows": "of_states",
+    "groups.series_rows": "LIMITED",
+    "groups.start_rows": "MODELS first_answer first_model script",
     "measuring": (
         "Aim Case Counted EPSILON Effort FULL Measured Method Timed condition cpu_seconds measure relative_error"
     ),
@@ -35,7 +27,7 @@ _FILES = {
     "selftest.batches": "grazes lanes",
     "selftest.draws": "flown",
     "selftest.fates": "Follower",
-    "selftest.orbits": "limits orbits",
+    "selftest.followed_orbits": "limits orbits",
     "selftest.responses": "derivatives rebounds",
     "selftest.truths": "balls digits fixed_steps",
     "steep_families": "FAMILIES Family NAMES SMOOTH STEEP",

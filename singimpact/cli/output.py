@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from singimpact.results import as_json
+from singimpact.result import as_json
 from singimpact.status import Status
 from singimpact.store import require_writable, write_text
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from singimpact.codegen.formulas import Exponents, horner, power_text
+from singimpact.codegen.polynomial_source import Exponents, horner, power_text
 
 Poly = tuple[int, ...]  # whole coefficients, constant first
 LAMBDA, ONE = "lambda_", "one"  # a quotient of whole numbers alone would be a double

@@ -2,8 +2,6 @@
 
 Not here: the model itself (`oscillator`), zeros of functions (`algebra`), power series built from the jets (`theory`),
 flights (`flights`).
-Files: `contact` (the jets at a point), `points` (tangency points, and what a point is), `swans` (swan points as the
-clearance varies), `next_zero` (the next zero of a_c after a phase).
 """
 
 from singimpact.handed_on import names_of

@@ -20,7 +20,7 @@ from singimpact.algebra.zeros import isolate
 from singimpact.contact.contact import acceleration
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result, Results
+from singimpact.result import Result, Results
 
 MOST_DIGITS = 100_000
 

@@ -33,7 +33,7 @@ from singimpact.algebra.zeros import is_one_root, isolate
 from singimpact.contact.points import enclosed, is_polynomial, window
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result, Results
+from singimpact.result import Result, Results
 
 PARTS = 8  # of a period: the zeros of g' that have a name are looked for at its eighths
 GRID = 10**6  # the ends of a root are multiples of 1/GRID where they can be

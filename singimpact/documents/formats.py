@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 
+from singimpact.documents.document_steps import Section
 from singimpact.documents.rendering import MASTER, Marks, as_data, as_latex, as_markdown, as_master, as_piece
-from singimpact.documents.steps import Section
 
 
 def as_text(shown: Sequence[Section], marks: Marks, form: str) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from singimpact.documents import escape
 from singimpact.documents.breaking import lines_of
-from singimpact.documents.steps import Mark, Section, Step
+from singimpact.documents.document_steps import Mark, Section, Step
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -34,7 +34,7 @@ from singimpact.flights.horizons import horizon_of
 from singimpact.flights.orbits import iterate
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]

@@ -20,7 +20,7 @@ from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.inputs import refuse, require_memory
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import with_number
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.surface.curve import window_ends
 
 Array = np.ndarray[Any, Any]

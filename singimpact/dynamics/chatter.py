@@ -28,7 +28,7 @@ from singimpact.flights.states import States
 from singimpact.inputs import whole
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words
 

@@ -28,7 +28,7 @@ from singimpact.flights.rebound_law import rebound_slope
 from singimpact.flights.states import States
 from singimpact.inputs import InputError, refuse, shown, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]

@@ -24,7 +24,7 @@ from singimpact.flights.results import Step
 from singimpact.flights.states import States
 from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.status import Status
 
 EPSILON = 2.0**-52

@@ -12,7 +12,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.path import along, dropped
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result
+from singimpact.result import Result
 
 Array = np.ndarray[Any, Any]
 

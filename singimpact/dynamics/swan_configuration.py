@@ -22,7 +22,7 @@ from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.rebound_law import rebound
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.status import Status
 from singimpact.surface.impact_surface import Cusp, ImpactSurface
 from singimpact.surface.named_vertices import crossing

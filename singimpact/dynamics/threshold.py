@@ -26,7 +26,7 @@ from singimpact.flights.states import require_room
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.status import Status
 from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at

@@ -16,8 +16,8 @@ import numpy as np
 from singimpact.algebra.expressions import names_in, substitute
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
-from singimpact.codegen.recurrence import Recurrence
 from singimpact.codegen.scalar import scalar
+from singimpact.codegen.taylor_recurrence import Recurrence
 from singimpact.flights import counted
 from singimpact.flights.bind import LAW, Emitted
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
@@ -98,7 +98,7 @@ class CompiledModel:
     """
 
     def __init__(self, osc: Oscillator, allowance: Allowance, flow: Recurrence | None = None) -> None:
-        """`flow` : a recurrence of the model with another third column, see `codegen.recurrence`."""
+        """`flow` : a recurrence of the model with another third column, see `codegen.taylor_recurrence`."""
         self.osc, self.allowance = osc, allowance
         self.form = linear_form(osc)
         self.linear = flow is None and has_table(osc)

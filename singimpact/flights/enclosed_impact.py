@@ -17,7 +17,7 @@ from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.status import Status
 from singimpact.words import in_words
 

@@ -34,7 +34,7 @@ from singimpact.algebra.expressions import (
 )
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
-from singimpact.codegen.recurrence import recurrence
+from singimpact.codegen.taylor_recurrence import recurrence
 from singimpact.flights.compiled_model import CompiledModel, compiled_model
 from singimpact.flights.kernels import layout
 from singimpact.flights.model_numbers import fastest_rate, recurrence_of

@@ -12,7 +12,7 @@ import numpy as np
 
 from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power, substitute
 from singimpact.algebra.numbers import as_float, rational_near, sign_of
-from singimpact.codegen.recurrence import Recurrence, recurrence
+from singimpact.codegen.taylor_recurrence import Recurrence, recurrence
 from singimpact.flights.kernels.state import Linear
 from singimpact.flights.phase import reduced
 from singimpact.inputs import InputError

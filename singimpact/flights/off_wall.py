@@ -32,7 +32,7 @@ from singimpact.flights.states import States, require_room
 from singimpact.flights.undecided import Fates, escapes
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words
 

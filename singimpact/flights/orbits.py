@@ -19,7 +19,7 @@ from singimpact.flights.states import States
 from singimpact.inputs import require_memory
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result, default_axes
+from singimpact.result import Result, default_axes
 from singimpact.status import Status, status_array
 from singimpact.words import in_words
 

@@ -21,7 +21,7 @@ from singimpact.inputs import InputError
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result, plain
+from singimpact.result import Result, plain
 from singimpact.words import in_words
 
 Array = np.ndarray[Any, Any]

@@ -11,7 +11,7 @@ import numpy as np
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.expressions import Expression
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result, plain
+from singimpact.result import Result, plain
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words, value_in_words
 

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.codegen.over_lists import FUNCTIONS, plain
-from singimpact.codegen.recurrence import Recurrence
+from singimpact.codegen.taylor_recurrence import Recurrence
 from singimpact.flights.limits import degree_for
 from singimpact.flights.model_numbers import numbers_of_flow, recurrence_of
 from singimpact.oscillator.model import Oscillator

@@ -1,7 +1,6 @@
 """Germs of maps of the plane (u, t) -> (u, w(u, t)): recognised as fold, cusp, lips, beaks, swallowtail.
 
 Not here: jets (`algebra`), the maps p and phi whose germs these are (`theory`), curves of singular points (`surface`).
-Files: `recognition`, `normal_form` (fold and cusp forms with the changes that reach them).
 """
 
 from singimpact.handed_on import names_of

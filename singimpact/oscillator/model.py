@@ -178,7 +178,7 @@ class Oscillator:
         )
 
     def _repr_latex_(self) -> str:
-        from singimpact.oscillator.equation import equation
+        from singimpact.oscillator.equation_in_latex import equation
 
         return f"${equation(self.f, self.g, self.clearance, self.restitution, self.parameters)}$"
 

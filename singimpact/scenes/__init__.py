@@ -2,11 +2,6 @@
 
 Not here: what is drawn (`dynamics`, `surface`, `flights`), text with formulas (`documents`), the paper's figures
 (`paper.figures`).
-Files: `drawing` (`plot`: one call for everything that can be drawn), `orbit` (x(t), sections), `orbit_sheet` (three
-panels), `scene` (a window and its layers), `layer_data` (what layers ask for), `layers`, `cached` (results on disk),
-`style` (colours and lines), `basins`, `bifurcation`, `branches`, `manifolds` (W^s and W^u), `horseshoe`, `border` (the
-cascade of a border orbit), `both_sides` (of a transition), `label_places` (names beside points), `clearance_frames`,
-`flown_in_page` and `explore` (the page; what runs in the browser is in the folder `page`).
 """
 
 from __future__ import annotations
@@ -20,9 +15,9 @@ if TYPE_CHECKING:
     from singimpact.scenes.scene import Scene as Scene
 
 _FILES = {
-    "basins": "class_colors draw_basins draw_first_chatter",
-    "bifurcation": "bifurcation_sheet",
-    "border": "draw_border",
+    "basins_picture": "class_colors draw_basins draw_first_chatter",
+    "bifurcation_picture": "bifurcation_sheet",
+    "border_picture": "draw_border",
     "clearance_frames": "clearance_film",
     "drawing": "plot",
     "explore": "CURVES explore_page",

@@ -10,7 +10,7 @@ from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins import Basins
 from singimpact.inputs import refuse
 from singimpact.oscillator.moving_number import value_of, with_number
-from singimpact.scenes.basins import class_colors, draw_basins
+from singimpact.scenes.basins_picture import class_colors, draw_basins
 from singimpact.scenes.layers import LAYERS
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import BLACK, PENS

@@ -18,7 +18,7 @@ from singimpact.dynamics.orbit import orbit
 from singimpact.flights.counted import counted
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
-from singimpact.scenes.cached import keep, key_of, recall
+from singimpact.scenes.stored_layers import keep, key_of, recall
 from singimpact.surface.curve import STATES, SURFACE, Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface
 from singimpact.surface.named_vertices import NamedLine

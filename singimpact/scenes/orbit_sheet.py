@@ -8,7 +8,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float
 from singimpact.dynamics.orbit import Orbit
-from singimpact.scenes.orbit import STYLE, OrbitStyle, draw_orbit, shown_end
+from singimpact.scenes.orbit_picture import STYLE, OrbitStyle, draw_orbit, shown_end
 
 SIZE = (9.6, 6.2)
 """Inches."""

@@ -21,7 +21,7 @@ from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 from singimpact.surface.rest_flights import RestFlights

@@ -15,7 +15,7 @@ from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
-from singimpact.results import Result
+from singimpact.result import Result
 from singimpact.surface.curve import Curve, window_ends
 
 Array = np.ndarray[Any, Any]

@@ -26,7 +26,7 @@ from singimpact.contact.points import tangency_points
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
-from singimpact.results import Results
+from singimpact.result import Results
 from singimpact.surface.curve import window_ends
 from singimpact.surface.followed_rests import FollowedRests
 from singimpact.surface.proved_touches import doubts_left

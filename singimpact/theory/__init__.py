@@ -2,14 +2,6 @@
 
 Not here: the points and their jets (`contact`), finite flights (`flights`), the paper's own steps in sympy
 (`paper.routes`), verdicts on the paper (`paper.claims`).
-Files, the series: `sheet` (v_c), `involution` (from p to phi), `invariant_curve` (gamma, the stable fibre),
-`completion` (where chatter ends), `homogeneous` (the leading parts, in closed form), `plane_forms` and `fold_form`
-(normal forms of p and phi), `grazing` (the discontinuity mapping). Their numbers: `fixed_points` (certified),
-`multipliers` (as functions of r).
-What a user asks: `formulas` (`v_c`, `gamma`, ...), `power_series` (what they answer), `contact_points` (a model at a
-point, in the best numbers), `letters` (parameters that stay letters), `constants` (exact numbers, not rational),
-`symbolic_curve` (gamma in symbols), `digits` (more bits until each digit is certain), `notation` (LaTeX), `frozen`
-(the source in `generated`).
 """
 
 from typing import TYPE_CHECKING, Any

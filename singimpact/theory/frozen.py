@@ -9,7 +9,7 @@ from typing import Any
 
 from singimpact.algebra.jets import Jet
 from singimpact.algebra.polynomials import Exponents
-from singimpact.codegen.formulas import function_source, module_source
+from singimpact.codegen.polynomial_source import function_source, module_source
 from singimpact.codegen.rational_series import Factored, RationalSeries, Unit, rational_series_source
 from singimpact.contact.contact import NAMED_ORDERS, Contact, derivative_name
 from singimpact.germs.normal_form import normal_form

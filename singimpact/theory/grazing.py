@@ -114,7 +114,7 @@ class GrazingMap:
         >>> space["grazing_map"](0.5, a=1.0, r=0.5)  # (1 + r) sqrt(2 a D)
         (0.0, 1.5)
         """
-        from singimpact.codegen.formulas import function_source
+        from singimpact.codegen.polynomial_source import function_source
 
         letters = [*((derivative_name(self.j),) if self.names else ()), *self.names]
         says = f"x - c and x' where the motion without a wall is lowest, `distance` below it; contact order {self.j}."

@@ -59,8 +59,8 @@ def test_at_most_three_files_are_named(clone, heading):
 
 
 def test_a_command(copy, clone):
-    assert steps(clone, "a command")[:2] == ["singimpact/cli/NAME.py", "singimpact/cli/group.py"]
-    (copy / "singimpact/cli/toy.py").write_text(
+    assert steps(clone, "a command")[:2] == ["singimpact/cli/NAME_command.py", "singimpact/cli/group.py"]
+    (copy / "singimpact/cli/toy_command.py").write_text(
         '"""`singimpact toy`: a word."""\n\nimport click\n\n\n@click.command()\ndef command() -> None:\n'
         '    """Print a word."""\n    click.echo("a word")\n'
     )
@@ -87,10 +87,10 @@ def test_a_claim(copy, clone):
 
 
 def test_a_bench_row(copy, clone):
-    assert steps(clone, "a bench row") == ["singimpact/bench/groups/GROUP.py"]
+    assert steps(clone, "a bench row") == ["singimpact/bench/groups/GROUP_rows.py"]
     put(
         copy,
-        "singimpact/bench/groups/fixed_points.py",
+        "singimpact/bench/groups/fixed_point_rows.py",
         'ASKED = {"m3',
         'ASKED = {"m3 and mu, r = 1/3": ("1/3", slice(1, 3)), "m3',
     )

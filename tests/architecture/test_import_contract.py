@@ -53,7 +53,7 @@ PLANTED = {
         "In the room of the paper an import points downwards only",
     ),
     "a user's picture of the paper": (
-        "scenes/orbit.py",
+        "scenes/orbit_picture.py",
         "from singimpact.paper.figures import panel",
         "An import points downwards only",
     ),

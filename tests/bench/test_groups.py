@@ -33,7 +33,7 @@ from singimpact.bench import (
     usual,
 )
 from singimpact.bench.exponents import exponents
-from singimpact.bench.groups import series
+from singimpact.bench.groups import series_rows
 from singimpact.bench.measuring import QUICK
 
 SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)
@@ -155,16 +155,24 @@ def test_peer_that_is_not_installed_is_named(monkeypatch, singimpact):
     assert "scipy DOP853" in told.stdout
 
 
-@pytest.mark.parametrize("task", [pytest.param(series._symbols(5), marks=pytest.mark.slow),
-                                  pytest.param(series._model(5), marks=pytest.mark.slow),
-                                  series._curve(5, "EXACT"), series._curve(5, "Balls(256)"),
-                                  series._curve(5, "DOUBLES"), series._plain(series.MODEL, 2), series._implicit(3)],
-                         ids=lambda task: f"{task.case}, {task.method}")  # fmt: skip
+@pytest.mark.parametrize(
+    "task",
+    [
+        pytest.param(series_rows._symbols(5), marks=pytest.mark.slow),
+        pytest.param(series_rows._model(5), marks=pytest.mark.slow),
+        series_rows._curve(5, "EXACT"),
+        series_rows._curve(5, "Balls(256)"),
+        series_rows._curve(5, "DOUBLES"),
+        series_rows._plain(series_rows.MODEL, 2),
+        series_rows._implicit(3),
+    ],
+    ids=lambda task: f"{task.case}, {task.method}",
+)
 def test_series_gains_a_digit_and_more_by_orders(task):
     """Against flights: order 2 is off by a twentieth, order 5 by a millionth."""
     from singimpact.bench import relative_error
 
-    off = relative_error(task.timed().answers[0], series.TRUTH[task.case][0])
+    off = relative_error(task.timed().answers[0], series_rows.TRUTH[task.case][0])
     assert 0 < off < {2: 0.06, 3: 2e-3, 5: 1e-5}[task.order]
 
 

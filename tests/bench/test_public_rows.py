@@ -26,7 +26,7 @@ from singimpact.bench import (
     first_model,
     script,
 )
-from singimpact.bench.groups import series
+from singimpact.bench.groups import series_rows
 from singimpact.cli import COMMANDS
 
 pytestmark = pytest.mark.plain_code  # compares code objects, which probes exchange
@@ -131,13 +131,13 @@ def test_commands_and_series_in_new_processes_call_public_names_only():
 
 
 def test_series_named_for_the_package_call_public_names_only():
-    tasks = [task for task in (*series.TASKS, *series.LIMITED) if task.method.startswith("singimpact")]
-    assert {task.case for task in tasks} == set(series.TRUTH)
+    tasks = [task for task in (*series_rows.TASKS, *series_rows.LIMITED) if task.method.startswith("singimpact")]
+    assert {task.case for task in tasks} == set(series_rows.TRUTH)
     for task in (task for task in tasks if task.order <= 8):
-        public, private = _executed(f"made = {task.made}", task.before + series.AT)
+        public, private = _executed(f"made = {task.made}", task.before + series_rows.AT)
         assert (len(public), private) == (1, [])
-    kernel = series._symbols(4)
-    _, private = _executed(f"made = {kernel.made}", kernel.before + series.AT)
+    kernel = series_rows._symbols(4)
+    _, private = _executed(f"made = {kernel.made}", kernel.before + series_rows.AT)
     assert private == ["/contact/contact.py:generic", "/theory/sheet.py:sheet"]
 
 

@@ -9,7 +9,7 @@ import flint
 import numpy as np
 import pytest
 
-from singimpact.bench import Cubic, Linear, Problem, first_hit, states
+from singimpact.bench import Cubic, Linear, Problem, first_hit, random_states
 from singimpact.bench.problems import states as problems
 
 
@@ -26,7 +26,7 @@ def test_truth_gives_the_reference(family: str, made: type, each: int) -> None:
 
 def test_no_state_is_wrong() -> None:
     with ThreadPoolExecutor(1) as pool:
-        rows = states.check(250, 7, pool)
+        rows = random_states.check(250, 7, pool)
     assert sum(row.states for row in rows) == 250
     assert {row.kind for row in rows} > {"linear generic", "linear low", "linear graze", "linear long"}
     for row in rows:
@@ -35,9 +35,9 @@ def test_no_state_is_wrong() -> None:
 
 
 def test_a_wrong_impact_is_seen() -> None:
-    found = states._errors("linear", 2.0, 0.0, 1.0, 0.5, [0.0, 1.2, 0.7])
+    found = random_states._errors("linear", 2.0, 0.0, 1.0, 0.5, [0.0, 1.2, 0.7])
     assert found[2] == 1
-    assert states._errors("linear", 2.0, 0.0, 1.0, 0.5, [3.0, np.inf, np.nan])[2] == 1
+    assert random_states._errors("linear", 2.0, 0.0, 1.0, 0.5, [3.0, np.inf, np.nan])[2] == 1
 
 
 @pytest.mark.slow

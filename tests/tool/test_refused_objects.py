@@ -96,7 +96,7 @@ def test_pdf_is_refused_before_anything_is_derived(monkeypatch, tmp_path, singim
     import shutil
 
     monkeypatch.setattr(shutil, "which", lambda _: None)
-    monkeypatch.setattr("singimpact.paper.sections.cached.kept_sections", None)
+    monkeypatch.setattr("singimpact.paper.sections.stored_sections.kept_sections", None)
     found = singimpact("derive", "--format", "pdf", "-o", tmp_path / "pages")
     assert found.exit_code == 2
     assert not (tmp_path / "pages").exists()

@@ -8,7 +8,7 @@ import pytest
 
 import singimpact as si
 from singimpact.inputs import InputError
-from singimpact.results import Result, as_json
+from singimpact.result import Result, as_json
 
 OSC = si.linear("2.8", "0.1", "0.8")
 SWEEP = ("clearance", ("0.1", "0.2"))

@@ -1,51 +1,44 @@
-"""The groups of `singimpact bench`: each a function from an effort to its cases, found when it is asked for.
-
-Files: `impact_map` (`bench map`), `orbit`, `regimes` (hard states), `chatter`, `threshold`, `fixed_points`, `series`,
-`emitted`, `figures`, `growth` (how cost grows), `commands` (the command line and series in symbols), `sweep` (many
-cases), `scale` (large arrays), `branches`
-(periodic orbits), `start` (a new process, a new cache folder).
-A new group: a file with a function `cases`, and its name here.
-"""
+"""The groups of `singimpact bench`: each a function from an effort to its cases, found when it is asked for."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
 from singimpact.bench.groups import (
-    branches,
-    chatter,
-    commands,
-    emitted,
-    figures,
-    fixed_points,
-    growth,
-    impact_map,
-    orbit,
-    regimes,
-    scale,
-    series,
-    start,
-    sweep,
-    threshold,
+    branch_rows,
+    chatter_rows,
+    command_rows,
+    emitted_rows,
+    figure_rows,
+    fixed_point_rows,
+    growth_rows,
+    impact_map_rows,
+    orbit_rows,
+    regime_rows,
+    scale_rows,
+    series_rows,
+    start_rows,
+    sweep_rows,
+    threshold_rows,
 )
 from singimpact.bench.measuring import Case, Effort, Measured, measure
 
 GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
-    "map": impact_map.cases,
-    "orbit": orbit.cases,
-    "regimes": regimes.cases,
-    "chatter": chatter.cases,
-    "threshold": threshold.cases,
-    "series": series.cases,
-    "fixed-points": fixed_points.cases,
-    "emitted": emitted.cases,
-    "figures": figures.cases,
-    "growth": growth.cases,
-    "commands": commands.cases,
-    "sweep": sweep.cases,
-    "scale": scale.cases,
-    "branches": branches.cases,
-    "start": start.cases,
+    "map": impact_map_rows.cases,
+    "orbit": orbit_rows.cases,
+    "regimes": regime_rows.cases,
+    "chatter": chatter_rows.cases,
+    "threshold": threshold_rows.cases,
+    "series": series_rows.cases,
+    "fixed-points": fixed_point_rows.cases,
+    "emitted": emitted_rows.cases,
+    "figures": figure_rows.cases,
+    "growth": growth_rows.cases,
+    "commands": command_rows.cases,
+    "sweep": sweep_rows.cases,
+    "scale": scale_rows.cases,
+    "branches": branch_rows.cases,
+    "start": start_rows.cases,
 }
 SLOW = ("start",)  # compiles in new cache folders, again and again
 

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
-from singimpact.codegen.recurrence import Recurrence
+from singimpact.codegen.taylor_recurrence import Recurrence
 from singimpact.oscillator.model import Oscillator
 
 RULE = """

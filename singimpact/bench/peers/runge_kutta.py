@@ -6,7 +6,7 @@ from math import cos, sin
 from typing import Any
 
 from singimpact.bench.measuring import NotInstalled
-from singimpact.bench.peers.impacts import derivative_of_map
+from singimpact.bench.peers.followed_impacts import derivative_of_map
 from singimpact.bench.problems import Problem
 
 TOLERANCES = (1e-6, 1e-9, 1e-12)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from time import process_time
 
-from singimpact.bench.selftest import basin_pixels, batches, orbits, responses, round_trip, tangencies, truths
+from singimpact.bench.selftest import basin_pixels, batches, followed_orbits, responses, round_trip, tangencies, truths
 from singimpact.bench.selftest.draws import Flown, flown
 from singimpact.bench.selftest.rows import Row, SelfTest
 from singimpact.impact_oscillator import ImpactOscillator
@@ -17,8 +17,8 @@ COMPARED: dict[str, Callable[[Flown], Row]] = {
     "small fixed steps": truths.fixed_steps,
     "more digits": truths.digits,
     "balls": truths.balls,
-    "orbits": orbits.orbits,
-    "chatter limits": orbits.limits,
+    "orbits": followed_orbits.orbits,
+    "chatter limits": followed_orbits.limits,
     "D G": responses.derivatives,
     "rebounds": responses.rebounds,
     "basins": basin_pixels.row,

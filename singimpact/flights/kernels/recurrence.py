@@ -1,7 +1,7 @@
 """The recurrence of f and g as compiled kernels call it: at the address that the numbers p of a model end with.
 
-`codegen.recurrence` emits five functions.  In compiled kernels `flights.bind` puts those named `called_...` here in
-their places; `recurrence_entry` is what stands at the address.
+`codegen.taylor_recurrence` emits five functions.  In compiled kernels `flights.bind` puts those named `called_...`
+here in their places; `recurrence_entry` is what stands at the address.
 """
 
 from __future__ import annotations

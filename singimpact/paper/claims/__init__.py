@@ -2,11 +2,6 @@
 
 Not here: the derivations (`theory`, `paper.routes`), proofs' certificates (`algebra`), the orbits and surfaces on which
 claims are tried (`paper.trials`), the words of the derivations and errata (`paper.sections`).
-Files: `claim` (the data), `sections/` (the claims in the paper's order), `beyond/` (those that it does not have),
-`index` (their ids, titles and what they rest on, without building any), `verifiers` (ways to decide a statement),
-`next_sigma` (a formula that several verifiers use), `deciding` (one claim), `engine` (several, each after what it rests
-on), `keys` and `memory` (verdicts that are kept), `graph` (what rests on what), `verdicts` and `layout` (the table of
-verdicts).
 """
 
 import sys

@@ -13,7 +13,7 @@ from singimpact.dynamics.swan_configuration import swan_configuration
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.acceleration import acceleration
 from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture
-from singimpact.paper.trials import first_order, holder
+from singimpact.paper.trials import first_order_feet, orbits_beside_gamma
 
 DAMPING, CLEARANCE = 0.4, 0.9
 WINDOW = -0.45, 1.0  # of t in figure B1; pi/omega_d is 3.2
@@ -118,8 +118,8 @@ def _box(values: Array) -> tuple[float, float]:
 def figure_B2() -> Picture:
     """X_H - X against H, as it is and without its term of first order."""
     left, right, facts = list[Array](), list[Array](), dict[str, float]()
-    for model in first_order.MODELS:
-        found = first_order.measured(model, "1/2", SIZES)
+    for model in first_order_feet.MODELS:
+        found = first_order_feet.measured(model, "1/2", SIZES)
         term = -(found.limit**2 - 1) / 10 * found.chi
         size, off = np.array(found.sizes), np.array(found.offsets)
         rest = off - term * size
@@ -147,7 +147,7 @@ def figure_B2() -> Picture:
     )
     return Picture("B2", "How fast unfolded swans tend to the universal one",
                    ("b:first-order-foot", "b:first-order-measured"),
-                   "; ".join(model.name for model in first_order.MODELS),
+                   "; ".join(model.name for model in first_order_feet.MODELS),
                    [panel("(a) $|X_H - X|$", left, 1), panel("(b) without the known term", right, 2)], 2, facts,
                    caption)  # fmt: skip
 
@@ -170,9 +170,9 @@ def figure_B3() -> Picture:
             Line(curve, pen, f"j = {order}", f"$j = {order}$", NAMED[order], words=f"contact order $j = {order}$")
         )
         facts[f"alpha at r = 1, j = {order}"] = float(curve[-1, 1])
-    for start in holder.STARTS:
-        for rate in holder.RATES:
-            found = holder.beside(start, rate)
+    for start in orbits_beside_gamma.STARTS:
+        for rate in orbits_beside_gamma.RATES:
+            found = orbits_beside_gamma.beside(start, rate)
             place = np.array([[_value(rate), found.slope]])
             lines.append(Line(place, "crossing", "true orbit", beads=True, words="slopes of true orbits"))
             facts[f"{start.name}, r = {rate}"] = found.slope - log(1 / found.lambda_) / log(found.mu)
@@ -183,7 +183,7 @@ def figure_B3() -> Picture:
         r"measured on orbits of six oscillators at $j = 1$ and 2."
     )
     return Picture("B3", "The threshold of complete chatter is Hoelder continuous", ("b:holder-bounds", "b:holder"),
-                   "; ".join(start.name for start in holder.STARTS),
+                   "; ".join(start.name for start in orbits_beside_gamma.STARTS),
                    [Panel(((0.0, 1.0), (0.1, 1.05)), "$r$", r"$\alpha$", lines=lines)], facts=facts,
                    caption=caption)  # fmt: skip
 

@@ -9,9 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.paper.figures.contact import oscillator
+from singimpact.paper.figures.contact_figures import oscillator
 from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture, Point
-from singimpact.paper.figures.sheet import launch_and_landing
+from singimpact.paper.figures.projections import launch_and_landing
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 

@@ -20,43 +20,49 @@ ACCEPTED = f"a number from {min(FIGURES)} to {max(FIGURES)}, or {BEYOND[0]} to {
 def _function(number: int | str) -> Callable[[], Picture]:
     if isinstance(number, str):
         return _beyond(number)
-    from singimpact.paper.figures import contact, outlines, sections, swans, unfolded  # they load what computes
+    from singimpact.paper.figures import (  # they load what computes
+        contact_figures,
+        outlines,
+        section_figures,
+        swan_figures,
+        unfolded_figures,
+    )
 
     functions: dict[int, Callable[[], Picture]] = {
         1: outlines.figure_1,
         2: outlines.figure_2,
-        3: contact.figure_3,
-        4: contact.figure_4,
-        5: contact.figure_5,
-        6: contact.figure_6,
-        7: contact.figure_7,
-        8: contact.figure_8,
-        9: sections.figure_9,
-        10: sections.figure_10,
-        11: swans.figure_11,
-        12: swans.figure_12,
-        13: unfolded.figure_13,
-        14: swans.figure_14,
-        15: swans.figure_15,
-        16: unfolded.figure_16,
-        17: unfolded.figure_17,
+        3: contact_figures.figure_3,
+        4: contact_figures.figure_4,
+        5: contact_figures.figure_5,
+        6: contact_figures.figure_6,
+        7: contact_figures.figure_7,
+        8: contact_figures.figure_8,
+        9: section_figures.figure_9,
+        10: section_figures.figure_10,
+        11: swan_figures.figure_11,
+        12: swan_figures.figure_12,
+        13: unfolded_figures.figure_13,
+        14: swan_figures.figure_14,
+        15: swan_figures.figure_15,
+        16: unfolded_figures.figure_16,
+        17: unfolded_figures.figure_17,
     }
     return functions[number]
 
 
 def _beyond(name: str) -> Callable[[], Picture]:
-    from singimpact.paper.figures import corrections, hertz, loops, met
+    from singimpact.paper.figures import corrections, hertz_figure, loop_figures, met
 
     functions: dict[str, Callable[[], Picture]] = {
         "B1": corrections.figure_B1,
         "B2": corrections.figure_B2,
         "B3": corrections.figure_B3,
-        "B4": loops.figure_B4,
-        "B5": loops.figure_B5,
-        "B6": loops.figure_B6,
+        "B4": loop_figures.figure_B4,
+        "B5": loop_figures.figure_B5,
+        "B6": loop_figures.figure_B6,
         "B7": met.figure_B7,
         "B8": met.figure_B8,
-        "B9": hertz.figure_B9,
+        "B9": hertz_figure.figure_B9,
     }
     return functions[name]
 
@@ -86,6 +92,6 @@ def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
     >>> len(figure(12).axes)
     4
     """
-    from singimpact.paper.figures.rendering import Look, drawn
+    from singimpact.paper.figures.figure_rendering import Look, drawn
 
     return drawn(picture(number), Look(serif, dark))

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.documents import escape
 from singimpact.documents.breaking import wrapping
-from singimpact.paper.sections.cached import kept_legend
 from singimpact.paper.sections.places import PAPER, VERSION, Place, place_of
 from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
-from singimpact.paper.sections.words import in_letters
+from singimpact.paper.sections.shared_words import in_letters
+from singimpact.paper.sections.stored_sections import kept_legend
 
 if TYPE_CHECKING:
     from singimpact.paper.claims.claim import Claim, Verdict

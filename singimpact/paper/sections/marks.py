@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from singimpact.documents.steps import Mark, Section, claims_of
+from singimpact.documents.document_steps import Mark, Section, claims_of
 
 
 def marks_of(shown: Iterable[Section], on_start: Callable[..., None] | None = None) -> dict[str, Mark]:

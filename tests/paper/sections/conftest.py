@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from singimpact.paper import marks_of
-from singimpact.paper.sections.derivations import sections
+from singimpact.paper.sections.derivation_sections import sections
 
 
 @pytest.fixture(scope="session")

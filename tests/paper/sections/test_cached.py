@@ -4,11 +4,11 @@ import subprocess
 import sys
 
 from singimpact.paper import cache, kept_sections
-from singimpact.paper.sections import derivations
+from singimpact.paper.sections import derivation_sections
 
 READ = """
 import sys
-from singimpact.paper.sections.cached import kept_sections
+from singimpact.paper.sections.stored_sections import kept_sections
 print(len(kept_sections(["swan"])[1].steps), "sympy" in sys.modules)
 """
 
@@ -16,8 +16,8 @@ print(len(kept_sections(["swan"])[1].steps), "sympy" in sys.modules)
 def test_kept_sections_are_those_derived_and_need_no_sympy(monkeypatch, tmp_path):
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
     made = kept_sections(["swan"])
-    assert made == derivations.sections(["swan"])
-    monkeypatch.setattr(derivations, "sections", None)
+    assert made == derivation_sections.sections(["swan"])
+    monkeypatch.setattr(derivation_sections, "sections", None)
     assert kept_sections(["swan"]) == made
     found = subprocess.run([sys.executable, "-c", READ], capture_output=True, text=True, check=True)
     assert found.stdout.split() == [str(len(made[1].steps)), "False"]
@@ -27,7 +27,7 @@ def test_sections_of_another_source_are_derived_again(monkeypatch, tmp_path):
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
     kept_sections(["swan"])
     monkeypatch.setattr(cache, "source_digest", lambda *_: "another source")
-    monkeypatch.setattr(derivations, "sections", lambda _: [])
+    monkeypatch.setattr(derivation_sections, "sections", lambda _: [])
     assert kept_sections(["swan"]) == []
 
 

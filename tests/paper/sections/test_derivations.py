@@ -132,8 +132,8 @@ def test_writing_Q_is_refused_where_it_does_not_fit():
 _PROGRAM = """
 import json, sys
 from singimpact.documents.formats import as_text
-from singimpact.documents.steps import Mark, claims_of
-from singimpact.paper.sections.derivations import sections
+from singimpact.documents.document_steps import Mark, claims_of
+from singimpact.paper.sections.derivation_sections import sections
 told = sections()
 marks = {claim: Mark("proved", "proved") for claim in claims_of(told)}
 sys.stdout.write("".join(as_text(told, marks, form) for form in ("latex", "markdown", "json")))

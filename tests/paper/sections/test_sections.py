@@ -26,7 +26,7 @@ from singimpact.documents import (
     width,
 )
 from singimpact.paper import NOTATION
-from singimpact.paper.sections.derivations import SECTIONS, sections
+from singimpact.paper.sections.derivation_sections import SECTIONS, sections
 
 LONG = "v = " + " + ".join(
     rf"\frac{{{k} a_{{{k}}}}}{{{k + 1}}} \sigma^{{{k}}} \left(1 - \lambda_{{{k}}}\right)" for k in range(1, 30)

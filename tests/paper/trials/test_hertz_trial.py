@@ -8,7 +8,7 @@ from singimpact.algebra import DOUBLES
 from singimpact.contact import acceleration_jet
 from singimpact.oscillator import Oscillator
 from singimpact.paper import POWERS, above, constant, edge
-from singimpact.paper.trials.hertz import STARTS, measured
+from singimpact.paper.trials.hertz_orbits import STARTS, measured
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from singimpact.algebra import DOUBLES, evaluate, function_of, parse
-from singimpact.paper.trials import surfaces, unfolded
+from singimpact.paper.trials import surfaces, universal_orbits
 
 
 def test_jumps_are_found_between_neighbours_and_smooth_changes_are_not():
@@ -27,9 +27,9 @@ def test_crossings_are_counted_and_jumps_are_not(monkeypatch):
     def off(_sigma, v):
         return np.where(v < 0.5, np.sin(7 * np.pi * v), 5.0 * np.sign(v - 0.75))
 
-    monkeypatch.setattr(unfolded, "_off", off)
-    monkeypatch.setattr(unfolded, "_outline", lambda _: 1.0)
-    assert unfolded._crossings(-2.0, 0.05, 1.0) == 3
+    monkeypatch.setattr(universal_orbits, "_off", off)
+    monkeypatch.setattr(universal_orbits, "_outline", lambda _: 1.0)
+    assert universal_orbits._crossings(-2.0, 0.05, 1.0) == 3
 
 
 @pytest.mark.parametrize("text", ["x + 0.1*xdot + 0.3*x**3", "sin(x)/(1 + x**2) - xdot**(1/3)", "2**x*exp(-xdot)", "3"])

@@ -6,7 +6,7 @@ import re
 from click.testing import CliRunner
 
 import singimpact
-from singimpact.cli.cite import command
+from singimpact.cli.cite_command import command
 
 
 def test_what_to_cite():

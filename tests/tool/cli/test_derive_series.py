@@ -11,7 +11,7 @@ import sympy
 from click.testing import CliRunner
 
 import singimpact as si
-from singimpact.cli.derive import command
+from singimpact.cli.derive_command import command
 from singimpact.inputs import InputError
 
 

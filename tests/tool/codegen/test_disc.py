@@ -24,7 +24,7 @@ from singimpact.codegen import (
     tanh_radius,
     whole_power_radius,
 )
-from singimpact.codegen.recurrence import recurrence
+from singimpact.codegen.taylor_recurrence import recurrence
 from singimpact.flights import Work, over_floats
 
 CIRCLE = np.exp(2j * np.pi * np.arange(64) / 64)

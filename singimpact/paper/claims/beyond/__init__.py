@@ -1,13 +1,6 @@
 """Claims that the paper does not have, apart from its own: `BEYOND` is file -> its claims, imported when called.
 
 Not here: claims of the paper (`claims.sections`). None is printed anywhere, so none is corrected; mutants stand beside.
-Files: `cascade` (border orbits and the cascade beside them), `horseshoe` (a certified homoclinic orbit), `repairs`
-(what corrected statements of the paper need), `every_order` (contact points of every order), `gauge`
-(linear oscillators as balls under gravity that varies), `first_order` (the first correction to the limits at contact
-points), `holder` (how the foot of a chatter leaves the end of gamma), `loops` (heights of the loops of W^s(X)), `foot`
-(X for every r, in balls), `onset` (what is born at a negative swan), `events` (what a swan meets:
-P as the preimage of a front), `events_harmonic` (all of it for one cosine), `events_met` (what is met first), `gamma`
-(gamma proved on one oscillator), `hertz` (restitution that tends to 1 like a power of the speed).
 """
 
 from __future__ import annotations

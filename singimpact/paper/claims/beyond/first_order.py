@@ -12,7 +12,7 @@ from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC
 from singimpact.paper.claims.verifiers import every, is_zero, same, sample
 from singimpact.paper.routes import first_order as route
 from singimpact.paper.routes.first_order import A2, A3, Change, damping, first, h, j, s, second
-from singimpact.paper.trials.first_order import MODELS, RATES, measured
+from singimpact.paper.trials.first_order_feet import MODELS, RATES, measured
 from singimpact.theory.homogeneous import launch_velocity
 from singimpact.theory.sheet import generic_sheet
 

@@ -19,7 +19,7 @@ from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.beyond.every_order import CLOSED_P, CLOSED_Q, L, closed_forms, ell, j
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.verifiers import every, same, sample
-from singimpact.paper.trials.hertz import POWERS, STARTS, Measured, measured
+from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, Measured, measured
 
 claim = in_section("beyond")
 q, e, rate, exponent = sympy.symbols("q e x N")

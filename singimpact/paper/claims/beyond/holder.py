@@ -9,7 +9,7 @@ import sympy
 from singimpact.paper.claims.beyond.every_order import j, rising
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.verifiers import every, same
-from singimpact.paper.trials.holder import RATES, STARTS, beside
+from singimpact.paper.trials.orbits_beside_gamma import RATES, STARTS, beside
 
 claim = in_section("beyond")
 lam, mu = sympy.symbols("lambda mu")

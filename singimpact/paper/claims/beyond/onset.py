@@ -14,8 +14,8 @@ from singimpact.paper.claims.sections.section6_scaling import near_the_swan
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u
-from singimpact.paper.trials.first_order import limit_of
-from singimpact.paper.trials.onset import DEPTHS, LIFTS, RATES, hop
+from singimpact.paper.trials.born_orbits import DEPTHS, LIFTS, RATES, hop
+from singimpact.paper.trials.first_order_feet import limit_of
 
 claim = in_section("beyond")
 v, s, bend, drop, rate = sympy.symbols("v s A2 dc a_c")  # A2 = |a''|, a_c = |da/dc|

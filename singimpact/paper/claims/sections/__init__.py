@@ -1,12 +1,6 @@
 """The claims in the paper's order, one file a section; `SECTIONS` is file -> its claims, imported when called.
 
-Not here: how they are run (`claims.engine`).  A statement is encoded as printed; mutants stand beside it.  Files in the
-paper's order: `section2`, `section2_maps`, `section3`, `section4`, `section4a_arc`, `section4a_fold`,
-`section4a_blowup`, `section4a_rays`, `section4a_multipliers`, `section4b`, `section4b_leaves`, `section5`, `section6`,
-`section6_negative`, `section6_regions`, `section6_leaves`.
-Printed and corrected statements are tried on models by `section2_trials` (with section 3), `section4_trials`,
-`section4b_trials`, `section5_trials`, `section6_trials`; `section4_orbits` is the argument about orbits that t:t2, t:t3
-and t:foliate share, `section6_scaling` has what persists near a swan, `section6_exact` what polynomials decide there.
+Not here: how they are run (`claims.engine`).  A statement is encoded as printed; mutants stand beside it.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from typing import Any
 from singimpact.paper.claims.claim import Check, Statement
 from singimpact.paper.claims.sections.section6 import claim_6
 from singimpact.paper.claims.verifiers import every
-from singimpact.paper.trials import unfolded
+from singimpact.paper.trials import universal_orbits
 
 TRIALS: dict[str, Any] = {}
 RATES = ("1/10", "1/2", "9/10")
@@ -18,7 +18,7 @@ def _separated(stated: tuple[bool, bool]) -> Check:
     """Whether chatter is complete before B, and so on AB, below gamma, and above it; otherwise orbits leave S'."""
     parts = []
     for rate in RATES:
-        lines = unfolded.fates(rate)
+        lines = universal_orbits.fates(rate)
         changes = {line: sum(one != other for one, other in pairwise(found))
                    for line, found in lines.items()}  # fmt: skip
         below = [found[0] for line, found in lines.items() if changes[line]]
@@ -39,7 +39,7 @@ def _separated(stated: tuple[bool, bool]) -> Check:
 
 def _crossed(stated: int) -> Check:
     """The sign of the derivative, along R(D''C'') from C'' to B, of the phase at which chatter ends."""
-    found = {rate: unfolded.feet_on_the_landing_arc(rate) for rate in RATES}
+    found = {rate: universal_orbits.feet_on_the_landing_arc(rate) for rate in RATES}
     told = "; ".join(f"{min(rates):.4f} to {max(rates):.4f} for r = {rate}" for rate, rates in found.items())
     return every(
         [
@@ -54,7 +54,7 @@ def _crossed(stated: int) -> Check:
 
 def _beyond(stated: tuple[int, int]) -> Check:
     """The sign of the excess of feet over X at discontinuities, and crossings gained by each that comes into reach."""
-    found = unfolded.beyond()
+    found = universal_orbits.beyond()
     sign, gain = stated
     return every(
         [

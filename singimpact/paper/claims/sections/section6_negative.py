@@ -20,7 +20,7 @@ from singimpact.paper.claims.sections.section6_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t, u
-from singimpact.paper.trials import unfolded
+from singimpact.paper.trials import universal_orbits
 from singimpact.paper.trials.true_orbits import lambda_of
 from singimpact.theory.homogeneous import lambda_, mu_of_lambda
 
@@ -149,7 +149,7 @@ def _cusp(stated: tuple[Any, Any]) -> Check:
 
 def _tangent(order: int) -> Check:
     """v/(sigma + 1)^order tends to a finite limit, not 0, on W^s(X) on both sides of A."""
-    left, right = unfolded.tangency_at_A()
+    left, right = universal_orbits.tangency_at_A()
     return every(
         [
             (
@@ -163,7 +163,7 @@ def _tangent(order: int) -> Check:
 
 def _loop(stated: int) -> Check:
     """Branches of W^s(X) over lines that meet delta: one above it and one just below, joined to the left of D'."""
-    found = unfolded.loops()
+    found = universal_orbits.loops()
     pairs = all(sum(pair) == stated for pair in found.around)
     return every(
         [
@@ -178,7 +178,7 @@ def _loop(stated: int) -> Check:
 
 def _accumulation(factor: str) -> Check:
     """Heights v/h^2 of G^-n(delta) over sigma = -1 - h against gamma's; distances shrink by 1/mu."""
-    found = unfolded.preimages()
+    found = universal_orbits.preimages()
     expected = 1 / float(mu_of_lambda(1).subs(lambda_, lambda_of(0.5, 1)))
     shown, twice = (", ".join(f"{v:.4f}" for v in heights[:5]) for heights in (found.heights, found.farther))
     return every(
@@ -198,7 +198,7 @@ def _accumulation(factor: str) -> Check:
 
 def _infinitely(count: int) -> Check:
     """Crossings of W^s(X) between successive inverse images of delta: a loop in each interval."""
-    found = unfolded.loops()
+    found = universal_orbits.loops()
     return every(
         [
             (

@@ -1,0 +1,136 @@
+"""`bench chatter`: when infinitely many impacts accumulate: x'' + x = cos 2t, c = 0.3, from (1.2, 0.01), as close as
+wanted; and c = 0.7 or Duffing's model, from other states in every timed call.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from math import cos
+from typing import Any
+
+from singimpact.bench.compiled import compiled
+from singimpact.bench.drawn import CHATTERING, Draws, States, counted, model
+from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
+from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
+from singimpact.bench.peers import followed_impacts, many_digits, runge_kutta, taylor_events
+from singimpact.bench.problems import Problem, values
+from singimpact.impact_oscillator import linear
+
+STATE = "1.2", "0.01"
+NAME = "chatter.tau_inf.linear[w=2,c=0.3,r={}](1.2,0.01)"
+# velocities at which a peer stops and adds the first term of the rest: the error falls with their square
+STOPS = (1e-3, 1e-4, 1e-5, 1e-6)
+
+
+def cases(effort: Effort) -> Iterator[Case]:
+    """Two restitutions as close as wanted; then a state a call by restitution, and an array."""
+    notes = compiled(("orbit",), effort.wait)
+    for r in ("0.5", "0.9"):
+        yield replace(_case(r, effort), notes=notes)
+    for restitution in (0.9,) if effort.quick else (0.5, 0.9, 0.99, 0.999):
+        yield _drawn(CHATTERING, restitution, 1, effort)
+    yield _drawn("duffing", 0.7, 1, effort)
+    for restitution in (0.9,) if effort.quick else (0.5, 0.9):
+        yield _drawn(CHATTERING, restitution, 25 * effort.judged if effort.quick else 100_000, effort)
+
+
+def _case(r: str, effort: Effort) -> Case:
+    osc, problem = linear(2, "0.3", r), Problem("linear", "chatter", 2.0, 0.3, float(r), 1.2, 0.01, "", "")
+    stops = STOPS[:2] if effort.quick else STOPS
+    own = [Method("singimpact", "doubles", lambda: [osc.chatter_limit(*STATE).tau])]
+    own += [
+        Method("singimpact", f"digits {d}", partial(_digits, osc, d), epsilon=10.0**-d)
+        for d in ((20,) if effort.quick else (20, 35))
+    ]
+    methods, skipped = with_peers(
+        own,
+        lambda: [_flown("scipy DOP853, 1e-9", runge_kutta.stepper("linear", 1e-9), problem, s) for s in stops],
+        lambda: [_flown("heyoka, 1e-9", taylor_events.stepper("linear", 1e-9), problem, s) for s in stops],
+        lambda: [_in_digits(problem, stop, 30) for stop in ((1e-6,) if effort.quick else (1e-6, 1e-9, 1e-12))],
+    )
+    kappa = condition(lambda tau, v: float(osc.chatter_limit(tau, v).tau), 1.2, 0.01, 1e-4)
+    return Case(f"linear, r = {r}", methods, [values()[NAME.format(r)]], [kappa], skipped)
+
+
+def _digits(osc: Any, digits: int) -> list[Any]:
+    return [osc.chatter_limit(*STATE, digits=digits).tau]
+
+
+def _flown(name: str, fly: Callable[[Problem], tuple[Any, Any]], problem: Problem, stop: float) -> Method:
+    return Method(name, f"until v < {stop:.0e}", lambda: [followed_impacts.chatter_limit(fly, problem, stop, cos)])
+
+
+def _in_digits(problem: Problem, stop: float, digits: int) -> Method:
+    import mpmath
+
+    def run() -> list[Any]:
+        with mpmath.workdps(digits):
+            c, r, tau, v = (mpmath.mpf(text) for text in ("0.3", str(problem.restitution), *STATE))
+            exact = replace(problem, clearance=c, restitution=r, tau=tau, v=v)
+            return [followed_impacts.chatter_limit(many_digits.root_of_closed_form, exact, stop, mpmath.cos)]
+
+    return Method(f"mpmath findroot, dps {digits}", f"until v < {stop:.0e}", run)
+
+
+CALLS = 20  # of a timed run of a state a call
+LONGEST = 10.0  # CPU seconds of a timed call of an array: where it would take longer it has fewer states
+JUDGED = {0.5: 5, 0.7: 2, 0.9: 3, 0.99: 1, 0.999: 1}  # states with 25 digits, by the impacts that they take
+TO = 1e-3  # of the first velocity: where a peer ends
+
+
+def _drawn(family: str, restitution: float, count: int, effort: Effort) -> Case:
+    """Some calls of one state, or one of an array."""
+    draw = partial(Draws, family, "chattering", restitution=restitution)
+    osc, run = model(family, restitution), _a_state if count == 1 else _an_array
+    if count > 1:
+        count = affordable(_an_array, draw, count)
+    setting, problems = f"{counted(count, 'state')} a call", CALLS if count == 1 else count
+    own = [Method("singimpact, chatter_limit", setting, run, problems=problems, draw=draw(problems))]
+    kind = "duffing" if family == "duffing" else "linear"
+    methods, skipped = with_peers(
+        own,
+        lambda: [_summed(HEYOKA, taylor_stepper(kind), draw(5))],
+        lambda: [_summed(SCIPY, runge_kutta.stepper(kind, ACCURACY[SCIPY]), draw(1))],
+    )
+    truth, kappas = _in_digits_of(osc, draw(1 if effort.quick else JUDGED[restitution])())
+    name = "linear" if family == CHATTERING else "Duffing"
+    return Case(f"{name}, r = {restitution:g}, {setting}", methods, truth, kappas, skipped)
+
+
+def affordable(run: Callable[[Any], Any], draw: Callable[[int], Draws], count: int) -> int:
+    """The count, divided by ten until a call takes `LONGEST` seconds at most, estimated from 100 states."""
+    few = draw(min(100, count))
+    run(few())
+    states, start = few(), time.process_time()
+    run(states)
+    each = (time.process_time() - start) / states.tau.size
+    while count > 100 and each * count > LONGEST:
+        count //= 10
+    return count
+
+
+def _a_state(states: States) -> list[float]:
+    return [float(states.osc.chatter_limit(tau, v).tau)
+            for tau, v in zip(states.tau.tolist(), states.v.tolist(), strict=True)]  # fmt: skip
+
+
+def _an_array(states: States) -> Any:
+    return states.osc.chatter_limit(states.tau, states.v).tau
+
+
+def _in_digits_of(osc: Any, states: States) -> tuple[list[Any], list[float]]:
+    """Limits with 25 digits: of linear models enclosures, which share no flight with the answers in doubles."""
+    pairs = list(zip(states.tau.tolist(), states.v.tolist(), strict=True))
+    kappas = [condition(lambda tau, v: float(osc.chatter_limit(tau, v).tau), tau, v, 1e-4) for tau, v in pairs]
+    return [osc.chatter_limit(tau, v, digits=25).tau for tau, v in pairs], kappas
+
+
+def _summed(name: str, fly: Any, draw: Draws) -> Method:
+    def run(problems: Any) -> list[Any]:
+        return [followed_impacts.chatter_limit(fly, each, TO * each.v, cos) for each in problems]
+
+    setting = f"tolerance {ACCURACY[name]:.0e}, {counted(draw.count, 'state')}, until v < {TO:.0e} v"
+    return Method(name, setting, run, draw=lambda: draw().problems())

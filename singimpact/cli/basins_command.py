@@ -1,0 +1,76 @@
+"""`singimpact basins`: the attractor of each state of a grid."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import save, save_once, suffix_of
+from singimpact.store import require_writable
+
+
+@click.command()
+@model_options
+@click.option("--tau", nargs=2, metavar="LOW HIGH", help="Window of launch phases.  [default: one period]")
+@click.option("--v", nargs=2, metavar="LOW HIGH", default=("0", "2"), show_default=True, help="Window of velocities.")
+@click.option("--size", type=click.IntRange(2, 10_000), default=600, show_default=True, help="States a side.")
+@click.option(
+    "--impacts",
+    type=click.IntRange(1, 10**7),
+    default=20_000,
+    show_default=True,
+    help="Of an orbit that does not settle.",
+)
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: threads, one for each core]")
+@click.option(
+    "--layer",
+    type=click.Choice(["for-ever", "first-chatter"]),
+    default="for-ever",
+    show_default=True,
+    help="Draw the attractors, or the states whose first chatter completes.",
+)
+@click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
+@click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
+def command(
+    tau: tuple[str, str] | None, v: tuple[str, str], size: int, impacts: int, workers: int | None, layer: str,
+    output: str, as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """Basins of attraction on a grid of launches: (n, k) orbits, repeated chatter, rest, chaos.
+
+    An (n, k) orbit has n impacts in k periods of the forcing.
+    """
+    suffix_of(output)
+    require_writable(output)
+    keep = options.pop("keep")
+    model = take_model(options)
+
+    def make() -> tuple[Any, Any]:
+        from contextlib import nullcontext
+
+        from singimpact.case_pools import WorkerPool
+        from singimpact.dynamics.basins import basins
+        from singimpact.scenes.basins_picture import draw_basins, draw_first_chatter
+
+        with nullcontext() if workers is None else WorkerPool(workers) as pool:
+            found = basins(model, tau, v, size, pool, keep, impacts)
+        draw = draw_basins if layer == "for-ever" else draw_first_chatter
+        values = found.as_dict()
+        first = float(values["first_chatter_completes"].mean())
+        return draw(found).figure, {"classes": values["classes"], "first_chatter_completes": first}
+
+    if keep is None:
+        told = save_once(("basins", model, tau, v, size, impacts, layer), output, make)
+    else:
+        figure, told = make()
+        save(figure, output)
+    if as_json:
+        click.echo(as_json_text({"model": model.to_dict(), "output": output} | told))
+    else:
+        rows = [[str(each["class"]), f"{each['share']:.4f}"] for each in told["classes"]]
+        click.echo(columns(["class", "share"], rows))
+        click.echo(f"first chatter completes  {told['first_chatter_completes']:.4f}")

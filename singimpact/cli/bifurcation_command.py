@@ -1,0 +1,84 @@
+"""`singimpact bifurcation`: settled orbits for many values of a parameter."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.followed import over_option, take_branches, take_orbits
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import save, suffix_of
+from singimpact.store import require_writable
+
+
+@click.command()
+@model_options
+@over_option
+@click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")
+@click.option("--to", "high", metavar="NUMBER", required=True, help="Its last value.")
+@click.option("--points", type=click.IntRange(2, 100_000), default=300, show_default=True, help="Number of values.")
+@click.option("--start", nargs=2, metavar="TAU V", default=("0", "0.1"), show_default=True, help="The first state.")
+@click.option(
+    "--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Impacts for each value."
+)
+@click.option(
+    "--kept",
+    type=click.IntRange(1, 100_000),
+    default=60,
+    show_default=True,
+    help="Last impacts of each that are drawn.",
+)
+@click.option(
+    "--direction",
+    type=click.Choice(["up", "down", "both"]),
+    help="Start each orbit from the last state of the one before.",
+)
+@click.option(
+    "--follow",
+    nargs=2,
+    type=int,
+    multiple=True,
+    metavar="N K",
+    help="Also draw the branches of the model's orbits of N impacts in K periods; may be repeated.",
+)
+@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
+@click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
+@click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give phase, v and end of chatter for each value as JSON.")
+def command(
+    over: str, low: str, high: str, points: int, start: tuple[str, str], impacts: int, kept: int,
+    direction: str | None, follow: tuple[tuple[int, int], ...], workers: int | None, keep: str | None, output: str,
+    as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """The last impacts of one orbit for each value of a parameter.
+
+    amplitude, damping, stiffness and phase move without being named before. Drawn are velocities and phases; with
+    --follow also the periodic orbits through the model's own value, stable and unstable ones.
+    """
+    suffix_of(output)
+    require_writable(output)
+    model = take_model(options)
+    from contextlib import nullcontext
+
+    from singimpact.case_pools import WorkerPool
+    from singimpact.dynamics.bifurcation import bifurcation
+    from singimpact.scenes.bifurcation_picture import bifurcation_sheet
+
+    if direction is not None:
+        found = bifurcation(model, over, (low, high), points, start, impacts, kept, direction, output=keep)
+    else:
+        with nullcontext() if workers is None else WorkerPool(workers) as pool:
+            found = bifurcation(model, over, (low, high), points, start, impacts, kept, executor=pool, output=keep)
+    branches = [
+        each for n, k in follow for each in take_branches(take_orbits(model, (n, k), None), over, (low, high), 2000)
+    ]
+    save(bifurcation_sheet(found, branches), output)
+    if as_json:
+        rows = zip(found.values.tolist(), found.events.tolist(), strict=True)
+        click.echo(as_json_text({"over": over, "cases": [{"value": value, "events": each} for value, each in rows]}))
+    else:
+        left = int((~found.settled).sum())
+        open_ = f"; {left} of them without a period seen in at most {found.settle} impacts" if left else ""
+        click.echo(f"{output}: {points} values of {over}, {kept} events of each{open_}")

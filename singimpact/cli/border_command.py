@@ -1,0 +1,116 @@
+"""`singimpact border`: where a released orbit returns onto gamma, and the cascade beside it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.followed import over_option, take_ends
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import save, suffix_of
+from singimpact.inputs import InputError
+from singimpact.store import require_writable
+
+if TYPE_CHECKING:
+    from singimpact.branches.border import BorderOrbit
+
+
+@click.command()
+@model_options
+@over_option
+@click.option("--from", "low", metavar="NUMBER", help="Its least value; half of the model's value without it.")
+@click.option("--to", "high", metavar="NUMBER", help="Its largest value; one and a half of the model's without it.")
+@click.option("--periods", type=click.IntRange(1, 1000), default=1, show_default=True, help="Within which it returns.")
+@click.option("--points", type=click.IntRange(2, 1_000_000), default=200, show_default=True, help="Values looked at.")
+@click.option("--digits", type=int, metavar="N", help="Decimal digits, certified where r is a number.")
+@click.option("--cascade", is_flag=True, help="Give edges and attractors beside each; -o does, too.")
+@click.option("-o", "--output", metavar="FILE.png", help="The picture of the first one's cascade: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give them as JSON.")
+def command(
+    over: str, periods: int, points: int, digits: int | None, cascade: bool, output: str | None, as_json: bool,
+    **options: Any,
+) -> None:  # fmt: skip
+    """Border orbits: released at rest at a zero of a_c, back exactly on gamma of such a zero.
+
+    There complete chatter becomes incomplete. Beside it the number of impacts changes at edges whose distances shrink
+    by mu(r), with attractors between.
+    """
+    if output is not None:
+        require_writable(output)
+        suffix_of(output)
+    ends = take_ends(options.pop("low"), options.pop("high"))
+    model = take_model(options)
+    from singimpact.branches.border import border_orbits
+
+    found = border_orbits(model, over, ends, digits=digits, periods=periods, points=points)
+    if output is not None:
+        if not found:
+            raise InputError(f"no border orbit to draw: {'; '.join(found.notes)}")
+        save(_picture(found[0]), output)
+    if as_json:
+        rows = [told(each, cascade) for each in found]
+        click.echo(as_json_text({"model": model.to_dict(), "over": over, "orbits": rows, "notes": list(found.notes)}))
+    else:
+        parts = [part for each in found for part in shown(each, cascade)] or ["no border orbit found"]
+        click.echo("\n".join([*parts, *(f"  {note}" for note in found.notes)]))
+
+
+def _picture(border: BorderOrbit) -> Any:
+    from matplotlib.figure import Figure
+
+    from singimpact.scenes.border_picture import draw_border
+
+    figure = Figure(figsize=(7.2, 5.2), dpi=150, layout="constrained")
+    return draw_border(border, *figure.subplots(2, sharex=True, height_ratios=(3, 2))).figure
+
+
+def told(border: BorderOrbit, cascade: bool) -> dict[str, Any]:
+    """A border orbit as JSON."""
+    data: dict[str, Any] = {
+        "parameter": float(border.parameter) if border.digits is None else border.value_text,
+        "error": float(border.error),
+        "certified": None if border.certified is None else border.certified.as_dict(),
+        "release": border.release, "end": border.end, "periods": border.period, "tau": border.tau, "v": border.v,
+        "chatter_completes": border.side, "notes": list(border.notes),
+    }  # fmt: skip
+    if cascade:
+        found = border.cascade
+        limit, error = found.limit
+        data["cascade"] = {
+            "impacts": found.impacts.tolist(), "distance": [float(each) for each in found.distance],
+            "ratios": [float(each) for each in found.ratios], "limit": limit, "limit_error": error,
+            "mu": float(found.mu), "attractors": [_attractor(each) for each in found.windows],
+            "notes": list(found.notes),
+        }  # fmt: skip
+    return data
+
+
+def _attractor(window: Any) -> dict[str, Any]:
+    orbit = window.orbit
+    data = {"impacts": window.impacts, "parameter": window.parameter, "n": None, "k": None, "multipliers": None}
+    if orbit is not None:
+        pairs = [[complex(each).real, complex(each).imag] for each in orbit.multipliers]
+        data |= {"n": "inf" if orbit.kind == "chatter" else int(orbit.n), "k": orbit.k, "multipliers": pairs}
+    return data
+
+
+def shown(border: BorderOrbit, cascade: bool) -> list[str]:
+    """A border orbit for people."""
+    lines = [repr(border)[1:-1], *(f"  {note}" for note in border.notes)]
+    if cascade:
+        found = border.cascade
+        rows = []
+        for i, number in enumerate(found.impacts.tolist()):
+            ratio = f"{float(found.ratios[i]):.10f}" if i < len(found.ratios) else ""
+            orbit = found.windows[i].orbit if i < len(found.windows) else None
+            size = name = ""
+            if orbit is not None:
+                size = f"{abs(complex(orbit.multipliers[0])):.4f}"
+                name = f"({'inf' if orbit.kind == 'chatter' else int(orbit.n)}, {orbit.k})"
+            rows.append([str(number), f"{float(found.distance[i]):.6e}", ratio, name, size])
+        names = ["impacts", "distance of the edge", "ratio to the next", "attractor", "multiplier"]
+        lines += [repr(found)[1:-1], columns(names, rows), *(f"  {note}" for note in found.notes)]
+    return lines

@@ -1,0 +1,107 @@
+"""`singimpact branch`: branches of periodic orbits over a parameter, with their events."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.followed import orbit_options, over_option, take_branches, take_ends, take_orbits
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import blank_axes, save, suffix_of
+from singimpact.store import require_writable, write_text
+
+if TYPE_CHECKING:
+    from singimpact.branches.branch import Branch
+    from singimpact.branches.orbits import PeriodicOrbit
+
+
+@click.command()
+@model_options
+@orbit_options
+@over_option
+@click.option("--from", "low", metavar="NUMBER", help="Its least value.  [default: half of the model's value]")
+@click.option("--to", "high", metavar="NUMBER", help="Its largest value.  [default: 1.5 times the model's]")
+@click.option(
+    "--points",
+    type=click.IntRange(2, 1_000_000),
+    default=2000,
+    show_default=True,
+    help="Points at most, in each direction.",
+)
+@click.option(
+    "--height", type=click.Choice(["v", "phase"]), default="v", show_default=True, help="Vertical axis of the picture."
+)
+@click.option(
+    "--csv", metavar="FILE.csv", help="Write one line for each point: branch, parameter, states, multipliers, ..."
+)
+@click.option("-o", "--output", metavar="FILE.png", help="The picture: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give points and events as JSON.")
+def command(
+    orbit: tuple[int, int], start: tuple[str, str] | None, over: str, height: str, csv: str | None, output: str | None,
+    as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """Follow orbits of N impacts in K periods as a parameter changes.
+
+    Prints folds, period doublings, tori, pitchforks, grazes and hidden impacts, and the end of each branch.
+    """
+    for path in (output, csv):
+        if path is not None:
+            require_writable(path)
+    if output is not None:
+        suffix_of(output)
+    ends, points = take_ends(options.pop("low"), options.pop("high")), options.pop("points")
+    model = take_model(options)
+    found = take_branches(take_orbits(model, orbit, start), over, ends, points)
+    if csv is not None:
+        write_text(csv, table(found))
+    if output is not None:
+        from singimpact.scenes import plot
+
+        save(plot(found, blank_axes(), height=height).figure, output)
+    click.echo(as_json_text({"model": model.to_dict(), "over": over, "branches": [told(each) for each in found]})
+               if as_json else shown(found))  # fmt: skip
+
+
+def table(branches: list[Branch]) -> str:
+    """Lines of a CSV file, the number of the branch first."""
+    lines = [f"branch,{branches[0].csv_lines()[0]}"]
+    lines += [f"{number},{line}" for number, each in enumerate(branches, 1) for line in each.csv_lines()[1:]]
+    return "\n".join(lines) + "\n"
+
+
+def told(branch: Branch) -> dict[str, Any]:
+    """A branch as JSON."""
+    pairs = [[[each.real, each.imag] for each in row] for row in branch.multipliers.tolist()]
+    points = {name: getattr(branch, name).tolist() for name in ("parameter", "tau", "v", "stable", "visible")}
+    events = [
+        {"kind": event.kind, "parameter": event.parameter, "tau": [float(part) for part in event.orbit.tau],
+         "v": [float(part) for part in event.orbit.v], "visible": bool(event.orbit.visible), "after_point": event.index}
+        for event in branch.events
+    ]  # fmt: skip
+    return {"n": branch.n, "k": branch.k, "points": points | {"multipliers": pairs}, "events": events,
+            "notes": list(branch.notes)}  # fmt: skip
+
+
+def shown(branches: list[Branch]) -> str:
+    """Branches as text: a table of events, then the end of each branch."""
+    parts = []
+    for number, each in enumerate(branches, 1):
+        ends = f"{each.over} from {each.parameter.min():.9g} to {each.parameter.max():.9g}"
+        parts.append(f"branch {number}: ({each.n}, {each.k}) orbits, {len(each)} points, {ends}")
+        rows = [
+            [event.kind, f"{event.parameter:.15g}", *state(event.orbit), "" if event.orbit.visible else "virtual"]
+            for event in each.events
+        ]
+        if rows:
+            parts.append(columns(["event", each.over, "tau", "v", ""], rows))
+        parts += [f"  {note}" for note in each.notes]
+    return "\n".join(parts)
+
+
+def state(orbit: PeriodicOrbit) -> list[str]:
+    """Phase and velocity of the weakest impact of an orbit, 12 digits."""
+    weakest = min(range(len(orbit.v)), key=lambda i: float(orbit.v[i]))
+    return [f"{float(orbit.tau[weakest]):.12g}", f"{float(orbit.v[weakest]):.12g}"]

@@ -1,0 +1,37 @@
+"""`singimpact chatter`: the time at which infinitely many impacts accumulate."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, lines_of, number_text, output_options
+from singimpact.status import Status
+
+
+@click.command()
+@model_options
+@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
+@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
+@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits.  [default: a double]")
+@click.option(
+    "--impacts", type=click.IntRange(1, 10_000_000), default=1_000_000, show_default=True, help="Impacts at most."
+)
+@output_options
+def command(
+    tau: str, v: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: Any
+) -> None:
+    """The accumulation time of a chatter sequence, its error, and the impacts flown before a series gave the rest."""
+    osc = take_model(options)
+    end = osc.chatter_limit(tau, v, digits=digits, impacts=impacts)
+    status = Status(int(end.status))
+    enclosure = end.certified.as_dict() if end.certified else {}
+    place, error = number_text(end.tau, digits), float(end.error)
+    if as_json:
+        values = {"tau": place, "error": error, "impacts": end.impacts, **enclosure, "status": status.name}
+        emit(as_json_text({"model": osc.to_dict(), **values}), output)
+    else:
+        rows = {"tau": place, "error": f"{error:.1e}", **enclosure, "impacts": end.impacts}
+        emit("\n".join(lines_of(rows, status)), output)

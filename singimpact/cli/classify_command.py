@@ -1,0 +1,132 @@
+"""`singimpact classify`: the singular points of a model, and the transitions of the outline P."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeGuard
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.inputs import InputError
+
+if TYPE_CHECKING:
+    from singimpact.branches.transitions import Interval, OrbitTransitions
+    from singimpact.surface.classification import Classification
+    from singimpact.surface.transitions import Transitions
+
+
+@click.command()
+@model_options
+@click.option("--window-tau", nargs=2, metavar="LOW HIGH", help="Ends of tau.  [default: one period]")
+@click.option("--window-t", nargs=2, metavar="LOW HIGH", help="Ends of t.  [default: one period to both sides]")
+@click.option("--over", metavar="NAME", help="Also list the transitions of P over this: clearance or a parameter.")
+@click.option(
+    "--between",
+    nargs=2,
+    metavar="LOW HIGH",
+    help="Interval of --over; without --over, clearances in which swans are searched.",
+)
+@click.option(
+    "--orbits",
+    type=click.IntRange(1, 8),
+    metavar="M",
+    help="With --over: also the orbits of n impacts in k periods, n, k <= M, between these transitions.",
+)
+@output_options
+def command(
+    window_tau: tuple[str, str] | None, window_t: tuple[str, str] | None, over: str | None,
+    between: tuple[str, str] | None, orbits: int | None, as_json: bool, output: str | None, **options: Any,
+) -> None:  # fmt: skip
+    """The points of V_c' where p or phi is singular: tangencies, swans, cusps, and the fold lines between them.
+
+    Swan points are listed over the clearance. With --over and --between: the transitions of P met on the way (swans,
+    swallowtails, lips, beaks, tacnodes, triple points, periodic grazes) and which of them are visible, and with
+    --orbits the periodic orbits between them, and where these graze, fold or double. Numbers may be expressions such
+    as pi/2.8.
+    """
+    oscillator = take_model(options)
+    if over is not None and between is None:
+        raise InputError(f"--over {over} needs its ends: --between LOW HIGH")
+    if orbits is not None and over is None:
+        raise InputError("--orbits needs the number that is varied: --over NAME --between LOW HIGH")
+    from singimpact.studies import clearances
+    from singimpact.surface.classification import classify
+
+    swans_between = clearances(between) if between is not None and over in (None, "clearance") else None
+    found = classify(oscillator, window_tau, window_t, swans_between)
+    changes = None if over is None else _transitions(oscillator, over, between, found.t, orbits)
+    if as_json:
+        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(found, over, changes)}), output)
+    else:
+        emit(_text(found, over, changes), output)
+
+
+def _transitions(oscillator: Any, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
+    """Without orbits nothing of branches is loaded, which takes 0.2 s."""
+    if orbits is None:
+        from singimpact.surface.transitions import transitions
+
+        return transitions(oscillator, over, between, t)
+    from singimpact.branches.transitions import transitions as with_orbits
+
+    return with_orbits(oscillator, over, between, t, orbits=orbits)
+
+
+def _with_orbits(changes: Transitions) -> TypeGuard[OrbitTransitions]:
+    """Whether there are orbits between the transitions; asked so that a plain list loads nothing of branches."""
+    return hasattr(changes, "orbit_notes")
+
+
+def _interval(each: Interval) -> dict[str, Any]:
+    orbits = [{"n": None if orbit.kind == "chatter" else int(orbit.n), "k": orbit.k, "kind": orbit.kind,
+               "stable": orbit.stable, "tau": [float(tau) for tau in orbit.tau], "v": [float(v) for v in orbit.v]}
+              for orbit in each.orbits]  # fmt: skip
+    events = [{"kind": change.kind, "value": change.value, "n": change.n, "k": change.k, "below": change.below,
+               "above": change.above} for change in each.changes]  # fmt: skip
+    return {"from": each.low, "to": each.high, "orbits_in_the_middle": orbits, "changes": events}
+
+
+def _as_listed(found: Classification, over: str | None, changes: Transitions | None) -> dict[str, Any]:
+    values = found.as_dict()
+    if changes is not None:
+        values["transitions"] = {"over": over} | changes.as_dict()
+        if _with_orbits(changes):
+            values["transitions"] |= {"intervals": [_interval(each) for each in changes.intervals],
+                                    "orbit_notes": changes.orbit_notes}  # fmt: skip
+    return values
+
+
+def _text(found: Classification, over: str | None, changes: Transitions | None) -> str:
+    tables = [
+        _table("points of V_c' where p or phi is singular", ["point", "of", "kind", "tau", "t", "image tau", "image v"],
+               [[p.name, p.maps, p.kind, *_numbers(p.tau, p.t, *p.image)] for p in found.points]),
+        _table("fold lines", ["of", "from tau", "from t", "to tau", "to t", "ends"],
+               [[f.maps, *_numbers(*f.start, *f.end), " to ".join(dict.fromkeys(f.bounds))] for f in found.folds]),
+        _table("swan points over the clearance", ["c_0", "tau", "kind"],
+               [[*_numbers(s.clearance, s.tau), s.kind] for s in found.swans], found.notes),
+    ]  # fmt: skip
+    if changes is not None:
+        rows = [[c.kind, *_numbers(c.value, c.tau, c.t), _seen(c.visible)] for c in changes]
+        header = ["kind", str(over), "tau", "t", "visible"]
+        tables.append(_table(f"where P changes as {over} moves", header, rows, changes.notes))
+        if _with_orbits(changes):
+            tables.append(f"periodic orbits:\n{changes!r}")
+        if changes.swans_complete:
+            tables.append("no swan between these ends is missing (by interval bounds)")
+    low, high = _numbers(*found.tau), _numbers(*found.t)
+    return "\n\n".join([f"window: tau from {' to '.join(low)}, t from {' to '.join(high)}", *tables])
+
+
+def _seen(visible: bool | None) -> str:
+    return "not decided" if visible is None else "yes" if visible else "no"
+
+
+def _table(title: str, header: list[str], rows: list[list[str]], notes: tuple[str, ...] = ()) -> str:
+    told = columns(header, rows) if rows else "not decided" if notes else "none"
+    return "\n".join([f"{title}:", told, *notes])
+
+
+def _numbers(*values: float) -> list[str]:
+    return [f"{value + 0.0:.12g}" for value in values]

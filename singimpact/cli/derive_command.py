@@ -1,0 +1,145 @@
+"""`singimpact derive`: the derivations and the series of a model, in several formats."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from singimpact.inputs import InputError
+from singimpact.progress import ProgressLine
+from singimpact.store import folder
+
+if TYPE_CHECKING:
+    from singimpact.documents.document_steps import Mark, Section
+    from singimpact.documents.series_documents import SeriesRequest
+
+FORMATS = ("latex", "pdf", "markdown", "json", "sympy", "numpy")
+
+
+@click.command()
+@click.argument("names", metavar="[SECTION]...", nargs=-1)
+@click.option(
+    "--format", "form", type=click.Choice(FORMATS), default="latex", show_default=True, help="Format of the output."
+)
+@click.option("--order", type=int, help="Write series to this order, not the derivations.  [default: 6]")
+@click.option("--model", metavar="FILE", help="Write the series of this model.")
+@click.option("--tau", help="With --model: the point of the series.  [default: tangency and swan points]")
+@click.option("--keep", metavar="NAME", multiple=True, help="With --model: a parameter that stays a letter.")
+@click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
+@click.option(
+    "-o", "--output", metavar="DIR", help="Write files into this folder instead of one text to standard output."
+)
+def command(
+    names: tuple[str, ...],
+    form: str,
+    order: int | None,
+    model: str | None,
+    tau: str | None,
+    keep: tuple[str, ...],
+    as_json: bool,
+    output: str | None,
+) -> None:
+    """Write the derivations: steps in order, each equation with its label and the verdict of its claim.
+
+    A SECTION is a number (4), a name (section4) or a subject (tangency); the default is all sections.
+    LaTeX files are one for each section, and derivations.tex, which includes them.
+    With --order or --model the series v_c, gamma and more are written instead, in any format. The formats sympy and
+    numpy always write series. The numpy file of a model holds tau_* and the radius in which each series is accurate.
+    """
+    form = "json" if as_json else form
+    if form == "pdf" and output is None:
+        raise InputError("--format pdf goes to files only: give a folder with -o")
+    if form == "pdf":
+        from singimpact.documents.compiling import require_latex
+
+        require_latex()
+    if output is not None:
+        folder(output)  # an error in the output path is raised before the computation, not after it
+    if form in ("sympy", "numpy") or order is not None or model is not None:
+        if names:
+            raise InputError(f"{names[0]} is a section of the derivations: a series takes --order and --model alone")
+        _series(_request(order, model, tau, keep), form, output)
+        return
+    if tau is not None or keep:
+        raise InputError("--tau and --keep belong to --model")
+    _derivations(names, form, output)
+
+
+def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
+    from singimpact.documents.formats import as_text
+    from singimpact.paper.sections.marks import marks_of
+    from singimpact.paper.sections.stored_sections import kept_sections
+
+    told = kept_sections(names)
+    with ProgressLine() as line:
+        done = iter(range(1, sys.maxsize))
+        marks = marks_of(told, lambda claim, _, total: line.show(next(done), total, claim.id))
+    if output is None:
+        click.echo(as_text(told, marks, form), nl=False)
+    else:
+        _write(told, marks, form, output)
+
+
+def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> SeriesRequest:
+    from singimpact.documents.series_documents import SeriesRequest
+
+    given = None
+    if model is not None:
+        from singimpact.impact_oscillator import read_model
+
+        given = read_model(model)
+    return SeriesRequest(6 if order is None else order, given, tau, keep)
+
+
+def _series(request: SeriesRequest, form: str, output: str | None) -> None:
+    """The series as text to standard output, or as files in the folder."""
+    from singimpact.documents.formats import as_text
+    from singimpact.documents.series_documents import series_section, series_text
+    from singimpact.paper.sections.meaning_of_letters import NOTATION
+    from singimpact.store import written
+
+    if form in ("sympy", "numpy", "json"):
+        text = series_text(request, form)
+        if output is None:
+            click.echo(text, nl=False)
+            return
+        name = "series.json" if form == "json" else f"series_{form}.py"
+        with written(Path(output) / name) as draft:
+            draft.write_bytes(text.encode())
+        return
+    told = [NOTATION, series_section(request)]
+    if output is None:
+        click.echo(as_text(told, {}, form), nl=False)
+    else:
+        _write(told, {}, form, output)
+
+
+def _write(told: list[Section], marks: dict[str, Mark], form: str, output: str) -> None:
+    from singimpact.documents.compiling import CompileError
+    from singimpact.documents.formats import as_files
+    from singimpact.store import written
+
+    try:
+        files = as_files(told, marks, form, _picture)
+    except CompileError as error:
+        raise click.ClickException(str(error)) from None
+    for name, content in files.items():
+        with written(Path(output) / name) as draft:
+            draft.write_bytes(content)
+
+
+def _picture(name: str) -> bytes:
+    """A figure of the paper as PDF, from its computed data."""
+    from tempfile import TemporaryDirectory
+
+    from singimpact.cli.pictures import save
+    from singimpact.paper.figures.figure_rendering import drawn
+    from singimpact.paper.figures.stored_figures import kept_picture
+
+    with TemporaryDirectory() as place:
+        number = name.removeprefix("figure")
+        save(drawn(kept_picture(int(number) if number.isdigit() else number)), f"{place}/{name}.pdf")
+        return Path(place, f"{name}.pdf").read_bytes()

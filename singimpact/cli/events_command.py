@@ -1,0 +1,152 @@
+"""`singimpact events`: curves of grazes, folds and doublings in two parameters."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.followed import orbit_options, take_branches, take_ends, take_orbits
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text
+from singimpact.cli.pictures import blank_axes, save, suffix_of
+from singimpact.inputs import InputError
+from singimpact.oscillator.moving_number import value_of
+from singimpact.store import require_writable, write_text
+
+if TYPE_CHECKING:
+    from singimpact.branches.branch import Branch
+    from singimpact.branches.event_curve import EventCurve
+    from singimpact.branches.events import Event
+
+NEAR = 0.05
+"""An event that is nearer to a step of a curve than this part of the step is on the curve."""
+KINDS = ("fold", "period-doubling", "graze", "hidden impact")
+
+
+@click.command()
+@model_options
+@orbit_options
+@click.option("--over", nargs=2, metavar="A B", default=("clearance", "restitution"), show_default=True,
+              help="Two parameters; the orbits are followed over A first.")  # fmt: skip
+@click.option("--from", "low", nargs=2, metavar="A B", help="Their least values.  [default: half of the model's]")
+@click.option("--to", "high", nargs=2, metavar="A B", help="Their largest values.")
+@click.option("--event", "kinds", type=click.Choice(KINDS), multiple=True, help="Events of this kind.  [default: all]")
+@click.option("--index", type=click.IntRange(1), help="Only the event with this number in the list of `branch`.")
+@click.option(
+    "--points",
+    type=click.IntRange(2, 1_000_000),
+    default=1000,
+    show_default=True,
+    help="Points at most, in each direction.",
+)
+@click.option(
+    "--csv", metavar="FILE.csv", help="Write one line for each point: curve, kind, both parameters, states, visible."
+)
+@click.option("-o", "--output", metavar="FILE.png", help="The picture: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give points and points of codimension two as JSON.")
+def command(
+    orbit: tuple[int, int], start: tuple[str, str] | None, over: tuple[str, str], kinds: tuple[str, ...],
+    csv: str | None, output: str | None, as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """Follow events of the orbits of N impacts in K periods as curves in the plane of two parameters.
+
+    Prints the points of codimension two: resonant grazes, cusps, two grazes at once, and others.
+    """
+    for path in (output, csv):
+        if path is not None:
+            require_writable(path)
+    if output is not None:
+        suffix_of(output)
+    ends, points = take_ends(options.pop("low"), options.pop("high")), options.pop("points")
+    index = options.pop("index")
+    model = take_model(options)
+    both = None if ends is None else ((ends[0][0], ends[1][0]), (ends[0][1], ends[1][1]))
+    branches = take_branches(take_orbits(model, orbit, start), over[0], None if both is None else both[0], 2000)
+    chosen = choose(branches, kinds, index)
+    from singimpact.branches.event_curve import event_curve
+
+    found: list[EventCurve] = []
+    for event in chosen:
+        if not any(on_curve(event, each) for each in found):
+            found.append(event_curve(event, over, both, points=points))
+    if csv is not None:
+        write_text(csv, table(found))
+    if output is not None:
+        from singimpact.scenes import plot
+
+        save(plot(found, blank_axes()).figure, output)
+    click.echo(as_json_text({"model": model.to_dict(), "over": over, "curves": [told(each) for each in found]})
+               if as_json else shown(found))  # fmt: skip
+
+
+def choose(branches: list[Branch], kinds: tuple[str, ...], index: int | None) -> list[Event]:
+    """The events that the options name; the graze of an orbit without impact is that of the orbit with one.
+
+    Raises
+    ------
+    InputError : there is none.
+    """
+    every = [event for branch in branches for event in branch.events]
+    found = [event for place, event in enumerate(every, 1) if index in (None, place) and event.kind in (kinds or KINDS)]
+    if not found:
+        given = ", ".join(f"{place} {event.kind}" for place, event in enumerate(every, 1)) or "none"
+        raise InputError(f"no such event: those of the branch are {given}; --from and --to make it longer")
+    return [event if event.orbit.n else _with_impact(event, branches[0]) for event in found]
+
+
+def _with_impact(event: Event, free: Branch) -> Event:
+    """The same graze on the branch of orbits with the impact that begins there."""
+    from singimpact.branches.branch import branch
+
+    ends = float(free.parameter.min()), float(free.parameter.max())
+    through = branch(event.others()[0], event.over, ends)
+    same = [each for each in through.events if each.kind == "graze"]
+    return min(same, key=lambda each: abs(each.parameter - event.parameter))
+
+
+def on_curve(event: Event, curve: EventCurve) -> bool:
+    """Whether an event is one of a curve's."""
+    import numpy as np
+
+    if (event.kind, event.orbit.n, event.orbit.k) != (curve.kind, curve.n, curve.k):
+        return False
+    # the two numbers and the least velocity, each in units of its range
+    rows = np.column_stack([curve.parameters, curve.v.min(axis=1)])
+    numbers = [event.parameter if name == event.over else value_of(event.orbit.oscillator, name) for name in curve.over]
+    scale = np.maximum(np.ptp(rows, axis=0), 1e-300)
+    scale[2] = np.abs(curve.v).max() or 1.0
+    points, at = rows / scale, np.array([*numbers, float(np.min(event.orbit.v))]) / scale
+    move = np.diff(points, axis=0)
+    length = np.linalg.norm(move, axis=1) + 1e-300
+    share = (((at - points[:-1]) * move).sum(axis=1) / length**2).clip(0, 1)
+    gap = np.linalg.norm(points[:-1] + share[:, None] * move - at, axis=1)
+    return bool((gap < NEAR * length).any())
+
+
+def table(curves: list[EventCurve]) -> str:
+    """Lines of a CSV file, the number and the kind of the curve first."""
+    lines = [f"curve,kind,{curves[0].csv_lines()[0]}"]
+    lines += [f"{number},{each.kind},{line}" for number, each in enumerate(curves, 1) for line in each.csv_lines()[1:]]
+    return "\n".join(lines) + "\n"
+
+
+def told(curve: EventCurve) -> dict[str, Any]:
+    """A curve as JSON."""
+    points = {name: getattr(curve, name).tolist() for name in ("parameters", "tau", "v", "visible")}
+    special = [{"kind": each.kind, "parameters": each.parameters, "after_point": each.index} for each in curve.special]
+    return {"kind": curve.kind, "n": curve.n, "k": curve.k, "points": points, "special": special,
+            "notes": list(curve.notes)}  # fmt: skip
+
+
+def shown(curves: list[EventCurve]) -> str:
+    """Curves for people: special points as a table, then how each ends."""
+    parts = []
+    for number, each in enumerate(curves, 1):
+        parts.append(f"curve {number}: {each.kind} of ({each.n}, {each.k}) orbits, {len(each)} points")
+        if each.special:
+            rows = [[point.kind, *(f"{part:.15g}" for part in point.parameters)] for point in each.special]
+            parts.append(columns(["point", *each.over], rows))
+        parts += [f"  {note}" for note in each.notes]
+    return "\n".join(parts)

@@ -1,0 +1,69 @@
+"""`singimpact lyapunov`: both Lyapunov exponents of an orbit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, lines_of, output_options
+from singimpact.status import Status
+
+SHOWN = (
+    "exponents",
+    "error",
+    "per_impact",
+    "impacts",
+    "time",
+    "superstable",
+    "status",
+    "transient",
+    "converged",
+)
+"""Of the result, in JSON."""
+
+
+@click.command()
+@model_options
+@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
+@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
+@click.option("--impacts", type=click.IntRange(1, 100_000_000), default=10_000, show_default=True, help="Impacts used.")
+@click.option(
+    "--transient", type=click.IntRange(0, 100_000_000), help="Impacts flown before.  [default: until the orbit settles]"
+)
+@output_options
+def command(
+    tau: str, v: str, impacts: int, transient: int | None, as_json: bool, output: str | None, **options: Any
+) -> None:
+    """Lyapunov exponents per unit of time and per impact, with standard errors.
+
+    An orbit that comes to rest again and again is superstable: its exponents are -inf.
+    """
+    osc = take_model(options)
+    from singimpact.dynamics.lyapunov import lyapunov
+
+    result = lyapunov(osc, tau, v, impacts, transient=transient)
+    status = Status(int(result.status))
+    if as_json:
+        names = (
+            "exponents",
+            "error",
+            "per_impact",
+            "impacts",
+            "time",
+            "superstable",
+            "status",
+            "transient",
+            "converged",
+        )
+        values = result.as_dict()
+        emit(as_json_text({"model": osc.to_dict(), **{name: values[name] for name in names}}), output)
+        return
+    numbers = {"exponents": result.exponents, "error": result.error, "per impact": result.per_impact}
+    rows = {name: "  ".join(f"{value:.9g}" for value in values.tolist()) for name, values in numbers.items()}
+    rows["impacts"] = f"{result.impacts} in a time of {result.time:.9g}, after {result.transient}"
+    lines = lines_of(rows, status)
+    if not result.converged:
+        lines.append("not converged: the exponents of both halves differ, give more --impacts or a --transient")
+    emit("\n".join([*lines, *(["superstable"] if result.superstable else [])]), output)

@@ -1,0 +1,88 @@
+"""`singimpact map`: from an impact to the next one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, number_text, output_options
+from singimpact.inputs import InputError
+from singimpact.status import Status
+
+FIELDS = ("tau", "v", "flight_time", "status")
+
+
+@click.command()
+@model_options
+@click.option("--tau", "taus", metavar="NUMBER", multiple=True, required=True, help="Launch phase; may be repeated.")
+@click.option("--v", "vs", metavar="NUMBER", multiple=True, required=True, help="Launch velocity; may be repeated.")
+@click.option("--digits", type=click.IntRange(1, 10_000), help="Significant digits.  [default: a double]")
+@click.option("--horizon", metavar="NUMBER", help="Longest flight time that is searched.")
+@output_options
+def command(
+    taus: tuple[str, ...], vs: tuple[str, ...], digits: int | None, horizon: str | None, as_json: bool,
+    output: str | None, **options: Any,
+) -> None:  # fmt: skip
+    """The impact map G: phase and velocity of the next impact, the flight time, and the status of the flight.
+
+    Numbers may be expressions such as pi/2.8.
+    """
+    oscillator = take_model(options)
+    states = _paired(taus, vs)
+    keywords: dict[str, Any] = {"digits": digits, "horizon": horizon}
+    step = oscillator.impact_map(
+        [tau for tau, _ in states], [v for _, v in states], **{key: value for key, value in keywords.items() if value}
+    )
+    rows = [_row(step, at, digits) for at in range(len(states))]
+    if as_json:
+        told = _told(states, rows)
+        if digits is not None:
+            for at, each in enumerate(told):
+                each |= _certified(step, at)
+        emit(as_json_text({"model": oscillator.to_dict(), "steps": told}), output)
+    else:
+        emit(_table(states, rows), output)
+
+
+def _paired(taus: tuple[str, ...], vs: tuple[str, ...]) -> list[tuple[str, str]]:
+    count = max(len(taus), len(vs))
+    if min(len(taus), len(vs)) not in (1, count):
+        raise InputError(
+            f"{len(taus)} --tau and {len(vs)} --v do not pair: give one of each, or as many, or one of one kind"
+        )
+    return list(zip(taus * (count // len(taus)), vs * (count // len(vs)), strict=True))
+
+
+def _row(step: Any, at: int, digits: int | None) -> list[Any]:
+    numbers = [number_text(getattr(step, name)[at], digits) for name in FIELDS[:3]]
+    return [*numbers, Status(int(step.status[at]))]
+
+
+def _certified(step: Any, at: int) -> dict[str, Any]:
+    """Values and radii of what is proved, or null and why not."""
+    found = step.certified[at]
+    if found is None:
+        return {"certified": None, "note": step.notes.get(at, "")}
+    return {"certified": found.as_dict()}
+
+
+def _told(states: list[tuple[str, str]], rows: list[list[Any]]) -> list[dict[str, Any]]:
+    return [
+        {"from": {"tau": tau, "v": v}} | dict(zip(FIELDS, [*row[:3], row[3].name], strict=True))
+        for (tau, v), row in zip(states, rows, strict=True)
+    ]
+
+
+def _table(states: list[tuple[str, str]], rows: list[list[Any]]) -> str:
+    header = ["tau", "v", "flight time", "next tau", "next v", "status"]
+    cells = [
+        [*state, str(time), str(tau), str(v), status.name]
+        for state, (tau, v, time, status) in zip(states, rows, strict=True)
+    ]
+    notes = [
+        f"{status.name}: {status.sentence}" for status in sorted({row[3] for row in rows}) if status is not Status.hit
+    ]
+    return "\n".join([columns(header, cells), *notes])

@@ -1,0 +1,76 @@
+"""`singimpact orbit`: an orbit of many impacts, as numbers or as a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.pictures import PICTURES
+from singimpact.inputs import refuse
+from singimpact.store import written
+
+
+@click.command()
+@model_options
+@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
+@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
+@click.option(
+    "--impacts", type=click.IntRange(1, 10_000_000), default=200, show_default=True, help="Number of impacts."
+)
+@click.option("--horizon", metavar="NUMBER", help="Longest flight time that is searched.")
+@output_options
+def command(
+    tau: str, v: str, impacts: int, horizon: str | None, as_json: bool, output: str | None, **options: Any
+) -> None:
+    """An orbit of the impact map: impacts, chatter, rest on the wall.
+
+    With -o FILE.png (or .pdf, .svg) the orbit is drawn. Numbers may be expressions such as pi/2.8.
+    """
+    check_ending(output, as_json)
+    oscillator = take_model(options)
+    orbit = oscillator.orbit(tau, v, impacts=impacts, horizon=horizon)
+    if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
+        draw(orbit, output)
+    elif as_json:
+        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(orbit)}), output)
+    else:
+        emit(_table(orbit), output)
+
+
+def check_ending(output: str | None, as_json: bool) -> None:
+    """Refuse a file name whose suffix is that of a picture format which is not written."""
+    known = (".json", "") if as_json else (*PICTURES, ".txt", "")
+    if output is not None and Path(output).suffix.lower() not in known:
+        what = ".json" if as_json else ".png, .pdf or .svg for a picture, or in .txt for a table"
+        raise refuse("output", output, f"a file name ending in {what}")
+
+
+def draw(thing: Any, output: str) -> None:
+    """The picture of an orbit or of a section, in the format its file name ends in."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from singimpact.dynamics.orbit import Orbit
+    from singimpact.scenes import plot
+    from singimpact.scenes.orbit_sheet import orbit_sheet
+
+    figure = orbit_sheet(thing) if isinstance(thing, Orbit) else plot(thing).figure
+    with written(output) as draft:
+        figure.savefig(draft, format=Path(output).suffix[1:].lower())
+
+
+def _as_listed(orbit: Any) -> dict[str, Any]:
+    """The events of an orbit, one by one, and the phases between them."""
+    return {"impacts": orbit.rows(), "phases": orbit.as_dict()["phases"]}
+
+
+def _table(orbit: Any) -> str:
+    listed = _as_listed(orbit)
+    impacts = [[str(at), str(i["tau"]), str(i["v"]), i["kind"]] for at, i in enumerate(listed["impacts"])]
+    phases = [[p["kind"], str(p["start"]), str(p["end"])] for p in listed["phases"]]
+    return columns(["", "tau", "v", "kind"], impacts) + "\n\n" + columns(["phase", "from tau", "to tau"], phases)

@@ -1,0 +1,49 @@
+"""`singimpact section`: the states of an orbit once in each period, as numbers or as a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from singimpact.cli.columns import columns
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.orbit_command import check_ending, draw
+from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.pictures import PICTURES
+
+
+@click.command()
+@model_options
+@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
+@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
+@click.option(
+    "--impacts", type=click.IntRange(1, 10_000_000), default=2000, show_default=True, help="Number of impacts."
+)
+@click.option("--at", "at", metavar="NUMBER", default="0", show_default=True, help="Time after the start of a period.")
+@click.option(
+    "--skip",
+    type=click.IntRange(0, 10_000_000),
+    default=0,
+    show_default=True,
+    help="Number of first states that are left out.",
+)
+@output_options
+def command(
+    tau: str, v: str, impacts: int, at: str, skip: int, as_json: bool, output: str | None, **options: Any
+) -> None:
+    """x and x' of an orbit once in each period of the forcing: a stroboscopic section.
+
+    With -o FILE.png (or .pdf, .svg) the section is drawn. Numbers may be expressions such as pi/2.8.
+    """
+    check_ending(output, as_json)
+    osc = take_model(options)
+    section = osc.orbit(tau, v, impacts=impacts).section(at).after(skip)
+    if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
+        draw(section, output)
+    elif as_json:
+        emit(as_json_text({"model": osc.to_dict(), "at": at, **section.as_dict()}), output)
+    else:
+        rows = [list(map(str, row.values())) for row in section.rows()]
+        emit(columns(list(section.table()), rows), output)

@@ -1,0 +1,36 @@
+"""`singimpact threshold`: the velocity below which chatter completes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.output import as_json_text, emit, lines_of, number_text, output_options
+from singimpact.status import Status
+
+
+@click.command()
+@model_options
+@click.option("--tau", metavar="NUMBER", required=True, help="A phase with a_c < 0.")
+@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits.  [default: a double]")
+@click.option(
+    "--impacts", type=click.IntRange(1, 10_000_000), default=640_000, show_default=True, help="Impacts at most."
+)
+@output_options
+def command(tau: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: Any) -> None:
+    """The velocity of gamma at tau: chatter completes below it, and is interrupted by lift-off above it."""
+    osc = take_model(options)
+    from singimpact.dynamics.threshold import threshold
+
+    limit = threshold(osc, tau, digits=digits, impacts=impacts)
+    status = Status(int(limit.status))
+    enclosure = limit.certified.as_dict() if limit.certified else {}
+    speed, error = number_text(limit.v, digits), float(limit.error)
+    if as_json:
+        values = {"v": speed, "error": error, "status": status.name, **enclosure}
+        emit(as_json_text({"model": osc.to_dict(), **values}), output)
+    else:
+        rows = {"v": speed, "error": f"{error:.1e}", **enclosure}
+        emit("\n".join(lines_of(rows, status, (Status.complete,))), output)

@@ -1,0 +1,186 @@
+"""Section 4, second part: the blow-up at a tangency point, its fixed points and multipliers, all of it in lambda."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy
+
+from singimpact.documents.arranging import in_powers
+from singimpact.documents.document_steps import Step
+from singimpact.paper.routes import fold
+from singimpact.paper.routes.fold import m
+from singimpact.paper.routes.implicit import a_symbol, r, sigma
+from singimpact.paper.sections import section4_orbits_words as orbits
+from singimpact.theory.homogeneous import DG_on_ray, P, Q, leading_coefficient, mu_of_lambda, r_of_lambda
+from singimpact.theory.notation import latex
+
+_Q, _Qdot = sympy.symbols("Q Qdot")
+
+
+def with_Q(expression: Any) -> Any:
+    """An expression in r and m with Q for Q_r(1, m), and Q' for its derivative by m where that is a factor."""
+    slope = sympy.diff(fold.Q_at_one(), m)
+    shown = expression.subs(sympy.expand(slope / 2), _Qdot / 2).subs(fold.Q_at_one(), _Q)
+    back = shown.subs({_Q: fold.Q_at_one(), _Qdot: slope})
+    if sympy.cancel(sympy.expand((back - expression) * sympy.sqrt(fold.Q_at_one()))) != 0:
+        raise ArithmeticError("writing Q changed the expression")
+    return shown
+
+
+def blow_up() -> tuple[Step, ...]:
+    """From h to the multipliers of its fixed points."""
+    return (*_blown_up(), *_fixed_points(), *_multipliers())
+
+
+def _blown_up() -> tuple[Step, ...]:
+    rate, image = fold.h_blown_up()
+    return (
+        Step(
+            "$Q_r$ is a quadratic form, so $h$ is not differentiable at the tangency point, but it takes rays to "
+            "rays. Put $(\\sigma, \\eta) = (s, s m)$; then $\\Pi_0$ is $m = \\tfrac32$, the horizon $m = 0$, and on "
+            "the ray of slope $m$",
+            rf"Q_r(1, m) = {in_powers(fold.Q_at_one(), r)}",
+            "s4-Q1m",
+            ("s4-Qr-zeros", "s4-Er-closed"),
+        ),
+        Step(
+            "which is $Q$ for short, with $Q'$ its derivative by $m$. The blown-up map on the visible part, $s < 0$ "
+            "and $m > \\tfrac12$, is",
+            (rf"\bar s &= \bigl({latex(rate)}\bigr)\, s + O(s^2)\,,", rf"\bar m &= {latex(with_Q(image))} + O(s)\,."),
+            "s4-blowup",
+            ("s4-blowup", "s4-domain"),
+        ),
+    )
+
+
+def _fixed_points() -> tuple[Step, ...]:
+    rate, _ = fold.h_blown_up()
+    trivial, cubic = fold.fixed_point_factors()
+    return (
+        Step(
+            "A fixed point on $s = 0$ is a ray that is mapped into itself. The equation $\\bar m = m$, squared and "
+            "cleared of its denominator, is",
+            rf"Q_r(1, m) - m^2 \bigl({latex(rate)}\bigr)^2 = {in_powers(fold.fixed_point_equation(), r)} = 0",
+            "e:fixm",
+            ("e:fixm", "e:fixm-converse"),
+        ),
+        Step(
+            "One root is known beforehand: $\\Pi_0$ is invariant for every $r$. Dividing by it leaves a cubic,",
+            rf"\bigl({latex(trivial)}\bigr) \Bigl[{in_powers(cubic, r, rising=True)}\Bigr] = 0",
+            "e:meq",
+            ("e:meq", "s4-root-places", "s4-m32-r1"),
+        ),
+        Step(
+            "with one root in each of $m_1 < -\\tfrac32$, $0 < m_2 < \\tfrac12$ and $\\tfrac12 < m_3 < \\tfrac32$. "
+            "Only the last one is a flight that is seen. The cubic is linear in $r$, so that instead of solving it "
+            "one may read $r$ from the root:",
+            rf"r = {latex(fold.r_of_m())}",
+            "s4-r-of-m",
+            ("s4-m3",),
+        ),
+        Step(
+            "On the ray of $m_1$ the images under $p$ and $q$ run in opposite directions and lie in $v \\le 0$; on "
+            "that of $m_2$ they run in opposite directions too, since $m_2 - \\tfrac12 < 0$, though in $v > 0$.",
+            "",
+            "",
+            ("s4-m1", "s4-m1-gradient", "s4-m2", "s4-m2-sign"),
+        ),
+    )
+
+
+def _multipliers() -> tuple[Step, ...]:
+    return (
+        Step(
+            "Stability across the ray is the derivative $N_r = \\partial \\bar m/\\partial m$ on $s = 0$. The "
+            "quotient rule gives",
+            rf"N_r(m) = {latex(with_Q(fold.N_r()))}",
+            "s4-Nr-1",
+            ("s4-Nr-1",),
+        ),
+        Step(
+            "where, over one denominator, everything but one product cancels:",
+            rf"N_r(m) = {latex(with_Q(fold.N_r_collected()))}",
+            "s4-Nr-2",
+            ("s4-Nr-2",),
+        ),
+        Step(
+            "At a fixed point $\\sqrt Q = m (m - \\tfrac12)$, and $r$ is known there as a function of $m$, so that "
+            "neither remains:",
+            rf"N_r(m) = {latex(fold.N_r_at_fixed_points())}\,, \qquad m = m_1, m_3",
+            "s4-Nr-3",
+            ("s4-Nr-3", "s4-Nr-3-all"),
+        ),
+        Step(
+            "Along $s$ the map multiplies by $m - \\tfrac12$. The derivative is triangular, because $s = 0$ is "
+            "mapped into itself; the entry $*$ depends on cubic terms and does not touch the eigenvalues. For every "
+            "$r$ in $(0, 1)$ the point $m_3$ is a saddle:",
+            rf"D\bar h(0, m) = {latex(with_Q_in(fold.Dh_blown_up()))}",
+            "s4-Dh-form",
+            ("s4-Dh-form", "s4-saddle-m3", "s4-mu-direction"),
+        ),
+        Step(
+            "For $a' > 0$ the ray of $m_3$ lies in $v > 0$. The stable manifold of the saddle leaves $s = 0$ there, "
+            "and $p$ takes it to the invariant curve $\\gamma$, whose leading term is that of $p$ on the ray $\\eta "
+            "= m_3 \\sigma$:",
+            rf"\gamma : \ v = {latex(fold.gamma_leading())}\, {latex(sigma**2)} + O(3)\,, \qquad m = m_3",
+            "s4-gamma-leading",
+            ("t:t2-exists", "s4-beta-tangent"),
+        ),
+    )
+
+
+def with_Q_in(matrix: Any) -> Any:
+    """A matrix with Q for Q_r(1, m) in every entry that has a root."""
+    return matrix.applyfunc(lambda entry: with_Q(entry) if entry.has(fold.Q_at_one()) else entry)
+
+
+def in_lambda() -> tuple[Step, ...]:
+    """The homogeneous model, with every quantity a rational function of lambda."""
+    curve = sympy.factor(a_symbol(1) * leading_coefficient(1))
+    matrix = DG_on_ray(1)
+    return (
+        Step(
+            "All of this becomes rational in $\\lambda = m_3 - \\tfrac12$, the factor by which $\\sigma$ shrinks at "
+            "each impact on $\\gamma$. The leading part of the problem is the oscillator $x'' = u$ with the wall at "
+            "0: a flight from $u = 1$ to $u = \\lambda$ is launched with a velocity proportional to $(1 - \\lambda) "
+            "P_1$ and lands with one proportional to $(1 - \\lambda) Q_1$, where",
+            (rf"P_1(\lambda) &= {latex(P(1))}\,,", rf"Q_1(\lambda) &= {latex(Q(1))}\,."),
+            "s4-lambda-P",
+        ),
+        Step(
+            "The coefficients of one are those of the other in reverse, because reversing time exchanges launch and "
+            "landing. Invariance of $\\gamma$ under the bounce then fixes the restitution,",
+            rf"r = {latex(r_of_lambda(1))}",
+            "s4-lambda-r",
+            ("t:t2-attracting",),
+        ),
+        Step("the multiplier across,", rf"\mu = {latex(mu_of_lambda(1))}", "s4-lambda-mu"),
+        Step(
+            "and the curve itself,",
+            rf"\gamma : \ v = {latex(curve)}\, {latex(sigma**2)} + O(3)",
+            "s4-lambda-gamma",
+        ),
+        Step(
+            "The derivative of $G$ in the original coordinates is another matter, as $p$ degenerates at the tangency "
+            "point. At points of $\\gamma$ close to it the eigenvalues of $DG$ tend to the roots $\\Lambda$ of "
+            "$\\Lambda^2 - \\Lambda \\operatorname{tr} DG + \\det DG$ with",
+            (
+                rf"\operatorname{{tr}} DG &= {latex(sympy.factor(matrix.trace()))}\,,",
+                rf"\det DG &= {latex(sympy.factor(matrix.det()))}\,,",
+            ),
+            "s4-lambda-DG",
+            ("t:t2-repelling", "t:t2-eigenvalue-limit"),
+        ),
+        Step(
+            "so that one of them stays above 1 as long as $r < 1$: $\\gamma$ repels orbits beside it while it "
+            "attracts those on it. Its orbits reach the tangency point after infinitely many impacts; orbits below "
+            "chatter to rest before, orbits above leave the wall across the arc $P_*$ of the outline, where $F$ is "
+            "torn. At the tangency point itself the mass lifts off.",
+            "",
+            "",
+            ("t:t2-unique", "t:t2-fixed", "s4-P-star"),
+            "figure5",
+        ),
+        *orbits.beside_gamma(1),
+    )
