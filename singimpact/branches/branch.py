@@ -10,7 +10,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.branches.branch_walk import SETTINGS, BranchWalk
-from singimpact.branches.events import TOUCHES, Event
+from singimpact.branches.events import Event
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import closing_of, orbit_of
 from singimpact.inputs import InputError, refuse, whole
@@ -59,7 +59,7 @@ class Branch:
     def at_event(self) -> Array:
         """Whether a point is an event, shape (m,): a fold, doubling, torus, pitchfork or other branch point."""
         at = np.zeros(len(self), dtype=bool)
-        at[[event.index + 1 for event in self.events if event.kind not in TOUCHES]] = True
+        at[[event.index + 1 for event in self.events if not event.described.touches]] = True
         return at
 
     def orbit(self, index: int) -> PeriodicOrbit:

@@ -14,13 +14,16 @@ import numpy as np
 
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point, cubic_between, null_plane, root_between
-from singimpact.branches.event_tests import EventTests
+from singimpact.branches.event_tests import EventTests, Key
+from singimpact.branches.events.kind import EventKind
+from singimpact.branches.events.meeting_branches import BRANCH_POINT, PITCHFORK, TRANSCRITICAL
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of
 from singimpact.branches.step_search import Crossing, Node, StepSearch
-from singimpact.branches.switching import APART, Equations, others
+from singimpact.branches.switching import APART, Equations, doubled
 
 Array = np.ndarray[Any, Any]
+TEST = Key(BRANCH_POINT, 0, 0)
 
 
 @dataclass(frozen=True)
@@ -34,8 +37,6 @@ class BranchPointSettings:
     arrived: float = 1e-14
     # halves of an orbit that differ by less, in scaled unknowns, are equal
     equal: float = 1e-7
-    # ... where the branch was only seen to come near equal parts
-    alike: float = 1e-3
     # slope of the parameter along the other branch, in scaled unknowns, below which it turns back: the step is 1e-3
     level: float = 1e-2
 
@@ -49,11 +50,11 @@ class BranchPoint:
 
     Parameters
     ----------
-    kind : "pitchfork", "transcritical"; "branch point" where the other branch is not reached. along : distance from the
-        first point of the step. at : the point. other : an orbit of the other branch.
+    kind : of the event, unclassified where the other branch is not reached. along : distance from the first point of
+        the step. at : the point. other : an orbit of the other branch.
     """
 
-    kind: str
+    kind: EventKind
     along: float
     at: Array
     other: PeriodicOrbit | None
@@ -77,32 +78,16 @@ def halves(closing: AnyClosing, at: Array) -> Array:
     return np.concatenate([(times - k // 2 * period) / scales[0], speeds / scales[n]])
 
 
-def repeats(closing: AnyClosing, at: Array) -> int:
-    """How often an orbit with impacts repeats one of fewer impacts and periods, about."""
-    n, k = closing.n, closing.k
-    if not isinstance(closing, Closing):
-        return 1
-    period, scales = closing.family.period(closing.values(at)).value, closing.scales(at)
-    for share in range(n, 1, -1):
-        if n % share == 0 and k % share == 0:
-            m = n // share
-            times = (np.roll(at[:n], -m) - at[:n] - k // share * period)[: n - m] / scales[0]
-            speeds = (np.roll(at[n : 2 * n], -m) - at[n : 2 * n]) / scales[n]
-            if max(float(np.abs(times).max()), float(np.abs(speeds).max())) < SETTINGS.alike:
-                return share
-    return 1
-
-
 def branch_point(search: StepSearch, crossing: Crossing) -> BranchPoint | None:
     """The branch point of a step, where the fold or the branch point test changes sign; None where there is none."""
     closing = search.tests.closing
     low, high = crossing.low.point.at, crossing.high.point.at
     differences = halves(closing, low), halves(closing, high)
     sizes = [float(np.linalg.norm(each)) for each in differences]
-    doubled = len(differences[0]) > 1 and (max(sizes) < SETTINGS.equal or float(differences[0] @ differences[1]) < 0)
-    if doubled:
+    is_doubled = len(differences[0]) > 1 and (max(sizes) < SETTINGS.equal or float(differences[0] @ differences[1]) < 0)
+    if is_doubled:
         return _doubling(search, crossing, max(sizes) < SETTINGS.equal)
-    return _crossing(search, crossing) if crossing.kind == "branch point" else None
+    return None if crossing.kind.is_located else _crossing(search, crossing)
 
 
 def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoint | None:
@@ -150,9 +135,9 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
     if not away <= 2 * width:
         return None
     orbit = orbit_of(half, root)
-    following = others("period-doubling", orbit, closing.over[0], float(root[-1])) if equal else [orbit]
+    following = doubled(orbit, closing.over[0], float(root[-1])) if equal else [orbit]
     along = float(search.here.tangent @ ((at - search.here.at) / scales))
-    return BranchPoint("pitchfork", along, at, following[0] if following else None)
+    return BranchPoint(PITCHFORK, along, at, following[0] if following else None)
 
 
 def _crossing(search: StepSearch, crossing: Crossing) -> BranchPoint | None:
@@ -174,13 +159,13 @@ def _crossing(search: StepSearch, crossing: Crossing) -> BranchPoint | None:
 
 
 def _value(node: Node) -> float:
-    return node.tests["branch point", 0, 0].value
+    return node.tests[TEST].value
 
 
 def _cubic_root(low: Node, high: Node) -> float:
     """Where the cubic through the branch point test at two points vanishes."""
     width = high.along - low.along
-    one, other = (node.tests["branch point", 0, 0] for node in (low, high))
+    one, other = (node.tests[TEST] for node in (low, high))
     rates = one.rate * width, other.rate * width
     square, cube = cubic_between(one.value, rates[0], other.value, rates[1])
     if not np.isfinite(square + cube):
@@ -208,7 +193,7 @@ def _classified(tests: EventTests, point: Point, scales: Array, along: float) ->
     curve = Curve(Equations(closing), scales, 10 * APART)
     sides = [curve.beyond(Point(point.at, sign * across), APART) for sign in (1.0, -1.0)]
     if sides[0] is None or sides[1] is None:
-        return BranchPoint("branch point", along, point.at, None)
+        return BranchPoint(BRANCH_POINT, along, point.at, None)
     ahead, behind = (float(side[0].at[-1]) for side in sides if side is not None)
     slope = (ahead - behind) / (2 * APART * scales[-1])
     turning = min(abs(slope), abs(float(point.tangent[-1]))) < SETTINGS.level
@@ -216,4 +201,4 @@ def _classified(tests: EventTests, point: Point, scales: Array, along: float) ->
         other = orbit_of(closing, sides[0][0].at)
     except ArithmeticError:  # at rest
         other = None
-    return BranchPoint("pitchfork" if turning else "transcritical", along, point.at, other)
+    return BranchPoint(PITCHFORK if turning else TRANSCRITICAL, along, point.at, other)

@@ -9,18 +9,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.branches.branch_points import BranchPoint, branch_point, repeats
+from singimpact.branches.branch_points import BranchPoint, branch_point
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.event_tests import EventTests, Tests
-from singimpact.branches.events import TOUCHES, Event
+from singimpact.branches.events import KINDS, Event, EventKind
+from singimpact.branches.events.meeting_branches import PITCHFORK
 from singimpact.branches.kept import KeptSide
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.solutions import AnyClosing, orbit_of, orbit_period
+from singimpact.branches.solutions import AnyClosing, orbit_of
 from singimpact.branches.step_search import Crossing, StepSearch
 from singimpact.flights.family import SteppedFamily
 from singimpact.inputs import InputError
-from singimpact.oscillator.acceleration import acceleration
 
 Array = np.ndarray[Any, Any]
 
@@ -59,7 +59,7 @@ class Row(NamedTuple):
     @property
     def listed(self) -> bool:
         """Whether it is a point of the branch; at touches multipliers are infinite and first hits jump."""
-        return self.event is None or self.event.kind not in TOUCHES
+        return self.event is None or not self.event.described.touches
 
 
 @dataclass
@@ -95,7 +95,7 @@ class BranchWalk:
         """The points of the branch in both directions from a guess, in the order of the branch."""
         scales = self.closing.scales(guess)
         scales[-1] = self.ends[1] - self.ends[0]
-        self.tests = EventTests(self.closing, scales)
+        self.tests = EventTests(self.closing, scales, KINDS)
         upwards = np.zeros(len(guess))
         upwards[-1] = scales[-1]
         n = self.closing.n
@@ -219,8 +219,8 @@ class BranchWalk:
         meetings: list[float] = []
         crossings = search.crossings(before, after, later)
         # at a pitchfork both of these may change sign: it is located first, and once
-        for crossing in sorted(crossings, key=lambda crossing: crossing.kind != "branch point"):
-            if crossing.kind in ("branch point", "fold"):
+        for crossing in sorted(crossings, key=lambda crossing: crossing.kind.is_located):
+            if crossing.kind.may_meet:
                 meeting = branch_point(search, crossing)
                 if meeting is not None:
                     if not any(abs(meeting.along - along) <= 1e-3 * search.length for along in meetings):
@@ -229,8 +229,8 @@ class BranchWalk:
                         self._met(meeting)
                     meetings.append(meeting.along)
                     continue
-            if crossing.kind == "branch point":
-                self.notes.append(f"a branch point near {crossing.low.point.at[-1]:.9g} could not be located")
+            if not crossing.kind.is_located:
+                self.notes.append(f"a {crossing.kind.name} near {crossing.low.point.at[-1]:.9g} could not be located")
                 continue
             row = self._crossed(search, crossing)
             if row is not None and not self._repeated(search, row, located):
@@ -242,17 +242,12 @@ class BranchWalk:
     def _doubtful(self, search: StepSearch) -> None:
         """Note test functions that touch 0."""
         for (kind, _, _), at in {key: (key, at) for key, at in search.doubts}.values():
-            share = repeats(self.closing, at) if kind == "branch point" else 1
-            n, k = self.closing.n // share, self.closing.k // share
-            seen = f"the test of a {kind} comes so near to 0 that two may lie there, or none: give a smaller step="
-            if share > 1:
-                seen = f"meets the ({n}, {k}) orbits, of which a multiplier to the power {share} is 1"
-            self.notes.append(f"near {self.over} = {at[-1]:.9g} {seen}")
+            self.notes.append(f"near {self.over} = {at[-1]:.9g} {kind.doubt(self.closing, at)}")
 
     def _met(self, meeting: BranchPoint) -> None:
         """Note which orbits a doubled branch meets."""
         n, k = self.closing.n, self.closing.k
-        if meeting.kind == "pitchfork" and meeting.other is not None and meeting.other.k < k:
+        if meeting.kind is PITCHFORK and meeting.other is not None and meeting.other.k < k:
             self.notes.append(f"meets the ({n // 2}, {k // 2}) orbits at their doubling, at {meeting.at[-1]:.12g}")
 
     def _repeated(self, search: StepSearch, row: tuple[float, Row], located: list[tuple[float, Row]]) -> bool:
@@ -276,13 +271,13 @@ class BranchWalk:
         root = search.located(crossing)
         kind, impact, _ = crossing.keys[0]
         if root is None:
-            self.notes.append(f"a {kind} near {crossing.low.point.at[-1]:.9g} could not be located")
+            self.notes.append(f"a {kind.name} near {crossing.low.point.at[-1]:.9g} could not be located")
             return None
         along, point = root
-        if kind == "torus" and not self.tests.loop(point.at).characteristic().are_complex:
-            return None  # the multipliers are real where their product is 1, so this is no torus bifurcation
+        if not kind.occurs(self.tests.loop(point.at)):
+            return None
         time = np.nan
-        if np.isfinite(crossing.ends[0].share) and kind in TOUCHES:
+        if crossing.ends[0].is_minimum:
             turn = search.turn(crossing, along, point)
             size = max(abs(test.value) for test in crossing.ends)
             # a minimum that is not the lowest of its flight has its zero behind the wall
@@ -290,7 +285,7 @@ class BranchWalk:
             if not (lowest and self._launched(point)) or turn is None:
                 return None
             time = turn[0]
-        return along, self._event_row(kind, point, impact, time if kind == "hidden impact" else np.nan)
+        return along, self._event_row(kind, point, impact, np.nan if kind.at_impact else time)
 
     def _launched(self, point: Point) -> bool:
         """Whether every flight begins with a velocity: flights of orbits with v <= 0 start behind the wall."""
@@ -298,15 +293,12 @@ class BranchWalk:
         return not n or float(point.at[n : 2 * n].min()) > 1e-9 * float(self.closing.scales(point.at)[n])
 
     def _event_row(
-        self, kind: str, point: Point, impact: int = 0, time: float = np.nan, other: PeriodicOrbit | None = None
+        self, kind: EventKind, point: Point, impact: int = 0, time: float = np.nan, other: PeriodicOrbit | None = None
     ) -> Row:
         seen = self._visible(point.at, SETTINGS.located)
         orbit = orbit_of(self.closing, point.at, seen)
         value = float(point.at[-1])
-        if kind == "graze" and self.closing.n:
-            push = float(acceleration(orbit.oscillator, np.array([point.at[impact]]))[0])
-            fastest = float(np.abs(acceleration(orbit.oscillator, np.linspace(0, 1, 9) * orbit_period(orbit))).max())
-            if abs(push) < 1e-6 * fastest:
-                self.notes.append(f"the graze at {value:.12g} is one with a_c = 0: a degenerate graze")
-        event = Event(kind, value, orbit, 0, impact, time, self.over, other)
+        remark = kind.remark(orbit, float(point.at[impact]), value)
+        self.notes += [remark] if remark else []
+        event = Event(kind.name, value, orbit, 0, impact, time, self.over, other)
         return self._row(point, SETTINGS.located, event)

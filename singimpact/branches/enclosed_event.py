@@ -28,6 +28,7 @@ from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.ball_closing import BallClosing, TouchingClosing, return_slope
 from singimpact.branches.event_function import event_function, rate_over
+from singimpact.branches.events.table import kind_of
 from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused
@@ -60,15 +61,6 @@ class EventSettings:
 
 
 SETTINGS = EventSettings()
-
-SHOWN = {
-    "fold": "the orbits form one curve, on which the parameter turns back once: a multiplier is 1",
-    "period-doubling": "the orbits form one curve, on which 1 + trace + determinant of the return map vanishes once, "
-    "at a rate that is not 0: a multiplier is -1",
-    "torus": "the orbits form one curve, on which the product of two complex multipliers passes 1 once, at a rate that "
-    "is not 0",
-    "graze": "an orbit that touches the wall in the point tau[0], where a_c > 0, and is above it between its impacts",
-}
 
 
 @dataclass(frozen=True, repr=False)
@@ -108,7 +100,7 @@ def enclosed_event(kind: str, orbit: PeriodicOrbit, over: str, parameter: float,
 
     Parameters
     ----------
-    kind : "fold", "period-doubling", "torus", or "graze" of an orbit with one state that has v = 0, up to rounding.
+    kind : the name of a kind that has a proof. Where the orbit touches the wall one state has v = 0, up to rounding.
     orbit : in doubles. over, parameter : the number of its model, and its value about. digits : of the result.
 
     Examples
@@ -121,15 +113,15 @@ def enclosed_event(kind: str, orbit: PeriodicOrbit, over: str, parameter: float,
     0.36878177829171549240
     """
     speeds = np.asarray(orbit.v, dtype=float)
-    if kind == "graze":  # the velocity of the touching point is rounding
+    if kind_of(kind).touches:  # the velocity of the touching point is rounding
         speeds = np.delete(speeds, np.argmin(np.abs(speeds)))
     if speeds.size and speeds.min() < -SETTINGS.rounding * np.abs(speeds).max():
         return f"an impact has the velocity {speeds.min():.6g}"
     bits = ceil((digits + SETTINGS.most) * BITS_A_DIGIT) + 64
     with balls_at(bits):
         try:
-            if kind == "graze":
-                return _touching(orbit, over, parameter, digits)
+            if kind_of(kind).touches:
+                return _touching(kind, orbit, over, parameter, digits)
             return _Curve(kind, orbit, over, digits).event(parameter)
         except (ArithmeticError, ValueError) as reason:  # refused, a singular matrix, a ball that left a domain
             return str(reason) or type(reason).__name__
@@ -147,7 +139,7 @@ def _numbers(balls: Balls, centre: Point, offsets: list[Any], digits: int) -> li
 # ---- grazes
 
 
-def _touching(orbit: PeriodicOrbit, over: str, parameter: float, digits: int) -> EnclosedEvent | str:
+def _touching(kind: str, orbit: PeriodicOrbit, over: str, parameter: float, digits: int) -> EnclosedEvent | str:
     bits = ceil(digits * BITS_A_DIGIT) + 64
     with balls_at(bits):
         closing = TouchingClosing(orbit.oscillator, orbit.k, digits, bits, over)
@@ -163,8 +155,8 @@ def _touching(orbit: PeriodicOrbit, over: str, parameter: float, digits: int) ->
         unique = operator.unique_within(point, step, own)
         tau, *rest = _numbers(closing.balls, point, tight.offsets, digits)
         rested = from_ball(closing.balls.rational(Fraction(0)), digits)
-        return EnclosedEvent("graze", over, rest[-1], (tau, *rest[:-1:2]), (rested, *rest[1:-1:2]), unique,
-                             SHOWN["graze"], None, orbit.oscillator, orbit.k)  # fmt: skip
+        return EnclosedEvent(kind, over, rest[-1], (tau, *rest[:-1:2]), (rested, *rest[1:-1:2]), unique,
+                             kind_of(kind).proof, None, orbit.oscillator, orbit.k)  # fmt: skip
 
 
 def _from_touching_point(orbit: PeriodicOrbit, closing: TouchingClosing, parameter: Fraction) -> Point:
@@ -265,10 +257,9 @@ class _Curve:
         curve = operator.image(near, step, radius, half)
         if curve is None:
             return "Krawczyk's operator does not map the box of the curve of orbits into itself"
-        if self.kind == "torus":
-            total = return_slope(curve.slopes)
-            if not (total[0, 0] + total[1, 1]) ** 2 < 4 * total.det():
-                return "the multipliers are not shown to be complex"
+        refusal = kind_of(self.kind).refusal(return_slope(curve.slopes))
+        if refusal:
+            return refusal
         balls, offsets = operator.equations.balls, list(curve.offsets)
         assert operator.held is not None
         offsets.insert(operator.held, balls.interval(-half, half))
@@ -278,7 +269,7 @@ class _Curve:
         if alone is None:
             return "the test of the event is not shown to vary at a rate of one sign: there may be more events than one"
         return EnclosedEvent(self.kind, self.over, parameter, tuple(states[::2]), tuple(states[1::2]),
-                             alone / SETTINGS.reach, SHOWN[self.kind], curved / SETTINGS.reach,
+                             alone / SETTINGS.reach, kind_of(self.kind).proof, curved / SETTINGS.reach,
                              self.orbit.oscillator, self.orbit.k)  # fmt: skip
 
     def _monotone_within(

@@ -14,7 +14,8 @@ from singimpact.branches.branch import interval
 from singimpact.branches.branch_walk import SETTINGS
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
-from singimpact.branches.events import Event
+from singimpact.branches.events import KINDS, Event, EventKind
+from singimpact.branches.events.orbit_state import OrbitState
 from singimpact.branches.solutions import AnyClosing, closing_of
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
@@ -22,8 +23,6 @@ from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of
 from singimpact.store import write_text
 
 Array = np.ndarray[Any, Any]
-FOLLOWED = ("fold", "period-doubling", "graze", "hidden impact")
-"""Kinds of events with a curve; a pitchfork lies on that of the doublings of the orbits of half as many impacts."""
 NUDGE = 1e-6
 """Half the width of a central difference, in scaled unknowns: the derivative then has a relative error of 1e-10."""
 
@@ -116,8 +115,10 @@ def event_curve(
     True
     """
     over = tuple(over)
-    if not isinstance(event, Event) or event.kind not in FOLLOWED:
-        raise refuse("event", event, "a fold, doubling, graze or hidden impact among the events of a branch")
+    # a pitchfork lies on the curve of the doublings of the orbits of half as many impacts
+    if not isinstance(event, Event) or event.described.look is None:
+        *labels, last = (kind.label for kind in KINDS if kind.look is not None)
+        raise refuse("event", event, f"a {', '.join(labels)} or {last} among the events of a branch")
     if len(over) != 2 or over[0] == over[1]:
         raise refuse("over", over, "two different numbers of the model")
     whole("points", points, 2, 10**6)
@@ -135,18 +136,8 @@ def event_curve(
     states = np.concatenate([np.asarray(part, dtype=float) for part in (orbit.tau, orbit.v)])
     if not n:
         raise refuse("event", event, "an event of an orbit with impacts: event.others()[0] has one that grazes alike")
-    walk = _Walk(closing, event.kind, ends, _grazing(closing, event, states))
+    walk = _Walk(closing, event.described, ends, event.described.touching(closing, orbit))
     return walk.curve(np.concatenate([states, values]), osc, points, step or SETTINGS.step)
-
-
-def _grazing(closing: AnyClosing, event: Event, states: Array) -> int:
-    """The index of the impact or flight that grazes: an orbit starts at its least phase, a branch at any impact."""
-    if event.kind == "graze":
-        return int(np.argmin(np.abs(states[closing.n :])))
-    if event.kind == "hidden impact":
-        plain = closing_of(event.orbit.oscillator, closing.n, closing.k, ())
-        return int(np.argmin([abs(height) for _, height in plain.heights(states)]))
-    return 0
 
 
 @dataclass
@@ -154,7 +145,7 @@ class _Walk:
     """An event curve while it is followed."""
 
     closing: AnyClosing
-    kind: str
+    kind: EventKind
     ends: list[tuple[float, float]]
     impact: int
 
@@ -163,40 +154,33 @@ class _Walk:
 
     # ---- equations
 
+    def state(self, point: Array) -> OrbitState:
+        """What the kind of the event computes its equation from."""
+        return OrbitState(self.closing, self.scales, point, impact=self.impact)
+
     def test(self, point: Array) -> float:
         """The test function, which vanishes at the event."""
-        if self.kind == "graze":
-            return float(point[self.closing.n + self.impact]) / float(self.scales[self.closing.n])
-        if self.kind == "hidden impact":
-            return self.closing.heights(point)[self.impact][1]
-        return self._determinant(point, 1.0 if self.kind == "fold" else -1.0)
+        return self.kind.equation(self.state(point))
 
-    def _determinant(self, point: Array, multiplier: float) -> float:
-        """det J(mu) of scaled unknowns."""
-        size = 2 * self.closing.n
-        loop = self.closing.at(point)
-        square = (loop.slope[:, :size] + (multiplier - 1) * loop.wrap) * self.scales[:size]
-        return float(np.linalg.det(square / np.abs(self.scales[: self.closing.n].max())))
-
-    def gradient(self, point: Array) -> Array:
+    def gradient(self, state: OrbitState) -> Array:
         """The derivative of the test by each unknown: central differences, as their error does not move its root."""
-        if self.kind == "graze":
-            found = np.zeros(len(point))
-            found[self.closing.n + self.impact] = 1.0 / self.scales[self.closing.n]
-            return found
-        found = np.empty(len(point))
+        exact = self.kind.gradient(state)
+        if exact is not None:
+            return exact
+        point, slopes = state.at, np.empty(len(state.at))
         for i in range(len(point)):
             moved = np.zeros(len(point))
             moved[i] = NUDGE * self.scales[i]
-            found[i] = (self.test(point + moved) - self.test(point - moved)) / (2 * moved[i])
-        return found
+            slopes[i] = (self.test(point + moved) - self.test(point - moved)) / (2 * moved[i])
+        return slopes
 
     def equations(self, point: Array) -> tuple[Array, Array]:
         """The closing conditions and the test; nan where a flight has collapsed."""
         if not self._sound(point):
             return np.full(2 * self.closing.n + 1, np.nan), np.full((2 * self.closing.n + 1, len(point)), np.nan)
-        loop = self.closing.at(point)
-        return np.append(loop.miss, self.test(point)), np.vstack([loop.slope, self.gradient(point)])
+        state = self.state(point)
+        loop = state.loop
+        return np.append(loop.miss, self.kind.equation(state)), np.vstack([loop.slope, self.gradient(state)])
 
     def _sound(self, point: Array) -> bool:
         assert isinstance(self.closing, Closing)
@@ -215,7 +199,7 @@ class _Walk:
         speeds = slice(self.closing.n, 2 * self.closing.n)
         start = Curve(self, self.scales, step, speeds).begin(guess)
         if start is None:
-            raise refuse("event", self.kind, "an event that solves its equations with these two numbers")
+            raise refuse("event", self.kind.name, "an event that solves its equations with these two numbers")
         if start.tangent[-2] < 0:
             start = Point(start.at, -start.tangent)
         notes: list[str] = []
@@ -234,7 +218,7 @@ class _Walk:
         at, n, k = np.array([row.at for row in rows]), self.closing.n, self.closing.k
         assert isinstance(self.closing, Closing)
         names = self.closing.family.over
-        return EventCurve(osc, self.kind, (names[0], names[1]), n, k, at[:, 2 * n :], at[:, :n], at[:, n : 2 * n],
+        return EventCurve(osc, self.kind.name, (names[0], names[1]), n, k, at[:, 2 * n :], at[:, :n], at[:, n : 2 * n],
                           np.array([self._visible(row.at) for row in rows]), tuple(special), tuple(notes))  # fmt: skip
 
     def _side(self, curve: Curve, start: Point, most: int, notes: list[str]) -> tuple[list[Point], list[Special]]:
@@ -280,35 +264,11 @@ class _Walk:
 
     def _tests(self, point: Point) -> dict[str, float]:
         """Test functions, which change sign at points of codimension two."""
-        at, n = point.at, self.closing.n
-        tests: dict[str, float] = {}
-        if self.kind == "graze":
-            fold, doubling = self._determinant(at, 1.0), self._determinant(at, -1.0)
-            tests |= {"fold at a graze": fold, "doubling at a graze": doubling}
-            tests["degenerate graze"] = self._push(at)
-        elif self.kind == "fold":
-            size = 2 * n
-            # at a fold the conditions have a null vector; at a cusp it is tangent to the curve of folds (Kuznetsov, ch.
-            # 8)
-            vector = np.linalg.svd(self.closing.at(at).slope[:, :size] * self.scales[:size])[2][-1]
-            slope = self.gradient(at)[:size] * self.scales[:size]
-            turned = vector if vector[int(np.argmax(np.abs(vector)))] > 0 else -vector
-            tests |= {"cusp": float(slope @ turned), "fold and doubling": self._determinant(at, -1.0)}
-        elif self.kind == "period-doubling":
-            tests["fold and doubling"] = self._determinant(at, 1.0)
-        for i in range(n):
-            if self.kind != "graze" or i != self.impact:
-                tests[f"two grazes {i}" if self.kind == "graze" else f"graze {i}"] = float(at[n + i])
-        return tests
+        state = self.state(point.at)
+        return self.kind.degenerate(state, partial(self.gradient, state))
 
     def _one_test(self, name: str, point: Point) -> float | None:
         return self._tests(point).get(name)
-
-    def _push(self, at: Array) -> float:
-        """a_c at the impact that grazes."""
-        assert isinstance(self.closing, Closing)
-        launch = self.closing.flights(at)[self.impact][0]
-        return float(self.closing.family.end(self.closing.values(at), launch, 0.0, 0.0).by_time[1])
 
     def _special(
         self, curve: Curve, here: Point, length: float, tests: tuple[dict[str, float], dict[str, float]], index: int

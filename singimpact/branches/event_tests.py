@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import copysign
 from typing import Any, NamedTuple
@@ -10,32 +11,24 @@ import numpy as np
 
 from singimpact.branches.closing import Loop, Turn
 from singimpact.branches.continuation import Point
+from singimpact.branches.events.kind import EventKind
+from singimpact.branches.events.orbit_state import NUDGE, OrbitState, Test
 from singimpact.branches.solutions import AnyClosing
 
 Array = np.ndarray[Any, Any]
-Key = tuple[str, int, int]
-"""Kind of the event, impact or flight, and which of its minima."""
-NUDGE = 1e-6
-"""A forward difference along the tangent, in scaled unknowns: rates then have a relative error of 1e-6 or less."""
 LEAST, RESTING = 1e-300, 1e-8
-"""In place of 0 at the first point; its product with another value is not 0. Of the torus test a part of its terms."""
+"""In place of 0 at the first point; its product with another value is not 0. Of a test that is a difference of two
+terms which are equal in models without losses a part of these terms."""
 REMEMBERED = 8
 """Points whose closing conditions and minima are remembered."""
 
 
-class Test(NamedTuple):
-    """A test function at a point of a branch: it changes sign at an event.
+class Key(NamedTuple):
+    """Which test function: the kind of the event, impact or flight, and which of its minima."""
 
-    Parameters
-    ----------
-    value, rate : the function and its derivative by the arc length of the branch, in scaled unknowns.
-    share : of a minimum of x - c the part of the flight time at which it lies; of a Neimark-Sacker test the size of its
-        two terms; else nan.
-    """
-
-    value: float
-    rate: float
-    share: float = np.nan
+    kind: EventKind
+    impact: int
+    number: int
 
 
 Tests = dict[Key, Test]
@@ -47,24 +40,20 @@ class EventTests:
 
     Parameters
     ----------
-    closing : of its orbits. scales : of its unknowns.
-
-    Notes
-    -----
-    With J(mu) of `closing.Loop`, u the unit tangent and d a determinant:
-
-        fold              u of the parameter
-        period-doubling   d(J(-1))
-        torus             the determinant of the return map less 1, times the last coefficient of d(J(mu))
-        branch point      d(J and its derivative by the parameter, above u)
-        graze             v of an impact; of an orbit without impact as a hidden impact
-        hidden impact     x - c at a local minimum of a flight
+    closing : of its orbits. scales : of its unknowns. kinds : of events.
     """
 
     closing: AnyClosing
     scales: Array
+    kinds: Sequence[EventKind]
     _loops: dict[bytes, Loop] = field(default_factory=dict)
     _minima: dict[bytes, list[list[Turn]]] = field(default_factory=dict)
+
+    def state(self, point: Point) -> OrbitState:
+        """A point of the branch, with what the tests are computed from."""
+        state = OrbitState(self.closing, self.scales, point.at, point.tangent)
+        state.loop = self.loop(point.at)  # computed once at a point, whatever its tangent is
+        return state
 
     def loop(self, at: Array) -> Loop:
         """The closing conditions at a point."""
@@ -90,50 +79,21 @@ class EventTests:
 
     def at(self, point: Point) -> Tests:
         """Every test function at a point of the branch."""
-        direction = point.tangent * self.scales
-        beside = point.at + NUDGE * direction
-        here = self._smooth(self.loop(point.at), point.tangent, point.tangent)
-        later = self._smooth(self.closing.at(beside), None, point.tangent)
-        tests = {(kind, 0, 0): Test(here[kind], (later[kind] - here[kind]) / NUDGE) for kind in SMOOTH}
-        zero, two = here["zero"], here["two"]
-        tests["torus", 0, 0] = tests["torus", 0, 0]._replace(share=abs(zero) + abs(two))
-        n = self.closing.n
-        for i in range(n):
-            tests["graze", i, 0] = Test(float(point.at[n + i]), float(direction[n + i]))
-        for i, turns in enumerate(self.minima(point.at)):
-            span = self.closing.span(point.at, i)
-            for j, (time, height) in enumerate(turn for turn in turns if np.isfinite(turn[1])):
-                rate = self.closing.rise(point.at, direction, i, time)
-                tests["hidden impact" if n else "graze", i, j] = Test(height, rate, time / span)
-        return tests
+        state = self.state(point)
+        state.turns = self.minima(point.at)
+        return {Key(kind, i, j): test for kind in self.kinds for i, j, test in kind.tests(state)}
+
+    def value(self, kind: EventKind, impact: int, point: Point) -> float:
+        """One test function, which is no minimum of a flight, at a point of the branch."""
+        return kind.value(self.state(point), impact)
 
     def leaving(self, point: Point) -> Tests:
         """Every test function at the first point of a branch; one that is 0 there has the sign from which it comes."""
         tests = self.at(point)
         for key, test in tests.items():
-            # the torus test is 0 up to rounding of its terms; without losses it is 0 everywhere, and its rate too
-            zero = RESTING * test.share if key[0] == "torus" else LEAST
-            if abs(test.value) < zero and (key[0] != "torus" or abs(test.rate) > NUDGE * test.share):
+            # this test is 0 up to rounding of its terms; without losses it is 0 everywhere, and its rate too
+            conserved = key.kind.conserved
+            zero = RESTING * test.size if conserved else LEAST
+            if abs(test.value) < zero and (not conserved or abs(test.rate) > NUDGE * test.size):
                 tests[key] = test._replace(value=-copysign(zero, test.rate))
         return tests
-
-    def _smooth(self, loop: Loop, tangent: Array | None, before: Array) -> dict[str, float]:
-        """Tests that depend on the derivatives of the closing conditions alone."""
-        slopes = loop.slope * self.scales
-        if not np.isfinite(slopes).all():
-            return dict.fromkeys((*SMOOTH, "zero", "two"), np.nan)
-        if tangent is None:
-            right = np.zeros(len(before))
-            right[-1] = 1.0
-            try:
-                tangent = np.linalg.solve(np.vstack([slopes, before]), right)
-            except np.linalg.LinAlgError:
-                tangent = before
-            tangent = tangent / np.linalg.norm(tangent)
-        multipliers = loop.characteristic()
-        crossing = float(np.linalg.det(np.vstack([slopes, tangent])))
-        return {"fold": float(tangent[-1]), "period-doubling": multipliers.doubling, "torus": multipliers.torus,
-                "branch point": crossing, "zero": multipliers.zero, "two": multipliers.two}  # fmt: skip
-
-
-SMOOTH = ("fold", "period-doubling", "torus", "branch point")

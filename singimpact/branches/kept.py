@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from singimpact import cache
-from singimpact.branches.event_tests import Test, Tests
+from singimpact.branches.event_tests import Key, Tests
+from singimpact.branches.events.orbit_state import Test
+from singimpact.branches.events.table import kind_of
 from singimpact.store import cache_folder
 
 Array = np.ndarray[Any, Any]
@@ -26,7 +28,7 @@ class KeptPoint:
     Parameters
     ----------
     following : length of the next step. multipliers, visible : of the orbit.
-    tests : of events, by kind, impact and number: value, rate and share of `event_tests.Test`.
+    tests : of events, by kind, impact and number: the numbers of `orbit_state.Test`.
     """
 
     at: Array
@@ -41,7 +43,7 @@ class KeptPoint:
         named = {}
         for name, numbers in self.tests.items():
             kind, impact, number = name.rsplit(" ", 2)
-            named[kind, int(impact), int(number)] = Test(*numbers)
+            named[Key(kind_of(kind), int(impact), int(number))] = Test(*numbers)
         return named
 
 
@@ -67,7 +69,7 @@ class KeptSide:
         """Keep one point more: `at`, tangent and next step; `row` with multipliers and whether it is visible."""
         if self.place is None:
             return
-        named = {f"{kind} {impact} {number}": tuple(test) for (kind, impact, number), test in tests.items()}
+        named = {f"{kind.name} {impact} {number}": tuple(test) for (kind, impact, number), test in tests.items()}
         self.points.append(KeptPoint(*at, row[1], bool(row[2]), named))
         self._new = True
         if time.monotonic() - self._written > EVERY:

@@ -10,14 +10,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import isfinite, sqrt
+from math import sqrt
 from typing import Any
 
 import numpy as np
 
 from singimpact.branches.continuation import Curve, Point, cubic_between, root_between
-from singimpact.branches.event_tests import EventTests, Key, Test, Tests
-from singimpact.branches.events import TOUCHES
+from singimpact.branches.event_tests import EventTests, Key, Tests
+from singimpact.branches.events.kind import EventKind
+from singimpact.branches.events.orbit_state import Test
 
 Array = np.ndarray[Any, Any]
 
@@ -41,7 +42,8 @@ class SearchSettings:
     # an extremum this near to 0, of the values at the ends of the step, may hide two zeros: two that are 1e-3 of the
     # interval apart leave a dip of 6e-4 on a step of 2 %, and are found (2000 branches); nearer ones may not be
     doubtful: float = 1e-3
-    # torus test, of its terms, that is a rounding error: for r = 1 without damping it is 0 everywhere
+    # a difference of two terms, of their size, that is a rounding error: for r = 1 without damping the product of the
+    # multipliers is 1 everywhere
     neutral: float = 1e-9
 
 
@@ -66,9 +68,9 @@ class Crossing:
     high: Node
 
     @property
-    def kind(self) -> str:
+    def kind(self) -> EventKind:
         """Of the event."""
-        return self.keys[0][0]
+        return self.keys[0].kind
 
     @property
     def ends(self) -> tuple[Test, Test]:
@@ -90,12 +92,12 @@ class StepSearch:
     here: Point
     length: float
     doubts: list[tuple[Key, Array]] = field(default_factory=list)
-    neutral: bool = False  # whether the torus test is 0 all along the step, up to rounding
+    neutral: bool = False  # whether the product of the multipliers is 1 all along the step, up to rounding
 
     def node(self, along: float, point: Point, tests: Tests) -> Node:
         """A point of the step; rates become those by the distance along the tangent of the first point."""
         share = float(point.tangent @ self.here.tangent)
-        return Node(along, point, {key: Test(test.value, test.rate / share, test.share) for key, test in tests.items()})
+        return Node(along, point, {key: test._replace(rate=test.rate / share) for key, test in tests.items()})
 
     def at(self, along: float) -> Node | None:
         """The point of the branch at a distance."""
@@ -125,13 +127,13 @@ class StepSearch:
         self._touching(nodes, sizes, {crossing.kind for crossing in found})
         return found
 
-    def _touching(self, nodes: list[Node], sizes: dict[Key, float], crossed: set[str]) -> None:
+    def _touching(self, nodes: list[Node], sizes: dict[Key, float], crossed: set[EventKind]) -> None:
         """Note functions that were computed at an extremum which is 0 up to rounding."""
         for node in nodes[1:-1]:
             for key, size in sizes.items():
                 test = node.tests.get(key)
                 flat = test is not None and abs(test.value) < SETTINGS.doubtful * size
-                if flat and key[0] not in crossed and not (self.neutral and key[0] == "torus"):
+                if flat and key.kind not in crossed and not (self.neutral and key.kind.conserved):
                     self.doubts.append((key, node.point.at))
 
     def _division(self, one: Node, other: Node) -> tuple[Key, float] | None:
@@ -139,7 +141,7 @@ class StepSearch:
         width = other.along - one.along
         if width <= SETTINGS.least * self.length:
             return None
-        for keys in _paired(one.tests, other.tests):
+        for keys in self._paired(one, other):
             tests = one.tests[keys[0]], other.tests[keys[1]]
             if self._is_neutral(keys[0], one, other):
                 continue
@@ -147,9 +149,22 @@ class StepSearch:
             if share is not None:
                 return keys[0], one.along + width * min(max(share, 1e-3), 1 - 1e-3)
         if width > SETTINGS.born * self.length and self._impacts(one) and self._impacts(other):
-            for key in _unpaired(one, other, width):
+            for key in self._unpaired(one, other, width):
                 return key, one.along + width / 2
         return None
+
+    def _paired(self, one: Node, other: Node) -> list[tuple[Key, Key]]:
+        """Each function at one point with the same function at another."""
+        return _pairs(one.tests, other.tests, not self.tests.closing.n)[0]
+
+    def _unpaired(self, one: Node, other: Node, width: float) -> Iterator[Key]:
+        """Minima at one end alone that may pass the wall on their way."""
+        _, first, second = _pairs(one.tests, other.tests, not self.tests.closing.n)
+        for keys, tests, sign in ((first, one.tests, 1.0), (second, other.tests, -1.0)):
+            for key in keys:
+                test = tests[key]
+                if test.value * (test.value + sign * SETTINGS.forecast * width * test.rate) < 0:
+                    yield key
 
     def _impacts(self, node: Node) -> bool:
         """Whether every impact has a velocity: at a graze minima begin at the wall."""
@@ -157,13 +172,13 @@ class StepSearch:
         return not n or float(node.point.at[n : 2 * n].min()) > 0
 
     def _is_neutral(self, key: Key, one: Node, other: Node) -> bool:
-        """Whether the torus test is no function to look at: 0 at an end of the step, or all along it."""
+        """Whether a test is no function to look at: rounding alone at an end of the step, or all along it."""
         ends = [node for node in (one, other) if node.along in (0.0, self.length)]
-        return key[0] == "torus" and (self.neutral or any(_neutral(node) for node in ends))
+        return key.kind.conserved and (self.neutral or any(_neutral(node) for node in ends))
 
     def _signs(self, one: Node, other: Node) -> Iterator[Crossing]:
         """Functions that change sign between two points."""
-        for keys in _paired(one.tests, other.tests):
+        for keys in self._paired(one, other):
             before, after = one.tests[keys[0]], other.tests[keys[1]]
             if before.value != 0 and before.value * after.value <= 0 and not self._is_neutral(keys[0], one, other):
                 yield Crossing(keys, one, other)
@@ -191,17 +206,10 @@ class StepSearch:
 
     def _value(self, crossing: Crossing, along: float, point: Point) -> float:
         """One test function at a point of the step."""
-        kind, impact, _ = crossing.keys[0]
-        n = self.tests.closing.n
-        if kind in TOUCHES and isfinite(crossing.ends[0].share):
+        if crossing.ends[0].is_minimum:
             turn = self.turn(crossing, along, point)
             return np.nan if turn is None else turn[1]
-        if kind == "graze":
-            return float(point.at[n + impact])
-        if kind == "fold":
-            return float(point.tangent[-1])
-        multipliers = self.tests.loop(point.at).characteristic()
-        return multipliers.torus if kind == "torus" else multipliers.doubling
+        return self.tests.value(crossing.kind, crossing.keys[0].impact, point)
 
     def turn(self, crossing: Crossing, along: float, point: Point) -> tuple[float, float] | None:
         """Time and height of the minimum that a crossing is about."""
@@ -256,29 +264,27 @@ def turning(before: float, rate: float, after: float, later: float) -> float | N
 
 def _neutral(node: Node) -> bool:
     """Whether the product of the multipliers is 1 at a point, up to rounding."""
-    return any(key[0] == "torus" and not abs(test.value) >= SETTINGS.neutral * test.share
+    return any(key.kind.conserved and not abs(test.value) >= SETTINGS.neutral * test.size
                for key, test in node.tests.items())  # fmt: skip
 
 
-def _paired(one: Tests, other: Tests) -> list[tuple[Key, Key]]:
-    """Each function at one point with the same function at another."""
-    return _pairs(one, other)[0]
-
-
-def _pairs(one: Tests, other: Tests) -> tuple[list[tuple[Key, Key]], list[Key], list[Key]]:
+def _pairs(one: Tests, other: Tests, around: bool) -> tuple[list[tuple[Key, Key]], list[Key], list[Key]]:
     """Functions at both points, and minima at one of them alone.
 
     Two minima of a flight are the same where each is the nearest to the other.
+
+    Parameters
+    ----------
+    around : whether the orbit is one without impact.
     """
-    plain = [(key, key) for key, test in one.items() if key in other and not _minimum(key, test)]
+    plain = [(key, key) for key, test in one.items() if key in other and not test.is_minimum]
     pairs, first, second = [], [], []
-    for flight in sorted({key[:2] for tests in (one, other) for key, test in tests.items() if _minimum(key, test)}):
-        here, there = ([key for key, test in tests.items() if key[:2] == flight and _minimum(key, test)]
-                       for tests in (one, other))  # fmt: skip
-        free = flight[0] == "graze"
-        mates = {key: min(there, key=lambda mate: abs(_gap(one[key].share - other[mate].share, free)), default=None)
+    minima = [[key for key, test in tests.items() if test.is_minimum] for tests in (one, other)]
+    for flight in sorted({key.impact for keys in minima for key in keys}):
+        here, there = ([key for key in keys if key.impact == flight] for keys in minima)
+        mates = {key: min(there, key=lambda mate: abs(_gap(one[key].share - other[mate].share, around)), default=None)
                  for key in here}  # fmt: skip
-        back = {key: min(here, key=lambda mate: abs(_gap(other[key].share - one[mate].share, free)), default=None)
+        back = {key: min(here, key=lambda mate: abs(_gap(other[key].share - one[mate].share, around)), default=None)
                 for key in there}  # fmt: skip
         same = [(key, mate) for key, mate in mates.items() if mate is not None and back[mate] == key]
         pairs += same
@@ -287,20 +293,6 @@ def _pairs(one: Tests, other: Tests) -> tuple[list[tuple[Key, Key]], list[Key], 
     return plain + pairs, first, second
 
 
-def _minimum(key: Key, test: Test) -> bool:
-    return key[0] in TOUCHES and isfinite(test.share)
-
-
 def _gap(shares: float, around: bool) -> float:
     """A difference of two parts of a flight; of an orbit without impact, which has no first one, around it."""
     return shares - round(shares) if around else shares
-
-
-def _unpaired(one: Node, other: Node, width: float) -> Iterator[Key]:
-    """Minima at one end alone that may pass the wall on their way."""
-    _, first, second = _pairs(one.tests, other.tests)
-    for keys, tests, sign in ((first, one.tests, 1.0), (second, other.tests, -1.0)):
-        for key in keys:
-            test = tests[key]
-            if test.value * (test.value + sign * SETTINGS.forecast * width * test.rate) < 0:
-                yield key

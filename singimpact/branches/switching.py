@@ -19,28 +19,7 @@ APART = 1e-3
 """Distance from a doubling at which the doubled orbit is given, in scaled unknowns."""
 
 
-def others(kind: str, orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:
-    """Orbits of the other branches at an event: see `events.Event.others`.
-
-    Examples
-    --------
-    >>> from singimpact.branches.resting import free_orbits
-    >>> model = Oscillator("x + 0.1*xdot", "-A*cos(0.8*t)", -1, "0.8", {"A": "sqrt(0.36**2 + 0.08**2)"})
-    >>> [touching] = free_orbits(model, 1, lowest_only=True)
-    >>> [(orbit.n, abs(round(float(orbit.v[0]), 12))) for orbit in others("graze", touching, "A", 0.368781778291)]
-    [(1, 0.0)]
-    """
-    match kind:
-        case "period-doubling":
-            return _doubled(orbit, over, parameter)
-        case "graze" if orbit.n:
-            return [_without_impact(orbit)]
-        case "graze" | "hidden impact":
-            return [_with_impact(orbit)]
-    return []
-
-
-def _point(orbit: PeriodicOrbit) -> Array:
+def states_of(orbit: PeriodicOrbit) -> Array:
     return np.concatenate([np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)])
 
 
@@ -52,7 +31,7 @@ def _closed(event: PeriodicOrbit, n: int, point: Array) -> PeriodicOrbit:
     return orbit_of(closing, point if found is None else found[0])
 
 
-def _without_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
+def without_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     n = int(orbit.n)
     times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
     at = int(np.argmin(np.abs(speeds)))  # an orbit begins at its least phase, not where its branch did
@@ -67,42 +46,31 @@ def _without_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     return _closed(orbit, n - 1, np.concatenate([later, speeds[kept]]))
 
 
-def _with_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
+def with_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     n = int(orbit.n)
     times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
     if n == 0:
         return _closed(orbit, 1, np.array([times[0], 0.0]))
-    flight, time = _touching_flight(orbit)
+    flight, time = touching_flight(orbit)
     return _closed(orbit, n + 1, np.concatenate([np.insert(times, flight + 1, times[flight] + time),
                                                  np.insert(speeds, flight + 1, 0.0)]))  # fmt: skip
 
 
-def _touching_flight(orbit: PeriodicOrbit) -> tuple[int, float]:
+def touching_flight(orbit: PeriodicOrbit) -> tuple[int, float]:
     """The flight of a hidden impact and the time from its launch: the one with the least height, wherever it begins."""
     closing = closing_of(orbit.oscillator, int(orbit.n), orbit.k, ())
-    heights = closing.heights(_point(orbit))
+    heights = closing.heights(states_of(orbit))
     flight = int(np.argmin([abs(height) for _, height in heights]))
     return flight, heights[flight][0]
 
 
-def graze_time(kind: str, orbit: PeriodicOrbit) -> float:
-    """The time at which an orbit touches the wall: see `events.Event.graze_time`."""
-    times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
-    if not orbit.n:
-        return float(times[0])
-    if kind == "graze":
-        return float(times[np.argmin(np.abs(speeds))])
-    flight, time = _touching_flight(orbit)
-    return float(times[flight] + time)
-
-
-def _doubled(orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:
+def doubled(orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:
     """The orbit of twice the period next to a doubling, by one step along the vector that -1 belongs to."""
     n = int(orbit.n)
     if n == 0:
         return []
     once = closing_of(orbit.oscillator, n, orbit.k, ())
-    at = _point(orbit)
+    at = states_of(orbit)
     loop = once.at(at)
     # the eigenvector of -1: the doubled orbit alternates along it
     vector = np.linalg.svd(loop.slope[:, : 2 * n] - 2 * loop.wrap)[2][-1]

@@ -6,13 +6,14 @@ from typing import Any
 
 import click
 
+from singimpact.branches.events import KINDS, PERIOD_DOUBLING
 from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.output import emit
 from singimpact.inputs import InputError
 from singimpact.store import require_writable
 
 State = tuple[str, str] | None
-EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact", "pitchfork", "transcritical")
+EVENTS = tuple(kind.name for kind in KINDS if kind.is_class)
 """Kinds of events of a branch: those that the checker knows, as a test compares, then those refused in a sentence."""
 
 
@@ -26,7 +27,7 @@ EVENTS = ("fold", "period-doubling", "torus", "graze", "hidden impact", "pitchfo
 )
 @click.option(
     "--doubling", type=(str, float, float), metavar="OVER LOW HIGH",
-    help="As --event period-doubling OVER LOW HIGH.",
+    help=f"As --event {PERIOD_DOUBLING.name} OVER LOW HIGH.",
 )  # fmt: skip
 @click.option(
     "--event", type=(click.Choice(EVENTS), str, float, float), metavar="KIND OVER LOW HIGH",
@@ -121,7 +122,7 @@ def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
         return certify(_border(model, options["border"], digits))
     if kind == "orbit":
         orbit = _orbit(model, kind, options[kind], near)
-        wanted = options["event"] or (("period-doubling", *options["doubling"]) if options["doubling"] else None)
+        wanted = options["event"] or ((PERIOD_DOUBLING.name, *options["doubling"]) if options["doubling"] else None)
         return certify((_event(orbit, *wanted) if wanted else orbit).certified(digits))
     crossings = homoclinic_points(_orbit(model, kind, options[kind], near, saddle=True))
     if not len(crossings):

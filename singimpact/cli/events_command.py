@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from singimpact.branches.events import KINDS
 from singimpact.cli.columns import columns
 from singimpact.cli.followed import orbit_options, take_branches, take_ends, take_orbits
 from singimpact.cli.model_options import model_options, take_model
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 NEAR = 0.05
 """An event that is nearer to a step of a curve than this part of the step is on the curve."""
-KINDS = ("fold", "period-doubling", "graze", "hidden impact")
+FOLLOWED = tuple(kind.name for kind in KINDS if kind.look is not None)
 
 
 @click.command()
@@ -32,7 +33,9 @@ KINDS = ("fold", "period-doubling", "graze", "hidden impact")
               help="Two parameters; the orbits are followed over A first.")  # fmt: skip
 @click.option("--from", "low", nargs=2, metavar="A B", help="Their least values.  [default: half of the model's]")
 @click.option("--to", "high", nargs=2, metavar="A B", help="Their largest values.")
-@click.option("--event", "kinds", type=click.Choice(KINDS), multiple=True, help="Events of this kind.  [default: all]")
+@click.option(
+    "--event", "kinds", type=click.Choice(FOLLOWED), multiple=True, help="Events of this kind.  [default: all]"
+)
 @click.option("--index", type=click.IntRange(1), help="Only the event with this number in the list of `branch`.")
 @click.option(
     "--points",
@@ -89,7 +92,9 @@ def choose(branches: list[Branch], kinds: tuple[str, ...], index: int | None) ->
     InputError : there is none.
     """
     every = [event for branch in branches for event in branch.events]
-    found = [event for place, event in enumerate(every, 1) if index in (None, place) and event.kind in (kinds or KINDS)]
+    found = [
+        event for place, event in enumerate(every, 1) if index in (None, place) and event.kind in (kinds or FOLLOWED)
+    ]
     if not found:
         given = ", ".join(f"{place} {event.kind}" for place, event in enumerate(every, 1)) or "none"
         raise InputError(f"no such event: those of the branch are {given}; --from and --to make it longer")
@@ -102,7 +107,7 @@ def _with_impact(event: Event, free: Branch) -> Event:
 
     ends = float(free.parameter.min()), float(free.parameter.max())
     through = branch(event.others()[0], event.over, ends)
-    same = [each for each in through.events if each.kind == "graze"]
+    same = [each for each in through.events if each.described.at_impact]
     return min(same, key=lambda each: abs(each.parameter - event.parameter))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from singimpact.branches.branch import Branch
 from singimpact.branches.event_curve import EventCurve
-from singimpact.branches.events import Event
+from singimpact.branches.events import Event, kind_of
 from singimpact.branches.solutions import closing_of, orbit_period
 from singimpact.inputs import refuse
 from singimpact.scenes.label_places import place_labels
@@ -18,7 +18,6 @@ from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LETTERS, LINES, MAR
 
 Array = np.ndarray[Any, Any]
 HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}
-NAMES = {"period-doubling": "doubling"}
 WORDS = {"stable": "stable", "unstable": "unstable", "virtual": "virtual: goes through the wall"}
 
 
@@ -152,11 +151,12 @@ class _Drawn:
         found: list[tuple[tuple[float, float, str], str | None]] = []
         for event, place in self.events[::-1]:
             # a graze is one impact's; all impacts of the orbit are part of the other events
-            at = int(np.argmin(np.abs(place))) if event.kind == "graze" and self.shown == "v" else 0
-            order = [at] if event.kind == "graze" else [at, *(i for i in range(len(place)) if i != at)]
+            alone = event.described.at_impact
+            at = int(np.argmin(np.abs(place))) if alone and self.shown == "v" else 0
+            order = [at] if alone else [at, *(i for i in range(len(place)) if i != at)]
             for rank, i in enumerate(order):
                 if np.isfinite(place[i]):
-                    name = NAMES.get(event.kind, event.kind) if rank == 0 else None
+                    name = event.described.label if rank == 0 else None
                     found.append(((event.parameter, float(place[i]), event.kind), name))
         return found
 
@@ -211,7 +211,7 @@ def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], marks: list[Any]) 
         style, width = LINES[kind]
         entries.setdefault(WORDS[kind], Line2D([], [], color=BLACK, linestyle=style, linewidth=width))
     for (_, _, kind), _ in marks:
-        entries.setdefault(NAMES.get(kind, kind), _marker(MARKS[kind]))
+        entries.setdefault(kind_of(kind).label, _marker(MARKS[kind]))
     _legend_below(axes, entries)
 
 
@@ -238,7 +238,7 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:
     names = {f"({curve.n}, {curve.k})" for curve in curves}
     for curve in curves:
         pen = EVENT_PENS[curve.kind]
-        name = NAMES.get(curve.kind, curve.kind)
+        name = kind_of(curve.kind).label
         name = f"{name} of ({curve.n}, {curve.k}) orbits" if len(names) > 1 else name
         entries.setdefault(name, Line2D([], [], **pen.line()))
         for seen in (True, False):

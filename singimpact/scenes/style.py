@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from singimpact.branches.events import KINDS
+
 BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00"
 BLACK, GREY, SHADE = "#000000", "#6E6E6E", "#E3E3E3"
 DASHES, DOTS, DASH_DOT, SHORT_DASHES = (0, (5, 2)), (0, (1, 1.4)), (0, (6, 2, 1, 2)), (0, (2.6, 1.2))
@@ -78,22 +80,15 @@ ORBIT_WIDTHS = (1.0, 1.7, 0.7, 1.0, 0.7, 1.35)
 """Times the width of a line: two colours of about the same grey have widths that differ."""
 LETTERS = {"clearance": "clearance $c$", "restitution": "restitution $r$"}
 """The label of an axis, for each number of a model."""
-MARKS = {
-    "fold": "o",
-    "period-doubling": "s",
-    "torus": "D",
-    "pitchfork": "P",
-    "transcritical": "X",
-    "branch point": "*",
-    "graze": "^",
-    "hidden impact": "v",
-}
+MARKS = {kind.name: kind.marker for kind in KINDS}
 """Markers of the events of a branch."""
+COLORS = {"blue": BLUE, "vermillion": VERMILLION, "green": GREEN, "black": BLACK}
+STYLES = {"solid": "solid", "dashes": DASHES, "dash-dot": DASH_DOT}
+"""Names that kinds of events have for the colours and line styles of their curves."""
 EVENT_PENS = {
-    "fold": Pen(BLUE, width=2.8),
-    "period-doubling": Pen(VERMILLION, DASHES, 1.8),
-    "graze": Pen(BLACK, width=1.4),
-    "hidden impact": Pen(GREEN, DASH_DOT, 1.6),
+    kind.name: Pen(COLORS[kind.look.color], STYLES[kind.look.style], kind.look.width)
+    for kind in KINDS
+    if kind.look is not None
 }
 """Curves of events in two numbers, where their orbits are visible; virtual parts are dotted."""
 

@@ -13,6 +13,7 @@ from typing import Any
 from singimpact.bench.measuring import Aim, Case, Counted, Effort, Method
 from singimpact.branches.branch import branch
 from singimpact.branches.event_curve import event_curve
+from singimpact.branches.events import GRAZE, PERIOD_DOUBLING
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
 MANY = 1000
@@ -57,7 +58,7 @@ def _branch(points: int) -> Counted:
     """The amplitude at the graze, and the points on both sides of it."""
     osc = linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.4")
     found = branch(osc.periodic(1, 1)[0], "amplitude", (-0.6, -0.33), step=1.6 / points)
-    return Counted(len(found), [event.parameter for event in found.events if event.kind == "graze"])
+    return Counted(len(found), [event.parameter for event in found.events if event.kind == GRAZE.name])
 
 
 def _duffing(points: int) -> Counted:
@@ -70,7 +71,7 @@ def _curve() -> Counted:
     """1, and the largest relative distance from the closed form of the doublings."""
     ball = ImpactOscillator("1", "G*cos(t)", 0, "0.5", {"G": "1.5"})
     orbits = [branch(orbit, "G", (1.4, 1.7)) for orbit in ball.periodic(1, 1)]
-    (event,) = (event for each in orbits for event in each.events if event.kind == "period-doubling")
+    (event,) = (event for each in orbits for event in each.events if event.kind == PERIOD_DOUBLING.name)
     curve = event_curve(event, ("G", "restitution"), ((0.5, 3.5), (0.1, 0.95)), step=0.012)
     off = 1.0
     for G, r in curve.parameters.tolist():

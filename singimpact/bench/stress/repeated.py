@@ -10,6 +10,7 @@ from typing import Any
 from singimpact.bench.stress.judging import Function, Trial, moved, powers
 from singimpact.branches.branch import branch
 from singimpact.branches.event_curve import event_curve
+from singimpact.branches.events import GRAZE
 from singimpact.impact_oscillator import linear
 
 
@@ -53,7 +54,7 @@ def _grazes(place: str, curve: bool, points: int) -> Iterator[Trial]:
         for orbit in orbits:
             found = branch(orbit, "amplitude", (1.2 * touching, 0.8 * touching))
             for event in found.events:
-                if event.kind != "graze":
+                if event.kind != GRAZE.name:
                     continue
                 place_of = f"omega = {omega!r}, restitution = {r!r}"
                 given, value = omega, event.parameter

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.switching import graze_time, others
-from singimpact.flights.impact_map import checked_digits
+from singimpact.branches.events.kind import EventKind
+from singimpact.branches.events.table import KINDS, kind_of
 from singimpact.inputs import InputError, refuse
 
 if TYPE_CHECKING:
     from singimpact.branches.enclosed_event import EnclosedEvent
+    from singimpact.branches.orbits import PeriodicOrbit
 
 
-TOUCHES = ("graze", "hidden impact")
-"""Kinds of events at which the orbit touches the wall."""
 NEAR = 1e-6
 """How far, relative to 1 or the parameter, an event in doubles is from the one that is proved."""
 
@@ -49,6 +47,11 @@ class Event:
     over: str = ""
     other: PeriodicOrbit | None = None
 
+    @property
+    def described(self) -> EventKind:
+        """What holds for all events of its kind."""
+        return kind_of(self.kind)
+
     def others(self) -> list[PeriodicOrbit]:
         """Orbits of the other branches that meet this one here, to be followed by `branch`.
 
@@ -60,14 +63,14 @@ class Event:
         """
         if self.other is not None:
             return [self.other]
-        return others(self.kind, self.orbit, self.over, self.parameter)
+        return self.described.others(self.orbit, self.over, self.parameter)
 
     @property
     def graze_time(self) -> float:
         """When the orbit touches the wall, of a graze or a hidden impact: `at` of `singimpact.theory.grazing_map`."""
-        if self.kind not in TOUCHES:
-            raise refuse("event", self.kind, "a graze or a hidden impact")
-        return graze_time(self.kind, self.orbit)
+        if not self.described.touches:
+            raise refuse("event", self.kind, " or ".join(f"a {kind.name}" for kind in KINDS if kind.touches))
+        return self.described.graze_time(self.orbit)
 
     def certified(self, digits: int = 20) -> EnclosedEvent:
         """The event, proved to exist and to be the only one in a box: its parameter and its states with radii.
@@ -98,22 +101,24 @@ class Event:
         0.3687817782917154924000910
         """
         from singimpact.branches.enclosed_event import enclosed_event
-        from singimpact.branches.event_function import SIGNS
+        from singimpact.flights.impact_map import checked_digits
 
-        touches = self.kind in TOUCHES
-        if self.kind not in (*SIGNS, *TOUCHES):
-            raise InputError(f"{self!r} is not certified: no proof covers a {self.kind}, only a fold, period-doubling, "
-                             f"torus, graze or hidden impact{self._instead()}")  # fmt: skip
+        touches = self.described.touches
+        if not self.described.proof:
+            *names, last = (kind.name for kind in KINDS if kind.proof)
+            raise InputError(f"{self!r} is not certified: no proof covers a {self.kind}, only a {', '.join(names)} or "
+                             f"{last}{self._instead()}")  # fmt: skip
         if not (touches or self.orbit.n):
             raise InputError(f"{self!r} is not accepted: of orbits without impact a graze alone can be certified")
-        at = self.orbit if not touches or (self.kind == "graze" and self.orbit.n) else self.others()[0]
-        found = enclosed_event("graze" if touches else self.kind, at, self.over, self.parameter, checked_digits(digits))
+        rests = not touches or (self.orbit.n and self.described.at_impact)
+        at = self.orbit if rests else self.others()[0]
+        found = enclosed_event(self.kind, at, self.over, self.parameter, checked_digits(digits))
         if isinstance(found, str):
             virtual = "" if self.orbit.visible else "its orbit is virtual: "
             raise InputError(f"{self!r} is not certified: {virtual}{found}")
         if not abs(found.parameter.value - self.parameter) <= NEAR * max(1.0, abs(self.parameter)):
             raise InputError(f"{self!r} is not certified: Newton's method leaves for {found.parameter}")
-        return replace(found, kind=self.kind)
+        return found
 
     def _instead(self) -> str:
         half = self.other
@@ -123,5 +128,5 @@ class Event:
         return f"; the period doubling of the {name} orbits here has one: si.branch(event.others()[0], {self.over!r})"
 
     def __repr__(self) -> str:
-        which = f" of impact {self.impact + 1}" if self.kind == "graze" and self.orbit.n else ""
+        which = f" of impact {self.impact + 1}" if self.described.at_impact and self.orbit.n else ""
         return f"<{self.kind}{which} at {self.over} = {self.parameter:.12g}>"

@@ -1,0 +1,16 @@
+"""Kinds of events of a branch of periodic orbits: tests, other branches, equations of curves and proofs, marks.
+
+Not here: where along a branch tests vanish (`branches.step_search`), curves of events (`branches.event_curve`), proofs
+(`branches.enclosed_event`).
+Files: `table` (all kinds), `kind` (the protocol `EventKind`, and what most kinds have in common), `orbit_state` (what
+tests are computed from), `return_map` (kinds that the return map decides) with `fold`, `period_doubling`,
+`neimark_sacker`; `touching` (kinds at which the orbit touches the wall) with `graze`, `interior_graze`;
+`meeting_branches` (pitchforks, transcritical points); `event` (an event of a branch).
+"""
+
+from singimpact.branches.events.event import Event as Event
+from singimpact.branches.events.graze import GRAZE as GRAZE
+from singimpact.branches.events.kind import EventKind as EventKind
+from singimpact.branches.events.period_doubling import PERIOD_DOUBLING as PERIOD_DOUBLING
+from singimpact.branches.events.table import KINDS as KINDS
+from singimpact.branches.events.table import kind_of as kind_of

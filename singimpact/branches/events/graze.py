@@ -1,0 +1,98 @@
+"""Grazes: an impact of the orbit has no velocity, or an orbit without impact touches the wall."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from singimpact.branches.events.kind import CurveLook, Indexed, grazes
+from singimpact.branches.events.orbit_state import OrbitState, Test
+from singimpact.branches.events.touching import TouchingKind, heights
+
+if TYPE_CHECKING:
+    from singimpact.branches.orbits import PeriodicOrbit
+    from singimpact.branches.solutions import AnyClosing
+
+Array = np.ndarray[Any, Any]
+DEGENERATE = 1e-6
+"""a_c at the graze, of the largest a_c in a period, below which the graze is called degenerate."""
+
+
+class Graze(TouchingKind):
+    """Graze of an impact: its velocity vanishes. Of an orbit without impact x - c vanishes at a local minimum."""
+
+    name = "graze"
+    word = "graze"
+    marker = "^"
+    look = CurveLook("black", "solid", 1.4)
+    at_impact = True
+
+    def tests(self, state: OrbitState) -> Indexed:
+        """v of each impact; of an orbit without impact the heights of its minima."""
+        n = state.closing.n
+        if not n:
+            yield from heights(state)
+        for i in range(n):
+            yield i, 0, Test(float(state.at[n + i]), float(state.direction[n + i]))
+
+    def value(self, state: OrbitState, impact: int) -> float:
+        """v of an impact."""
+        return float(state.at[state.closing.n + impact])
+
+    def remark(self, orbit: PeriodicOrbit, time: float, parameter: float) -> str:
+        """Where a_c vanishes too, the graze is degenerate."""
+        from singimpact.branches.solutions import orbit_period
+        from singimpact.oscillator.acceleration import acceleration
+
+        if not orbit.n:
+            return ""
+        at_impact = float(acceleration(orbit.oscillator, np.array([time]))[0])
+        largest = float(np.abs(acceleration(orbit.oscillator, np.linspace(0, 1, 9) * orbit_period(orbit))).max())
+        if not abs(at_impact) < DEGENERATE * largest:
+            return ""
+        return f"the graze at {parameter:.12g} is one with a_c = 0: a degenerate graze"
+
+    def others(self, orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:
+        """The orbit without the impact; of an orbit without impact the one with an impact there."""
+        from singimpact.branches.switching import without_impact
+
+        return [without_impact(orbit)] if orbit.n else super().others(orbit, over, parameter)
+
+    def touching(self, closing: AnyClosing, orbit: PeriodicOrbit) -> int:  # noqa: ARG002
+        """The slowest impact."""
+        return int(np.argmin(np.abs(np.asarray(orbit.v, dtype=float))))
+
+    def graze_time(self, orbit: PeriodicOrbit) -> float:
+        """The time of the impact without velocity."""
+        if not orbit.n:
+            return super().graze_time(orbit)
+        return float(np.asarray(orbit.tau, dtype=float)[np.argmin(np.abs(np.asarray(orbit.v, dtype=float)))])
+
+    def equation(self, state: OrbitState) -> float:
+        """v of the impact that grazes, over its scale."""
+        n = state.closing.n
+        return self.value(state, state.impact) / float(state.scales[n])
+
+    def gradient(self, state: OrbitState) -> Array:
+        """1 over the scale, at the velocity."""
+        n, slope = state.closing.n, np.zeros(len(state.at))
+        slope[n + state.impact] = 1.0 / state.scales[n]
+        return slope
+
+    def degenerate(self, state: OrbitState, gradient: Any) -> dict[str, float]:  # noqa: ARG002
+        """Folds and doublings that leave the curve, a_c = 0, and another impact that grazes."""
+        from singimpact.branches.closing import Closing
+
+        closing = state.closing
+        assert isinstance(closing, Closing)
+        launch = closing.flights(state.at)[state.impact][0]
+        pressing = float(closing.family.end(closing.values(state.at), launch, 0.0, 0.0).by_time[1])
+        return {
+            "fold at a graze": state.determinant(1.0),
+            "doubling at a graze": state.determinant(-1.0),
+            "degenerate graze": pressing,
+        } | grazes(state, "two grazes", but=state.impact)
+
+
+GRAZE = Graze()

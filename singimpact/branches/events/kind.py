@@ -1,0 +1,131 @@
+"""A kind of event: what the walk along a branch, event curves, proofs and pictures take from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+
+from singimpact.branches.events.orbit_state import OrbitState, Test
+
+if TYPE_CHECKING:
+    from singimpact.branches.closing import Loop
+    from singimpact.branches.orbits import PeriodicOrbit
+    from singimpact.branches.solutions import AnyClosing
+
+Array = np.ndarray[Any, Any]
+Indexed = Iterator[tuple[int, int, Test]]
+"""Impact or flight, which of its minima, and the test there."""
+
+
+class CurveLook(NamedTuple):
+    """Names of the colour and the line style of a curve of events, and its width."""
+
+    color: str
+    style: str
+    width: float
+
+
+class EventKind(Protocol):
+    """What differs between kinds of events; a method that a kind does not have does what most kinds do.
+
+    Attributes
+    ----------
+    name : as `Event.kind` has it. word : the field's. marker : of matplotlib.
+    look : of its curves in two numbers; None: it is not followed as a curve.
+    touches : the orbit touches the wall: multipliers are infinite and first hits jump, so a branch has no point there.
+    at_impact : it is that of one impact, whose velocity vanishes.
+    conserved : its test is 0, up to rounding, all along a branch of a model without losses.
+    may_meet : another branch of such orbits may cross where its test changes sign.
+    is_located : where its test changes sign, and no other branch crosses, it takes place.
+    is_class : whether an event that was classified may have this name.
+    proof : what a proof of such an event shows, in a sentence; empty: no proof covers it.
+    """
+
+    name: str
+    word: str
+    marker: str
+    look: CurveLook | None = None
+    touches: bool = False
+    at_impact: bool = False
+    conserved: bool = False
+    may_meet: bool = False
+    is_located: bool = True
+    is_class: bool = True
+    proof: str = ""
+
+    @property
+    def label(self) -> str:
+        """The name beside its mark in a picture."""
+        return self.name
+
+    # ---- along a branch
+
+    def tests(self, state: OrbitState) -> Indexed:  # noqa: ARG002
+        """Its test functions at a point of a branch, with their rates; none where other tests lead to it."""
+        return iter(())
+
+    def value(self, state: OrbitState, impact: int) -> float:  # noqa: ARG002
+        """One of its test functions, which is no minimum of a flight, at a point of the branch."""
+        return np.nan
+
+    def occurs(self, loop: Loop) -> bool:  # noqa: ARG002
+        """Whether a zero of the test is an event."""
+        return True
+
+    def remark(self, orbit: PeriodicOrbit, time: float, parameter: float) -> str:  # noqa: ARG002
+        """What is special about an event, in a sentence; `time` is that of the impact."""
+        return ""
+
+    def doubt(self, closing: AnyClosing, at: Array) -> str:  # noqa: ARG002
+        """What a test that touches 0, up to rounding, leaves open, in a sentence."""
+        return f"the test of a {self.name} comes so near to 0 that two may lie there, or none: give a smaller step="
+
+    # ---- at an event
+
+    def others(self, orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:  # noqa: ARG002
+        """Orbits of the other branches that meet the branch there."""
+        return []
+
+    def touching(self, closing: AnyClosing, orbit: PeriodicOrbit) -> int:  # noqa: ARG002
+        """The index of the impact or flight that touches the wall; 0 where none is singled out."""
+        return 0
+
+    def graze_time(self, orbit: PeriodicOrbit) -> float:  # noqa: ARG002
+        """When the orbit touches the wall; nan where it does not."""
+        return np.nan
+
+    # ---- as a curve in two numbers
+
+    def equation(self, state: OrbitState) -> float:
+        """What vanishes on the curve, beside the closing conditions."""
+        return self.value(state, 0)
+
+    def gradient(self, state: OrbitState) -> Array | None:  # noqa: ARG002
+        """The derivative of the equation by each unknown; None: by differences."""
+        return None
+
+    def degenerate(self, state: OrbitState, gradient: Any) -> dict[str, float]:  # noqa: ARG002
+        """Test functions of points of codimension two, by their names; `gradient` computes that of the equation."""
+        return grazes(state, "graze")
+
+    # ---- in a proof
+
+    def of_return_map(self, total: Any) -> Any:  # noqa: ARG002
+        """What vanishes at the event, of the derivative M of the return map, in balls."""
+        raise ArithmeticError(f"no proof covers a {self.name}")
+
+    def rate_of_return_map(self, total: Any, change: Any) -> Any:  # noqa: ARG002
+        """The rate of `of_return_map` where M changes at a rate."""
+        return self.of_return_map(total)
+
+    def refusal(self, total: Any) -> str:  # noqa: ARG002
+        """Why a zero of `of_return_map` is not shown to be the event, or nothing."""
+        return ""
+
+
+def grazes(state: OrbitState, name: str, but: int | None = None) -> dict[str, float]:
+    """The velocities of the impacts but one, by a name and the index of the impact."""
+    n = state.closing.n
+    return {f"{name} {i}": float(state.at[n + i]) for i in range(n) if i != but}

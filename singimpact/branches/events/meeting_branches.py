@@ -1,0 +1,78 @@
+"""Branch points: the branch meets another branch of orbits of as many impacts and periods."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from singimpact.branches.events.kind import EventKind
+from singimpact.branches.events.orbit_state import OrbitState
+from singimpact.branches.events.return_map import ReturnMapKind
+
+if TYPE_CHECKING:
+    from singimpact.branches.solutions import AnyClosing
+
+Array = np.ndarray[Any, Any]
+ALIKE = 1e-3
+"""Parts of an orbit that differ by less, in scaled unknowns, where the branch comes near an orbit that repeats them."""
+
+
+class BranchPointKind(ReturnMapKind):
+    """A branch point whose other branch was not reached.
+
+    Its test is the determinant of the closing conditions with their derivative by the parameter, above the tangent.
+    """
+
+    name = "branch point"
+    word = "branch point"
+    marker = "*"
+    may_meet = True
+    is_located = is_class = False
+
+    def test(self, state: OrbitState) -> float:
+        """The determinant of the derivatives above the tangent."""
+        return float(np.linalg.det(np.vstack([state.slopes, state.tangent])))
+
+    def doubt(self, closing: AnyClosing, at: Array) -> str:
+        """Near an orbit that repeats a shorter one: which orbits it meets."""
+        share = repeats(closing, at)
+        if share == 1:
+            return super().doubt(closing, at)
+        n, k = closing.n // share, closing.k // share
+        return f"meets the ({n}, {k}) orbits, of which a multiplier to the power {share} is 1"
+
+
+class Pitchfork(EventKind):
+    """Pitchfork: one of two branches turns back where they cross, such as doubled orbits where they begin."""
+
+    name = "pitchfork"
+    word = "pitchfork bifurcation"
+    marker = "P"
+
+
+class Transcritical(EventKind):
+    """Transcritical bifurcation: two branches cross, and neither turns back."""
+
+    name = "transcritical"
+    word = "transcritical bifurcation"
+    marker = "X"
+
+
+BRANCH_POINT, PITCHFORK, TRANSCRITICAL = BranchPointKind(), Pitchfork(), Transcritical()
+
+
+def repeats(closing: AnyClosing, at: Array) -> int:
+    """How often an orbit with impacts repeats one of fewer impacts and periods, about."""
+    n, k = closing.n, closing.k
+    if not n:
+        return 1
+    period, scales = closing.family.period(closing.values(at)).value, closing.scales(at)
+    for share in range(n, 1, -1):
+        if n % share == 0 and k % share == 0:
+            m = n // share
+            times = (np.roll(at[:n], -m) - at[:n] - k // share * period)[: n - m] / scales[0]
+            speeds = (np.roll(at[n : 2 * n], -m) - at[n : 2 * n]) / scales[n]
+            if max(float(np.abs(times).max()), float(np.abs(speeds).max())) < ALIKE:
+                return share
+    return 1

@@ -1,0 +1,27 @@
+"""All kinds of events, in the order in which a branch looks for them."""
+
+from __future__ import annotations
+
+from singimpact.branches.events.fold import FOLD
+from singimpact.branches.events.graze import GRAZE
+from singimpact.branches.events.interior_graze import INTERIOR_GRAZE
+from singimpact.branches.events.kind import EventKind
+from singimpact.branches.events.meeting_branches import BRANCH_POINT, PITCHFORK, TRANSCRITICAL
+from singimpact.branches.events.neimark_sacker import NEIMARK_SACKER
+from singimpact.branches.events.period_doubling import PERIOD_DOUBLING
+
+KINDS: tuple[EventKind, ...] = (
+    FOLD, PERIOD_DOUBLING, NEIMARK_SACKER, BRANCH_POINT, GRAZE, INTERIOR_GRAZE, PITCHFORK, TRANSCRITICAL,
+)  # fmt: skip
+_BY_NAME = {kind.name: kind for kind in KINDS}
+
+
+def kind_of(name: str) -> EventKind:
+    """The kind with a name.
+
+    Examples
+    --------
+    >>> kind_of("torus").word
+    'Neimark-Sacker bifurcation (torus)'
+    """
+    return _BY_NAME[name]
