@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.branches.branch_walk import SETTINGS, BranchWalk
-from singimpact.branches.events import Event
+from singimpact.branches.events import KINDS, Event, own_events
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import closing_of, orbit_of
 from singimpact.inputs import InputError, refuse, whole
@@ -94,8 +95,9 @@ class Branch:
 
 
 def branch(
-    orbit: PeriodicOrbit, over: str = CLEARANCE, between: Any = None, *, points: int = 2000, step: float | None = None
-) -> Branch:
+    orbit: PeriodicOrbit, over: str = CLEARANCE, between: Any = None, *, points: int = 2000, step: float | None = None,
+    events: Iterable[Any] = (),
+) -> Branch:  # fmt: skip
     """The branch of periodic orbits through an orbit, over a parameter of its model.
 
     Parameters
@@ -105,6 +107,8 @@ def branch(
     between : (low, high); half the number on either side of it, or 0.5 where it is 0, without it.
     points : at most so many on either side of the orbit, beside those at events. step : the largest step, a part of the
         interval (0.02).
+    events : your own kinds of events: functions of a `PeriodicOrbit`, which give a number that vanishes at an event, or
+        objects with such a function `test` and a `name`. `kind` of an event is the name of its function.
 
     Returns
     -------
@@ -115,7 +119,15 @@ def branch(
     -----
     The branch is followed on the surface of flights that do not feel the wall, where it is smooth through a graze.
     Beyond the graze it is virtual: `visible` says so. Points of a model without a closed form are kept in the cache: a
-    call that was interrupted continues from its stored points.
+    call that was interrupted continues from its stored points. Values of your own functions are not stored.
+
+    A function of `events` is also called for virtual orbits (`orbit.visible`); the impacts of its orbit are in the
+    order of `branch.tau`. A change of sign at which it jumps is not an event: `notes` has the values on both sides. A
+    jump of less than 1e-5 of its change within a step is not distinguished from a zero.
+
+    Raises
+    ------
+    InputError : a function of `events` raises, or its value is not finite, for an orbit of the branch.
 
     Examples
     --------
@@ -124,6 +136,11 @@ def branch(
     >>> found = branch(periodic(model, 1, 1)[0], "A", (0.3, 0.5))
     >>> [(event.kind, round(event.parameter, 12)) for event in found.events][:1]
     [('graze', 0.368781778292)]
+    >>> def half_speed(orbit):
+    ...     return orbit.v[0] - 0.25
+    >>> found = branch(periodic(model, 1, 1)[0], "A", (0.3, 0.5), events=[half_speed])
+    >>> [(event.kind, round(event.parameter, 9)) for event in found.events][-1:]
+    [('half_speed', 0.469489726)]
     """
     osc, state = _checked(orbit)
     osc = with_number(osc, over)
@@ -133,7 +150,8 @@ def branch(
     whole("points", points, 2, 10**6)
     if step is not None and not 0 < step <= 1:
         raise refuse("step", step, "a part of the interval, in (0, 1]")
-    walk = BranchWalk(closing, (low, high), step or SETTINGS.step, points, over)
+    own = own_events(events, [kind.name for kind in KINDS])
+    walk = BranchWalk(closing, (low, high), step or SETTINGS.step, points, over, own)
     rows = walk.rows(np.append(state, value))
     listed = np.cumsum([row.listed for row in rows]) - 1
     events = [replace(row.event, index=int(i) - row.listed) for i, row in zip(listed, rows, strict=True)

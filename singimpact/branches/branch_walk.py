@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
@@ -69,7 +69,7 @@ class BranchWalk:
     Parameters
     ----------
     closing : of its orbits. ends : of the interval. step : the largest one. most : points on either side. over : the
-        name of the parameter. notes : where and why it ends, and what else was seen.
+        name of the parameter. own : kinds of events of a user. notes : where and why it ends, and what else was seen.
     """
 
     closing: AnyClosing
@@ -77,6 +77,7 @@ class BranchWalk:
     step: float
     most: int
     over: str
+    own: Sequence[EventKind] = ()
     notes: list[str] = field(default_factory=list)
 
     def equations(self, point: Array) -> tuple[Array, Array]:
@@ -95,7 +96,7 @@ class BranchWalk:
         """The points of the branch in both directions from a guess, in the order of the branch."""
         scales = self.closing.scales(guess)
         scales[-1] = self.ends[1] - self.ends[0]
-        self.tests = EventTests(self.closing, scales, KINDS)
+        self.tests = EventTests(self.closing, scales, (*KINDS, *self.own))
         upwards = np.zeros(len(guess))
         upwards[-1] = scales[-1]
         n = self.closing.n
@@ -136,7 +137,7 @@ class BranchWalk:
                     self.notes.append(f"ends at {self.over} = {here.at[-1]:.12g}, next to the end of the interval")
                     return rows
                 length, after = end
-            tests = self.tests.at(after) if stored is None else stored.named_tests()
+            tests = self.tests.at(after, None if stored is None else stored.named_tests())
             rows += self._events(StepSearch(self.tests, curve, here, length), before, after, tests)
             rows.append(self._row(after) if stored is None else Row(after, stored.multipliers, stored.visible))
             if stored is None and not outside:
@@ -275,6 +276,11 @@ class BranchWalk:
             return None
         along, point = root
         if not kind.occurs(self.tests.loop(point.at)):
+            return None
+        jump = search.jump(crossing, along) if kind.is_own else None
+        if jump is not None:
+            self.notes.append(f"{kind.name} jumps from {jump[0]:.6g} to {jump[1]:.6g} near {self.over} = "
+                              f"{point.at[-1]:.9g}: this change of sign is not a zero")  # fmt: skip
             return None
         time = np.nan
         if crossing.ends[0].is_minimum:

@@ -77,11 +77,15 @@ class EventTests:
             store[key] = compute(at)
         return store[key]
 
-    def at(self, point: Point) -> Tests:
-        """Every test function at a point of the branch."""
+    def at(self, point: Point, stored: Tests | None = None) -> Tests:
+        """Every test function at a point of the branch; those of a user alone where the others are stored."""
+        kinds = [kind for kind in self.kinds if stored is None or kind.is_own]
+        if not kinds:
+            return stored or {}
         state = self.state(point)
         state.turns = self.minima(point.at)
-        return {Key(kind, i, j): test for kind in self.kinds for i, j, test in kind.tests(state)}
+        tests = {Key(kind, i, j): test for kind in kinds for i, j, test in kind.tests(state)}
+        return (stored or {}) | tests
 
     def value(self, kind: EventKind, impact: int, point: Point) -> float:
         """One test function, which is no minimum of a flight, at a point of the branch."""

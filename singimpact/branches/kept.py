@@ -69,7 +69,11 @@ class KeptSide:
         """Keep one point more: `at`, tangent and next step; `row` with multipliers and whether it is visible."""
         if self.place is None:
             return
-        named = {f"{kind.name} {impact} {number}": tuple(test) for (kind, impact, number), test in tests.items()}
+        named = {
+            f"{kind.name} {impact} {number}": tuple(test)
+            for (kind, impact, number), test in tests.items()
+            if not kind.is_own
+        }
         self.points.append(KeptPoint(*at, row[1], bool(row[2]), named))
         self._new = True
         if time.monotonic() - self._written > EVERY:

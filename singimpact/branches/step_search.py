@@ -45,6 +45,14 @@ class SearchSettings:
     # a difference of two terms, of their size, that is a rounding error: for r = 1 without damping the product of the
     # multipliers is 1 everywhere
     neutral: float = 1e-9
+    # distances from a change of sign of a user's function, of the step, at which it is compared with that ten times
+    # farther; no less than 100 times what Newton's method leaves of a point, in scaled unknowns
+    beside: float = 1e-7
+    resolved: float = 1e-9
+    # a function whose difference is more than this part of that over ten times the distance jumps: a fourth root has
+    # 0.56 ... unless the difference is less than this part of the function at the ends of the step
+    unchanged: float = 0.6
+    negligible: float = 1e-9
 
 
 SETTINGS = SearchSettings()
@@ -210,6 +218,24 @@ class StepSearch:
             turn = self.turn(crossing, along, point)
             return np.nan if turn is None else turn[1]
         return self.tests.value(crossing.kind, crossing.keys[0].impact, point)
+
+    def jump(self, crossing: Crossing, along: float) -> tuple[float, float] | None:
+        """The values on both sides of a change of sign at which a test jumps; None where it is continuous.
+
+        The difference across a smooth zero is ten times less over a tenth of the distance, that across a square root
+        three times; across a jump it stays.
+        """
+        near = max(SETTINGS.beside * self.length, SETTINGS.resolved)
+        values = []
+        for distance in (-10 * near, -near, near, 10 * near):
+            step = self.curve.beyond(self.here, along + distance)
+            if step is None:  # the branch ends here: nothing lies beyond a jump
+                return None
+            values.append(self.tests.value(crossing.kind, 0, step[0]))
+        wide, narrow = abs(values[3] - values[0]), abs(values[2] - values[1])
+        size = max(abs(test.value) for test in crossing.ends)
+        jumps = narrow > SETTINGS.unchanged * wide and narrow > SETTINGS.negligible * size
+        return (values[1], values[2]) if jumps else None
 
     def turn(self, crossing: Crossing, along: float, point: Point) -> tuple[float, float] | None:
         """Time and height of the minimum that a crossing is about."""

@@ -14,7 +14,7 @@ from singimpact.branches.events import Event, kind_of
 from singimpact.branches.solutions import closing_of, orbit_period
 from singimpact.inputs import refuse
 from singimpact.scenes.label_places import place_labels
-from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LETTERS, LINES, MARKS, orbit_color, orbit_width
+from singimpact.scenes.style import BLACK, DOTS, EVENT_PENS, LETTERS, LINES, orbit_color, orbit_width
 
 Array = np.ndarray[Any, Any]
 HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}
@@ -189,7 +189,7 @@ def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
 
 def _draw_marks(axes: Any, marks: list[Any], named: bool) -> None:
     for (number, height, kind), _ in marks:
-        axes.plot(number, height, MARKS[kind], color=BLACK, markerfacecolor="white", markersize=5.5, zorder=6)
+        axes.plot(number, height, kind_of(kind).marker, color=BLACK, markerfacecolor="white", markersize=5.5, zorder=6)
     if named:
         place_labels(axes, [(number, height, name) for (number, height, _), name in marks if name])
 
@@ -211,7 +211,7 @@ def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], marks: list[Any]) 
         style, width = LINES[kind]
         entries.setdefault(WORDS[kind], Line2D([], [], color=BLACK, linestyle=style, linewidth=width))
     for (_, _, kind), _ in marks:
-        entries.setdefault(kind_of(kind).label, _marker(MARKS[kind]))
+        entries.setdefault(kind_of(kind).label, _marker(kind_of(kind).marker))
     _legend_below(axes, entries)
 
 

@@ -5,12 +5,14 @@ Not here: where along a branch tests vanish (`branches.step_search`), curves of 
 Files: `table` (all kinds), `kind` (the protocol `EventKind`, and what most kinds have in common), `orbit_state` (what
 tests are computed from), `return_map` (kinds that the return map decides) with `fold`, `period_doubling`,
 `neimark_sacker`; `touching` (kinds at which the orbit touches the wall) with `graze`, `interior_graze`;
-`meeting_branches` (pitchforks, transcritical points); `event` (an event of a branch).
+`meeting_branches` (pitchforks, transcritical points); `own_event` (those that a user defines); `event` (an event of a
+branch).
 """
 
 from singimpact.branches.events.event import Event as Event
 from singimpact.branches.events.graze import GRAZE as GRAZE
 from singimpact.branches.events.kind import EventKind as EventKind
+from singimpact.branches.events.own_event import own_events as own_events
 from singimpact.branches.events.period_doubling import PERIOD_DOUBLING as PERIOD_DOUBLING
 from singimpact.branches.events.table import KINDS as KINDS
 from singimpact.branches.events.table import kind_of as kind_of

@@ -40,6 +40,7 @@ class EventKind(Protocol):
     may_meet : another branch of such orbits may cross where its test changes sign.
     is_located : where its test changes sign, and no other branch crosses, it takes place.
     is_class : whether an event that was classified may have this name.
+    is_own : a user defines it: its test may jump, and is not stored.
     proof : what a proof of such an event shows, in a sentence; empty: no proof covers it.
     """
 
@@ -53,6 +54,7 @@ class EventKind(Protocol):
     may_meet: bool = False
     is_located: bool = True
     is_class: bool = True
+    is_own: bool = False
     proof: str = ""
 
     @property

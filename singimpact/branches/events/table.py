@@ -1,4 +1,4 @@
-"""All kinds of events, in the order in which a branch looks for them."""
+"""All kinds of events of the package, in the order in which a branch looks for them."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from singimpact.branches.events.interior_graze import INTERIOR_GRAZE
 from singimpact.branches.events.kind import EventKind
 from singimpact.branches.events.meeting_branches import BRANCH_POINT, PITCHFORK, TRANSCRITICAL
 from singimpact.branches.events.neimark_sacker import NEIMARK_SACKER
+from singimpact.branches.events.own_event import OwnEvent
 from singimpact.branches.events.period_doubling import PERIOD_DOUBLING
 
 KINDS: tuple[EventKind, ...] = (
@@ -17,11 +18,11 @@ _BY_NAME = {kind.name: kind for kind in KINDS}
 
 
 def kind_of(name: str) -> EventKind:
-    """The kind with a name.
+    """The kind with a name; a name that is not in the table is that of a user's event.
 
     Examples
     --------
     >>> kind_of("torus").word
     'Neimark-Sacker bifurcation (torus)'
     """
-    return _BY_NAME[name]
+    return _BY_NAME.get(name) or OwnEvent(name)
