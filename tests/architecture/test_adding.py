@@ -95,3 +95,47 @@ def test_a_bench_row(copy, clone):
         'ASKED = {"m3 and mu, r = 1/3": ("1/3", slice(1, 3)), "m3',
     )
     assert "m3 and mu, r = 1/3" in run(copy, "-m", "singimpact", "bench", "fixed-points", "--quick")
+
+
+TOY_EVENT = '''"""Toys: the velocity of the first impact is 0.3."""
+
+from singimpact.branches.events.kind import EventKind, Indexed
+from singimpact.branches.events.orbit_state import NUDGE, OrbitState, Test
+
+
+class Toy(EventKind):
+    """A velocity of 0.3."""
+
+    name = "toy"
+    word = "toy"
+    marker = "h"
+
+    def tests(self, state: OrbitState) -> Indexed:
+        """v - 0.3 and its rate."""
+        value = self.value(state, 0)
+        yield 0, 0, Test(value, (self.value(state.beside, 0) - value) / NUDGE)
+
+    def value(self, state: OrbitState, impact: int) -> float:
+        """v - 0.3."""
+        return float(state.at[state.closing.n]) - 0.3
+
+
+TOY = Toy()
+'''
+FOLLOWED = """
+import singimpact as si
+
+model = si.ImpactOscillator("x + 0.1*xdot", "-A*cos(0.8*t)", -1, "0.8", {"A": "0.45"})
+branch = si.branch(model.periodic(1, 1)[0], "A", (0.38, 0.6))
+print([(event.kind, round(float(event.orbit.v[0]), 9)) for event in branch.events if event.kind == "toy"])
+"""
+
+
+def test_an_event(copy, clone):
+    table = "singimpact/branches/events/table.py"
+    assert steps(clone, "an event")[:2] == ["singimpact/branches/events/NAME.py", table]
+    (copy / "singimpact/branches/events/toy.py").write_text(TOY_EVENT)
+    text = (copy / table).read_text(encoding="utf-8")
+    text = text.replace("    FOLD, ", "    TOY, FOLD, ").replace("    FOLD,\n", "    TOY,\n    FOLD,\n")
+    (copy / table).write_text(text.replace("\nKINDS", "from singimpact.branches.events.toy import TOY\n\nKINDS"))
+    assert run(copy, "-c", FOLLOWED) == "[('toy', 0.3)]\n"
