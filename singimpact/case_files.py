@@ -158,8 +158,14 @@ class NpzFile(InMemory):
         cases = np.array([each.cases for each in records])
         chunks = np.array([(each.start, each.count) for each in records])
         with written(self.path) as draft, draft.open("wb") as stream:
-            np.savez(stream, key=np.array(self.key), index=np.concatenate(index), result=self._together(),
-                     chunks=chunks, cases=cases)  # fmt: skip
+            np.savez(
+                stream,
+                key=np.array(self.key),
+                index=np.concatenate(index),
+                result=self._together(),
+                chunks=chunks,
+                cases=cases,
+            )
         self.written = self.done
 
     def _load(self) -> None:
@@ -285,9 +291,12 @@ class ZarrStore(InMemory):
         self.dtype = values.dtype
         shape = (max(self.total, len(values)), *values.shape[1:])
         self.array = group.create_array(
-            "result", shape=shape, chunks=(rows, *(max(1, side) for side in values.shape[1:])), dtype=values.dtype,
+            "result",
+            shape=shape,
+            chunks=(rows, *(max(1, side) for side in values.shape[1:])),
+            dtype=values.dtype,
             overwrite=True,
-        )  # fmt: skip
+        )
 
     def _take(self, record: Record, values: Array) -> None:
         require_numbers(values)

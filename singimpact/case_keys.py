@@ -56,13 +56,35 @@ METHODS = (
 )
 """Written in C: a name stands for the code."""
 OF_CLASSES = {
-    "__abstractmethods__", "__annotate__", "__annotate_func__", "__annotations__", "__annotations_cache__",
-    "__dataclass_fields__", "__dataclass_params__", "__dict__", "__doc__", "__firstlineno__", "__module__",
-    "__orig_bases__", "__parameters__", "__static_attributes__", "__type_params__", "__weakref__", "_abc_impl",
-}  # fmt: skip
+    "__abstractmethods__",
+    "__annotate__",
+    "__annotate_func__",
+    "__annotations__",
+    "__annotations_cache__",
+    "__dataclass_fields__",
+    "__dataclass_params__",
+    "__dict__",
+    "__doc__",
+    "__firstlineno__",
+    "__module__",
+    "__orig_bases__",
+    "__parameters__",
+    "__static_attributes__",
+    "__type_params__",
+    "__weakref__",
+    "_abc_impl",
+}
 """Attributes of classes that decide nothing, or that repeat others."""
-OF_MODULES = {"__annotations__", "__builtins__", "__cached__", "__doc__", "__file__", "__loader__", "__path__",
-              "__spec__"}  # fmt: skip
+OF_MODULES = {
+    "__annotations__",
+    "__builtins__",
+    "__cached__",
+    "__doc__",
+    "__file__",
+    "__loader__",
+    "__path__",
+    "__spec__",
+}
 
 
 def function_key(function: Callable[[Any], Any]) -> str:

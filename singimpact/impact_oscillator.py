@@ -40,9 +40,16 @@ class ImpactOscillator(Oscillator):
     __slots__ = ()
 
     def first_hit(
-        self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
-        steps: int | None = None, out: Mapping[str, Any] | None = None,
-    ) -> Flight:  # fmt: skip
+        self,
+        tau: Any,
+        v: Any,
+        *,
+        digits: int | None = None,
+        tolerance: Any = None,
+        horizon: Any = None,
+        steps: int | None = None,
+        out: Mapping[str, Any] | None = None,
+    ) -> Flight:
         """The first hit F of the wall for flights from (tau, v).
 
         Parameters
@@ -70,9 +77,16 @@ class ImpactOscillator(Oscillator):
         return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
     def impact_map(
-        self, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
-        steps: int | None = None, out: Mapping[str, Any] | None = None,
-    ) -> Step:  # fmt: skip
+        self,
+        tau: Any,
+        v: Any,
+        *,
+        digits: int | None = None,
+        tolerance: Any = None,
+        horizon: Any = None,
+        steps: int | None = None,
+        out: Mapping[str, Any] | None = None,
+    ) -> Step:
         """The impact map G: the next impact of flights from (tau, v), and the velocity after it.
 
         Parameters
@@ -293,9 +307,16 @@ class ImpactOscillator(Oscillator):
         return periodic(self, n, k, start, v=v, digits=digits)
 
     def orbit(
-        self, tau: Any = None, v: Any = None, impacts: int = 200, *, horizon: Any = None, x: Any = None,
-        xdot: Any = None, t: Any = None,
-    ) -> Orbit:  # fmt: skip
+        self,
+        tau: Any = None,
+        v: Any = None,
+        impacts: int = 200,
+        *,
+        horizon: Any = None,
+        x: Any = None,
+        xdot: Any = None,
+        t: Any = None,
+    ) -> Orbit:
         """The orbit of one state: impacts, complete chatter, rest and lift-off in order.
 
         Parameters

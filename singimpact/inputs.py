@@ -108,9 +108,24 @@ def nearest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
     return difflib.get_close_matches(name[:200], list(known), n=count, cutoff=0.6)
 
 
-SYNONYMS = {"r": "restitution", "e": "restitution", "c": "clearance", "d": "clearance", "w": "omega",
-            "frequency": "omega", "v": "xdot", "u": "xdot", "x_dot": "xdot", "dx": "xdot", "dxdt": "xdot", "y": "x",
-            "time": "t", "tau": "t", "out": "output", "n": "impacts"}  # fmt: skip
+SYNONYMS = {
+    "r": "restitution",
+    "e": "restitution",
+    "c": "clearance",
+    "d": "clearance",
+    "w": "omega",
+    "frequency": "omega",
+    "v": "xdot",
+    "u": "xdot",
+    "x_dot": "xdot",
+    "dx": "xdot",
+    "dxdt": "xdot",
+    "y": "x",
+    "time": "t",
+    "tau": "t",
+    "out": "output",
+    "n": "impacts",
+}
 """Other names of what the package names so."""
 
 

@@ -20,9 +20,17 @@ NO_NUMBERS = frozenset({"oscillator", "model", "launch"})
 """Fields that say where a result came from, not what it is."""
 
 UNITS = {
-    "tau": "time", "t": "time", "flight_time": "time", "end": "time", "x": "length", "height": "length",
-    "v": "length/time", "xdot": "length/time", "velocity": "length/time", "exponents": "1/time",
-}  # fmt: skip
+    "tau": "time",
+    "t": "time",
+    "flight_time": "time",
+    "end": "time",
+    "x": "length",
+    "height": "length",
+    "v": "length/time",
+    "xdot": "length/time",
+    "velocity": "length/time",
+    "exponents": "1/time",
+}
 """Dimensions of the numbers of a result, in the units of the model's f and g."""
 
 

@@ -79,9 +79,14 @@ def clearances(between: Any) -> tuple[Fraction, Fraction]:
 
 
 def basins(
-    osc: Oscillator, window: Any = None, size: int = 600, *, impacts: int = 20_000, executor: Any = None,
+    osc: Oscillator,
+    window: Any = None,
+    size: int = 600,
+    *,
+    impacts: int = 20_000,
+    executor: Any = None,
     output: Any = None,
-) -> Basins:  # fmt: skip
+) -> Basins:
     """Basins of attraction: the attractor of each state of a grid: an (n, k) orbit, repeated chatter, rest, chaos.
 
     Parameters
@@ -114,9 +119,17 @@ def basins(
 
 
 def bifurcation(
-    osc: Oscillator, over: str, between: Any, points: int = 300, *, start: Any = (0, "0.1"), impacts: int = 200,
-    kept: int = 60, direction: str | None = None, **sweeping: Any,
-) -> Bifurcation:  # fmt: skip
+    osc: Oscillator,
+    over: str,
+    between: Any,
+    points: int = 300,
+    *,
+    start: Any = (0, "0.1"),
+    impacts: int = 200,
+    kept: int = 60,
+    direction: str | None = None,
+    **sweeping: Any,
+) -> Bifurcation:
     """A bifurcation diagram: the last events of one orbit for each value of a parameter.
 
     Parameters

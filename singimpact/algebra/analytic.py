@@ -205,9 +205,11 @@ class Program:
         left: list[tuple[int, str, tuple[Any, ...]]] = []
         open_places: set[int] = set()
         for at, (kind, parts) in enumerate(self.operations):
-            waits = parts[0] not in fixed if kind == "name" else any(
-                part in open_places for part in parts if kind not in ("number", "root")
-            )  # fmt: skip
+            waits = (
+                parts[0] not in fixed
+                if kind == "name"
+                else any(part in open_places for part in parts if kind not in ("number", "root"))
+            )
             if waits:
                 open_places.add(at)
                 left.append((at, kind, parts))

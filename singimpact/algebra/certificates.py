@@ -304,14 +304,17 @@ def identical(left: Any, right: Any) -> bool:
     bool : whether it is recorded; not where both sides are the same polynomials, which proves nothing, or have another form.
     """  # noqa: E501
     left, right = sympy.sympify(left), sympy.sympify(right)
-    root = sorted((p for part in (left, right) for p in part.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2),
-                  key=str)[:1]  # fmt: skip
+    root = sorted(
+        (p for part in (left, right) for p in part.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2), key=str
+    )[:1]
     w, relation = sympy.Symbol("w"), sympy.Integer(0)
     if root:
         above, below = _quotient(root[0].base)
         relation = below * w**2 - above
-        left, right = (part.subs({p: w ** (2 * p.exp) for p in part.atoms(sympy.Pow) if p.base == root[0].base})
-                       for part in (left, right))  # fmt: skip
+        left, right = (
+            part.subs({p: w ** (2 * p.exp) for p in part.atoms(sympy.Pow) if p.base == root[0].base})
+            for part in (left, right)
+        )
     sides = [_quotient(side) for side in (left, right)]
     parts = [relation, *(part for side in sides for part in side)]
     names = sorted({name for part in parts for name in part.free_symbols} - {w}, key=str)

@@ -72,9 +72,14 @@ class IsolatedZeros:
 
 
 def isolated_zeros(
-    trees: Sequence[Expression], names: Sequence[str], window: Box, *, fixed: Mapping[str, Any] | None = None,
-    excluded: Callable[[Place], bool] | None = None, settings: BoxSettings = SETTINGS,
-) -> IsolatedZeros:  # fmt: skip
+    trees: Sequence[Expression],
+    names: Sequence[str],
+    window: Box,
+    *,
+    fixed: Mapping[str, Any] | None = None,
+    excluded: Callable[[Place], bool] | None = None,
+    settings: BoxSettings = SETTINGS,
+) -> IsolatedZeros:
     """The zeros of trees in a window.
 
     Parameters
@@ -110,9 +115,12 @@ class _Formulas:
     """Expression trees as a system."""
 
     def __init__(
-        self, trees: Sequence[Expression], names: Sequence[str], fixed: dict[str, Any],
+        self,
+        trees: Sequence[Expression],
+        names: Sequence[str],
+        fixed: dict[str, Any],
         excluded: Callable[[Place], bool] | None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         recorder = Recorder()
         values = [recorder.record(tree) for tree in trees]
         slopes = [recorder.derivative(value, name) for value in values for name in names]

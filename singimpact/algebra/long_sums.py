@@ -80,8 +80,18 @@ def _rational_key(p: int, q: int) -> Key:
     return (-2 if q == 1 else -1, p, q)
 
 
-CLASSES = {"Zero": 0, "One": 1, "Half": 2, "NegativeOne": 5, "Integer": 7, "Rational": 8, "Symbol": 13, "Pow": 15,
-           "Mul": 16, "Add": 17}  # fmt: skip
+CLASSES = {
+    "Zero": 0,
+    "One": 1,
+    "Half": 2,
+    "NegativeOne": 5,
+    "Integer": 7,
+    "Rational": 8,
+    "Symbol": 13,
+    "Pow": 15,
+    "Mul": 16,
+    "Add": 17,
+}
 """Places of sympy's classes in the order of its arguments."""
 
 
@@ -294,9 +304,11 @@ def _polynomial_written(total: Any) -> str | None:
     terms.sort(key=lambda pair: [-pair[1].get(name, 0) for name in names])
     parts = [(int(c.p), int(c.q), _monomial_written(powers)) for c, powers in terms]
     first = _term_written(*parts[0])
-    return ("-" if parts[0][0] < 0 else "") + first + "".join(
-        f" {'-' if part[0] < 0 else '+'} {_term_written(*part)}" for part in parts[1:]
-    )  # fmt: skip
+    return (
+        ("-" if parts[0][0] < 0 else "")
+        + first
+        + "".join(f" {'-' if part[0] < 0 else '+'} {_term_written(*part)}" for part in parts[1:])
+    )
 
 
 def _power_of(factor: Any) -> tuple[str, int] | None:

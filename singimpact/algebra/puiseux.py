@@ -275,8 +275,10 @@ def _taylor(function: str, start: Expression, count: int) -> tuple[Expression, .
     if function in ("exp", "log"):
         if function == "exp":
             return tuple(multiply(value, number(Fraction(1, factorial(k)))) for k in range(count + 1))
-        return (value, *(multiply(number(Fraction((-1) ** (k + 1), k)), power(start, number(-k)))
-                         for k in range(1, count + 1)))  # fmt: skip
+        return (
+            value,
+            *(multiply(number(Fraction((-1) ** (k + 1), k)), power(start, number(-k))) for k in range(1, count + 1)),
+        )
     if function in ("sin", "cos"):
         other = _plain(Call("cos" if function == "sin" else "sin", start))
         turned = multiply(number(1 if function == "sin" else -1), other)

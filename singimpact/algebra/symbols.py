@@ -80,8 +80,9 @@ class SymbolRing:
         if self._monomials is not None:
             return self._monomials.summed(terms)
         letters = self.letters()
-        return sympy.Add(*(c * sympy.prod(s ** int(e) for s, e in zip(letters, key, strict=True))
-                           for key, c in terms.items()))  # fmt: skip
+        return sympy.Add(
+            *(c * sympy.prod(s ** int(e) for s, e in zip(letters, key, strict=True)) for key, c in terms.items())
+        )
 
     @kept_property
     def _monomials(self) -> Any:

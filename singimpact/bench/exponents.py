@@ -53,8 +53,11 @@ def exponents(rows: Sequence[Row]) -> list[Exponent]:
     """An exponent for each method of each case that was measured at three sizes or more."""
     found = []
     for case, method in dict.fromkeys((row.case, row.method) for row in rows if row.size is not None):
-        line = [(row.size, row.microseconds, row.work or row.size) for row in rows
-                if (row.case, row.method) == (case, method) and row.size is not None]  # fmt: skip
+        line = [
+            (row.size, row.microseconds, row.work or row.size)
+            for row in rows
+            if (row.case, row.method) == (case, method) and row.size is not None
+        ]
         sizes = [size for size, _, _ in line]
         if len(set(sizes)) >= 3:
             slope, error = fitted(sizes, [spent for _, spent, _ in line])

@@ -80,10 +80,20 @@ def cpu_of(command: list[str], place: str) -> float:
     True
     """
     paths = [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
-    around = {**os.environ, "SINGIMPACT_CACHE": str(Path(place) / "cache"), "PYTHONPATH": os.pathsep.join(paths),
-              "OPENBLAS_NUM_THREADS": "1"}  # fmt: skip
-    done = subprocess.run([sys.executable, "-c", SUPERVISOR, *command], cwd=place, env=around, stdout=subprocess.PIPE,
-                          text=True, check=True)  # fmt: skip
+    around = {
+        **os.environ,
+        "SINGIMPACT_CACHE": str(Path(place) / "cache"),
+        "PYTHONPATH": os.pathsep.join(paths),
+        "OPENBLAS_NUM_THREADS": "1",
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", SUPERVISOR, *command],
+        cwd=place,
+        env=around,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
     code, seconds = json.loads(done.stdout)
     if code:
         raise subprocess.CalledProcessError(code, command)

@@ -257,8 +257,10 @@ def measure(group: str, case: Case, effort: Effort) -> list[Row]:
         for at in (at for at, count in enumerate(rounds) if count):
             again = turn < rounds[at]
             spent[turn, at] = _turn(case.methods[at], calls[at]).each if again else spent[turn % rounds[at], at]
-    return [_row(group, case, method, turn, (spent[:, at], spent[:, at] / spent[:, 0], max(rounds[at], 1)))
-            for at, (method, turn) in enumerate(zip(case.methods, first, strict=True))]  # fmt: skip
+    return [
+        _row(group, case, method, turn, (spent[:, at], spent[:, at] / spent[:, 0], max(rounds[at], 1)))
+        for at, (method, turn) in enumerate(zip(case.methods, first, strict=True))
+    ]
 
 
 def _rounds(method: Method, fresh: bool, effort: Effort) -> int:
@@ -282,8 +284,13 @@ def _turn(method: Method, calls: int = 1) -> _Turn:
     start = cpu_seconds()
     found = [method.run(*each) for each in given]
     spent = (cpu_seconds() - start) / calls
-    problems = sum(each.problems if isinstance(each, Counted) else method.problems or max(len(_answers(each)), 1)
-                   for each in found) / calls  # fmt: skip
+    problems = (
+        sum(
+            each.problems if isinstance(each, Counted) else method.problems or max(len(_answers(each)), 1)
+            for each in found
+        )
+        / calls
+    )
     last = found[-1]
     if isinstance(last, Timed):
         return _Turn(last.seconds, problems, last.answers, True)
@@ -308,9 +315,24 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
         error = float(np.median(seen)) if seen else None
     low, middle, high = np.quantile(ratios, [0.25, 0.5, 0.75]).tolist()
     microseconds = float(np.median(spent)) * 1e6
-    return Row(group, case.name, method.name, method.setting, method.size, microseconds, error, wrong, missed, of,
-               middle, (low, high), rounds, method.aim, method.aim.reached(microseconds, middle, wrong),
-               float(answers[0]) if method.counts else method.size)  # fmt: skip
+    return Row(
+        group,
+        case.name,
+        method.name,
+        method.setting,
+        method.size,
+        microseconds,
+        error,
+        wrong,
+        missed,
+        of,
+        middle,
+        (low, high),
+        rounds,
+        method.aim,
+        method.aim.reached(microseconds, middle, wrong),
+        float(answers[0]) if method.counts else method.size,
+    )
 
 
 def _least(method: Method) -> float:

@@ -73,8 +73,13 @@ def _axis(rows: Sequence[Row]) -> str:
 
 def _look(names: Sequence[str], name: str) -> dict[str, Any]:
     at = names.index(name)
-    return {"color": COLORS[at % len(COLORS)], "marker": MARKERS[at % len(MARKERS)],
-            "linestyle": STYLES[at % len(STYLES)], "linewidth": 1.2, "markersize": 6}  # fmt: skip
+    return {
+        "color": COLORS[at % len(COLORS)],
+        "marker": MARKERS[at % len(MARKERS)],
+        "linestyle": STYLES[at % len(STYLES)],
+        "linewidth": 1.2,
+        "markersize": 6,
+    }
 
 
 def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> None:
@@ -133,6 +138,9 @@ def _legend(figure: Any, names: Sequence[str]) -> None:
     from matplotlib.lines import Line2D
 
     keys = [Line2D([], [], label=name, **_look(names, name)) for name in names]
-    keys.append(Line2D([], [], label="hollow: missed an answer", color=BLACK, marker="o", linestyle="none",
-                       markerfacecolor="white"))  # fmt: skip
+    keys.append(
+        Line2D(
+            [], [], label="hollow: missed an answer", color=BLACK, marker="o", linestyle="none", markerfacecolor="white"
+        )
+    )
     figure.legend(handles=keys, loc="outside lower center", ncols=2, fontsize=8, frameon=False)

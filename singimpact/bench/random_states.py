@@ -178,5 +178,12 @@ def _row(kind: str, found: Array, kinds: list[str]) -> Row:
     part = found[[index for index, name in enumerate(kinds) if name == kind]].reshape(-1, len(COLUMNS))
     status, time_error, velocity_error, wrong = part.T[:4]
     undecided = part[status == Status.unresolved, 4:]
-    return Row(kind, len(part), int(wrong.sum()), len(undecided), float(time_error.max()), float(velocity_error.max()),
-               [tuple(row) for row in undecided.tolist()])  # fmt: skip
+    return Row(
+        kind,
+        len(part),
+        int(wrong.sum()),
+        len(undecided),
+        float(time_error.max()),
+        float(velocity_error.max()),
+        [tuple(row) for row in undecided.tolist()],
+    )

@@ -8,8 +8,7 @@ from typing import Any
 from singimpact.bench.exponents import exponents
 from singimpact.bench.measuring import Measured, Row
 
-HEADER = ("case", "method", "setting", "time", "to reach", "error", "wrong", "missed", "times the first",
-          "quartiles")  # fmt: skip
+HEADER = ("case", "method", "setting", "time", "to reach", "error", "wrong", "missed", "times the first", "quartiles")
 GROWTH = ("case", "method", "time grows with the power", "+-", "the work with", "from", "to")
 Table = tuple[tuple[str, ...], list[list[str]]]
 
@@ -28,9 +27,18 @@ def tables(found: Measured) -> list[Table]:
     made: list[Table] = [(HEADER, [_cells(row) for row in found.rows])]
     fits = exponents(found.rows)
     if fits:
-        cells = [[fit.case, fit.method, f"{fit.exponent:.2f}", f"{fit.error:.2f}", f"{fit.work:.2f}",
-                  f"{fit.least:g}", f"{fit.most:g}"]
-                 for fit in fits]  # fmt: skip
+        cells = [
+            [
+                fit.case,
+                fit.method,
+                f"{fit.exponent:.2f}",
+                f"{fit.error:.2f}",
+                f"{fit.work:.2f}",
+                f"{fit.least:g}",
+                f"{fit.most:g}",
+            ]
+            for fit in fits
+        ]
         made.append((GROWTH, cells))
     return made
 
@@ -90,5 +98,9 @@ def skipped(found: Measured) -> str:
 def as_data(found: Measured) -> dict[str, Any]:
     """Rows, exponents and what was skipped, as JSON takes them."""
     fits = [{"group": found.group, **asdict(fit)} for fit in exponents(found.rows)]
-    return {"rows": [asdict(row) for row in found.rows], "exponents": fits, "skipped": list(found.skipped),
-            "notes": list(found.notes)}  # fmt: skip
+    return {
+        "rows": [asdict(row) for row in found.rows],
+        "exponents": fits,
+        "skipped": list(found.skipped),
+        "notes": list(found.notes),
+    }

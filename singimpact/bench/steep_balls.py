@@ -28,9 +28,16 @@ DIGITS = 20
 DIGITS_WRONG = 1e-19  # relative error of a number of 20 digits, one unit of the last
 LEAST_ERROR = 2.0**-54  # an answer that is exact by chance has no finite ratio of estimate to error
 COLUMNS = (
-    "true_status", "time_error", "velocity_error", "step_time_error", "step_velocity_error", "digits_status",
-    "digits_error", "seconds", "digits_seconds",
-)  # fmt: skip
+    "true_status",
+    "time_error",
+    "velocity_error",
+    "step_time_error",
+    "step_velocity_error",
+    "digits_status",
+    "digits_error",
+    "seconds",
+    "digits_seconds",
+)
 
 
 class Flown(NamedTuple):
@@ -46,9 +53,12 @@ class Flown(NamedTuple):
 
 
 def check(
-    found: dict[str, Array], sizes: tuple[int, int], seed: int, executor: Executor | None = None,
+    found: dict[str, Array],
+    sizes: tuple[int, int],
+    seed: int,
+    executor: Executor | None = None,
     output: str | Path | None = None,
-) -> Enclosures:  # fmt: skip
+) -> Enclosures:
     """Enclose some of the states of `steep_states.check`.
 
     Parameters
@@ -60,10 +70,17 @@ def check(
     picked = np.random.default_rng([seed, total]).permutation(total)[: sizes[0]]
     part = {name: column[picked].tolist() for name, column in found.items()}
     states = [
-        Flown(int(part["case"][place]), int(part["launch"][place]), part["flight_time"][place], part["velocity"][place],
-              part["true_time"][place], part["true_velocity"][place], place < sizes[1])
+        Flown(
+            int(part["case"][place]),
+            int(part["launch"][place]),
+            part["flight_time"][place],
+            part["velocity"][place],
+            part["true_time"][place],
+            part["true_velocity"][place],
+            place < sizes[1],
+        )
         for place in range(len(picked))
-    ]  # fmt: skip
+    ]
     table = sweep(partial(enclosed, seed), states, executor, output).reshape(-1, len(COLUMNS))
     return summary({name: column[picked] for name, column in found.items()}, dict(zip(COLUMNS, table.T, strict=True)))
 

@@ -49,10 +49,26 @@ class DrawSettings:
 
 DRAW = DrawSettings()
 COLUMNS = (
-    "family", "steepness", "status", "flight_time", "velocity", "condition", "velocity_condition", "error",
-    "velocity_error", "true_status", "true_time", "true_velocity", "crossed", "tau", "v", "case", "launch", "seconds",
+    "family",
+    "steepness",
+    "status",
+    "flight_time",
+    "velocity",
+    "condition",
+    "velocity_condition",
+    "error",
+    "velocity_error",
+    "true_status",
+    "true_time",
+    "true_velocity",
+    "crossed",
+    "tau",
+    "v",
+    "case",
+    "launch",
+    "seconds",
     "true_seconds",
-)  # fmt: skip
+)
 
 
 class Case(NamedTuple):
@@ -224,9 +240,18 @@ def rows(found: dict[str, Array]) -> list[Row]:
         here = found["family"] == index
         fine = error[here & ~bad & np.isfinite(error)]
         table.append(
-            Row(FAMILIES[index].name, FAMILIES[index].steep, int(here.sum()), int(found["crossed"][here].sum()),
-                int(bad[here].sum()), int((open_ & mild)[here].sum()), int((open_ & ~mild)[here].sum()),
-                int(undecided[here].sum()), float(fine.max(initial=0.0)), float(found["seconds"][here].mean()),
-                float(found["true_seconds"][here].mean()))
-        )  # fmt: skip
+            Row(
+                FAMILIES[index].name,
+                FAMILIES[index].steep,
+                int(here.sum()),
+                int(found["crossed"][here].sum()),
+                int(bad[here].sum()),
+                int((open_ & mild)[here].sum()),
+                int((open_ & ~mild)[here].sum()),
+                int(undecided[here].sum()),
+                float(fine.max(initial=0.0)),
+                float(found["seconds"][here].mean()),
+                float(found["true_seconds"][here].mean()),
+            )
+        )
     return table

@@ -11,9 +11,18 @@ from collections.abc import Mapping
 from pathlib import Path
 
 ROOMS = (
-    "algebra", "bench", "branches", "codegen", "contact", "dynamics", "flights", "generated", "oscillator", "surface",
+    "algebra",
+    "bench",
+    "branches",
+    "codegen",
+    "contact",
+    "dynamics",
+    "flights",
+    "generated",
+    "oscillator",
+    "surface",
     "theory",
-)  # fmt: skip
+)
 RECORDED = re.compile(r"from sources ([0-9a-f]{64}); do not edit -->")
 
 

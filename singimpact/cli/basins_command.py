@@ -37,9 +37,16 @@ from singimpact.store import require_writable
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
 def command(
-    tau: tuple[str, str] | None, v: tuple[str, str], size: int, impacts: int, workers: int | None, layer: str,
-    output: str, as_json: bool, **options: Any,
-) -> None:  # fmt: skip
+    tau: tuple[str, str] | None,
+    v: tuple[str, str],
+    size: int,
+    impacts: int,
+    workers: int | None,
+    layer: str,
+    output: str,
+    as_json: bool,
+    **options: Any,
+) -> None:
     """Basins of attraction on a grid of launches: (n, k) orbits, repeated chatter, rest, chaos.
 
     An (n, k) orbit has n impacts in k periods of the forcing.

@@ -26,27 +26,66 @@ if TYPE_CHECKING:
 @click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
 @click.option("--plots", metavar="DIR", help="Write a picture of time against error for each group into this folder.")
 @click.option("--picture", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
-@click.option("--format", "form", type=click.Choice(["text", "markdown", "page"]), default="text", show_default=True,
-              help="`page` writes the page of the documentation, with the pictures of --plots.")  # fmt: skip
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "markdown", "page"]),
+    default="text",
+    show_default=True,
+    help="`page` writes the page of the documentation, with the pictures of --plots.",
+)
 @click.option("--states", type=click.IntRange(1, 10**9), default=100_000, show_default=True, help="How many states.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the random states.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
 @click.option("--keep", metavar="FILE.npz", help="Store results in this file, and resume from it.")
-@click.option("--family", type=click.Choice(["reference", "steep"]), default="reference", show_default=True,
-              help="Of random states: linear and cubic, or steep layers.")  # fmt: skip
+@click.option(
+    "--family",
+    type=click.Choice(["reference", "steep"]),
+    default="reference",
+    show_default=True,
+    help="Of random states: linear and cubic, or steep layers.",
+)
 @click.option("--balls", type=click.IntRange(0), default=1000, show_default=True, help="Steep states flown in balls.")
-@click.option("--digits-checks", type=click.IntRange(0), default=100, show_default=True,
-              help="States in balls that are also flown with digits=20.")  # fmt: skip
-@click.option("--digit-pairs", type=click.IntRange(0), default=200, show_default=True,
-              help="Steep states enclosed twice, with digits=20 and digits=40.")  # fmt: skip
-@click.option("--smooth-pairs", type=click.IntRange(0), default=0, show_default=True,
-              help="Smooth states enclosed twice, as well.")  # fmt: skip
+@click.option(
+    "--digits-checks",
+    type=click.IntRange(0),
+    default=100,
+    show_default=True,
+    help="States in balls that are also flown with digits=20.",
+)
+@click.option(
+    "--digit-pairs",
+    type=click.IntRange(0),
+    default=200,
+    show_default=True,
+    help="Steep states enclosed twice, with digits=20 and digits=40.",
+)
+@click.option(
+    "--smooth-pairs",
+    type=click.IntRange(0),
+    default=0,
+    show_default=True,
+    help="Smooth states enclosed twice, as well.",
+)
 @output_options
 def command(
-    groups: tuple[str, ...], quick: bool, plots: str | None, picture: str, form: str, states: int, seed: int,
-    workers: int | None, keep: str | None, family: str, balls: int, digits_checks: int, digit_pairs: int,
-    smooth_pairs: int, as_json: bool, output: str | None,
-) -> None:  # fmt: skip
+    groups: tuple[str, ...],
+    quick: bool,
+    plots: str | None,
+    picture: str,
+    form: str,
+    states: int,
+    seed: int,
+    workers: int | None,
+    keep: str | None,
+    family: str,
+    balls: int,
+    digits_checks: int,
+    digit_pairs: int,
+    smooth_pairs: int,
+    as_json: bool,
+    output: str | None,
+) -> None:
     """Measure CPU times and compare them with other tools. The groups are map, orbit, regimes, chatter, threshold,
     series, fixed-points, emitted, figures, growth, commands, sweep, scale, branches, start. The default is all of
     them (with --quick all but the last).
@@ -145,8 +184,17 @@ def _states(states: int, seed: int, workers: int | None, keep: str | None) -> tu
     with WorkerPool(workers) as pool:
         rows = check(states, seed, pool, keep)
     header = ["states", "flown", "wrong", "unresolved", "flight time, worst", "v, worst"]
-    cells = [[row.kind, str(row.states), str(row.wrong), str(row.unresolved), f"{row.time_error:.3f}",
-              f"{row.velocity_error:.3f}"] for row in rows]  # fmt: skip
+    cells = [
+        [
+            row.kind,
+            str(row.states),
+            str(row.wrong),
+            str(row.unresolved),
+            f"{row.time_error:.3f}",
+            f"{row.velocity_error:.3f}",
+        ]
+        for row in rows
+    ]
     text = columns(header, cells) + "\nErrors in units of max(1e-14, 10 kappa epsilon), for v of 1e-13."
     for row in rows:
         for tau, v, depth, bound in row.open:

@@ -48,10 +48,21 @@ from singimpact.store import require_writable
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give phase, v and end of chatter for each value as JSON.")
 def command(
-    over: str, low: str, high: str, points: int, start: tuple[str, str], impacts: int, kept: int,
-    direction: str | None, follow: tuple[tuple[int, int], ...], workers: int | None, keep: str | None, output: str,
-    as_json: bool, **options: Any,
-) -> None:  # fmt: skip
+    over: str,
+    low: str,
+    high: str,
+    points: int,
+    start: tuple[str, str],
+    impacts: int,
+    kept: int,
+    direction: str | None,
+    follow: tuple[tuple[int, int], ...],
+    workers: int | None,
+    keep: str | None,
+    output: str,
+    as_json: bool,
+    **options: Any,
+) -> None:
     """The last impacts of one orbit for each value of a parameter.
 
     amplitude, damping, stiffness and phase move without being named before. Drawn are velocities and phases; with

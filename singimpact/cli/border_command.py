@@ -30,9 +30,15 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", metavar="FILE.png", help="The picture of the first one's cascade: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give them as JSON.")
 def command(
-    over: str, periods: int, points: int, digits: int | None, cascade: bool, output: str | None, as_json: bool,
+    over: str,
+    periods: int,
+    points: int,
+    digits: int | None,
+    cascade: bool,
+    output: str | None,
+    as_json: bool,
     **options: Any,
-) -> None:  # fmt: skip
+) -> None:
     """Border orbits: released at rest at a zero of a_c, back exactly on gamma of such a zero.
 
     There complete chatter becomes incomplete. Beside it the number of impacts changes at edges whose distances shrink
@@ -73,18 +79,27 @@ def told(border: BorderOrbit, cascade: bool) -> dict[str, Any]:
         "parameter": float(border.parameter) if border.digits is None else border.value_text,
         "error": float(border.error),
         "certified": None if border.certified is None else border.certified.as_dict(),
-        "release": border.release, "end": border.end, "periods": border.period, "tau": border.tau, "v": border.v,
-        "chatter_completes": border.side, "notes": list(border.notes),
-    }  # fmt: skip
+        "release": border.release,
+        "end": border.end,
+        "periods": border.period,
+        "tau": border.tau,
+        "v": border.v,
+        "chatter_completes": border.side,
+        "notes": list(border.notes),
+    }
     if cascade:
         found = border.cascade
         limit, error = found.limit
         data["cascade"] = {
-            "impacts": found.impacts.tolist(), "distance": [float(each) for each in found.distance],
-            "ratios": [float(each) for each in found.ratios], "limit": limit, "limit_error": error,
-            "mu": float(found.mu), "attractors": [_attractor(each) for each in found.windows],
+            "impacts": found.impacts.tolist(),
+            "distance": [float(each) for each in found.distance],
+            "ratios": [float(each) for each in found.ratios],
+            "limit": limit,
+            "limit_error": error,
+            "mu": float(found.mu),
+            "attractors": [_attractor(each) for each in found.windows],
             "notes": list(found.notes),
-        }  # fmt: skip
+        }
     return data
 
 

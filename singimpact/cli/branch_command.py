@@ -40,9 +40,15 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", metavar="FILE.png", help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give points and events as JSON.")
 def command(
-    orbit: tuple[int, int], start: tuple[str, str] | None, over: str, height: str, csv: str | None, output: str | None,
-    as_json: bool, **options: Any,
-) -> None:  # fmt: skip
+    orbit: tuple[int, int],
+    start: tuple[str, str] | None,
+    over: str,
+    height: str,
+    csv: str | None,
+    output: str | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
     """Follow orbits of N impacts in K periods as a parameter changes.
 
     Prints folds, period doublings, tori, pitchforks, grazes and hidden impacts, and the end of each branch.
@@ -61,8 +67,11 @@ def command(
         from singimpact.scenes import plot
 
         save(plot(found, blank_axes(), height=height).figure, output)
-    click.echo(as_json_text({"model": model.to_dict(), "over": over, "branches": [told(each) for each in found]})
-               if as_json else shown(found))  # fmt: skip
+    click.echo(
+        as_json_text({"model": model.to_dict(), "over": over, "branches": [told(each) for each in found]})
+        if as_json
+        else shown(found)
+    )
 
 
 def table(branches: list[Branch]) -> str:
@@ -77,12 +86,23 @@ def told(branch: Branch) -> dict[str, Any]:
     pairs = [[[each.real, each.imag] for each in row] for row in branch.multipliers.tolist()]
     points = {name: getattr(branch, name).tolist() for name in ("parameter", "tau", "v", "stable", "visible")}
     events = [
-        {"kind": event.kind, "parameter": event.parameter, "tau": [float(part) for part in event.orbit.tau],
-         "v": [float(part) for part in event.orbit.v], "visible": bool(event.orbit.visible), "after_point": event.index}
+        {
+            "kind": event.kind,
+            "parameter": event.parameter,
+            "tau": [float(part) for part in event.orbit.tau],
+            "v": [float(part) for part in event.orbit.v],
+            "visible": bool(event.orbit.visible),
+            "after_point": event.index,
+        }
         for event in branch.events
-    ]  # fmt: skip
-    return {"n": branch.n, "k": branch.k, "points": points | {"multipliers": pairs}, "events": events,
-            "notes": list(branch.notes)}  # fmt: skip
+    ]
+    return {
+        "n": branch.n,
+        "k": branch.k,
+        "points": points | {"multipliers": pairs},
+        "events": events,
+        "notes": list(branch.notes),
+    }
 
 
 def shown(branches: list[Branch]) -> str:

@@ -26,17 +26,23 @@ EVENTS = tuple(kind.name for kind in KINDS if kind.is_class)
     "--orbit", type=(int, int), metavar="N K", help="An orbit of N impacts in K periods; --tau, --v: near it."
 )
 @click.option(
-    "--doubling", type=(str, float, float), metavar="OVER LOW HIGH",
+    "--doubling",
+    type=(str, float, float),
+    metavar="OVER LOW HIGH",
     help=f"As --event {PERIOD_DOUBLING.name} OVER LOW HIGH.",
-)  # fmt: skip
+)
 @click.option(
-    "--event", type=(click.Choice(EVENTS), str, float, float), metavar="KIND OVER LOW HIGH",
+    "--event",
+    type=(click.Choice(EVENTS), str, float, float),
+    metavar="KIND OVER LOW HIGH",
     help=f"With --orbit: the first event of its branch over a parameter, of the kind {', '.join(EVENTS)}.",
-)  # fmt: skip
+)
 @click.option(
-    "--border", type=(str, float, float), metavar="OVER LOW HIGH",
+    "--border",
+    type=(str, float, float),
+    metavar="OVER LOW HIGH",
     help="The first orbit between two values that is released at a zero of a_c and accumulates at the next one.",
-)  # fmt: skip
+)
 @click.option("--chatter", is_flag=True, help="The chatter limit from --tau, --v.")
 @click.option(
     "--horseshoe",
@@ -80,8 +86,10 @@ def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: A
     if (options["event"] or options["doubling"]) and kinds != ["orbit"]:
         raise InputError("--event and --doubling are of an orbit: give --orbit N K")
     if near is None and kinds in ([], ["chatter"]):
-        raise InputError("give --tau and --v, or --orbit N K, --horseshoe N K or --border OVER LOW HIGH, for a new "
-                         "certificate; or the files to check")  # fmt: skip
+        raise InputError(
+            "give --tau and --v, or --orbit N K, --horseshoe N K or --border OVER LOW HIGH, for a new "
+            "certificate; or the files to check"
+        )
     if options["output"] is not None:
         require_writable(options["output"])
     found = _made(take_model(options), kinds[0] if kinds else "", near, options)

@@ -23,8 +23,12 @@ def listed(as_json: bool, output: str | None) -> None:
 
     rows = [[entry.id, entry.section, entry.title] for entry in INDEX.values()]
     names = ("id", "section", "title")
-    emit(as_json_text({"claims": [dict(zip(names, row, strict=True)) for row in rows]}) if as_json
-         else columns(list(names), rows), output)  # fmt: skip
+    emit(
+        as_json_text({"claims": [dict(zip(names, row, strict=True)) for row in rows]})
+        if as_json
+        else columns(list(names), rows),
+        output,
+    )
 
 
 @command.command()
@@ -96,5 +100,11 @@ def impact(name: str, as_json: bool, output: str | None) -> None:
     select([name])  # an unknown id is refused with the nearest known ones
     found = dependants(INDEX, name)
     rows = [[other, INDEX[other].title] for other in found]
-    emit(as_json_text({"id": name, "falls": found}) if as_json
-         else columns(["id", "statement"], rows) if rows else f"nothing rests on {name}", output)  # fmt: skip
+    emit(
+        as_json_text({"id": name, "falls": found})
+        if as_json
+        else columns(["id", "statement"], rows)
+        if rows
+        else f"nothing rests on {name}",
+        output,
+    )

@@ -36,9 +36,15 @@ if TYPE_CHECKING:
 )
 @output_options
 def command(
-    window_tau: tuple[str, str] | None, window_t: tuple[str, str] | None, over: str | None,
-    between: tuple[str, str] | None, orbits: int | None, as_json: bool, output: str | None, **options: Any,
-) -> None:  # fmt: skip
+    window_tau: tuple[str, str] | None,
+    window_t: tuple[str, str] | None,
+    over: str | None,
+    between: tuple[str, str] | None,
+    orbits: int | None,
+    as_json: bool,
+    output: str | None,
+    **options: Any,
+) -> None:
     """The points of V_c' where p or phi is singular: tangencies, swans, cusps, and the fold lines between them.
 
     Swan points are listed over the clearance. With --over and --between: the transitions of P met on the way (swans,
@@ -80,11 +86,28 @@ def _with_orbits(changes: Transitions) -> TypeGuard[OrbitTransitions]:
 
 
 def _interval(each: Interval) -> dict[str, Any]:
-    orbits = [{"n": None if orbit.kind == "chatter" else int(orbit.n), "k": orbit.k, "kind": orbit.kind,
-               "stable": orbit.stable, "tau": [float(tau) for tau in orbit.tau], "v": [float(v) for v in orbit.v]}
-              for orbit in each.orbits]  # fmt: skip
-    events = [{"kind": change.kind, "value": change.value, "n": change.n, "k": change.k, "below": change.below,
-               "above": change.above} for change in each.changes]  # fmt: skip
+    orbits = [
+        {
+            "n": None if orbit.kind == "chatter" else int(orbit.n),
+            "k": orbit.k,
+            "kind": orbit.kind,
+            "stable": orbit.stable,
+            "tau": [float(tau) for tau in orbit.tau],
+            "v": [float(v) for v in orbit.v],
+        }
+        for orbit in each.orbits
+    ]
+    events = [
+        {
+            "kind": change.kind,
+            "value": change.value,
+            "n": change.n,
+            "k": change.k,
+            "below": change.below,
+            "above": change.above,
+        }
+        for change in each.changes
+    ]
     return {"from": each.low, "to": each.high, "orbits_in_the_middle": orbits, "changes": events}
 
 
@@ -93,20 +116,32 @@ def _as_listed(found: Classification, over: str | None, changes: Transitions | N
     if changes is not None:
         values["transitions"] = {"over": over} | changes.as_dict()
         if _with_orbits(changes):
-            values["transitions"] |= {"intervals": [_interval(each) for each in changes.intervals],
-                                    "orbit_notes": changes.orbit_notes}  # fmt: skip
+            values["transitions"] |= {
+                "intervals": [_interval(each) for each in changes.intervals],
+                "orbit_notes": changes.orbit_notes,
+            }
     return values
 
 
 def _text(found: Classification, over: str | None, changes: Transitions | None) -> str:
     tables = [
-        _table("points of V_c' where p or phi is singular", ["point", "of", "kind", "tau", "t", "image tau", "image v"],
-               [[p.name, p.maps, p.kind, *_numbers(p.tau, p.t, *p.image)] for p in found.points]),
-        _table("fold lines", ["of", "from tau", "from t", "to tau", "to t", "ends"],
-               [[f.maps, *_numbers(*f.start, *f.end), " to ".join(dict.fromkeys(f.bounds))] for f in found.folds]),
-        _table("swan points over the clearance", ["c_0", "tau", "kind"],
-               [[*_numbers(s.clearance, s.tau), s.kind] for s in found.swans], found.notes),
-    ]  # fmt: skip
+        _table(
+            "points of V_c' where p or phi is singular",
+            ["point", "of", "kind", "tau", "t", "image tau", "image v"],
+            [[p.name, p.maps, p.kind, *_numbers(p.tau, p.t, *p.image)] for p in found.points],
+        ),
+        _table(
+            "fold lines",
+            ["of", "from tau", "from t", "to tau", "to t", "ends"],
+            [[f.maps, *_numbers(*f.start, *f.end), " to ".join(dict.fromkeys(f.bounds))] for f in found.folds],
+        ),
+        _table(
+            "swan points over the clearance",
+            ["c_0", "tau", "kind"],
+            [[*_numbers(s.clearance, s.tau), s.kind] for s in found.swans],
+            found.notes,
+        ),
+    ]
     if changes is not None:
         rows = [[c.kind, *_numbers(c.value, c.tau, c.t), _seen(c.visible)] for c in changes]
         header = ["kind", str(over), "tau", "t", "visible"]

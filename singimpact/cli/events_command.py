@@ -29,8 +29,14 @@ FOLLOWED = tuple(kind.name for kind in KINDS if kind.look is not None)
 @click.command()
 @model_options
 @orbit_options
-@click.option("--over", nargs=2, metavar="A B", default=("clearance", "restitution"), show_default=True,
-              help="Two parameters; the orbits are followed over A first.")  # fmt: skip
+@click.option(
+    "--over",
+    nargs=2,
+    metavar="A B",
+    default=("clearance", "restitution"),
+    show_default=True,
+    help="Two parameters; the orbits are followed over A first.",
+)
 @click.option("--from", "low", nargs=2, metavar="A B", help="Their least values.  [default: half of the model's]")
 @click.option("--to", "high", nargs=2, metavar="A B", help="Their largest values.")
 @click.option(
@@ -50,9 +56,15 @@ FOLLOWED = tuple(kind.name for kind in KINDS if kind.look is not None)
 @click.option("-o", "--output", metavar="FILE.png", help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give points and points of codimension two as JSON.")
 def command(
-    orbit: tuple[int, int], start: tuple[str, str] | None, over: tuple[str, str], kinds: tuple[str, ...],
-    csv: str | None, output: str | None, as_json: bool, **options: Any,
-) -> None:  # fmt: skip
+    orbit: tuple[int, int],
+    start: tuple[str, str] | None,
+    over: tuple[str, str],
+    kinds: tuple[str, ...],
+    csv: str | None,
+    output: str | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
     """Follow events of the orbits of N impacts in K periods as curves in the plane of two parameters.
 
     Prints the points of codimension two: resonant grazes, cusps, two grazes at once, and others.
@@ -80,8 +92,11 @@ def command(
         from singimpact.scenes import plot
 
         save(plot(found, blank_axes()).figure, output)
-    click.echo(as_json_text({"model": model.to_dict(), "over": over, "curves": [told(each) for each in found]})
-               if as_json else shown(found))  # fmt: skip
+    click.echo(
+        as_json_text({"model": model.to_dict(), "over": over, "curves": [told(each) for each in found]})
+        if as_json
+        else shown(found)
+    )
 
 
 def choose(branches: list[Branch], kinds: tuple[str, ...], index: int | None) -> list[Event]:
@@ -141,8 +156,14 @@ def told(curve: EventCurve) -> dict[str, Any]:
     """A curve as JSON."""
     points = {name: getattr(curve, name).tolist() for name in ("parameters", "tau", "v", "visible")}
     special = [{"kind": each.kind, "parameters": each.parameters, "after_point": each.index} for each in curve.special]
-    return {"kind": curve.kind, "n": curve.n, "k": curve.k, "points": points, "special": special,
-            "notes": list(curve.notes)}  # fmt: skip
+    return {
+        "kind": curve.kind,
+        "n": curve.n,
+        "k": curve.k,
+        "points": points,
+        "special": special,
+        "notes": list(curve.notes),
+    }
 
 
 def shown(curves: list[EventCurve]) -> str:

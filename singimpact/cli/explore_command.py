@@ -29,9 +29,14 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="Give the curves as JSON instead of a page.")
 @click.option("-o", "--output", metavar="FILE", help="The same as --html; with --json, the JSON file.")
 def command(
-    path: str | None, between: tuple[str, str] | None, steps: int, html: str | None, as_json: bool,
-    output: str | None, **options: Any,
-) -> None:  # fmt: skip
+    path: str | None,
+    between: tuple[str, str] | None,
+    steps: int,
+    html: str | None,
+    as_json: bool,
+    output: str | None,
+    **options: Any,
+) -> None:
     """Show Z, H, P and gamma for clearances around the swan that is nearest to the clearance of the model.
 
     A model without a swan is shown around its clearance. MODEL is a TOML file, as for --model. The page is one file
@@ -94,11 +99,19 @@ def _show(page: str, place: str | None) -> None:
 
 def _told(film: ClearanceFilm) -> dict[str, Any]:
     frames = [
-        {"clearance": frame.clearance, "tangencies": frame.tangencies,
-         "window": {"tau": frame.view.tau, "t": frame.view.t, "v": frame.view.v},
-         "curves": {name: [curve.points.tolist() for curve in curves] for name, curves in frame.curves.items()}}
+        {
+            "clearance": frame.clearance,
+            "tangencies": frame.tangencies,
+            "window": {"tau": frame.view.tau, "t": frame.view.t, "v": frame.view.v},
+            "curves": {name: [curve.points.tolist() for curve in curves] for name, curves in frame.curves.items()},
+        }
         for frame in film.frames
-    ]  # fmt: skip
+    ]
     swan = film.swan and {"clearance": film.swan.clearance, "tau": film.swan.tau, "kind": film.swan.kind}
-    return {"swan": swan, "text": film.sentence, "window": {"tau": film.tau, "t": film.t, "v": film.v},
-            "frames": frames, "flights": film.flights}  # fmt: skip
+    return {
+        "swan": swan,
+        "text": film.sentence,
+        "window": {"tau": film.tau, "t": film.t, "v": film.v},
+        "frames": frames,
+        "flights": film.flights,
+    }

@@ -22,8 +22,14 @@ DPI = 200  # of a PNG: figures are as small as they are printed
 
 @click.command()
 @click.argument("which", metavar="N|all|beyond")
-@click.option("-o", "--output", metavar="DIR", default=".", show_default=True,
-              help="A folder for the pictures, or for one figure a file ending in .png, .pdf or .svg.")  # fmt: skip
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    default=".",
+    show_default=True,
+    help="A folder for the pictures, or for one figure a file ending in .png, .pdf or .svg.",
+)
 @click.option("--format", "kind", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
 @click.option("--serif", is_flag=True, help="Serif letters (STIX), as in a journal.")
 @click.option("--dark", is_flag=True, help="Light lines on a dark ground.")

@@ -25,17 +25,25 @@ def orbit_options(function: Function) -> Function:
         "--start", nargs=2, metavar="TAU V", help="A state near the orbit.  [default: every orbit found]"
     )(function)
     return click.option(
-        "--orbit", nargs=2, type=int, metavar="N K", default=(1, 1), show_default=True,
+        "--orbit",
+        nargs=2,
+        type=int,
+        metavar="N K",
+        default=(1, 1),
+        show_default=True,
         help="N impacts in K periods of the forcing; N = 0: no impact.",
-    )(function)  # fmt: skip
+    )(function)
 
 
 def over_option(function: Function) -> Function:
     """``--over NAME``."""
     return click.option(
-        "--over", metavar="NAME", default="clearance", show_default=True,
+        "--over",
+        metavar="NAME",
+        default="clearance",
+        show_default=True,
         help="The parameter, or clearance, restitution, ...",
-    )(function)  # fmt: skip
+    )(function)
 
 
 def take_orbits(model: ImpactOscillator, orbit: tuple[int, int], start: tuple[str, str] | None) -> list[PeriodicOrbit]:

@@ -23,9 +23,14 @@ FIELDS = ("tau", "v", "flight_time", "status")
 @click.option("--horizon", metavar="NUMBER", help="Longest flight time that is searched.")
 @output_options
 def command(
-    taus: tuple[str, ...], vs: tuple[str, ...], digits: int | None, horizon: str | None, as_json: bool,
-    output: str | None, **options: Any,
-) -> None:  # fmt: skip
+    taus: tuple[str, ...],
+    vs: tuple[str, ...],
+    digits: int | None,
+    horizon: str | None,
+    as_json: bool,
+    output: str | None,
+    **options: Any,
+) -> None:
     """The impact map G: phase and velocity of the next impact, the flight time, and the status of the flight.
 
     Numbers may be expressions such as pi/2.8.

@@ -50,14 +50,20 @@ def steep_states(
     with WorkerPool(workers) as pool:
         found = steep_states.check(states, seed, pool, keep)
         enclosures = steep_balls.check(found, balls[:2], seed, pool, beside)
-        pairs = {name: steep_digits.check(count, seed, pool, steep=name == "steep")
-                 for name, count in zip(("steep", "smooth"), balls[2:], strict=True)}  # fmt: skip
+        pairs = {
+            name: steep_digits.check(count, seed, pool, steep=name == "steep")
+            for name, count in zip(("steep", "smooth"), balls[2:], strict=True)
+        }
     rows = steep_states.rows(found)
     timed = {family.name: cost(family) for family in FAMILIES} if costs else {}
     listed = _listed(found, seed)
-    data = {"families": [asdict(row) for row in rows], "balls": asdict(enclosures),
-            "pairs": {name: asdict(each) for name, each in pairs.items()},
-            "cost": {name: asdict(figure) for name, figure in timed.items()}, "listed": listed}  # fmt: skip
+    data = {
+        "families": [asdict(row) for row in rows],
+        "balls": asdict(enclosures),
+        "pairs": {name: asdict(each) for name, each in pairs.items()},
+        "cost": {name: asdict(figure) for name, figure in timed.items()},
+        "listed": listed,
+    }
     parts = [
         _table(rows),
         _balls(enclosures),
@@ -79,16 +85,36 @@ def _is_wrong(rows: Sequence[Row], balls: Enclosures) -> bool:
 
 
 def _table(rows: Sequence[Row]) -> str:
-    header = ["family", "states", "crossed", "wrong", "unresolved, K <= 1e3", "above", "truth undecided", "worst error",
-              "us a state", "of the truth"]  # fmt: skip
+    header = [
+        "family",
+        "states",
+        "crossed",
+        "wrong",
+        "unresolved, K <= 1e3",
+        "above",
+        "truth undecided",
+        "worst error",
+        "us a state",
+        "of the truth",
+    ]
     cells = []
     for kind in (True, False):
         kin = [row for row in rows if row.steep == kind]
         cells += [
-            [row.family, str(row.states), f"{row.crossed / row.states:.2f}" if kind else "-", str(row.wrong),
-             str(row.unresolved), str(row.unresolved_steep), str(row.undecided), f"{row.worst_error:.1e}",
-             f"{1e6 * row.seconds:.0f}", f"{1e6 * row.true_seconds:.0f}"] for row in kin
-        ]  # fmt: skip
+            [
+                row.family,
+                str(row.states),
+                f"{row.crossed / row.states:.2f}" if kind else "-",
+                str(row.wrong),
+                str(row.unresolved),
+                str(row.unresolved_steep),
+                str(row.undecided),
+                f"{row.worst_error:.1e}",
+                f"{1e6 * row.seconds:.0f}",
+                f"{1e6 * row.true_seconds:.0f}",
+            ]
+            for row in kin
+        ]
         if kin:
             cells.append(_total("all steep" if kind else "all smooth", kin))
     note = (
@@ -106,8 +132,14 @@ def _total(name: str, rows: Sequence[Row]) -> list[str]:
     states, worst = total("states"), max(row.worst_error for row in rows)
     seconds = [1e6 * sum(getattr(row, part) * row.states for row in rows) / states for part in TIMES]
     part = f"{total('crossed') / states:.2f}" if rows[0].steep else "-"
-    return [name, str(states), part, *(str(total(field)) for field in fields), f"{worst:.1e}",
-            *(f"{figure:.0f}" for figure in seconds)]  # fmt: skip
+    return [
+        name,
+        str(states),
+        part,
+        *(str(total(field)) for field in fields),
+        f"{worst:.1e}",
+        *(f"{figure:.0f}" for figure in seconds),
+    ]
 
 
 def _balls(balls: Enclosures) -> str:
@@ -161,8 +193,10 @@ def _estimate(name: str, given: Estimate | None) -> str:
 
 def _cost(timed: dict[str, Cost]) -> str:
     """CPU time a family, and its ratio to steps chosen by their last terms."""
-    cells = [[name, f"{figure.microseconds:.1f}", f"{figure.ratio:.2f}", f"{figure.agree:.2f}"]
-             for name, figure in timed.items()]  # fmt: skip
+    cells = [
+        [name, f"{figure.microseconds:.1f}", f"{figure.ratio:.2f}", f"{figure.agree:.2f}"]
+        for name, figure in timed.items()
+    ]
     note = "ratio: to steps chosen by their last two terms, in the same run, on the flights where both agree."
     return columns(["family", "first_hit, us a state", "ratio", "agree"], cells) + "\n" + note if cells else ""
 
@@ -189,9 +223,12 @@ def _listed(found: dict[str, np.ndarray[Any, Any]], seed: int) -> dict[str, dict
         for at in places.tolist():
             case = drawn(seed, int(found["case"][at]))
             states.append(
-                {"call": case.text(int(found["launch"][at])), "flight_time": float(found["flight_time"][at]),
-                 "true_time": float(found["true_time"][at])}
-            )  # fmt: skip
+                {
+                    "call": case.text(int(found["launch"][at])),
+                    "flight_time": float(found["flight_time"][at]),
+                    "true_time": float(found["true_time"][at]),
+                }
+            )
         listed[name] = {"states": int(chosen.sum()), "first": states}
     return listed
 

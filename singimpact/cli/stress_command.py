@@ -15,8 +15,14 @@ from singimpact.progress import ProgressLine
 @click.argument("functions", metavar="[FUNCTION]...", nargs=-1)
 @click.option("--place", metavar="PLACE", help="One row of the table alone, such as 'a -> 0'.")
 @click.option("--quick", is_flag=True, help="Fewer points in every sequence.")
-@click.option("--format", "form", type=click.Choice(["text", "markdown", "page"]), default="text", show_default=True,
-              help="`page` writes the page of the documentation.")  # fmt: skip
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "markdown", "page"]),
+    default="text",
+    show_default=True,
+    help="`page` writes the page of the documentation.",
+)
 @output_options
 def command(
     functions: tuple[str, ...], place: str | None, quick: bool, form: str, as_json: bool, output: str | None

@@ -27,9 +27,19 @@ from singimpact.status import Status
 @click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
 @output_options
 def command(
-    over: str, low: str, high: str, points: int, tau: str, v: str, impacts: int, workers: int | None,
-    keep: str | None, as_json: bool, output: str | None, **options: Any,
-) -> None:  # fmt: skip
+    over: str,
+    low: str,
+    high: str,
+    points: int,
+    tau: str,
+    v: str,
+    impacts: int,
+    workers: int | None,
+    keep: str | None,
+    as_json: bool,
+    output: str | None,
+    **options: Any,
+) -> None:
     """The state after the last of many impacts, for values of one parameter.
 
     A model named by options needs the option of the swept parameter too.

@@ -288,8 +288,11 @@ def rounding_source(writer: DiscWriter, parts: list[Expression], steady: list[Ex
     sizes = [writer.centre(part) for part in parts]
     sizes += [writer.constant(part) for part in steady if part != number(0)]
     time = f"unit * abs({writer.centre(Name('t'))})" if any("t" in names_in(part) for part in parts) else "0 * unit"
-    lines = [f"r_x, r_xdot, R = unit * abs(X[0]), unit * abs(X[1]), {time}", *writer.lines,
-             f"return {' + '.join([*radii, *(f'unit * abs({size})' for size in sizes)]) or '0 * unit'}"]  # fmt: skip
+    lines = [
+        f"r_x, r_xdot, R = unit * abs(X[0]), unit * abs(X[1]), {time}",
+        *writer.lines,
+        f"return {' + '.join([*radii, *(f'unit * abs({size})' for size in sizes)]) or '0 * unit'}",
+    ]
     return _function("rounding(X, W, unit, p)", lines)
 
 

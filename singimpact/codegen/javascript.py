@@ -17,11 +17,39 @@ from singimpact.codegen.over_lists import FUNCTIONS, nested
 # % of numbers that are not negative: the languages differ elsewhere
 BINARY = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Mod: "%"}
 COMPARED = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "===", ast.NotEq: "!=="}
-CALLED = {**{name: f"Math.{name}" for name in FUNCTIONS}, "abs": "Math.abs", "min": "Math.min", "max": "Math.max",
-          "int": "Math.trunc", "float": ""}  # fmt: skip
+CALLED = {
+    **{name: f"Math.{name}" for name in FUNCTIONS},
+    "abs": "Math.abs",
+    "min": "Math.min",
+    "max": "Math.max",
+    "int": "Math.trunc",
+    "float": "",
+}
 NAMES = {"inf": "Infinity", "nan": "NaN", "True": "true", "False": "false", "None": "null"}
-RESERVED = {"case", "const", "default", "delete", "do", "enum", "export", "extends", "function", "let", "new", "null",
-            "super", "switch", "this", "throw", "typeof", "var", "void", "arguments", "eval", "static"}  # fmt: skip
+RESERVED = {
+    "case",
+    "const",
+    "default",
+    "delete",
+    "do",
+    "enum",
+    "export",
+    "extends",
+    "function",
+    "let",
+    "new",
+    "null",
+    "super",
+    "switch",
+    "this",
+    "throw",
+    "typeof",
+    "var",
+    "void",
+    "arguments",
+    "eval",
+    "static",
+}
 
 
 def translated(source: str, wanted: Collection[str] | None = None) -> dict[str, str]:

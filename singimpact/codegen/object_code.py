@@ -45,8 +45,12 @@ def _closed(text: str) -> str:
 
     The names are defined inside the module: given to the loader they would replace those of other code in the process.
     """
-    defined = re.sub(rf"(?m)^declare (.*@{NEVER_CALLED}[^\n]*)$", r"define internal \1 {\n  call void @abort()\n"
-                     r"  unreachable\n}", text)  # fmt: skip
+    defined = re.sub(
+        rf"(?m)^declare (.*@{NEVER_CALLED}[^\n]*)$",
+        r"define internal \1 {\n  call void @abort()\n"
+        r"  unreachable\n}",
+        text,
+    )
     defined = re.sub(
         rf"(?m)^(@{NEVER_CALLED}\w*) = external (.*)global (\S+).*$", r"\1 = internal global \4 0", defined
     )
@@ -85,9 +89,12 @@ def _machine() -> Any:
     llvm.initialize_native_asmprinter()
     target = llvm.Target.from_triple(llvm.get_process_triple())
     return target.create_target_machine(
-        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=3, reloc="pic",
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=3,
+        reloc="pic",
         codemodel="default",
-    )  # fmt: skip
+    )
 
 
 WITHOUT_EFFECT = {"NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "NUMBA_NUM_THREADS", "NUMBA_OPT", "NUMBA_THREADING_LAYER"}

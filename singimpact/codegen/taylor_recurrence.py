@@ -102,9 +102,11 @@ class _Writer:
         if self.rows > SETTINGS.rows:
             name, tree = self.whole
             raise refuse(
-                name, tree, f"an expression with at most {SETTINGS.rows} products, sums and functions, its derivatives "
-                f"included; a flight computes the Taylor coefficients of each, and this one has more"
-            )  # fmt: skip
+                name,
+                tree,
+                f"an expression with at most {SETTINGS.rows} products, sums and functions, its derivatives "
+                f"included; a flight computes the Taylor coefficients of each, and this one has more",
+            )
         return _Series(f"W[{self.rows - 1}, {{}}]", affine)
 
     def constant(self, tree: Expression) -> str:
@@ -178,9 +180,15 @@ def _columns(writer: _Writer, motion: list[str], force: Expression, push: Expres
     pushes = _terms(writer, push, "", "by_tau")
     pulls = _linear_pull(writer, by_x, "{0}[{1}]")
     pulls += _linear_pull(writer, by_xdot, "({1} + 1) * {0}[{1} + 1]")
-    body = [*motion, *writer.lines, "by_x, by_v, by_tau = zero, zero, zero", *pushes, *pulls,
-            "part = one / ((k + 1) * (k + 2))",
-            "A[k + 2], B[k + 2], Z[k + 2] = by_x * part, by_v * part, by_tau * part"]  # fmt: skip
+    body = [
+        *motion,
+        *writer.lines,
+        "by_x, by_v, by_tau = zero, zero, zero",
+        *pushes,
+        *pulls,
+        "part = one / ((k + 1) * (k + 2))",
+        "A[k + 2], B[k + 2], Z[k + 2] = by_x * part, by_v * part, by_tau * part",
+    ]
     bound = columns_source(writer.disc("inf, inf, inf"), _parted(push)[1], by_x, by_xdot)
     unpacked = "A, B, Z = columns.A, columns.B, columns.Z"
     return [_function("variations(launch, time, z, u, n, p, work, columns)", body, unpacked), bound]
@@ -313,9 +321,14 @@ def _whole_power(writer: _Writer, base: _Series, exponent: int) -> _Series:
 def _general_power(writer: _Writer, base: _Series, exponent: Expression) -> _Series:
     """w = b^q from b w' = q b' w."""
     target, power = writer.row(), writer.constant(exponent)
-    writer.starts(target, f"real_power({base('0')}, {power})", "s = 0.0", "for i in range(1, k + 1):",
-                  f"    s += ({power} * i - (k - i)) * {base('i')} * {target('k - i')}",
-                  f"{target('k')} = quotient(s, k * {base('0')})")  # fmt: skip
+    writer.starts(
+        target,
+        f"real_power({base('0')}, {power})",
+        "s = 0.0",
+        "for i in range(1, k + 1):",
+        f"    s += ({power} * i - (k - i)) * {base('i')} * {target('k - i')}",
+        f"{target('k')} = quotient(s, k * {base('0')})",
+    )
     return target
 
 
@@ -323,8 +336,12 @@ def _driven(target: _Series, inner: _Series, slope: _Series, sign: str = "") -> 
     """Lines for target' = [sign] slope inner'; an affine inner function needs no sum."""
     if inner.affine:
         return (f"{target('k')} = {sign}{inner('1')} * {slope('k - 1')} * part",)
-    return ("s = 0.0", "for i in range(1, k + 1):", f"    s += i * {inner('i')} * {slope('k - i')}",
-            f"{target('k')} = {sign}s * part")  # fmt: skip
+    return (
+        "s = 0.0",
+        "for i in range(1, k + 1):",
+        f"    s += i * {inner('i')} * {slope('k - i')}",
+        f"{target('k')} = {sign}s * part",
+    )
 
 
 def _exp(writer: _Writer, argument: Expression) -> _Series:
@@ -347,9 +364,14 @@ def _log(writer: _Writer, argument: Expression) -> _Series:
     if (inner := softplus_argument(Call("log", argument))) is not None:
         return _softplus(writer, inner)
     base, target = _series(writer, argument), writer.row()
-    writer.starts(target, f"log({base('0')})", "s = 0.0", "for i in range(1, k):",
-                  f"    s += i * {target('i')} * {base('k - i')}",
-                  f"{target('k')} = quotient({base('k')} - s / k, {base('0')})")  # fmt: skip
+    writer.starts(
+        target,
+        f"log({base('0')})",
+        "s = 0.0",
+        "for i in range(1, k):",
+        f"    s += i * {target('i')} * {base('k - i')}",
+        f"{target('k')} = quotient({base('k')} - s / k, {base('0')})",
+    )
     return target
 
 
@@ -357,11 +379,19 @@ def _logistic(writer: _Writer, argument: Expression) -> _Series:
     """y = 1/(1 + e^w) from y' = -y (1 - y) w'; neither y nor y (1 - y) starts from a difference or from e^w > 1."""
     inner = _series(writer, argument)
     target, slope = writer.row(), writer.row()
-    writer.starts(target, f"(exp(-abs({inner('0')})) if {inner('0')} > 0 else one) / (1 + exp(-abs({inner('0')})))",
-                  *_driven(target, inner, slope, "-"))  # fmt: skip
-    writer.starts(slope, f"exp(-abs({inner('0')})) / ((1 + exp(-abs({inner('0')}))) * (1 + exp(-abs({inner('0')}))))",
-                  f"s = {target('k')}", "for i in range(0, k + 1):", f"    s -= {target('i')} * {target('k - i')}",
-                  f"{slope('k')} = s")  # fmt: skip
+    writer.starts(
+        target,
+        f"(exp(-abs({inner('0')})) if {inner('0')} > 0 else one) / (1 + exp(-abs({inner('0')})))",
+        *_driven(target, inner, slope, "-"),
+    )
+    writer.starts(
+        slope,
+        f"exp(-abs({inner('0')})) / ((1 + exp(-abs({inner('0')}))) * (1 + exp(-abs({inner('0')}))))",
+        f"s = {target('k')}",
+        "for i in range(0, k + 1):",
+        f"    s -= {target('i')} * {target('k - i')}",
+        f"{slope('k')} = s",
+    )
     return target
 
 
@@ -369,8 +399,11 @@ def _softplus(writer: _Writer, argument: Expression) -> _Series:
     """y = log(1 + e^w) from y' = w'/(1 + e^-w)."""
     inner, slope = _series(writer, argument), _series(writer, _falling_logistic(argument))
     target = writer.row()
-    writer.starts(target, f"({inner('0')} if {inner('0')} > 0 else zero) + log1p(exp(-abs({inner('0')})))",
-                  *_driven(target, inner, slope))  # fmt: skip
+    writer.starts(
+        target,
+        f"({inner('0')} if {inner('0')} > 0 else zero) + log1p(exp(-abs({inner('0')})))",
+        *_driven(target, inner, slope),
+    )
     return target
 
 
@@ -383,9 +416,14 @@ def _atan(writer: _Writer, argument: Expression) -> _Series:
     """y' (1 + b^2) = b'."""
     inner = _series(writer, argument)
     square, target = writer.product(inner, inner), writer.row()
-    writer.starts(target, f"atan({inner('0')})", "s = 0.0", "for i in range(1, k):",
-                  f"    s += i * {target('i')} * {square('k - i')}",
-                  f"{target('k')} = ({inner('k')} - s / k) / (1 + {square('0')})")  # fmt: skip
+    writer.starts(
+        target,
+        f"atan({inner('0')})",
+        "s = 0.0",
+        "for i in range(1, k):",
+        f"    s += i * {target('i')} * {square('k - i')}",
+        f"{target('k')} = ({inner('k')} - s / k) / (1 + {square('0')})",
+    )
     return target
 
 
@@ -396,8 +434,14 @@ def _riccati(writer: _Writer, argument: Expression, function: str, start: str, s
     # the derivative of the call, as `algebra.derivatives` writes it, need not be computed from its difference
     writer.known[slope_of_call(Call(function, argument))] = slope
     writer.starts(target, f"{function}({inner('0')})", *_driven(target, inner, slope))
-    writer.starts(slope, start.format(w=inner("0"), y=target("0")), "s = 0.0", "for i in range(0, k + 1):",
-                  f"    s += {target('i')} * {target('k - i')}", f"{slope('k')} = {sign}s")  # fmt: skip
+    writer.starts(
+        slope,
+        start.format(w=inner("0"), y=target("0")),
+        "s = 0.0",
+        "for i in range(0, k + 1):",
+        f"    s += {target('i')} * {target('k - i')}",
+        f"{slope('k')} = {sign}s",
+    )
     return target
 
 

@@ -244,8 +244,13 @@ def _named_places(osc: Oscillator, turn: Zero) -> list[Expression]:
         part = as_float(osc.period) / SETTINGS.eighths
         tried.append(multiply(number(Fraction(round(float(middle) / part), SETTINGS.eighths)), osc.period))
     tried += [tree for tree in walk(osc.clearance) if isinstance(tree, Root)]
-    tried += [inner for tree in list(tried) if isinstance(tree, Root) for inner in walk(tree.function) if isinstance(
-        inner, Root)]  # fmt: skip
+    tried += [
+        inner
+        for tree in list(tried)
+        if isinstance(tree, Root)
+        for inner in walk(tree.function)
+        if isinstance(inner, Root)
+    ]
     return [tree for tree in tried if turn.low <= rational_near(tree, 256) <= turn.high]
 
 

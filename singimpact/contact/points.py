@@ -186,8 +186,11 @@ def _root_bound(function: Expression) -> Fraction:
     """Cauchy's bound on the zeros of a polynomial in t, a little enlarged."""
     from singimpact.algebra.rings import EXACT
 
-    degree = 1 + sum(int(abs(e.exponent.value)) if hasattr(e, "exponent") and hasattr(e.exponent, "value") else 1
-                     for e in walk(function) if not children(e) or isinstance(e, Power))  # fmt: skip
+    degree = 1 + sum(
+        int(abs(e.exponent.value)) if hasattr(e, "exponent") and hasattr(e.exponent, "value") else 1
+        for e in walk(function)
+        if not children(e) or isinstance(e, Power)
+    )
     try:
         coefficients = derivatives(function, "t", Fraction(0), degree, EXACT)
     except ArithmeticError:

@@ -250,8 +250,11 @@ def _all_clearances(rest: Expression, level: Expression) -> tuple[Fraction, Frac
     """A window with every solution: Cauchy's bound, for a polynomial."""
     if not is_polynomial(rest):
         raise InputError(f"between is needed: f(x, 0) = {rest} is not a polynomial in x; give between=(low, high)")
-    degree = sum(int(abs(part.exponent.value)) for part in walk(rest) if isinstance(part, Power) and
-                 isinstance(part.exponent, Number)) + sum(isinstance(part, Name) for part in walk(rest))  # fmt: skip
+    degree = sum(
+        int(abs(part.exponent.value))
+        for part in walk(rest)
+        if isinstance(part, Power) and isinstance(part.exponent, Number)
+    ) + sum(isinstance(part, Name) for part in walk(rest))
     try:
         coefficients = derivatives(rest, "x", Fraction(0), degree, EXACT)
     except ArithmeticError:

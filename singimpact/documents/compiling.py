@@ -85,9 +85,16 @@ def _run(folder: str) -> None:
     environment = os.environ | {"SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1", "max_print_line": "1000"}
     try:
         done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL,
-            env=environment, timeout=CompileSettings().seconds, check=False,
-        )  # fmt: skip
+            command,
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            stdin=subprocess.DEVNULL,
+            env=environment,
+            timeout=CompileSettings().seconds,
+            check=False,
+        )
     except subprocess.TimeoutExpired:
         raise CompileError(f"latexmk did not end within {CompileSettings().seconds:.0f} s") from None
     if done.returncode:

@@ -62,8 +62,16 @@ class Series:
 
 def _of_power_series(name: str, says: str, left: str, found: PowerSeries) -> Series:
     terms: dict[Exponents, Any] = {(n,): value for n, value in found.coefficients.items() if value != 0}
-    return Series(name, says, left, (found.variable,), found.order, terms, found.as_expr(),
-                  found.valid_within(VALID) if found.further else None)  # fmt: skip
+    return Series(
+        name,
+        says,
+        left,
+        (found.variable,),
+        found.order,
+        terms,
+        found.as_expr(),
+        found.valid_within(VALID) if found.further else None,
+    )
 
 
 def _of_polynomial(
@@ -200,8 +208,11 @@ def series_text(request: SeriesRequest, form: str) -> str:
     if form == "json":
         data = {"order": request.order, "tau_star": _points(request), "series": [_as_data(each) for each in found]}
         return json.dumps(data, indent=2) + "\n"
-    return sympy_source(f"Series to order {request.order}, in sympy.", "singimpact derive",
-                        {each.name: each.expression for each in found})  # fmt: skip
+    return sympy_source(
+        f"Series to order {request.order}, in sympy.",
+        "singimpact derive",
+        {each.name: each.expression for each in found},
+    )
 
 
 def _points(request: SeriesRequest) -> dict[str, str]:
@@ -249,9 +260,15 @@ def _rounded(radius: float | None) -> str:
 
 def _as_data(each: Series) -> dict[str, Any]:
     valid = None if each.valid in (None, float("inf")) else each.valid
-    return {"name": each.name, "says": each.says, "variables": list(each.variables), "order": each.order,
-            "valid_within": valid, "sympy": str(each.expression),
-            "latex": f"{each.left} = {' '.join(_terms(each))}"}  # fmt: skip
+    return {
+        "name": each.name,
+        "says": each.says,
+        "variables": list(each.variables),
+        "order": each.order,
+        "valid_within": valid,
+        "sympy": str(each.expression),
+        "latex": f"{each.left} = {' '.join(_terms(each))}",
+    }
 
 
 def series_section(request: SeriesRequest) -> Section:

@@ -70,9 +70,14 @@ class Oscillator:
         self.clearance = constant("clearance", clearance)
         found = period_of(self.forcing())
         self._period = found if period is None else checked_period(self.forcing(), period, found)
-        self._texts = (str(self.f), str(self.g), str(self.clearance), str(self.restitution),
-                       tuple((name, str(value)) for name, value in sorted(values.items())),
-                       str(self._period) if period is not None else None)  # fmt: skip
+        self._texts = (
+            str(self.f),
+            str(self.g),
+            str(self.clearance),
+            str(self.restitution),
+            tuple((name, str(value)) for name, value in sorted(values.items())),
+            str(self._period) if period is not None else None,
+        )
 
     def __setattr__(self, name: str, value: Any) -> None:
         if hasattr(self, "_texts"):  # the last field that is set

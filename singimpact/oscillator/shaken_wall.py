@@ -77,9 +77,15 @@ class ShakenWall:
 
 
 def shaken_wall(
-    f: Any, g: Any, wall: Any, restitution: Any, parameters: Mapping[str, Any] | None = None, period: Any = None,
-    *, kind: type[Oscillator] = Oscillator,
-) -> ShakenWall:  # fmt: skip
+    f: Any,
+    g: Any,
+    wall: Any,
+    restitution: Any,
+    parameters: Mapping[str, Any] | None = None,
+    period: Any = None,
+    *,
+    kind: type[Oscillator] = Oscillator,
+) -> ShakenWall:
     """The model x'' + f(x, x') = g(t), x >= wall(t), in the frame of its wall.
 
     Parameters
@@ -98,8 +104,10 @@ def shaken_wall(
     9.8*sin(7*t) - 9.81
     """
     names = tuple(parameters or {})
-    trees = {name: tree_of(value, (*letters, *names), name)
-             for name, value, letters in (("f", f, STATE), ("g", g, ("t",)), ("wall", wall, ("t",)))}  # fmt: skip
+    trees = {
+        name: tree_of(value, (*letters, *names), name)
+        for name, value, letters in (("f", f, STATE), ("g", g, ("t",)), ("wall", wall, ("t",)))
+    }
     place = trees["wall"]
     require_smooth_text(place, "wall")
     moving = "t" in names_in(place)

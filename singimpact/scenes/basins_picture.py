@@ -81,8 +81,9 @@ def _painted(found: Basins, layers: list[tuple[Any, str]], colors: list[str], ax
     axes.imshow(image, origin="lower", extent=box, aspect="auto", interpolation="nearest")
     axes.set_xlabel(r"launch phase $\tau$")
     axes.set_ylabel("launch velocity $v$")
-    axes.legend(handles=patches[:12], loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False,
-                fontsize="small")  # fmt: skip
+    axes.legend(
+        handles=patches[:12], loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False, fontsize="small"
+    )
     return axes
 
 

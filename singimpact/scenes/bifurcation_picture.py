@@ -54,8 +54,11 @@ def draw_bifurcation(found: Bifurcation, axes: Any, height: str = "v") -> Any:
     """Velocities after the impacts of settled orbits, or their phases; ends of complete chatter in another colour."""
     values = np.repeat(found.values, found.events.shape[1])
     phase, v, ended = found.events.reshape(-1, 3).T
-    places = v if height == "v" else phase / np.repeat(np.broadcast_to(found.periods, found.values.shape),
-                                                       found.events.shape[1])  # fmt: skip
+    places = (
+        v
+        if height == "v"
+        else phase / np.repeat(np.broadcast_to(found.periods, found.values.shape), found.events.shape[1])
+    )
     resting = ended == 1.0
     inches = float(np.prod(axes.figure.get_size_inches()))
     size = float(np.clip(np.sqrt(SPREAD * inches / max(values.size, 1)) / 20, 0.9, 3.0))
@@ -65,8 +68,14 @@ def draw_bifurcation(found: Bifurcation, axes: Any, height: str = "v") -> Any:
         down = (np.arange(values.size) >= values.size // 2) & ~resting
         axes.plot(values[down], places[down], color=BLUE, label="impact, on the way down", **dots)
     if resting.any():
-        axes.plot(values[resting], places[resting], color=VERMILLION, label="end of complete chatter", clip_on=False,
-                  **(dots | {"markersize": 1.5 * size}))  # fmt: skip
+        axes.plot(
+            values[resting],
+            places[resting],
+            color=VERMILLION,
+            label="end of complete chatter",
+            clip_on=False,
+            **(dots | {"markersize": 1.5 * size}),
+        )
     axes.set_xlabel(LETTERS.get(found.over, found.over))
     axes.set_ylabel(HEIGHTS[height])
     axes.set_xlim(found.values.min(), found.values.max())

@@ -55,12 +55,21 @@ def draw_border(border: BorderOrbit, axes: Any, below: Any = None) -> Any:
     for kind, (marker, color) in MARKS.items():
         rows = [(each.distance, _height(each, border)) for each in samples if _kind(each, border) == kind]
         if rows:
-            axes.plot(*np.array(rows).T, marker, color=color, markersize=size, linestyle="none",
-                      markeredgewidth=0.9, label=WORDS[kind], zorder=4)  # fmt: skip
+            axes.plot(
+                *np.array(rows).T,
+                marker,
+                color=color,
+                markersize=size,
+                linestyle="none",
+                markeredgewidth=0.9,
+                label=WORDS[kind],
+                zorder=4,
+            )
     name = LETTERS.get(border.over, border.over)
     axes.set_ylabel("impacts a return")
-    axes.set_title(f"border orbit at {name} = {float(border.parameter):.12g}, chatter completes {border.side}",
-                   fontsize="medium")  # fmt: skip
+    axes.set_title(
+        f"border orbit at {name} = {float(border.parameter):.12g}, chatter completes {border.side}", fontsize="medium"
+    )
     axes.set_xscale("log")
     if below is not None:
         _multipliers(samples, border, below, size)
@@ -68,8 +77,14 @@ def draw_border(border: BorderOrbit, axes: Any, below: Any = None) -> Any:
     last = axes if below is None else below
     last.set_xlabel(f"distance from the border orbit in {name}")
     under = -0.18 if below is None else -0.3
-    last.legend(*axes.get_legend_handles_labels(), loc="upper center", bbox_to_anchor=(0.5, under), frameon=False,
-                ncols=2, fontsize="small")  # fmt: skip
+    last.legend(
+        *axes.get_legend_handles_labels(),
+        loc="upper center",
+        bbox_to_anchor=(0.5, under),
+        frameon=False,
+        ncols=2,
+        fontsize="small",
+    )
     return axes
 
 
@@ -79,8 +94,14 @@ def _stairs(cascade: Cascade, axes: Any) -> None:
     # beyond the first edge one impact less, beyond the last one as long as the window before
     places = np.concatenate([[distance[0] ** 2 / distance[1]], distance, [distance[-1] ** 2 / distance[-2]]])
     numbers = np.concatenate([[cascade.impacts[0] - 1], cascade.impacts])
-    axes.plot(np.repeat(places, 2)[1:-1], np.repeat(numbers, 2), color=BLACK, linewidth=1.0, zorder=2,
-              label="released orbit, up to the end of $\\gamma$")  # fmt: skip
+    axes.plot(
+        np.repeat(places, 2)[1:-1],
+        np.repeat(numbers, 2),
+        color=BLACK,
+        linewidth=1.0,
+        zorder=2,
+        label="released orbit, up to the end of $\\gamma$",
+    )
     axes.set_xlim(places[-1], places[0])
 
 
@@ -104,8 +125,11 @@ def _multipliers(samples: tuple[CascadeWindow, ...], border: BorderOrbit, axes: 
     """The size of the larger multiplier; 0 of a superstable orbit has no place on this axis."""
     for kind in ("same", "more"):
         marker, color = MARKS[kind]
-        rows = [(each.distance, abs(complex(each.orbit.multipliers[0]))) for each in samples
-                if each.orbit is not None and _kind(each, border) == kind]  # fmt: skip
+        rows = [
+            (each.distance, abs(complex(each.orbit.multipliers[0])))
+            for each in samples
+            if each.orbit is not None and _kind(each, border) == kind
+        ]
         if rows:
             axes.plot(*np.array(rows).T, marker, color=color, markersize=size, linestyle="none", zorder=4)
     axes.axhline(1, color=BLACK, linewidth=0.6, zorder=1)

@@ -64,5 +64,6 @@ def _draw(axes: Any, model: Any, side: Basins, colors: list[str]) -> None:
             labels.append(layer.label)
     axes.set_xlim(*limits[0])
     axes.set_ylim(*limits[1])
-    axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, frameon=False,
-                fontsize="small")  # fmt: skip
+    axes.legend(
+        handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, frameon=False, fontsize="small"
+    )

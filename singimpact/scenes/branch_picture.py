@@ -97,8 +97,11 @@ class _Drawn:
     def _heights(self) -> Array:
         branch = self.branch
         if self.shown == "phase":
-            return np.asarray(np.mod(branch.tau / self._periods()[:, None], 1.0)) if branch.n else np.full(
-                (len(branch), 1), np.nan)  # fmt: skip
+            return (
+                np.asarray(np.mod(branch.tau / self._periods()[:, None], 1.0))
+                if branch.n
+                else np.full((len(branch), 1), np.nan)
+            )
         if branch.n:
             return branch.v
         if self.shown == "v":
@@ -223,8 +226,15 @@ def _marker(shape: str) -> Any:
 
 def _legend_below(axes: Any, entries: dict[str, Any]) -> None:
     """Below the axes, where no curve is."""
-    axes.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False,
-                ncols=min(4, len(entries)), fontsize="small")  # fmt: skip
+    axes.legend(
+        entries.values(),
+        entries.keys(),
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.14),
+        frameon=False,
+        ncols=min(4, len(entries)),
+        fontsize="small",
+    )
 
 
 def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:

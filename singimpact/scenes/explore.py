@@ -123,8 +123,10 @@ def _script(film: ClearanceFilm) -> str:
     """The model, the film, how curves look, and the code of the page."""
     parts = [model_in_javascript(film.model), as_script("FILM", _film(film))]
     parts.append(as_script("PENS", {name: _pen(PENS[name]) for name, _ in CURVES.values()}))
-    legend = [{"name": pen, "label": label, "dot": PENS[pen].color if pen == "orbit" else None}
-              for pen, label in CURVES.values()]  # fmt: skip
+    legend = [
+        {"name": pen, "label": label, "dot": PENS[pen].color if pen == "orbit" else None}
+        for pen, label in CURVES.values()
+    ]
     legend.append({"name": "P", "label": "tangency points", "dot": BLACK})
     parts.append(as_script("LEGEND", legend))
     return "\n".join([*parts, *((PARTS / name).read_text(encoding="utf-8") for name in ("flight.js", "page.js"))])
@@ -150,8 +152,15 @@ def _frame(frame: ClearanceFrame) -> dict[str, Any]:
     }
     none = [CURVES[name][0] for name in ("Z", "H", "P") if not frame.curves[name]]
     empty = f"At this clearance the window has no {' and no '.join(none)}." if none else ""
-    return {"c": frame.clearance, "tau": frame.view.tau, "t": frame.view.t, "v": frame.view.v,
-            "tangencies": frame.tangencies, "curves": curves, "empty": empty}  # fmt: skip
+    return {
+        "c": frame.clearance,
+        "tau": frame.view.tau,
+        "t": frame.view.t,
+        "v": frame.view.v,
+        "tangencies": frame.tangencies,
+        "curves": curves,
+        "empty": empty,
+    }
 
 
 def _short(values: Any) -> list[float]:

@@ -66,12 +66,19 @@ def model_in_javascript(osc: Oscillator) -> str:
         "r_moves": not names_in(osc.restitution),
     }
     # in a scope of their own: the page has functions of the same names
-    return "\n".join([
-        f"const {{ {', '.join(USED)} }} = (() => {{",
-        *functions.values(), text, *(f"const {name} = {other};" for name, other in BOUND.items()),
-        f"const constants_of = ({GIVEN}) => [{_formulas(flow.constants)}];", law, f"return {{ {', '.join(USED)} }};",
-        "})();", as_script("MODEL", model),
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"const {{ {', '.join(USED)} }} = (() => {{",
+            *functions.values(),
+            text,
+            *(f"const {name} = {other};" for name, other in BOUND.items()),
+            f"const constants_of = ({GIVEN}) => [{_formulas(flow.constants)}];",
+            law,
+            f"return {{ {', '.join(USED)} }};",
+            "})();",
+            as_script("MODEL", model),
+        ]
+    )
 
 
 def _rebound(osc: Oscillator) -> tuple[str, str]:

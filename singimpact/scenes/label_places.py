@@ -68,17 +68,37 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
     taken: list[Array] = [_extent(text) for text in axes.texts]
     written = []
     for (x, y, name), point in zip(inside, points, strict=True):
-        text = axes.annotate(name, (x, y), (0, 0), textcoords="offset points", fontsize=size, color=BLACK, zorder=8,
-                             ha="center", va="center")  # fmt: skip
+        text = axes.annotate(
+            name,
+            (x, y),
+            (0, 0),
+            textcoords="offset points",
+            fontsize=size,
+            color=BLACK,
+            zorder=8,
+            ha="center",
+            va="center",
+        )
         extent = _extent(text)
         half = (extent[2:] - extent[:2]) / 2
         offset = _offset(point, half, np.concatenate(obstacles), taken, (box.extents, pixel))
         text.remove()
         length = np.hypot(*offset) - _reach(half, offset)
         line = {"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 4}
-        written.append(axes.annotate(
-            name, (x, y), tuple(offset / pixel), textcoords="offset points", fontsize=size, color=BLACK, zorder=8,
-            ha="center", va="center", arrowprops=line if length > SETTINGS.joined * pixel else None))  # fmt: skip
+        written.append(
+            axes.annotate(
+                name,
+                (x, y),
+                tuple(offset / pixel),
+                textcoords="offset points",
+                fontsize=size,
+                color=BLACK,
+                zorder=8,
+                ha="center",
+                va="center",
+                arrowprops=line if length > SETTINGS.joined * pixel else None,
+            )
+        )
         middle = point + offset
         if length > SETTINGS.joined * pixel:
             shares = np.linspace(0, 1, 2 + int(length / (SETTINGS.sample * pixel)))[:, None]

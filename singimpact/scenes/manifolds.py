@@ -68,8 +68,15 @@ def draw_manifolds(found: Sequence[Manifold], axes: Any) -> Any:
     else:
         axes.set_xlim(*limits[0])
         axes.set_ylim(*limits[1])
-    axes.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3,
-                frameon=False, fontsize="small")  # fmt: skip
+    axes.legend(
+        entries.values(),
+        entries.keys(),
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.13),
+        ncols=3,
+        frameon=False,
+        fontsize="small",
+    )
     return axes
 
 
@@ -90,8 +97,15 @@ def draw_crossings(found: Crossings, axes: Any) -> Any:
         entries[f"{kind} points, one of each orbit"] = _mark("o", SETTINGS.crossing, pen.color, pen.color)
     axes.set_xlim(*limits[0])
     axes.set_ylim(*limits[1])
-    axes.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3,
-                frameon=False, fontsize="small")  # fmt: skip
+    axes.legend(
+        entries.values(),
+        entries.keys(),
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.13),
+        ncols=3,
+        frameon=False,
+        fontsize="small",
+    )
     return axes
 
 
@@ -109,16 +123,29 @@ def draw_certified_crossing(found: EnclosedCrossing, axes: Any) -> Any:
     assert found.oscillator.period is not None
     period = as_float(found.oscillator.period)
     states = np.array([[float(tau.value) % period, float(v.value)] for tau, v in found.states])
-    saddles = np.array([[float(tau.value) % period, float(v.value)] for each in (found.unstable, found.stable)
-                        for tau, v in zip(each.tau, each.v, strict=True)])  # fmt: skip
+    saddles = np.array(
+        [
+            [float(tau.value) % period, float(v.value)]
+            for each in (found.unstable, found.stable)
+            for tau, v in zip(each.tau, each.v, strict=True)
+        ]
+    )
     top = 1.2 * float(max(states[:, 1].max(), saddles[:, 1].max()))
     gaps = (states[:, None] - saddles) / [period, top]
     gaps[..., 0] -= np.rint(gaps[..., 0])
     away = np.hypot(*gaps.transpose(2, 0, 1)).min(axis=1) > SETTINGS.away
     axes.plot(*states.T, "o", color=pen.color, markersize=SETTINGS.impact, zorder=8)
     for number, place in enumerate(states[away], start=1):
-        axes.annotate(str(number), place, (6, 5), textcoords="offset points", zorder=9, fontweight="bold",
-                      color=pen.color, path_effects=[withStroke(linewidth=3, foreground="white")])  # fmt: skip
+        axes.annotate(
+            str(number),
+            place,
+            (6, 5),
+            textcoords="offset points",
+            zorder=9,
+            fontweight="bold",
+            color=pen.color,
+            path_effects=[withStroke(linewidth=3, foreground="white")],
+        )
     axes.plot(*saddles.T, "s", color=BLACK, markerfacecolor="white", markersize=SETTINGS.saddle, zorder=8)
     at = int(away[: found.index + 1].sum())
     words = f"impacts of a certified {found.kind} orbit, angle {float(found.angle.value):.4f} at {at}"
@@ -129,8 +156,15 @@ def draw_certified_crossing(found: EnclosedCrossing, axes: Any) -> Any:
     if fresh:
         axes.set_xlabel(r"launch phase $\tau$")
         axes.set_ylabel("launch velocity $v$")
-    axes.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2,
-                frameon=False, fontsize="small")  # fmt: skip
+    axes.legend(
+        entries.values(),
+        entries.keys(),
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.13),
+        ncols=2,
+        frameon=False,
+        fontsize="small",
+    )
     return axes
 
 

@@ -104,15 +104,32 @@ def _marks(orbit: Orbit, axes: Any, clearance: float, begin: float, style: Orbit
         if not times.size:
             continue
         small = kind == "impact" and times.size > style.many
-        axes.plot(times, np.full(times.size, clearance), linestyle="none", marker=marker, label=label, zorder=5,
-                  markersize=2.5 if small else 5.5, markerfacecolor=face, markeredgecolor="black",
-                  markeredgewidth=0.4 if small else 0.8, clip_on=False)  # fmt: skip
+        axes.plot(
+            times,
+            np.full(times.size, clearance),
+            linestyle="none",
+            marker=marker,
+            label=label,
+            zorder=5,
+            markersize=2.5 if small else 5.5,
+            markerfacecolor=face,
+            markeredgecolor="black",
+            markeredgewidth=0.4 if small else 0.8,
+            clip_on=False,
+        )
 
 
 def _rests(orbit: Orbit, axes: Any, clearance: float, ends: tuple[float, float], style: OrbitStyle) -> None:
     label: str | None = "at rest on the wall"
     for kind, start, stop in orbit.phases:
         if kind == "sticking" and stop > ends[0]:
-            axes.plot([start, min(stop, ends[1])], [clearance, clearance], color=style.rest, linewidth=4.0, label=label,
-                      solid_capstyle="butt", zorder=4)  # fmt: skip
+            axes.plot(
+                [start, min(stop, ends[1])],
+                [clearance, clearance],
+                color=style.rest,
+                linewidth=4.0,
+                label=label,
+                solid_capstyle="butt",
+                zorder=4,
+            )
             label = None

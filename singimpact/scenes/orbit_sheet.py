@@ -69,8 +69,15 @@ def _portrait(orbit: Orbit, axes: Any, since: float, style: OrbitStyle) -> None:
     for index in hits.tolist():
         after = float(orbit.v[index])
         before = float(orbit.sample([np.nextafter(orbit.tau[index], -np.inf)]).xdot[0])
-        axes.plot([wall, wall], [before, after], color=style.rest, linewidth=1.4, linestyle=(0, (3, 2)),
-                  label="impact" if first else None, zorder=4)  # fmt: skip
+        axes.plot(
+            [wall, wall],
+            [before, after],
+            color=style.rest,
+            linewidth=1.4,
+            linestyle=(0, (3, 2)),
+            label="impact" if first else None,
+            zorder=4,
+        )
         first = False
     axes.axvline(wall, color=style.obstacle, linewidth=0.8)
     axes.set(xlabel="displacement $x$", ylabel=r"velocity $\dot x$")
@@ -85,15 +92,24 @@ def _velocities(orbit: Orbit, axes: Any, style: OrbitStyle, since: float | None)
     largest = float(orbit.v[hits].max()) if hits.any() else 1.0
     speeds = np.maximum(orbit.v[hits], LEAST * largest)
     size = 4.0 if hits.sum() <= style.many else 1.8
-    axes.plot(orbit.tau[hits], speeds, "o", color=style.flight, markersize=size, markeredgewidth=0, label="impact",
-              rasterized=bool(hits.sum() > 5000))  # fmt: skip
+    axes.plot(
+        orbit.tau[hits],
+        speeds,
+        "o",
+        color=style.flight,
+        markersize=size,
+        markeredgewidth=0,
+        label="impact",
+        rasterized=bool(hits.sum() > 5000),
+    )
     end = shown_end(orbit, style)
     low = float(speeds.min()) / 3 if hits.any() else LEAST
     label: str | None = "at rest on the wall"
     for kind, start, stop in orbit.phases:
         if kind == "sticking":
-            axes.plot([start, min(stop, end)], [low, low], color=style.rest, linewidth=5, solid_capstyle="butt",
-                      label=label)  # fmt: skip
+            axes.plot(
+                [start, min(stop, end)], [low, low], color=style.rest, linewidth=5, solid_capstyle="butt", label=label
+            )
             label = None
     if since is not None:
         axes.axvspan(since, end, color="0.92", zorder=0, label="part shown above")

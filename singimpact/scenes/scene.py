@@ -66,9 +66,11 @@ class Scene:
             raise refuse("model", self.model, "an ImpactOscillator")
         if isinstance(self.layers, str) or not isinstance(self.layers, Iterable):
             raise refuse("layers", self.layers, "a list of names of layers")
-        if isinstance(self.pixels, bool) or not isinstance(self.pixels, int) or not (
-            SIZES[0] <= self.pixels <= SIZES[1]
-        ):  # fmt: skip
+        if (
+            isinstance(self.pixels, bool)
+            or not isinstance(self.pixels, int)
+            or not (SIZES[0] <= self.pixels <= SIZES[1])
+        ):
             raise refuse("pixels", self.pixels, f"an integer from {SIZES[0]} to {SIZES[1]}")
         for name in self.layers:
             if not isinstance(name, str) or name not in LAYERS:

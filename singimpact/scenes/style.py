@@ -43,8 +43,14 @@ class Pen:
 
     def beads(self) -> dict[str, Any]:
         """The arguments of matplotlib for an orbit: dots in this colour, joined in their order by a thin grey line."""
-        return {"color": GREY, "linewidth": 0.6, "marker": "o", "markersize": 3.5,
-                "markerfacecolor": self.color, "markeredgecolor": self.color}  # fmt: skip
+        return {
+            "color": GREY,
+            "linewidth": 0.6,
+            "marker": "o",
+            "markersize": 3.5,
+            "markerfacecolor": self.color,
+            "markeredgecolor": self.color,
+        }
 
 
 PENS = {

@@ -154,8 +154,9 @@ class Curve:
         for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
             marks = tuple(Mark(m.index - start, m.name) for m in self.marks if start <= m.index < stop)
             whole = self.closed and stop - start == len(self)
-            yield Curve(self.name, self.points[start:stop], self.axes, marks, whole, self.tolerance,
-                        self.visible[start:stop])  # fmt: skip
+            yield Curve(
+                self.name, self.points[start:stop], self.axes, marks, whole, self.tolerance, self.visible[start:stop]
+            )
 
 
 def distances(points: Array, line: Array) -> Array:

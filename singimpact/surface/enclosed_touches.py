@@ -103,8 +103,14 @@ class EnclosedTouches:
             return self.model
         turned = {name: multiply(number(-1), Name(name)) for name in ("xdot", "t")}
         model = self.model
-        return Oscillator(substitute(model.f, turned), substitute(model.g, turned), model.clearance, 1,
-                          model.parameters, period=model.period)  # fmt: skip
+        return Oscillator(
+            substitute(model.f, turned),
+            substitute(model.g, turned),
+            model.clearance,
+            1,
+            model.parameters,
+            period=model.period,
+        )
 
 
 class _Search:

@@ -176,8 +176,10 @@ class FollowedRests:
                 if gap * then > 0 or abs(gap) > GRID_OF.reach:
                     continue
                 share = gap / (gap - then) if gap != then else 0.5
-                s, *d = (share * (after.places[k, axis] - before.places[j, axis]) + before.places[j, axis]
-                         for j, k, axis in ((n, next_n, 0), (n, next_n, 1), (m, next_m, 1)))  # fmt: skip
+                s, *d = (
+                    share * (after.places[k, axis] - before.places[j, axis]) + before.places[j, axis]
+                    for j, k, axis in ((n, next_n, 0), (n, next_n, 1), (m, next_m, 1))
+                )
                 start = np.array([s, *sorted(d), before.value + share * (after.value - before.value)])
                 yield from self._triple(start)
 

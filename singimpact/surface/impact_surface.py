@@ -157,8 +157,10 @@ class ImpactSurface:
     def outline(self) -> list[Curve]:
         """P = p(H) = phi(Z): (tau, v) of the launches that graze."""
         pairs = ((line, partial(getattr, back, "visible")) for line, back in zip(self.lines, self.horizon, strict=True))
-        return [_curve("P", np.stack([line.points.sum(axis=1), line.column], axis=1), STATES, line, visible)
-                for line, visible in pairs]  # fmt: skip
+        return [
+            _curve("P", np.stack([line.points.sum(axis=1), line.column], axis=1), STATES, line, visible)
+            for line, visible in pairs
+        ]
 
     @cached_property
     def discontinuities(self) -> list[Curve]:

@@ -54,8 +54,10 @@ class RestFlight:
         """(tau, t, value) of all lips and beaks in a period of tau."""
         longest = Fraction(period)
         window = (
-            (-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN)), _ends(times), _ends(ends),
-        )  # fmt: skip
+            (-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN)),
+            _ends(times),
+            _ends(ends),
+        )
         names = ("tau", "t", self.over)
         excluded = _no_other_than_at_zero(self.heights[3:], names)
         return isolated_zeros((self.push, *self.heights[:2]), names, window, excluded=excluded, settings=SEARCH)
@@ -77,8 +79,10 @@ def doubts_left(
     if "t" not in names_in(family.model.forcing(() if family.over == CLEARANCE else (family.over,))):
         return ()  # a_c is constant
     if not periods:
-        return ("lips, beaks and swallowtails are met on a grid: balls show that there are no others of models "
-                "with a period alone",)  # fmt: skip
+        return (
+            "lips, beaks and swallowtails are met on a grid: balls show that there are no others of models "
+            "with a period alone",
+        )
     flight: RestFlight | EnclosedTouches = rest_flight(family) or EnclosedTouches(family.model, family.over)
     found, length = list(listed), max(periods.values())
     made = flight.touches(length, ends, times)

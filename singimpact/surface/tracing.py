@@ -137,8 +137,11 @@ def _small_ones(
     tau, t = axes
     found: list[tuple[Array, float]] = []
     for i, j in _extrema(values):
-        small = Window((tau[max(j - 1, 0)], tau[min(j + 1, len(tau) - 1)]),
-                       (t[max(i - 1, 0)], t[min(i + 1, len(t) - 1)]), window.resolution)  # fmt: skip
+        small = Window(
+            (tau[max(j - 1, 0)], tau[min(j + 1, len(tau) - 1)]),
+            (t[max(i - 1, 0)], t[min(i + 1, len(t) - 1)]),
+            window.resolution,
+        )
         finer = np.linspace(*small.x, 17), np.linspace(*small.y, 17)
         inner = grid(*finer)
         if inner.min() < 0 < inner.max():
@@ -188,10 +191,14 @@ def _extrema(values: Array) -> list[tuple[int, int]]:
     """Interior samples with |y| below that of all neighbours, which have its sign, and near zero for their spread."""
     size, inner = np.abs(values), np.s_[1:-1, 1:-1]
     shifted = [
-        (size[1 + di : size.shape[0] - 1 + di, 1 + dj : size.shape[1] - 1 + dj],
-         values[1 + di : size.shape[0] - 1 + di, 1 + dj : size.shape[1] - 1 + dj])
-        for di in (-1, 0, 1) for dj in (-1, 0, 1) if di or dj
-    ]  # fmt: skip
+        (
+            size[1 + di : size.shape[0] - 1 + di, 1 + dj : size.shape[1] - 1 + dj],
+            values[1 + di : size.shape[0] - 1 + di, 1 + dj : size.shape[1] - 1 + dj],
+        )
+        for di in (-1, 0, 1)
+        for dj in (-1, 0, 1)
+        if di or dj
+    ]
     good = np.ones(size[inner].shape, dtype=bool)
     spread = np.zeros(size[inner].shape)
     for magnitude, value in shifted:

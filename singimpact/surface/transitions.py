@@ -172,9 +172,13 @@ def _kind_of(found: Transition) -> str:
 
 
 def _doubts(
-    family: Family, ends: tuple[float, float], times: tuple[float, float], wanted: frozenset[str],
-    swans: tuple[Transition, ...], listed: Transitions,
-) -> tuple[str, ...]:  # fmt: skip
+    family: Family,
+    ends: tuple[float, float],
+    times: tuple[float, float],
+    wanted: frozenset[str],
+    swans: tuple[Transition, ...],
+    listed: Transitions,
+) -> tuple[str, ...]:
     """Why one of the kinds may be missing."""
     doubts: tuple[str, ...] = ()
     if {"swallowtail", "tangency"} & wanted:
@@ -225,9 +229,13 @@ def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> li
         near = [(each.value, *_first_and_gap(each)) for each in found if each.kind == "undecided"]
         both = [made for made in (followed.both_ends(*place) for place in near) if made is not None]
     kept = [each for each in found if not any(_is_that(each, other) for other in both)]
-    kept += [Transition(each.kind, each.value, s := _reduced(each.first, family.at(each.value)),
-                        each.gaps[0], (s, s + each.gaps[0]))
-             for each in both if any(times[0] <= sign * each.gaps[0] <= times[1] for sign in (1, -1))]  # fmt: skip
+    kept += [
+        Transition(
+            each.kind, each.value, s := _reduced(each.first, family.at(each.value)), each.gaps[0], (s, s + each.gaps[0])
+        )
+        for each in both
+        if any(times[0] <= sign * each.gaps[0] <= times[1] for sign in (1, -1))
+    ]
     return _each_once(kept, ends)
 
 

@@ -202,12 +202,12 @@ class LinearRests:
 
     def _grid(self, shortest: float, longest: float) -> tuple[Array, Array]:
         low = max(GRID.least, shortest - GRID.step)
-        return (np.arange(0, self.turn + 2 * GRID.step, GRID.step) - GRID.step / 19,
-                np.arange(low, longest + 2 * GRID.step, GRID.step) + GRID.start)  # fmt: skip
+        return (
+            np.arange(0, self.turn + 2 * GRID.step, GRID.step) - GRID.step / 19,
+            np.arange(low, longest + 2 * GRID.step, GRID.step) + GRID.start,
+        )
 
-    def _in_cells(
-        self, values: tuple[Array, Array], s: Array, d: Array, missed: Callable[[Array], Array]
-    ) -> Array:  # fmt: skip
+    def _in_cells(self, values: tuple[Array, Array], s: Array, d: Array, missed: Callable[[Array], Array]) -> Array:
         """Zeros of two functions, shape (n, 2): Newton's method from each cell over which both change sign."""
         i, j = np.nonzero(_changes(values[0]) & _changes(values[1]))
         met = newton(missed, np.stack([s[i], d[j]], axis=1) + GRID.step / 2)
@@ -219,8 +219,9 @@ class LinearRests:
         s, d = self._grid(GRID.least, longest)
         F, c = self.eliminated(s[:, None], d[None, :])
         rows = [_crossings(d, F[i], c[i]) for i in range(len(s))]
-        starts = [[s[i], *sorted(rows[i][0][[j, k]])]
-                  for i in range(len(s) - 1) for j, k in _meeting(rows[i], rows[i + 1])]  # fmt: skip
+        starts = [
+            [s[i], *sorted(rows[i][0][[j, k]])] for i in range(len(s) - 1) for j, k in _meeting(rows[i], rows[i + 1])
+        ]
         met = newton(self._three, np.array(starts).reshape(-1, 3))
         gaps = np.stack([met[:, 1], met[:, 2], met[:, 2] - met[:, 1]], axis=1)
         kept = (gaps > GRID.least).all(axis=1) & ~is_whole(gaps / self.turn).any(axis=1)

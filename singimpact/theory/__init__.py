@@ -50,8 +50,18 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}: it has {offer}") from None
 
 
-_PUBLIC = ["Sheet", "chatter_limit", "dynamics_on_gamma", "fibre", "gamma", "grazing_map", "normal_form", "r_of_lambda",
-           "v_c", "v_c_on_arrays"]  # fmt: skip
+_PUBLIC = [
+    "Sheet",
+    "chatter_limit",
+    "dynamics_on_gamma",
+    "fibre",
+    "gamma",
+    "grazing_map",
+    "normal_form",
+    "r_of_lambda",
+    "v_c",
+    "v_c_on_arrays",
+]
 
 
 def __dir__() -> list[str]:

@@ -204,9 +204,9 @@ class _LaunchJets:
         below = flint.fmpq_poly([1])
         for n in range(1, power + 1):
             below *= flint.fmpq_poly([1] + [0] * (n - 1) + [-1])
-        return RationalCoefficients({
-            key: in_lowest_terms(flint.fmpq_poly(numerators[key]), below) for key in sorted(numerators)
-        })  # fmt: skip
+        return RationalCoefficients(
+            {key: in_lowest_terms(flint.fmpq_poly(numerators[key]), below) for key in sorted(numerators)}
+        )
 
 
 @dataclass(frozen=True)

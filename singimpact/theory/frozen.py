@@ -104,8 +104,10 @@ def _completion(top: int, apart: bool = False, linear: bool = False) -> str:
     coefficients = {n: _factored(value.terms) for n, value in found.coefficients.items()}
     if linear:
         absent = [n for n, name in enumerate(found.names) if not name.startswith("a_") and name not in LINEAR]
-        coefficients = {n: {key: value for key, value in terms.items() if not any(key[i] for i in absent)}
-                        for n, terms in coefficients.items()}  # fmt: skip
+        coefficients = {
+            n: {key: value for key, value in terms.items() if not any(key[i] for i in absent)}
+            for n, terms in coefficients.items()
+        }
     series = RationalSeries("v", found.names, coefficients, _unit(0, found.names), argument=1, apart=apart)
     name, what = ("chatter_terms", "The terms of") if apart else ("chatter_limit", "")
     name, kind = (f"linear_{name}", " of a linear model") if linear else (name, "")

@@ -227,9 +227,12 @@ def _generic(j: int, order: int) -> GrazingMap:
 
     series = {part: {n: shown(part, value) for n, value in values.items()} for part, values in found.items()}
     written = {
-        part: {(n,): {key: Fraction(int(c.p), int(c.q)) for key, c in value.to_dict().items()}
-               for n, value in values.items()} for part, values in found.items()
-    }  # fmt: skip
+        part: {
+            (n,): {key: Fraction(int(c.p), int(c.q)) for key, c in value.to_dict().items()}
+            for n, value in values.items()
+        }
+        for part, values in found.items()
+    }
     return _made(j, order, series, sympy.Symbol(derivative_name(j)), written, ring.names)
 
 
@@ -252,15 +255,25 @@ def _of_model(where: Place, order: int, digits: int) -> GrazingMap:
     series: dict[str, dict[int, Any]] = {}
     for (part, n), value in values.items():
         series.setdefault(part, {})[n] = value
-    written = {part: {(n,): {(): Fraction(str(value)) if hasattr(value, "p") else Fraction(float(value))}
-                      for n, value in series.get(part, {}).items()} for part in PARTS}  # fmt: skip
+    written = {
+        part: {
+            (n,): {(): Fraction(str(value)) if hasattr(value, "p") else Fraction(float(value))}
+            for n, value in series.get(part, {}).items()
+        }
+        for part in PARTS
+    }
     return _made(where.j, order, series, leading, written, (), digits)
 
 
 def _made(
-    j: int, order: int, series: Mapping[str, Mapping[int, Any]], leading: Any, written: Mapping[str, Any],
-    names: tuple[str, ...], digits: int = 30,
-) -> GrazingMap:  # fmt: skip
+    j: int,
+    order: int,
+    series: Mapping[str, Mapping[int, Any]],
+    leading: Any,
+    written: Mapping[str, Any],
+    names: tuple[str, ...],
+    digits: int = 30,
+) -> GrazingMap:
     x, xdot, depth, time = (PowerSeries("h", order, series.get(part, {}), digits) for part in PARTS)
     return GrazingMap(j, order, x, xdot, None if j else depth, None if j else time, leading, written, names)
 
@@ -304,8 +317,10 @@ def _expanded(contact: Contact, order: int, restitution: Any, rho: Mapping[int, 
         for _ in range(order + 1):
             time = time - speed.compose((time, x, xdot)).scaled(inverse)
         found |= {"depth": -place_.compose((time, x, xdot)), "time": time}
-    return {part: {n: value for n in range(1, order + 1) if (value := jet.coefficient((n,))) != 0}
-            for part, jet in found.items()}  # fmt: skip
+    return {
+        part: {n: value for n in range(1, order + 1) if (value := jet.coefficient((n,))) != 0}
+        for part, jet in found.items()
+    }
 
 
 def _flow(contact: Contact, order: int) -> tuple[Jet, Jet]:

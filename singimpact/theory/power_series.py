@@ -99,8 +99,10 @@ class PowerSeries:
         import sympy
 
         letter = sympy.Symbol(self.variable)
-        shown = {n: sympy.Float(c, self.digits) if hasattr(c, "_mpf_") and not hasattr(c, "free_symbols") else c
-                 for n, c in self.coefficients.items()}  # fmt: skip
+        shown = {
+            n: sympy.Float(c, self.digits) if hasattr(c, "_mpf_") and not hasattr(c, "free_symbols") else c
+            for n, c in self.coefficients.items()
+        }
         return sympy.Add(*(value * letter**power for power, value in shown.items()))
 
     def _repr_latex_(self) -> str:
@@ -145,9 +147,11 @@ class PowerSeries:
         value = sizes[lead] * radius**lead - sum(size * radius**n for n, size in sizes.items() if n > lead)
         tail = sum(size * radius**n for n, size in self.further.items())
         last = max(self.further)
-        beyond = TRUST.root ** (last + 1) / (1 - TRUST.root) * max(
-            (size * (radius / TRUST.root) ** n for n, size in self.further.items()), default=0.0
-        )  # fmt: skip
+        beyond = (
+            TRUST.root ** (last + 1)
+            / (1 - TRUST.root)
+            * max((size * (radius / TRUST.root) ** n for n, size in self.further.items()), default=0.0)
+        )
         return tail + beyond <= TRUST.tail * tolerance * min(1.0, value)
 
 

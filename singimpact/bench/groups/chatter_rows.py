@@ -113,8 +113,10 @@ def affordable(run: Callable[[Any], Any], draw: Callable[[int], Draws], count: i
 
 
 def _a_state(states: States) -> list[float]:
-    return [float(states.osc.chatter_limit(tau, v).tau)
-            for tau, v in zip(states.tau.tolist(), states.v.tolist(), strict=True)]  # fmt: skip
+    return [
+        float(states.osc.chatter_limit(tau, v).tau)
+        for tau, v in zip(states.tau.tolist(), states.v.tolist(), strict=True)
+    ]
 
 
 def _an_array(states: States) -> Any:

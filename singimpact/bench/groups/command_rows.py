@@ -66,14 +66,17 @@ COMMANDS = (
     Command("figure 17 -o pictures", None, 0.5),
     # the others of the README
     Command("orbit --model duffing.toml --tau 0.9 --v 0.005 -o orbit.png"),
-    Command("bifurcation --omega 2.8 --clearance 0.1 --restitution 0.8 --amplitude -1 --from -0.1 --to 0.25 "
-            "--follow 1 1 -o bifurcation.png", 3.0),
+    Command(
+        "bifurcation --omega 2.8 --clearance 0.1 --restitution 0.8 --amplitude -1 --from -0.1 --to 0.25 "
+        "--follow 1 1 -o bifurcation.png",
+        3.0,
+    ),
     Command("branch --omega 4.3 --clearance 0 --restitution 0.6 --orbit 1 2 --from -0.3 --to 0.3 -o branch.png"),
     Command("basins --omega 2.8 --clearance 0.1 --restitution 0.8 --amplitude -1 -o basins.png", 3.0, 0.3),
     Command("threshold --omega 2.8 --clearance 0 --restitution 0.5 --tau pi/2.8"),
     Command("derive --order 8 --model duffing.toml --format numpy"),
     Command("verify e:meq e:qdef"),
-)  # fmt: skip
+)
 
 
 def cases(effort: Effort) -> Iterator[Case]:

@@ -22,8 +22,11 @@ def cases(effort: Effort) -> Iterator[Case]:
     asked = DIGITS[:3] if effort.quick else DIGITS
     for name, (r, part) in ASKED.items():
         ways = (("singimpact, certified", "digits", _own), ("mpmath findroot", "dps", _findroot))
-        methods = [Method(way, f"{word} {d}", partial(_part, function, r, part, d), epsilon=10.0**-d)
-                   for way, word, function in ways for d in asked]  # fmt: skip
+        methods = [
+            Method(way, f"{word} {d}", partial(_part, function, r, part, d), epsilon=10.0**-d)
+            for way, word, function in ways
+            for d in asked
+        ]
         methods.append(Method("numpy roots", "doubles", lambda r=r, part=part: _numpy(r)[part]))
         yield Case(name, methods, _own(r, DIGITS[-1] + SPARE)[part], _conditions(r)[part])
 

@@ -38,30 +38,61 @@ def cases(effort: Effort) -> Iterator[Case]:
     short = effort.quick
     symbols = (6, 8, 10) if short else (6, 8, 10, 12, 14)
     theory.v_c(2, at="tangency")  # loads sympy, which `bench start` times
-    yield _grown("order of v_c, symbols for the jets", "kernel", symbols, lambda n: sheet(Contact.generic(1, n), n),
-                 _first("singimpact", symbols[:4], lambda n: _terms([theory.v_c(n, at="tangency")])))  # fmt: skip
+    yield _grown(
+        "order of v_c, symbols for the jets",
+        "kernel",
+        symbols,
+        lambda n: sheet(Contact.generic(1, n), n),
+        _first("singimpact", symbols[:4], lambda n: _terms([theory.v_c(n, at="tangency")])),
+    )
     few = (4, 5, 6) if short else (4, 5, 6, 7, 8)
-    yield Case("order of gamma and of chatter_limit, symbols for the jets", [
-        *_first("singimpact, chatter_limit", few, lambda n: _terms(theory.chatter_limit(n).coefficients.values())),
-        *_first("singimpact, gamma", few, lambda n: _terms(theory.gamma(n).coefficients.values())),
-    ])  # fmt: skip
+    yield Case(
+        "order of gamma and of chatter_limit, symbols for the jets",
+        [
+            *_first("singimpact, chatter_limit", few, lambda n: _terms(theory.chatter_limit(n).coefficients.values())),
+            *_first("singimpact, gamma", few, lambda n: _terms(theory.gamma(n).coefficients.values())),
+        ],
+    )
     numbers = (8, 12, 16) if short else (8, 12, 16, 24, 32)
-    yield _grown("order of v_c, cubic model", "kernel", numbers, lambda n: sheet(_contact(n), n),
-                 _first("singimpact", numbers[:3],
-                        lambda n: _terms([theory.v_c(n, "tangency", DUFFING, 0)])))  # fmt: skip
-    yield _grown("order of gamma, cubic model", "kernel", numbers,
-                 lambda n: invariant_curve(_contact(n), Fraction(3, 5), n),
-                 _first("singimpact", numbers[:3], lambda n: len(theory.gamma(n, "tangency", DUFFING, 0))))  # fmt: skip
+    yield _grown(
+        "order of v_c, cubic model",
+        "kernel",
+        numbers,
+        lambda n: sheet(_contact(n), n),
+        _first("singimpact", numbers[:3], lambda n: _terms([theory.v_c(n, "tangency", DUFFING, 0)])),
+    )
+    yield _grown(
+        "order of gamma, cubic model",
+        "kernel",
+        numbers,
+        lambda n: invariant_curve(_contact(n), Fraction(3, 5), n),
+        _first("singimpact", numbers[:3], lambda n: len(theory.gamma(n, "tangency", DUFFING, 0))),
+    )
     digits = (100, 300, 1000) if short else (100, 300, 1000, 3000, 10_000)
-    yield _grown("digits of fixed points", "singimpact, certified", digits, lambda n: tangency("1/2", n),
-                 _line("mpmath findroot", digits[:4], _findroot))  # fmt: skip
+    yield _grown(
+        "digits of fixed points",
+        "singimpact, certified",
+        digits,
+        lambda n: tangency("1/2", n),
+        _line("mpmath findroot", digits[:4], _findroot),
+    )
     few = (20, 40, 80) if short else (20, 40, 80, 160, 320)
-    yield _grown("digits of a flight", "singimpact", few, lambda n: LINEAR.first_hit(0, 1, digits=n),
-                 _line("mpmath findroot", few, partial(_at_digits, closed)),
-                 [] if short else _line("mpmath odefun", few[:3], partial(_at_digits, _integrated)))  # fmt: skip
+    yield _grown(
+        "digits of a flight",
+        "singimpact",
+        few,
+        lambda n: LINEAR.first_hit(0, 1, digits=n),
+        _line("mpmath findroot", few, partial(_at_digits, closed)),
+        [] if short else _line("mpmath odefun", few[:3], partial(_at_digits, _integrated)),
+    )
     states = (1000, 3000, 10_000) if short else (1000, 3000, 10_000, 30_000, 100_000)
-    yield _grown("states of an array", "singimpact", states, _flown_array,
-                 _line("singimpact, in 1000 periods", states, partial(_flown_array, periods=1000)))  # fmt: skip
+    yield _grown(
+        "states of an array",
+        "singimpact",
+        states,
+        _flown_array,
+        _line("singimpact, in 1000 periods", states, partial(_flown_array, periods=1000)),
+    )
     yield _impacts(effort)
     sides = (8, 16, 32) if short else (16, 32, 64, 128)
     yield Case("pixels of basins", [Method("kernel", f"{n} x {n}", partial(_alone, _pixels, n), n * n) for n in sides])
@@ -92,8 +123,9 @@ def _terms(parts: Any) -> int:
 
     factors = [sympy.Mul.make_args(term) for part in parts for term in sympy.Add.make_args(part)]
     lambda_ = sympy.Symbol("lambda")  # polynomials in it are coefficients
-    return sum(max(len(factor.args) if factor.is_Add and not factor.has(lambda_) else 1 for factor in each)
-               for each in factors)  # fmt: skip
+    return sum(
+        max(len(factor.args) if factor.is_Add and not factor.has(lambda_) else 1 for factor in each) for each in factors
+    )
 
 
 def _pixels(side: int) -> None:
@@ -156,9 +188,13 @@ def _impacts(effort: Effort) -> Case:
     endless, problem = linear(2, "0.3", 1), replace(START, restitution=1.0)
     methods, skipped = with_peers(
         [],
-        lambda: _line("scipy DOP853, 1e-9", [size // 100 for size in sizes[:3]],
-                      partial(chain, runge_kutta.stepper("linear", 1e-9), problem)),
+        lambda: _line(
+            "scipy DOP853, 1e-9",
+            [size // 100 for size in sizes[:3]],
+            partial(chain, runge_kutta.stepper("linear", 1e-9), problem),
+        ),
         lambda: _line("heyoka, 1e-9", sizes[:3], partial(chain, taylor_events.stepper("linear", 1e-9), problem)),
-    )  # fmt: skip
-    return _grown("impacts of an orbit", "singimpact", sizes, lambda n: endless.orbit(0.0, 1.0, n), methods,
-                  skipped=skipped)  # fmt: skip
+    )
+    return _grown(
+        "impacts of an orbit", "singimpact", sizes, lambda n: endless.orbit(0.0, 1.0, n), methods, skipped=skipped
+    )

@@ -100,14 +100,31 @@ def _warm(effort: Effort) -> list[str]:
 def _map(calls: Calls, sizes: Sizes) -> Case:
     count = sizes.many if calls.states == 0 else max(sizes.flown, calls.states)
     split = calls.states or count
-    draw: Callable[[int], Any] = partial(Fed, calls.family) if calls.kind == FED else partial(
-        Draws, calls.family, calls.kind)  # fmt: skip
+    draw: Callable[[int], Any] = (
+        partial(Fed, calls.family) if calls.kind == FED else partial(Draws, calls.family, calls.kind)
+    )
     setting = f"{counted(split, 'state')} a call"
-    own = [Method("singimpact, impact_map", setting, _one_a_call if split == 1 else partial(_arrays, split),
-                  problems=count, draw=_divided(draw(count), split), aim=Aim(calls.microseconds))]  # fmt: skip
+    own = [
+        Method(
+            "singimpact, impact_map",
+            setting,
+            _one_a_call if split == 1 else partial(_arrays, split),
+            problems=count,
+            draw=_divided(draw(count), split),
+            aim=Aim(calls.microseconds),
+        )
+    ]
     if calls.family == "duffing" and not calls.states:
-        own += [Method("singimpact, impact_map", f"tolerance {tolerance:.0e}", partial(_coarse, tolerance),
-                       problems=count, draw=draw(count)) for tolerance in TOLERANCES]  # fmt: skip
+        own += [
+            Method(
+                "singimpact, impact_map",
+                f"tolerance {tolerance:.0e}",
+                partial(_coarse, tolerance),
+                problems=count,
+                draw=draw(count),
+            )
+            for tolerance in TOLERANCES
+        ]
     aim = FASTER if calls.family == "linear" and not calls.states else Aim()
     methods, skipped = _beside(own, calls.family, (draw, sizes), aim)
     truth, kappas = drawn_flights.hits(draw(count)(), sizes.judged[calls.family])
@@ -164,14 +181,28 @@ def flown_by(name: str, fly: Any, states: tuple[Callable[[int], Any], int], aim:
     draw, count = states
     setting = f"tolerance {ACCURACY[name]:.0e}, {counted(count, 'state')}"
     drawn = draw(count)
-    return Method(name, setting, lambda problems: [fly(problem)[0] for problem in problems], problems=count,
-                  draw=lambda: drawn().problems(), aim=aim)  # fmt: skip
+    return Method(
+        name,
+        setting,
+        lambda problems: [fly(problem)[0] for problem in problems],
+        problems=count,
+        draw=lambda: drawn().problems(),
+        aim=aim,
+    )
 
 
 def _derivative(sizes: Sizes) -> Case:
     draw = partial(Draws, "linear", "generic")
-    own = [Method("singimpact, derivative", f"{sizes.many} states a call", _entries, problems=sizes.many,
-                  draw=draw(sizes.many), aim=Aim(1.5))]  # fmt: skip
+    own = [
+        Method(
+            "singimpact, derivative",
+            f"{sizes.many} states a call",
+            _entries,
+            problems=sizes.many,
+            draw=draw(sizes.many),
+            aim=Aim(1.5),
+        )
+    ]
     methods, skipped = with_peers(
         own,
         lambda: [_varied(HEYOKA, taylor_events.varied(ACCURACY[HEYOKA]), draw(sizes.heyoka))],
@@ -196,8 +227,16 @@ def _varied(name: str, fly: Any, draw: Draws) -> Method:
 def _inverse(sizes: Sizes) -> Case:
     """Peers fly the mirrored flight: x'' + x = cos 2.8t is even in time."""
     draw = partial(Draws, "linear", "generic")
-    own = [Method("singimpact, inverse_map", f"{sizes.many} states a call", _before, problems=sizes.many,
-                  draw=draw(sizes.many), aim=Aim(2.5))]  # fmt: skip
+    own = [
+        Method(
+            "singimpact, inverse_map",
+            f"{sizes.many} states a call",
+            _before,
+            problems=sizes.many,
+            draw=draw(sizes.many),
+            aim=Aim(2.5),
+        )
+    ]
     methods, skipped = _beside(own, "linear", (lambda count: _Mirrored(draw(count)), sizes), Aim())
     truth, kappas = drawn_flights.backward_hits(draw(sizes.many)(), sizes.judged["linear"])
     return Case("linear, inverse of the map", methods, truth, kappas, skipped)

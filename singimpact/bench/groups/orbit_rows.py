@@ -25,8 +25,14 @@ from singimpact.dynamics.lyapunov import lyapunov
 FIRST = (1, 2, 3, 4, 5)
 """Impacts of each orbit that are judged."""
 ITERATED = 30
-AIMS = {"linear": Aim(1.2), "duffing": Aim(8.0), CHATTERING: Aim(1.2), "sample": Aim(5.0), "lyapunov": Aim(3.0),
-        "launch": Aim(60.0)}  # fmt: skip
+AIMS = {
+    "linear": Aim(1.2),
+    "duffing": Aim(8.0),
+    CHATTERING: Aim(1.2),
+    "sample": Aim(5.0),
+    "lyapunov": Aim(3.0),
+    "launch": Aim(60.0),
+}
 NAMES = {"linear": "linear", "duffing": "Duffing", CHATTERING: "linear, chatter again and again"}
 
 
@@ -49,8 +55,15 @@ def _orbit(family: str, restitution: float, effort: Effort) -> Case:
     starts, impacts = 4 if effort.quick else 10, 1000
     few = (2, 20) if effort.quick else (10, 100)
     draw = partial(Draws, family, "generic", restitution=restitution)
-    own = [Method("singimpact, orbit", f"{impacts} impacts a call", partial(_orbits, impacts), draw=draw(starts),
-                  aim=AIMS[family])]  # fmt: skip
+    own = [
+        Method(
+            "singimpact, orbit",
+            f"{impacts} impacts a call",
+            partial(_orbits, impacts),
+            draw=draw(starts),
+            aim=AIMS[family],
+        )
+    ]
     kind = "duffing" if family == "duffing" else "linear"
     methods, skipped = with_peers(
         own,
@@ -98,11 +111,23 @@ def _asked_of_orbits(effort: Effort) -> Iterator[Case]:
     sample = partial(_sampled, times)
     rows: list[tuple[str, str, str, Callable[..., Any], Draws, Aim]] = [
         ("x and x' of an orbit of 1000 impacts, a time", "sample", f"{times} times", sample, draw(1), AIMS["sample"]),
-        ("Lyapunov exponents, linear, an impact", "lyapunov", f"{impacts} impacts", partial(_exponents, impacts),
-         draw(1), AIMS["lyapunov"]),
-        ("starts off the wall, linear, a start", "launch", counted(starts, "start"), _launched, draw(starts),
-         AIMS["launch"]),
-    ]  # fmt: skip
+        (
+            "Lyapunov exponents, linear, an impact",
+            "lyapunov",
+            f"{impacts} impacts",
+            partial(_exponents, impacts),
+            draw(1),
+            AIMS["lyapunov"],
+        ),
+        (
+            "starts off the wall, linear, a start",
+            "launch",
+            counted(starts, "start"),
+            _launched,
+            draw(starts),
+            AIMS["launch"],
+        ),
+    ]
     for name, method, setting, run, states, aim in rows:
         yield Case(
             name, [Method(f"singimpact, {method}", setting, run, draw=states, aim=NO_AIM if effort.quick else aim)]

@@ -34,11 +34,15 @@ def of_states(family: str, regime: str, effort: Effort) -> Case:
     own = [Method("singimpact, a call a state", "doubles", partial(_flown, models, problems))]
     methods, skipped = with_peers(
         own,
-        lambda: [_peer("scipy DOP853", runge_kutta, family, problems, tolerance)
-                 for tolerance in (runge_kutta.TOLERANCES[1:2] if effort.quick else runge_kutta.TOLERANCES)],
-        lambda: [_peer("heyoka", taylor_events, family, problems, tolerance)
-                 for tolerance in (taylor_events.TOLERANCES[1::2] if effort.quick else taylor_events.TOLERANCES)],
-    )  # fmt: skip
+        lambda: [
+            _peer("scipy DOP853", runge_kutta, family, problems, tolerance)
+            for tolerance in (runge_kutta.TOLERANCES[1:2] if effort.quick else runge_kutta.TOLERANCES)
+        ],
+        lambda: [
+            _peer("heyoka", taylor_events, family, problems, tolerance)
+            for tolerance in (taylor_events.TOLERANCES[1::2] if effort.quick else taylor_events.TOLERANCES)
+        ],
+    )
     truth = [problem.flight_time for problem in problems]
     return Case(f"{family} {regime}", methods, truth, _conditions(problems), skipped)
 
@@ -64,8 +68,10 @@ def _many_digits(effort: Effort) -> Case:
     own = [Method("singimpact", f"digits {d}", partial(_digits, problems, d), epsilon=10.0**-d) for d in asked]
     peers = [
         Method("mpmath findroot", f"dps {d}", partial(_at_digits, problems, d, closed), epsilon=10.0**-d) for d in asked
-    ] + [Method("mpmath odefun", f"dps {d}", partial(_at_digits, problems, d, integrated), epsilon=10.0**-d)
-         for d in asked[:1 if effort.quick else 2]]  # fmt: skip
+    ] + [
+        Method("mpmath odefun", f"dps {d}", partial(_at_digits, problems, d, integrated), epsilon=10.0**-d)
+        for d in asked[: 1 if effort.quick else 2]
+    ]
     truth = [problem.flight_time for problem in problems]
     return Case("linear generic, many digits", own + peers, truth, _conditions(problems))
 
@@ -78,8 +84,7 @@ def _certified() -> Case:
         Method("singimpact, certified", f"digits {d}", partial(_digits, problems, d), epsilon=10.0 ** -min(d, 16))
         for d in (15, 30, 60)
     ]
-    return Case("duffing generic, certified", own, [problem.flight_time for problem in problems],
-                _conditions(problems))  # fmt: skip
+    return Case("duffing generic, certified", own, [problem.flight_time for problem in problems], _conditions(problems))
 
 
 def _digits(problems: list[Problem], digits: int) -> list[Any]:

@@ -60,12 +60,22 @@ def cases(effort: Effort) -> Iterator[Case]:
     count = 1_000_000 if effort.quick else 10_000_000
     many = f"{count:.0e} states".replace("e+0", "e")
     methods = [
-        Method("singimpact, impact_map", f"{SMALL:.0e} states".replace("e+0", "e"), partial(_mapped, SMALL),
-               problems=SMALL, aim=Aim(1.2)),
+        Method(
+            "singimpact, impact_map",
+            f"{SMALL:.0e} states".replace("e+0", "e"),
+            partial(_mapped, SMALL),
+            problems=SMALL,
+            aim=Aim(1.2),
+        ),
         Method("singimpact, impact_map", many, partial(_mapped, count), problems=count, aim=Aim(1.2)),
-        Method("singimpact, impact_map", f"{many}, out= of memory maps", partial(_mapped, count, OUT),
-               problems=count, aim=Aim(1.2)),
-    ]  # fmt: skip
+        Method(
+            "singimpact, impact_map",
+            f"{many}, out= of memory maps",
+            partial(_mapped, count, OUT),
+            problems=count,
+            aim=Aim(1.2),
+        ),
+    ]
     yield Case("linear, a state of a large array", methods, notes=_notes(count, effort))
 
 
@@ -88,11 +98,15 @@ def _notes(count: int, effort: Effort) -> list[str]:
     measured = _cost(count)
     each, all_of_them = measured.answer
     beside = measured.megabytes - all_of_them
-    notes.append(f"memory: {each:.0f} bytes a state of results (at most {BYTES}: {_word(each <= BYTES)}), at most "
-                 f"{max(beside, 0):.0f} MB beside them (at most {BESIDE}: {_word(beside <= BESIDE)})")  # fmt: skip
+    notes.append(
+        f"memory: {each:.0f} bytes a state of results (at most {BYTES}: {_word(each <= BYTES)}), at most "
+        f"{max(beside, 0):.0f} MB beside them (at most {BESIDE}: {_word(beside <= BESIDE)})"
+    )
     ratios = cost(PAIRED.format(count=1_000_000), BEFORE.format(count=1_000_000), "answer = ratios").answer
-    notes.append(f"two threads: {sorted(ratios)[2]:.2f} times as fast as one, best of five {max(ratios):.2f} (at least "
-                 f"{THREADS}: {_word(max(ratios) >= THREADS)}; other work on the machine counts)")  # fmt: skip
+    notes.append(
+        f"two threads: {sorted(ratios)[2]:.2f} times as fast as one, best of five {max(ratios):.2f} (at least "
+        f"{THREADS}: {_word(max(ratios) >= THREADS)}; other work on the machine counts)"
+    )
     heard = cost(CUT, BEFORE.format(count=100_000), "answer = heard").answer
     notes.append(
         f"Ctrl-C during 10^11 impacts ends them after {heard:.3f} s (at most {HEARD}: {_word(heard <= HEARD)})"

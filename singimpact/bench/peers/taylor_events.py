@@ -55,8 +55,14 @@ def varied(tolerance: float = 2.0**-52) -> Any:
     x, u, y, y_dot, z, z_dot = heyoka.make_vars("x", "u", "y", "y_dot", "z", "z_dot")
     omega, time = heyoka.par[0], heyoka.time
     event = heyoka.t_event(x - heyoka.par[1], direction=heyoka.event_direction.negative)
-    field = [(x, u), (u, heyoka.cos(omega * time) - x), (y, y_dot), (y_dot, -y),
-             (z, z_dot), (z_dot, -omega * heyoka.sin(omega * time) - z)]  # fmt: skip
+    field = [
+        (x, u),
+        (u, heyoka.cos(omega * time) - x),
+        (y, y_dot),
+        (y_dot, -y),
+        (z, z_dot),
+        (z_dot, -omega * heyoka.sin(omega * time) - z),
+    ]
     flow = heyoka.taylor_adaptive(field, [0.0] * 6, pars=[1.0, 0.0], t_events=[event], tol=tolerance)
 
     def fly(problem: Problem) -> list[float]:

@@ -147,8 +147,20 @@ def flown(osc: ImpactOscillator, states: int, seed: int) -> Flown:
 
 
 def _joined(parts: list[Step]) -> Step:
-    names = ("flight_time", "velocity", "status", "depth", "bound", "condition", "tau", "v", "velocity_condition",
-             "time_error", "velocity_error", "cause")  # fmt: skip
+    names = (
+        "flight_time",
+        "velocity",
+        "status",
+        "depth",
+        "bound",
+        "condition",
+        "tau",
+        "v",
+        "velocity_condition",
+        "time_error",
+        "velocity_error",
+        "cause",
+    )
 
     def joined(name: str) -> Any:
         return np.concatenate([np.broadcast_to(getattr(part, name), np.shape(part.status)) for part in parts])

@@ -148,8 +148,9 @@ def _lift_off(plain: PlainOrbits, rest: float, lifted: float, state: str, tally:
         tally.leave("a_c is flat at the lift-off")
 
 
-def _last(plain: PlainOrbits, phase: tuple[str, float, float], last: tuple[float, float], state: str,
-          tally: Tally) -> None:  # fmt: skip
+def _last(
+    plain: PlainOrbits, phase: tuple[str, float, float], last: tuple[float, float], state: str, tally: Tally
+) -> None:
     """What follows the last event: no impact, or rest for ever."""
     if phase[0] == "no_return":
         hit = plain.impact(*last) if last[1] > 0 else plain.lifted(last[0])

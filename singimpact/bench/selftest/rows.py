@@ -114,8 +114,16 @@ class Tally:
         undecided = sum(self.causes.values())
         note = ", ".join(f"{cause}: {count}" for cause, count in self.causes.items())
         tried = self.agree + len(self.wrong) + undecided
-        return Row(self.compared, tried, self.agree, undecided, len(self.wrong), self.worst, note,
-                   tuple(self.wrong[: ROWS.shown]))  # fmt: skip
+        return Row(
+            self.compared,
+            tried,
+            self.agree,
+            undecided,
+            len(self.wrong),
+            self.worst,
+            note,
+            tuple(self.wrong[: ROWS.shown]),
+        )
 
 
 @dataclass(frozen=True)
@@ -143,8 +151,12 @@ class SelfTest:
 
     def as_data(self) -> dict[str, Any]:
         """The result as plain data."""
-        return {"wrong": self.wrong, "undecided": self.undecided, "seconds": self.seconds,
-                "rows": [asdict(row) for row in self.rows]}  # fmt: skip
+        return {
+            "wrong": self.wrong,
+            "undecided": self.undecided,
+            "seconds": self.seconds,
+            "rows": [asdict(row) for row in self.rows],
+        }
 
     def __str__(self) -> str:
         lines = [

@@ -21,13 +21,14 @@ FEW = 5  # each reference value takes 0.1 s or more
 START = Launch("linear", tau=0.9, v=0.005)
 GAMMA, END = Launch("linear", tau=0.9, restitution=0.5), 1.5 * np.pi / 2.8
 NEAR: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
-        "v -> 0": (14, lambda at, off: replace(at, v=off)),
-        "omega -> 1": (12, lambda at, off: replace(at, omega=1 + off, tau=2.5)),
-        "r -> 0": (12, lambda at, off: replace(at, restitution=off)),
-        "r -> 1": (2, lambda at, off: replace(at, restitution=1 - off, v=0.01 * off)),
-        "a -> 0": (4, lambda at, off: replace(at, tau=0.5609986881410345 + off, v=off**2 / 20)),
-        "a' -> 0": (4, lambda at, off: replace(at, clearance=1 - off, tau=1.2 * off**0.5, v=off**1.5 / 50)),
-        "huge tau": (12, lambda at, off: replace(at, tau=0.9 + 1 / off, v=1e-6))}  # fmt: skip
+    "v -> 0": (14, lambda at, off: replace(at, v=off)),
+    "omega -> 1": (12, lambda at, off: replace(at, omega=1 + off, tau=2.5)),
+    "r -> 0": (12, lambda at, off: replace(at, restitution=off)),
+    "r -> 1": (2, lambda at, off: replace(at, restitution=1 - off, v=0.01 * off)),
+    "a -> 0": (4, lambda at, off: replace(at, tau=0.5609986881410345 + off, v=off**2 / 20)),
+    "a' -> 0": (4, lambda at, off: replace(at, clearance=1 - off, tau=1.2 * off**0.5, v=off**1.5 / 50)),
+    "huge tau": (12, lambda at, off: replace(at, tau=0.9 + 1 / off, v=1e-6)),
+}
 
 
 def _states(place: str, points: int) -> Iterator[Launch]:
@@ -57,10 +58,11 @@ def _on_gamma(at: Launch, tau: float, _: float) -> float:
 
 
 ALONG_GAMMA: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
-        "omega -> 1": NEAR["omega -> 1"],
-        "r -> 0": (3, lambda at, off: replace(at, restitution=off)),
-        "r -> 1": (1.2, lambda at, off: replace(at, restitution=1 - off, tau=1.6)),
-        "a -> 0": (4, lambda at, off: replace(at, tau=END - off))}  # fmt: skip
+    "omega -> 1": NEAR["omega -> 1"],
+    "r -> 0": (3, lambda at, off: replace(at, restitution=off)),
+    "r -> 1": (1.2, lambda at, off: replace(at, restitution=1 - off, tau=1.6)),
+    "a -> 0": (4, lambda at, off: replace(at, tau=END - off)),
+}
 
 
 def _threshold(place: str, points: int) -> Iterator[Trial]:

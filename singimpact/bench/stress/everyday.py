@@ -50,8 +50,16 @@ def _shrinking(impacts: int, r: Any, first: Any, last: Any, time: Any) -> list[A
 
 
 FUNCTIONS = (
-    Function("launch", {place: partial(_launched, place) for place in ("t -> 0", "r -> 0", "r -> 1")}, "closed form",
-             "its first impact is judged, of a fall; others are those of first_hit"),
-    Function("lyapunov", {place: partial(_exponents, place) for place in ("omega -> 1", "r -> 1")}, "closed form",
-             "the sum of both is judged, along one orbit"),
-)  # fmt: skip
+    Function(
+        "launch",
+        {place: partial(_launched, place) for place in ("t -> 0", "r -> 0", "r -> 1")},
+        "closed form",
+        "its first impact is judged, of a fall; others are those of first_hit",
+    ),
+    Function(
+        "lyapunov",
+        {place: partial(_exponents, place) for place in ("omega -> 1", "r -> 1")},
+        "closed form",
+        "the sum of both is judged, along one orbit",
+    ),
+)

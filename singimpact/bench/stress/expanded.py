@@ -57,9 +57,13 @@ def _zero(impact: bool, points: int) -> Iterator[tuple[Fraction, float, float]]:
 
 
 PLACES: dict[str, tuple[bool, Callable[[int], Iterator[tuple[Fraction, float, float]]]]] = {
-    "v -> 0": (False, partial(_zero, False)), "t -> 0": (False, _short), "a -> 0": (False, _near_tangency),
-    "a' -> 0": (False, _weak), "next to P": (True, partial(_zero, True)), "next to Z": (False, partial(_zero, False)),
-}  # fmt: skip
+    "v -> 0": (False, partial(_zero, False)),
+    "t -> 0": (False, _short),
+    "a -> 0": (False, _near_tangency),
+    "a' -> 0": (False, _weak),
+    "next to P": (True, partial(_zero, True)),
+    "next to Z": (False, partial(_zero, False)),
+}
 
 
 @cache
@@ -151,12 +155,28 @@ def _function(name: str, judge: Callable[..., Iterator[Trial]], places: Any, rou
 SAME = "the cut series in 60 digits, exact coefficients"
 WITHOUT = "a function of sigma, t and jets: no omega, no r; v at the place is what vanishes there; it is near 0 only"
 FUNCTIONS = (
-    *(Function(f"v_c_on_arrays{', compensated' if twice else ''}",
-               {place: partial(_on_arrays, place, twice) for place in PLACES}, SAME, WITHOUT)
-      for twice in (False, True)),
+    *(
+        Function(
+            f"v_c_on_arrays{', compensated' if twice else ''}",
+            {place: partial(_on_arrays, place, twice) for place in PLACES},
+            SAME,
+            WITHOUT,
+        )
+        for twice in (False, True)
+    ),
     _function("emitted numpy", _emitted_numpy, PLACES, "the same text on 60 digits", WITHOUT),
-    _function("gamma, a series", _gamma, ("r -> 0", "r -> 1", "a -> 0", "a' -> 0"), "digits=60",
-              "a function of sigma and jets near the tangency"),
-    _function("chatter_limit, a series", _completion, ("v -> 0", "r -> 0", "r -> 1", "a -> 0"), "digits=60",
-              "a function of v at a regular point"),
-)  # fmt: skip
+    _function(
+        "gamma, a series",
+        _gamma,
+        ("r -> 0", "r -> 1", "a -> 0", "a' -> 0"),
+        "digits=60",
+        "a function of sigma and jets near the tangency",
+    ),
+    _function(
+        "chatter_limit, a series",
+        _completion,
+        ("v -> 0", "r -> 0", "r -> 1", "a -> 0"),
+        "digits=60",
+        "a function of v at a regular point",
+    ),
+)

@@ -80,8 +80,10 @@ def _sweeps(judge: Callable[[Launch], Trial | None], without: tuple[str, ...] = 
 
 
 def _first_hit(launch: Launch) -> Trial:
-    hit, true = launch.model.first_hit(launch.tau, launch.v, horizon=launch.horizon), landing(
-        launch, launch.tau, launch.v)  # fmt: skip
+    hit, true = (
+        launch.model.first_hit(launch.tau, launch.v, horizon=launch.horizon),
+        landing(launch, launch.tau, launch.v),
+    )
     if isinstance(true, int) or hit.status != Status.hit:
         return Trial(str(launch), status=_status(hit.status, true if isinstance(true, int) else int(Status.hit)))
     found = [float(hit.flight_time), float(hit.velocity)]

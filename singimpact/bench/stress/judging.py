@@ -111,8 +111,9 @@ def moved(function: Callable[..., Any], inputs: Sequence[Any], sizes: Sequence[A
                 continue
             change = abs(size) * mpmath.mpf(10) ** -STEP
             other = function(*exact[:index], exact[index] + change, *exact[index + 1 :])
-            total = [so_far + abs((new - old) / change * size)
-                     for so_far, new, old in zip(total, other, values, strict=True)]  # fmt: skip
+            total = [
+                so_far + abs((new - old) / change * size) for so_far, new, old in zip(total, other, values, strict=True)
+            ]
         return values, total
 
 

@@ -180,17 +180,28 @@ def _steep(family: str, points: int) -> Iterator[Launch]:
     for off in powers(max(points // 3, 2), 4) if family == "linear" else ():
         K = round(1 / off)
         for force, forcing, tau in (
-            (f"x + tanh({K}*xdot)/10", "cos(t)", 0.3), (f"x + 5*(1 + tanh({K}*(x - 1/2)))", "cos(t)", 0.3),
-            (f"x + 5*exp(-{K}**2*(x - 1/2)**2)", "cos(t)", 0.3), ("x", f"10*exp(-2*{K}**2*sin(t/2)**2) - 1/5", 4.5),
-        ):  # fmt: skip
+            (f"x + tanh({K}*xdot)/10", "cos(t)", 0.3),
+            (f"x + 5*(1 + tanh({K}*(x - 1/2)))", "cos(t)", 0.3),
+            (f"x + 5*exp(-{K}**2*(x - 1/2)**2)", "cos(t)", 0.3),
+            ("x", f"10*exp(-2*{K}**2*sin(t/2)**2) - 1/5", 4.5),
+        ):
             yield SteepLaunch(force, 1.0, tau=tau, v=2.0, force=force, forcing=forcing, steepness=float(K))
 
 
 PLACES: dict[str, Launches] = {
-    "v -> 0": _small_v, "t -> 0": _short, "omega -> 1": _resonant, "r -> 0": _dead, "r -> 1": _elastic,
-    "a -> 0": _tangent, "a' -> 0": _swan, "next to P": _grazing, "next to Z": _resting, "huge tau": _late,
-    "long flights": _long, "steep layers": _steep,
-}  # fmt: skip
+    "v -> 0": _small_v,
+    "t -> 0": _short,
+    "omega -> 1": _resonant,
+    "r -> 0": _dead,
+    "r -> 1": _elastic,
+    "a -> 0": _tangent,
+    "a' -> 0": _swan,
+    "next to P": _grazing,
+    "next to Z": _resting,
+    "huge tau": _late,
+    "long flights": _long,
+    "steep layers": _steep,
+}
 
 
 def both(place: str, points: int) -> Iterator[Launch]:

@@ -118,15 +118,37 @@ def _swan_configuration(_: str, points: int) -> Iterator[Trial]:
 
 FORMULA = "the formula in mpmath"
 FUNCTIONS = (
-    Function("acceleration", {place: partial(_acceleration, place)
-                              for place in ("omega -> 1", "a -> 0", "a' -> 0", "huge tau")},
-             FORMULA, "takes tau alone: no v, no flight, no r"),
-    Function("tangency_points", {place: partial(_tangency_points, place) for place in ("omega -> 1", "a' -> 0")},
-             FORMULA, "takes a model alone: no state, no flight, no r"),
-    Function("swan_points", {"omega -> 1": partial(_swan_points, "omega -> 1")}, FORMULA,
-             "a' = 0 there always; takes f and g alone: no state, no flight, no r"),
-    *(Function(f"fixed_points.{at}", {place: partial(_fixed_points, at, place) for place in ("r -> 0", "r -> 1")},
-               "roots by mpmath", "takes r alone") for at in ("tangency", "swan")),
-    Function("swan_configuration", {"a' -> 0": partial(_swan_configuration, "a' -> 0")}, "closed form of section 6",
-             "points of one model: no state, no r"),
-)  # fmt: skip
+    Function(
+        "acceleration",
+        {place: partial(_acceleration, place) for place in ("omega -> 1", "a -> 0", "a' -> 0", "huge tau")},
+        FORMULA,
+        "takes tau alone: no v, no flight, no r",
+    ),
+    Function(
+        "tangency_points",
+        {place: partial(_tangency_points, place) for place in ("omega -> 1", "a' -> 0")},
+        FORMULA,
+        "takes a model alone: no state, no flight, no r",
+    ),
+    Function(
+        "swan_points",
+        {"omega -> 1": partial(_swan_points, "omega -> 1")},
+        FORMULA,
+        "a' = 0 there always; takes f and g alone: no state, no flight, no r",
+    ),
+    *(
+        Function(
+            f"fixed_points.{at}",
+            {place: partial(_fixed_points, at, place) for place in ("r -> 0", "r -> 1")},
+            "roots by mpmath",
+            "takes r alone",
+        )
+        for at in ("tangency", "swan")
+    ),
+    Function(
+        "swan_configuration",
+        {"a' -> 0": partial(_swan_configuration, "a' -> 0")},
+        "closed form of section 6",
+        "points of one model: no state, no r",
+    ),
+)

@@ -47,8 +47,11 @@ def _grazes(place: str, curve: bool, points: int) -> Iterator[Trial]:
     """The graze on the branch of (1, 1) orbits of x'' + x'/10 + x = A cos(omega t): A = |1 - omega^2 + i omega/10|."""
     for off in powers(max(points // 3, 2), 6):
         omega, r, near = {
-            "v -> 0": (0.8, 0.8, off), "omega -> 1": (1 + off / 8, 0.8, 1e-3), "r -> 1": (0.8, 1 - off, 1e-3),
-            "r -> 0": (0.8, off, 1e-3)}[place]  # fmt: skip
+            "v -> 0": (0.8, 0.8, off),
+            "omega -> 1": (1 + off / 8, 0.8, 1e-3),
+            "r -> 1": (0.8, 1 - off, 1e-3),
+            "r -> 0": (0.8, off, 1e-3),
+        }[place]
         touching = -math.hypot(1 - omega**2, 0.1 * omega)
         orbits = linear(omega, -1, r, damping=0.1, amplitude=touching * (1 + near)).periodic(1, 1)
         for orbit in orbits:
@@ -75,9 +78,17 @@ def _touching(omega: Any, damping: Any) -> list[Any]:
 BRANCHES = ("v -> 0", "omega -> 1", "r -> 0", "r -> 1")
 GRAZES = "its grazes are judged, which have no other states"
 FUNCTIONS = (
-    Function("periodic", {place: partial(_periodic, place) for place in ("omega -> 1", "r -> 1")}, "closed form",
-             "its states are answers, not given"),
+    Function(
+        "periodic",
+        {place: partial(_periodic, place) for place in ("omega -> 1", "r -> 1")},
+        "closed form",
+        "its states are answers, not given",
+    ),
     Function("branch", {place: partial(_grazes, place, False) for place in BRANCHES}, "closed form", GRAZES),
-    Function("event_curve", {place: partial(_grazes, place, True) for place in BRANCHES if place != "omega -> 1"},
-             "closed form", GRAZES),
-)  # fmt: skip
+    Function(
+        "event_curve",
+        {place: partial(_grazes, place, True) for place in BRANCHES if place != "omega -> 1"},
+        "closed form",
+        GRAZES,
+    ),
+)

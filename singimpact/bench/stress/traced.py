@@ -17,9 +17,12 @@ Spot = tuple[Launch, tuple[float, float], tuple[float, float]]
 NEAR: dict[str, Callable[[float], Spot]] = {
     "t -> 0": lambda off: (Launch("linear", clearance=0.5), (0.2, 0.6), (-off, off)),
     "omega -> 1": lambda off: (Launch("linear", omega=1 + off, clearance=0.5), (0.0, 6.0), (-3.0, 3.0)),
-    "a' -> 0": lambda off: (Launch("linear", clearance=1 - off), (-2 * off**0.5, 2 * off**0.5),
-                            (-4 * off**0.5, 4 * off**0.5)),
-}  # fmt: skip
+    "a' -> 0": lambda off: (
+        Launch("linear", clearance=1 - off),
+        (-2 * off**0.5, 2 * off**0.5),
+        (-4 * off**0.5, 4 * off**0.5),
+    ),
+}
 LAST = {"t -> 0": 6, "omega -> 1": 10, "a' -> 0": 8}
 VERTICES, LEAST_TURN = 8, 0.1
 

@@ -116,5 +116,7 @@ def _conditions(states: States, state: tuple[float, float], values: Values, foun
     small = _ball(SMALL)
     by_tau, by_v = values(tau + small, v)[0], values(tau, v * (1 + small))[0]
     near = abs(state[0] - period * round(state[0] / period))
-    return [1 + float((abs(a - value) / small * max(near, float(time)) + abs(b - value) / small) / abs(value))
-            for value, time, a, b in zip(*found, by_tau, by_v, strict=True)]  # fmt: skip
+    return [
+        1 + float((abs(a - value) / small * max(near, float(time)) + abs(b - value) / small) / abs(value))
+        for value, time, a, b in zip(*found, by_tau, by_v, strict=True)
+    ]

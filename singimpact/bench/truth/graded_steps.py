@@ -238,9 +238,15 @@ def bracketed_root(
 
 
 def flown(
-    acceleration: Any, parameters: Array, layers: Array, clearance: float, tau: float, v: float, horizon: float,
+    acceleration: Any,
+    parameters: Array,
+    layers: Array,
+    clearance: float,
+    tau: float,
+    v: float,
+    horizon: float,
     fineness: float,
-) -> tuple[int, float, float, bool, int, float]:  # fmt: skip
+) -> tuple[int, float, float, bool, int, float]:
     """Status, time, velocity, whether a layer was crossed, steps, largest x - c of the flight at one fineness."""
     s, z, u, h, top, crossed = 0.0, 0.0, v, inf, 0.0, False
     s_lost, z_lost, u_lost = 0.0, 0.0, 0.0

@@ -135,8 +135,10 @@ class PlainOrbits:
         The launch is off by 1e-12 of v, and by 1e-12/rate and a rounding of tau.
         """
         h, centre = SETTINGS.beside, self.impacts(tau, v, count, True)
-        sides = [self.impacts(tau + i * h / self.rate, v * (1 + j * h), count, True)
-                 for i, j in ((1, 0), (-1, 0), (0, 1), (0, -1))]  # fmt: skip
+        sides = [
+            self.impacts(tau + i * h / self.rate, v * (1 + j * h), count, True)
+            for i, j in ((1, 0), (-1, 0), (0, 1), (0, -1))
+        ]
         if centre is None or None in sides:
             return inf, inf
         away = np.max(np.abs(np.array(sides, dtype=float) - centre), axis=0)
@@ -235,8 +237,16 @@ class PlainOrbits:
         until = self.horizon if horizon is None else horizon
         try:
             # x - c begins as s^3, below any absolute tolerance: steps are short there
-            flight = solve_ivp(slopes, (0.0, until), [0.0, 0.0], "DOP853", events=height, rtol=SETTINGS.rest,
-                               atol=1e-15, max_step=0.2 / self.rate)  # fmt: skip
+            flight = solve_ivp(
+                slopes,
+                (0.0, until),
+                [0.0, 0.0],
+                "DOP853",
+                events=height,
+                rtol=SETTINGS.rest,
+                atol=1e-15,
+                max_step=0.2 / self.rate,
+            )
         except (ArithmeticError, ValueError):
             return Impact(UNDECIDED, nan, nan, nan)
         if flight.status != 1:

@@ -27,9 +27,15 @@ IMPORTED = re.compile(
     r"^\s*from singimpact\.paper\.claims\.sections(?:\.(\w+) import|\s+import ([\w, ]+))", re.MULTILINE
 )
 ABOVE = (  # folders that no verdict depends on, and the sections, which each claim adds for itself
-    "paper/claims/sections/", "paper/claims/beyond/", "paper/sections/", "paper/figures/", "cli/", "documents/",
-    "scenes/", "bench/",
-)  # fmt: skip
+    "paper/claims/sections/",
+    "paper/claims/beyond/",
+    "paper/sections/",
+    "paper/figures/",
+    "cli/",
+    "documents/",
+    "scenes/",
+    "bench/",
+)
 
 
 @lru_cache(maxsize=1)

@@ -52,9 +52,12 @@ def wrapped(label: str, text: str, width: int | None) -> list[str]:
     if width is None:
         return [label + text]
     return textwrap.wrap(
-        text, max(width, len(label) + WIDTHS.least), initial_indent=label, subsequent_indent=" " * len(label),
+        text,
+        max(width, len(label) + WIDTHS.least),
+        initial_indent=label,
+        subsequent_indent=" " * len(label),
         break_on_hyphens=False,
-    )  # fmt: skip
+    )
 
 
 def _columns(rows: list[Row]) -> tuple[int, int]:

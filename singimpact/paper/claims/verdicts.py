@@ -22,9 +22,20 @@ if TYPE_CHECKING:
 
 ERROR = "error"
 WRITTEN = (  # of a verdict, in the file of its certificates: no seconds, which differ from run to run
-    "id", "verdict", "effective", "modulo", "effective_modulo", "section", "title", "printed", "corrected",
-    "corrected_kind", "rests_on", "in_model", "certificates",
-)  # fmt: skip
+    "id",
+    "verdict",
+    "effective",
+    "modulo",
+    "effective_modulo",
+    "section",
+    "title",
+    "printed",
+    "corrected",
+    "corrected_kind",
+    "rests_on",
+    "in_model",
+    "certificates",
+)
 CORRECTED = "corrected"
 
 
@@ -144,9 +155,7 @@ class VerdictTable(Sequence["Verdict"]):
             certified[verdict.id] = others.union(texts)
             content = {"schema": SCHEMA} | {name: part for name, part in verdict.as_dict().items() if name in WRITTEN}
             content["rests_on"] = {name: contents[name]["digest"] for name in below}
-            content["certificates"] = [
-                json.loads(text) for text in dict.fromkeys(texts) if text not in others
-            ]  # fmt: skip
+            content["certificates"] = [json.loads(text) for text in dict.fromkeys(texts) if text not in others]
             contents[verdict.id] = {**content, "digest": digest_of(content)}
 
         for verdict in self.verdicts:

@@ -47,9 +47,17 @@ def figure_3() -> Picture:
     slope = (1 - R) * a / 2
     low, high, v = centre - 1.0, centre + 1.0, 0.3
     feet = np.linspace(low, high + 0.8, 15)
-    straight = [Line(np.array([[foot + v / slope, v], [foot, 0.0]]), "manifold", "eigendirection", at=0.6, arrow=True,
-                     words="eigendirections of the linearised map, stable manifolds of $G$")
-                for foot in feet]  # fmt: skip
+    straight = [
+        Line(
+            np.array([[foot + v / slope, v], [foot, 0.0]]),
+            "manifold",
+            "eigendirection",
+            at=0.6,
+            arrow=True,
+            words="eigendirections of the linearised map, stable manifolds of $G$",
+        )
+        for foot in feet
+    ]
     frame = Window((low, high), (0.0, v), 1 / ARCS)
     curved = leaves(model, frame, feet.tolist())
     curved = [
@@ -65,12 +73,19 @@ def figure_3() -> Picture:
     )
     (through,) = stable_manifold(model, frame, repr(centre))[:1]
     panels = [
-        Panel(((low, high), (-0.1 * v, v)), title="(a) linearised at $w_*$", lines=[*straight, chosen],
-              dots=[Dot("$w_*$", (centre, 0.0))]),
-        Panel(((low, high), (-0.1 * v, v)), title=r"(b) stable manifolds $W^s_\tau$",
-              lines=[*curved, Line(through.points[::-1], "loop", "W^s", at=0.6, arrow=True, words=chosen.words)],
-              dots=[Dot("$w_*$", (centre, 0.0))]),
-    ]  # fmt: skip
+        Panel(
+            ((low, high), (-0.1 * v, v)),
+            title="(a) linearised at $w_*$",
+            lines=[*straight, chosen],
+            dots=[Dot("$w_*$", (centre, 0.0))],
+        ),
+        Panel(
+            ((low, high), (-0.1 * v, v)),
+            title=r"(b) stable manifolds $W^s_\tau$",
+            lines=[*curved, Line(through.points[::-1], "loop", "W^s", at=0.6, arrow=True, words=chosen.words)],
+            dots=[Dot("$w_*$", (centre, 0.0))],
+        ),
+    ]
     step = np.diff(through.points[:4], axis=0)
     facts = {"slope": slope, "drawn": float(step[0, 1] / step[0, 0])}
     caption = (
@@ -103,25 +118,48 @@ def _segment(start: Any, end: Any) -> Array:
     return np.linspace(np.asarray(start), np.asarray(end), 40)
 
 
-WORDS = {"H": "horizon $H$ and its images", "Z": "zero set $Z$ and its images",
-         "rest": r"$\Pi_0$: $t = 0$ or $v = 0$, fixed by the maps"}  # fmt: skip
+WORDS = {
+    "H": "horizon $H$ and its images",
+    "Z": "zero set $Z$ and its images",
+    "rest": r"$\Pi_0$: $t = 0$ or $v = 0$, fixed by the maps",
+}
 
 
 def _actions(tau: float, edges: dict[str, tuple[Array, str, str]], boxes: list[tuple[Point, Point]]) -> list[Panel]:
     """A region of V' and what p, phi and R make of it, edge by edge."""
     model = oscillator()
-    maps: list[Map] = [("$V'$", "$t$", lambda z: z), ("$p(V')$", "$v$", lambda z: projected(model, z)),
-            (r"$\phi(V')$", r"$\dot x$", lambda z: reset(model, z)),
-            (r"$R\phi(V')$", "$v$", lambda z: rebounded(reset(model, z), R))]  # fmt: skip
+    maps: list[Map] = [
+        ("$V'$", "$t$", lambda z: z),
+        ("$p(V')$", "$v$", lambda z: projected(model, z)),
+        (r"$\phi(V')$", r"$\dot x$", lambda z: reset(model, z)),
+        (r"$R\phi(V')$", "$v$", lambda z: rebounded(reset(model, z), R)),
+    ]
     panels = []
     for n, (title, y, turn) in enumerate(maps):
         made = {name: turn(points) - np.array([tau, 0.0]) for name, (points, _, _) in edges.items()}
-        lines = [Line(made[name], pen, f"image of {name}", label if pen != "hidden" else "",
-                      0.7 if pen == "rest" else 0.35,
-                      words=WORDS.get(pen, "")) for name, (_, pen, label) in edges.items()]  # fmt: skip
+        lines = [
+            Line(
+                made[name],
+                pen,
+                f"image of {name}",
+                label if pen != "hidden" else "",
+                0.7 if pen == "rest" else 0.35,
+                words=WORDS.get(pen, ""),
+            )
+            for name, (_, pen, label) in edges.items()
+        ]
         region = Region(np.vstack(list(made.values())), words="part of $V'$ and its images")
-        panels.append(Panel(boxes[n], x=r"$\sigma$", y=y, title=title, lines=lines, regions=[region],
-                            dots=[Dot("$w_*$", (0.0, 0.0))]))  # fmt: skip
+        panels.append(
+            Panel(
+                boxes[n],
+                x=r"$\sigma$",
+                y=y,
+                title=title,
+                lines=lines,
+                regions=[region],
+                dots=[Dot("$w_*$", (0.0, 0.0))],
+            )
+        )
     return panels
 
 
@@ -129,21 +167,34 @@ def figure_4() -> Picture:
     """a' > 0: what is visible lies between Pi_0 and H; p folds it along H."""
     tau, s = tangency("gamma"), 0.3
     H = _near(_window(tau, s).horizon, tau, s, -1)
-    edges = {"Pi_0": (_segment((tau - s, 0), (tau, 0)), "rest", r"$\Pi_0$"), "H": (H, "H", "$H$"),
-             "cut": (_segment(H[-1], (tau - s, 0)), "hidden", "")}  # fmt: skip
+    edges = {
+        "Pi_0": (_segment((tau - s, 0), (tau, 0)), "rest", r"$\Pi_0$"),
+        "H": (H, "H", "$H$"),
+        "cut": (_segment(H[-1], (tau - s, 0)), "hidden", ""),
+    }
     v = 1.2 * float(projected(oscillator(), H)[:, 1].max())
     sigma = (-1.08 * s, 0.8 * s)
-    boxes = [(sigma, (-0.3 * s, 1.8 * s)), (sigma, (-0.15 * v, v)), (sigma, (-0.6 * v, 0.15 * v)),
-             (sigma, (-0.1 * v, 0.4 * v))]  # fmt: skip
+    boxes = [
+        (sigma, (-0.3 * s, 1.8 * s)),
+        (sigma, (-0.15 * v, v)),
+        (sigma, (-0.6 * v, 0.15 * v)),
+        (sigma, (-0.1 * v, 0.4 * v)),
+    ]
     caption = (
         "Near a tangency with $a' > 0$ the visible part of $V'$ lies between the axis $t = 0$ and the horizon "
         r"$H$, where a flight lands with velocity zero. The projection $p$ folds $V'$ along $H$; $\phi$ gives the "
         r"landing, and the rebound $R$ turns its velocity around. All panels show the same interval of $\sigma = "
         r"\tau - \tau_*$; their vertical scales differ."
     )
-    return Picture(4, "The actions of p, phi and R at a tangency with a' > 0",
-                   ("s4-horizon-line", "s4-P-star", "e:pnew"),
-                   str(oscillator()), _actions(tau, edges, boxes), 2, caption=caption)  # fmt: skip
+    return Picture(
+        4,
+        "The actions of p, phi and R at a tangency with a' > 0",
+        ("s4-horizon-line", "s4-P-star", "e:pnew"),
+        str(oscillator()),
+        _actions(tau, edges, boxes),
+        2,
+        caption=caption,
+    )
 
 
 def figure_6() -> Picture:
@@ -151,23 +202,36 @@ def figure_6() -> Picture:
     tau, s = tangency("foliation"), 0.2
     Z = _near(_window(tau, s).zero_set, tau, s, -1)[::-1]
     top = float(Z[0, 1])
-    edges = {"Z": (Z, "Z", "$Z$"), "Pi_0": (_segment((tau, 0), (tau + s, 0)), "rest", r"$\Pi_0$"),
-             "right": (_segment((tau + s, 0), (tau + s, top)), "hidden", ""),
-             "top": (_segment((tau + s, top), Z[0]), "hidden", "")}  # fmt: skip
+    edges = {
+        "Z": (Z, "Z", "$Z$"),
+        "Pi_0": (_segment((tau, 0), (tau + s, 0)), "rest", r"$\Pi_0$"),
+        "right": (_segment((tau + s, 0), (tau + s, top)), "hidden", ""),
+        "top": (_segment((tau + s, top), Z[0]), "hidden", ""),
+    }
     v = 1.15 * float(projected(oscillator(), edges["right"][0])[:, 1].max())
     low = 1.1 * float(reset(oscillator(), edges["right"][0])[:, 1].min())
     sigma = (-1.2 * s, 4.4 * s)
-    boxes = [(sigma, (-0.15 * top, 1.1 * top)), (sigma, (-0.15 * v, v)), (sigma, (low, -0.2 * low)),
-             (sigma, (0.1 * low, -0.6 * low))]  # fmt: skip
+    boxes = [
+        (sigma, (-0.15 * top, 1.1 * top)),
+        (sigma, (-0.15 * v, v)),
+        (sigma, (low, -0.2 * low)),
+        (sigma, (0.1 * low, -0.6 * low)),
+    ]
     caption = (
         "Near a tangency with $a' < 0$ the visible sector of $V'$ lies between the zero set $Z$ and the axis $t = "
         r"0$. The landing map $\phi$ takes it to a thin region that touches the axis at $w_*$, so that every "
         r"flight nearby lands to the right of $w_*$. All panels show the same interval of $\sigma = \tau - "
         r"\tau_*$; their vertical scales differ."
     )
-    return Picture(6, "The actions of p, phi and R at a tangency with a' < 0",
-                   ("s4b-sector", "s4b-T2-bounds", "s4b-continuous"),
-                   str(oscillator()), _actions(tau, edges, boxes), 2, caption=caption)  # fmt: skip
+    return Picture(
+        6,
+        "The actions of p, phi and R at a tangency with a' < 0",
+        ("s4b-sector", "s4b-T2-bounds", "s4b-continuous"),
+        str(oscillator()),
+        _actions(tau, edges, boxes),
+        2,
+        caption=caption,
+    )
 
 
 def figure_5() -> Picture:
@@ -179,11 +243,20 @@ def figure_5() -> Picture:
     jump = next(c.points for c in surface.discontinuities if np.hypot(*(c.points - [tau, 0.0]).T).min() < 1e-9)
     (curve, *_) = gammas_within(model, frame)
     lines = leaves(model, frame, np.linspace(low, tau, 14)[1:-1].tolist())
-    lines += [Line(jump, "jump", "P_*", "$P_*$", _share(jump, tau - 0.25), words="$P_*$: discontinuities of $G$"),
-              Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, tau - 0.45))]  # fmt: skip
-    lines += [Line(_orbit(model, curve.points, low + 0.05, share), "orbit", "orbit above gamma", beads=True,
-                   words=r"impacts of two orbits above $\gamma$, joined in their order")
-              for share in (0.1, 0.3)]  # fmt: skip
+    lines += [
+        Line(jump, "jump", "P_*", "$P_*$", _share(jump, tau - 0.25), words="$P_*$: discontinuities of $G$"),
+        Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, tau - 0.45)),
+    ]
+    lines += [
+        Line(
+            _orbit(model, curve.points, low + 0.05, share),
+            "orbit",
+            "orbit above gamma",
+            beads=True,
+            words=r"impacts of two orbits above $\gamma$, joined in their order",
+        )
+        for share in (0.1, 0.3)
+    ]
     near = curve.points[(curve.points[:, 0] < tau - 0.02) & (curve.points[:, 0] > tau - 0.2)]
     below = np.interp(near[:, 0], *jump[np.argsort(jump[:, 0])].T)
     facts = {"gamma_below_P": float((near[:, 1] / below).max()), "order": _order(near, tau)}
@@ -194,8 +267,15 @@ def figure_5() -> Picture:
         "above it the impacts pass $w_*$ or cross $P_*$, where the map is discontinuous. The grey segments join "
         "successive impacts and are no invariant curves."
     )
-    return Picture(5, "Degenerate chatter at a tangency with a' > 0", ("t:t2-exists", "t:t2-sides", "s4-P-star"),
-                   str(model), [panel], facts=facts, caption=caption)  # fmt: skip
+    return Picture(
+        5,
+        "Degenerate chatter at a tangency with a' > 0",
+        ("t:t2-exists", "t:t2-sides", "s4-P-star"),
+        str(model),
+        [panel],
+        facts=facts,
+        caption=caption,
+    )
 
 
 def _order(points: Array, tau: float) -> float:
@@ -229,23 +309,43 @@ def figure_7() -> Picture:
     rest = np.stack([np.linspace(start, tau, 80)[:-1], np.zeros(79)], axis=1)
     epsilon = np.vstack([model_step(model, rest), [[tau, 0.0]]])
     lines = leaves(model, frame, (tau + np.linspace(0.03, 0.85, 20)).tolist())
-    lines += [Line(epsilon, "epsilon", "epsilon", r"$\varepsilon$", 0.12,
-                   words=r"$\varepsilon$: image of $[w_1, w_*]$ under $G$"),
-              Line(np.array([[start, 0.0], [tau, 0.0]]), "rest", "[w_1, w_*]",
-                   words="interval $[w_1, w_*]$ of $\\Pi_0$")]  # fmt: skip
+    lines += [
+        Line(
+            epsilon,
+            "epsilon",
+            "epsilon",
+            r"$\varepsilon$",
+            0.12,
+            words=r"$\varepsilon$: image of $[w_1, w_*]$ under $G$",
+        ),
+        Line(np.array([[start, 0.0], [tau, 0.0]]), "rest", "[w_1, w_*]", words="interval $[w_1, w_*]$ of $\\Pi_0$"),
+    ]
     part = epsilon[-30:-3]
     facts = {"order": float(np.polyfit(np.log(part[:, 0] - tau), np.log(part[:, 1]), 1)[0])}
-    panel = Panel(((low, high), (-0.1 * v, v)), lines=lines,
-                  dots=[Dot("$w_*$", (tau, 0.0)), Dot("$w_1$", (start, 0.0)),
-                        Dot("$G(w_1)$", (float(epsilon[0, 0]), float(epsilon[0, 1])))])  # fmt: skip
+    panel = Panel(
+        ((low, high), (-0.1 * v, v)),
+        lines=lines,
+        dots=[
+            Dot("$w_*$", (tau, 0.0)),
+            Dot("$w_1$", (start, 0.0)),
+            Dot("$G(w_1)$", (float(epsilon[0, 0]), float(epsilon[0, 1]))),
+        ],
+    )
     caption = (
         "Near a tangency with $a' < 0$ every weak impact is followed by complete chatter, also those left of "
         "$w_*$, where the acceleration is still positive: the stable manifolds cross above $w_*$ and return to "
         r"the axis. The map takes the interval from $w_1$ to $w_*$ to the curve $\varepsilon$, which touches the "
         "axis at $w_*$."
     )
-    return Picture(7, "Chatter at a tangency with a' < 0", ("t:foliate", "s4b-eps", "s4b-back"), str(model), [panel],
-                   facts=facts, caption=caption)  # fmt: skip
+    return Picture(
+        7,
+        "Chatter at a tangency with a' < 0",
+        ("t:foliate", "s4b-eps", "s4b-back"),
+        str(model),
+        [panel],
+        facts=facts,
+        caption=caption,
+    )
 
 
 def figure_8() -> Picture:
@@ -264,6 +364,12 @@ def figure_8() -> Picture:
         r"$\gamma$ ends there with a cubic tangency. Stable manifolds of later times flatten as they pass above "
         r"$w_*$ and then run down beside $\gamma$ in long narrow loops."
     )
-    return Picture(8, "Stable manifolds close to a negative swan point",
-                   ("t:t3", "t:t3-others", "s5-saddle"), str(model),
-                   [panel], facts={"order": _order(near, 0.0)}, caption=caption)  # fmt: skip
+    return Picture(
+        8,
+        "Stable manifolds close to a negative swan point",
+        ("t:t3", "t:t3-others", "s5-saddle"),
+        str(model),
+        [panel],
+        facts={"order": _order(near, 0.0)},
+        caption=caption,
+    )

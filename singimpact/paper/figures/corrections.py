@@ -72,8 +72,14 @@ def figure_B1() -> Picture:
         lines = [Line(points, "orbit", label, words="orbit from rest at $A$")]
         lines += [Line(np.array([[x, 0.0]]), "crossing", "impacts", beads=True, words="impacts") for x in at.tolist()]
         names = zip("AX", (ends[n][0][0], ends[n][0][2]), strict=True)
-        return Panel((_box((t, s)[n]), (-0.12 * high, high)), f"${ends[n][1]}$", f"${label}$", title, lines,
-                     dots=[Dot(f"${name}$", (float(x), 0.0)) for name, x in names])  # fmt: skip
+        return Panel(
+            (_box((t, s)[n]), (-0.12 * high, high)),
+            f"${ends[n][1]}$",
+            f"${label}$",
+            title,
+            lines,
+            dots=[Dot(f"${name}$", (float(x), 0.0)) for name, x in names],
+        )
 
     first = np.stack([t, acceleration(model, t)], axis=1)
     second = np.stack([s, gravity(t)], axis=1)
@@ -145,11 +151,16 @@ def figure_B2() -> Picture:
         r"foot $X$ of the universal model, for five oscillators. (a) $|X_H - X|$ falls like $H$. (b) With the "
         r"term $-\frac{1}{10}\chi(X^2 - 1)H$ taken off, $\chi = f_v + 2a'''/(3a'')$, it falls like $H^2$."
     )
-    return Picture("B2", "How fast unfolded swans tend to the universal one",
-                   ("b:first-order-foot", "b:first-order-measured"),
-                   "; ".join(model.name for model in first_order_feet.MODELS),
-                   [panel("(a) $|X_H - X|$", left, 1), panel("(b) without the known term", right, 2)], 2, facts,
-                   caption)  # fmt: skip
+    return Picture(
+        "B2",
+        "How fast unfolded swans tend to the universal one",
+        ("b:first-order-foot", "b:first-order-measured"),
+        "; ".join(model.name for model in first_order_feet.MODELS),
+        [panel("(a) $|X_H - X|$", left, 1), panel("(b) without the known term", right, 2)],
+        2,
+        facts,
+        caption,
+    )
 
 
 def exponents(order: int) -> Array:
@@ -182,10 +193,15 @@ def figure_B3() -> Picture:
         r"limit $3/(3+2j)$ as $r \to 1$ and 1, for every contact order $j$ and every $r$. The dots are "
         r"measured on orbits of six oscillators at $j = 1$ and 2."
     )
-    return Picture("B3", "The threshold of complete chatter is Hoelder continuous", ("b:holder-bounds", "b:holder"),
-                   "; ".join(start.name for start in orbits_beside_gamma.STARTS),
-                   [Panel(((0.0, 1.0), (0.1, 1.05)), "$r$", r"$\alpha$", lines=lines)], facts=facts,
-                   caption=caption)  # fmt: skip
+    return Picture(
+        "B3",
+        "The threshold of complete chatter is Hoelder continuous",
+        ("b:holder-bounds", "b:holder"),
+        "; ".join(start.name for start in orbits_beside_gamma.STARTS),
+        [Panel(((0.0, 1.0), (0.1, 1.05)), "$r$", r"$\alpha$", lines=lines)],
+        facts=facts,
+        caption=caption,
+    )
 
 
 def _value(rate: str) -> float:

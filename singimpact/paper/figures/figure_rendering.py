@@ -60,13 +60,21 @@ class Look:
 
         ink, ground = self.color(BLACK), DARK_GROUND if self.dark else LIGHT_GROUND
         chosen: dict[str, Any] = {
-            "font.size": PRINT.type, "axes.titlesize": PRINT.type, "axes.labelsize": PRINT.type,
-            "xtick.labelsize": PRINT.small, "ytick.labelsize": PRINT.small, "legend.fontsize": PRINT.small,
-            "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6, "figure.facecolor": ground,
-            "axes.facecolor": ground, "savefig.facecolor": ground,
+            "font.size": PRINT.type,
+            "axes.titlesize": PRINT.type,
+            "axes.labelsize": PRINT.type,
+            "xtick.labelsize": PRINT.small,
+            "ytick.labelsize": PRINT.small,
+            "legend.fontsize": PRINT.small,
+            "axes.linewidth": 0.6,
+            "xtick.major.width": 0.6,
+            "ytick.major.width": 0.6,
+            "figure.facecolor": ground,
+            "axes.facecolor": ground,
+            "savefig.facecolor": ground,
             **dict.fromkeys((f"axes3d.{axis}axis.panecolor" for axis in "xyz"), ground),
             **dict.fromkeys(("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color"), ink),
-        }  # fmt: skip
+        }
         if self.serif:
             chosen |= {"font.family": "STIXGeneral", "mathtext.fontset": "stix"}
         with matplotlib.rc_context(cast(Any, chosen)):
@@ -101,8 +109,14 @@ def drawn(picture: Picture, look: Look | None = None) -> Any:
                 flat.append((figure.add_subplot(rows, columns, n + 1), panel))
                 _flat(*flat[-1], look)
         if entries:
-            figure.legend(*zip(*entries, strict=True), loc="outside lower center", ncols=across, frameon=False,
-                          handlelength=3, columnspacing=1.5)  # fmt: skip
+            figure.legend(
+                *zip(*entries, strict=True),
+                loc="outside lower center",
+                ncols=across,
+                frameon=False,
+                handlelength=3,
+                columnspacing=1.5,
+            )
         figure.draw_without_rendering()
         figure.set_layout_engine("none")  # the letters are placed for this layout, and the numbers of the axes are made
         for axes, panel in flat:
@@ -198,8 +212,9 @@ def _place(points: Array, share: float) -> tuple[float, float]:
 def _solid(axes: Any, panel: Panel, look: Look) -> None:
     """A surface in (tau, v, t), lines on it as polylines in space."""
     assert panel.mesh is not None
-    axes.plot_surface(*panel.mesh, color="#BBD9EE", alpha=0.5, linewidth=0.2, edgecolor="0.5", shade=False,
-                      rstride=3, cstride=3)  # fmt: skip
+    axes.plot_surface(
+        *panel.mesh, color="#BBD9EE", alpha=0.5, linewidth=0.2, edgecolor="0.5", shade=False, rstride=3, cstride=3
+    )
     for line in panel.lines:
         axes.plot(*line.points.T, **_stroke(line, look), zorder=10)
         if line.label:

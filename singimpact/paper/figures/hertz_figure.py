@@ -34,8 +34,10 @@ def figure_B9() -> Picture:
             values = {j: start.order, q: sympy.Rational(power.numerator, power.denominator)}
             n, k, g = (float(part.subs(values)) for part in (EXPONENT, FACTOR, SECOND))
             w = (k * found.loss) ** (1 / (1 - float(power)))
-            rows = [(np.log10(g * v / h ** (start.order + 1)), np.log10(v / (w * h**n) - 1))
-                    for h, v in zip(found.distances, found.speeds, strict=True)]  # fmt: skip
+            rows = [
+                (np.log10(g * v / h ** (start.order + 1)), np.log10(v / (w * h**n) - 1))
+                for h, v in zip(found.distances, found.speeds, strict=True)
+            ]
             place = np.array([[float(power), found.exponent]])
             first.append(Line(place, "crossing", "true orbits", beads=True, words="true orbits"))
             for row in rows:
@@ -49,9 +51,10 @@ def figure_B9() -> Picture:
     )
     panels = [
         Panel(((0.0, LARGEST), (1.5, 7.0)), "$q$", r"exponent of $|\sigma|$", "(a) the exponent", first),
-        Panel(((-4.0, -1.0), (-4.0, -1.0)), r"$\log_{10} GP$", r"$\log_{10}$ of the excess", "(b) the second term",
-              second),
-    ]  # fmt: skip
+        Panel(
+            ((-4.0, -1.0), (-4.0, -1.0)), r"$\log_{10} GP$", r"$\log_{10}$ of the excess", "(b) the second term", second
+        ),
+    ]
     claims = ("b:hertz", "b:hertz-next", "b:hertz-measured")
     models = "; ".join(start.name for start in STARTS)
     return Picture("B9", "Gamma where impacts lose a power of the speed", claims, models, panels, 2, facts, caption)

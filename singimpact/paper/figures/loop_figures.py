@@ -32,9 +32,11 @@ def figure_B4() -> Picture:
     """Heights of W^s(X), tears and gamma over A - h, in units of a'(A) h^2, against r."""
     rates = np.linspace(0.01, 0.99, 197)
     gamma = np.array([gamma_height(r) for r in rates.tolist()])
-    kinds = {"outer": ("loop", "$W^s(X)$: upper and lower edge of each loop"),
-             "tear": ("P", "tears: $\\delta$ and inverse images"),
-             "inner": ("loop", "$W^s(X)$: upper and lower edge of each loop")}  # fmt: skip
+    kinds = {
+        "outer": ("loop", "$W^s(X)$: upper and lower edge of each loop"),
+        "tear": ("P", "tears: $\\delta$ and inverse images"),
+        "inner": ("loop", "$W^s(X)$: upper and lower edge of each loop"),
+    }
     curves = {
         name: np.array([loop_heights.generations(_start(name, r), r, SHOWN) for r in rates.tolist()]).T
         for name in kinds
@@ -66,9 +68,16 @@ def figure_B4() -> Picture:
         r"that of $\gamma$. The dots are crossings on true orbits of the universal model and of two "
         r"oscillators, at $h$ = 1/2000 of the half distance of $A$ and $B$."
     )
-    return Picture("B4", "Heights of the loops next to A", ("b:loops-map", "b:loops"),
-                   "; ".join(swan.name for swan in loop_heights.SWANS), panels, 2, {"farthest": worst},
-                   caption)  # fmt: skip
+    return Picture(
+        "B4",
+        "Heights of the loops next to A",
+        ("b:loops-map", "b:loops"),
+        "; ".join(swan.name for swan in loop_heights.SWANS),
+        panels,
+        2,
+        {"farthest": worst},
+        caption,
+    )
 
 
 def _start(name: str, r: float) -> float:
@@ -108,8 +117,15 @@ def figure_B5() -> Picture:
         r"adiabatic invariant of the elastic ball from $A$."
     )
     panel = Panel(((0.0, 1.0), (2.92, 3.08)), "$r$", r"$X\,(1-r)^{3/7}$", lines=lines, regions=regions)
-    return Picture("B5", "The foot X for every restitution", ("b:foot-monotone", "b:foot", "b:foot-limit"),
-                   "x'' = 12(1 - t^2), c = 0", [panel], facts=facts, caption=caption)  # fmt: skip
+    return Picture(
+        "B5",
+        "The foot X for every restitution",
+        ("b:foot-monotone", "b:foot", "b:foot-limit"),
+        "x'' = 12(1 - t^2), c = 0",
+        [panel],
+        facts=facts,
+        caption=caption,
+    )
 
 
 def figure_B6() -> Picture:
@@ -139,8 +155,16 @@ def figure_B6() -> Picture:
         r"middle, for three clearances: the first arc tends to $\frac{1}{24}(s+1)^3(3-s)$, of height 9/8, and "
         r"hits with the speed $8/3$ after the time 4."
     )
-    return Picture("B6", "The orbit that is born at a negative swan", ("b:onset-none", "b:onset-hop", "b:onset"),
-                   str(first), panels, 2, facts, caption)  # fmt: skip
+    return Picture(
+        "B6",
+        "The orbit that is born at a negative swan",
+        ("b:onset-none", "b:onset-hop", "b:onset"),
+        str(first),
+        panels,
+        2,
+        facts,
+        caption,
+    )
 
 
 def _swan(c: str) -> ImpactOscillator:

@@ -22,8 +22,10 @@ def figure_1() -> Picture:
     """V_c over (tau, t), folded along H; the lines over w_1, w_2, w_3 touch it there."""
     model = oscillator()
     surface = ImpactSurface(model, (LEFT, RIGHT + LONG), (-2.5, 2.5))  # H is shifted Z
-    folds = [np.column_stack([outline.points, horizon.points[:, 1]])[_shown(outline.points, horizon.points[:, 1])]
-             for horizon, outline in zip(surface.horizon, surface.outline, strict=True)]  # fmt: skip
+    folds = [
+        np.column_stack([outline.points, horizon.points[:, 1]])[_shown(outline.points, horizon.points[:, 1])]
+        for horizon, outline in zip(surface.horizon, surface.outline, strict=True)
+    ]
     fold = max(folds, key=len)
     fold = fold[np.argsort(fold[:, 0])]
     lines = [Line(fold, "H", "H", "$H$", 0.1), Line(fold * [1, 1, 0], "P", "P", "$P$", 0.04)]
@@ -49,8 +51,14 @@ def figure_1() -> Picture:
         "horizon, where flights land with velocity zero: a vertical line over a state $w_1$, $w_2$ or $w_3$ of "
         "$P$ touches the surface there. $P$ is the image of $H$ in the plane of states."
     )
-    return Picture(1, "The impact surface and its horizon", ("s2-smooth", "s2-horizon", "s2-two-sheets"), str(model),
-                   [panel], caption=caption)  # fmt: skip
+    return Picture(
+        1,
+        "The impact surface and its horizon",
+        ("s2-smooth", "s2-horizon", "s2-two-sheets"),
+        str(model),
+        [panel],
+        caption=caption,
+    )
 
 
 def _shown(points: Array, t: Array) -> Array:
@@ -125,8 +133,16 @@ def figure_2() -> Picture:
         "degree 3 in (a) and (b), 1 in (c)), since branches that nearly coincide are not seen apart otherwise. In "
         "each row the scales are equal, and in (c) the window moves with the tip."
     )
-    return Picture(2, "The three generic transitions of the outline", ("s2-fold-cusp-forms", "s6-lips"), str(damped()),
-                   panels, 3, facts, caption)  # fmt: skip
+    return Picture(
+        2,
+        "The three generic transitions of the outline",
+        ("s2-fold-cusp-forms", "s6-lips"),
+        str(damped()),
+        panels,
+        3,
+        facts,
+        caption,
+    )
 
 
 def _equally_high(panels: list[Panel]) -> list[Panel]:

@@ -94,16 +94,26 @@ class Picture:
     def to_dict(self) -> dict[str, Any]:
         """The data as plain lists and numbers."""
         return {
-            "figure": self.number, "title": self.title, "caption": self.caption, "claims": list(self.claims),
-            "model": self.model, "facts": self.facts,
+            "figure": self.number,
+            "title": self.title,
+            "caption": self.caption,
+            "claims": list(self.claims),
+            "model": self.model,
+            "facts": self.facts,
             "panels": [
-                {"title": panel.title, "axes": [panel.x, panel.y], "box": panel.box,
-                 "curves": [{"name": line.name or line.label, "points": line.points.tolist()} for line in panel.lines],
-                 "regions": [{"name": region.label, "points": region.points.tolist()} for region in panel.regions],
-                 "points": {dot.letter: list(dot.place) for dot in panel.dots}}
+                {
+                    "title": panel.title,
+                    "axes": [panel.x, panel.y],
+                    "box": panel.box,
+                    "curves": [
+                        {"name": line.name or line.label, "points": line.points.tolist()} for line in panel.lines
+                    ],
+                    "regions": [{"name": region.label, "points": region.points.tolist()} for region in panel.regions],
+                    "points": {dot.letter: list(dot.place) for dot in panel.dots},
+                }
                 for panel in self.panels
             ],
-        }  # fmt: skip
+        }
 
 
 def arc(points: Array, start: Point, end: Point, avoid: Point) -> Array:

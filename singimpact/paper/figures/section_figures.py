@@ -24,26 +24,48 @@ def figure_9() -> Picture:
         kind = swan.kind
         middle, size = (swan.A + swan.B) / 2, half(swan)
         tau = np.linspace(middle - 2.4 * size, middle + 2.4 * size, 121)
-        curves = [Line(np.stack([tau, acceleration(linear(2, c, "0.5"), tau)], axis=1), pen, f"a for c = {c}",
-                       words=words)
-                  for c, pen, words in zip(values, ("before", "at", "graph"), WORDS, strict=True)]  # fmt: skip
+        curves = [
+            Line(np.stack([tau, acceleration(linear(2, c, "0.5"), tau)], axis=1), pen, f"a for c = {c}", words=words)
+            for c, pen, words in zip(values, ("before", "at", "graph"), WORDS, strict=True)
+        ]
         height = 1.3 * max(float(np.abs(curve.points[30:91, 1]).max()) for curve in curves)
         bounds = (-0.6 * height, height) if kind == "positive" else (-height, 0.6 * height)
         letters = [Dot("$A$", (swan.A, 0.0)), Dot("$B$", (swan.B, 0.0))]
-        panels.append(Panel(box(swan, -2.4, 2.4, *bounds), y=r"$a(\tau)$", title=f"({letter}) {kind} swan: $a_c$",
-                            lines=curves, dots=letters))  # fmt: skip
+        panels.append(
+            Panel(
+                box(swan, -2.4, 2.4, *bounds),
+                y=r"$a(\tau)$",
+                title=f"({letter}) {kind} swan: $a_c$",
+                lines=curves,
+                dots=letters,
+            )
+        )
         v = 1.25 * abs(swan.projected["D"][1])
         cusps = [Dot("$D'$", swan.projected["D"]), Dot("$C''$", swan.reset["C"])]
-        panels.append(Panel(box(swan, -4.2, 4.2, -v, v), title=f"({letter}) outline $P$, $c={values[2]}$",
-                            lines=[Line(ring(swan, "P"), "P", "P")], dots=[*letters, *cusps]))  # fmt: skip
+        panels.append(
+            Panel(
+                box(swan, -4.2, 4.2, -v, v),
+                title=f"({letter}) outline $P$, $c={values[2]}$",
+                lines=[Line(ring(swan, "P"), "P", "P")],
+                dots=[*letters, *cusps],
+            )
+        )
         facts[f"cusps_{kind}"] = float(sum(len(c.marked("cusp")) for c in swan.surface.outline if c.closed))
     caption = (
         "A swan point opens as the clearance $c$ passes $c_0$ = -1 (a, positive) or 1 (b, negative). Left: the "
         "acceleration at the wall, $a_c$, gets two zeros $A$ and $B$. Right: a closed piece of the apparent "
         "outline $P$ is born, which touches the axis at $A$ and $B$ and has a cusp at either end, $D'$ and $C''$."
     )
-    return Picture(9, "Graphs of a and the outlines of unfolded swans", ("s6-d", "s6-lips"), "x'' + x = cos 2t", panels,
-                   2, facts, caption)  # fmt: skip
+    return Picture(
+        9,
+        "Graphs of a and the outlines of unfolded swans",
+        ("s6-d", "s6-lips"),
+        "x'' + x = cos 2t",
+        panels,
+        2,
+        facts,
+        caption,
+    )
 
 
 def figure_10() -> Picture:
@@ -67,9 +89,16 @@ def figure_10() -> Picture:
         letter = NAMED.get(place)
         dots = [] if letter is None else [Dot(f"${letter}$", _on(letter))]
         title = f"$\\sigma = {place:.3g}$" if letter is None else f"$\\sigma = {place:.3g}$, ${letter}$"
-        panels.append(Panel(((-3.2 * size, 7.2 * size), (1.1 * low, 1.1 * high)), "$t$" if n >= 4 else "",
-                            "$v$" if n % 4 == 0 else "", title,
-                            lines, dots=dots))  # fmt: skip
+        panels.append(
+            Panel(
+                ((-3.2 * size, 7.2 * size), (1.1 * low, 1.1 * high)),
+                "$t$" if n >= 4 else "",
+                "$v$" if n % 4 == 0 else "",
+                title,
+                lines,
+                dots=dots,
+            )
+        )
     caption = (
         r"Sections of $V'$ for launch times $\tau = \tau_* + \sigma$, with $\sigma$ in half distances of $A$ and "
         r"$B$: the velocity $v$ of the flight that is back at the wall after the time $t$. A state $(\tau, v)$ has "
@@ -77,8 +106,15 @@ def figure_10() -> Picture:
         "them. To the right of $D$ the section has two folds, whose flights land with velocity zero. The numbers "
         "on the vertical axes show that each panel has a scale of its own."
     )
-    return Picture(10, "Sections of V' at constant tau near a positive swan (sigma in half distances of A and B)",
-                   ("s6-sections", "s6p-BE", "s6p-AE"), str(swan.model), panels, 4, caption=caption)  # fmt: skip
+    return Picture(
+        10,
+        "Sections of V' at constant tau near a positive swan (sigma in half distances of A and B)",
+        ("s6-sections", "s6p-BE", "s6p-AE"),
+        str(swan.model),
+        panels,
+        4,
+        caption=caption,
+    )
 
 
 def _on(letter: str) -> tuple[float, float]:
@@ -95,5 +131,8 @@ def _visible(tau: float, curve: Array) -> list[Array]:
     if asked.any():
         time[asked] = first_hit(swan.model, np.full(int(asked.sum()), tau), v[asked]).flight_time
     seen = np.isfinite(time) & (np.abs(time - t) < 1e-6)
-    return [curve[part] for part in np.split(np.arange(t.size), np.flatnonzero(np.diff(seen)) + 1)
-            if seen[part[0]] and len(part) > 1]  # fmt: skip
+    return [
+        curve[part]
+        for part in np.split(np.arange(t.size), np.flatnonzero(np.diff(seen)) + 1)
+        if seen[part[0]] and len(part) > 1
+    ]

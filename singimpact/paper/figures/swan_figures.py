@@ -108,8 +108,15 @@ def figure_11() -> Picture:
         "-t)$. Flights of the grey part $S$ hit the wall for the first time; $D$ and $C$ are the cusp points of "
         r"$p$ and $\phi$, and $E$ is the flight from rest to rest."
     )
-    return Picture(11, "Positive swan: the visible part S of V'", ("s6p-BE", "s6p-AE", "s6-lips"), str(swan.model),
-                   [panel], facts={"tangencies": 2.0}, caption=caption)  # fmt: skip
+    return Picture(
+        11,
+        "Positive swan: the visible part S of V'",
+        ("s6p-BE", "s6p-AE", "s6-lips"),
+        str(swan.model),
+        [panel],
+        facts={"tangencies": 2.0},
+        caption=caption,
+    )
 
 
 def _lettered(swan: SwanConfiguration) -> list[Line]:
@@ -134,25 +141,49 @@ def figure_14() -> Picture:
         Line(shadow(), "shadow", "shadow DC", "shadow", 0.5, words="shadow: next hits behind the visible arc $AD$"),
         Line(stretch(swan, "H", "A", "D"), "jump", "visible arc AD of H", words="visible arc $AD$ of $H$"),
     ]
-    panel = Panel(window, y="$t$", lines=lines, dots=dots,
-                  regions=[Region(whole, label=r"$\mathcal{T}$", words=r"$\mathcal{T}$: visible part of $V'$",
-                                  place=(right - 1.9 * size, 4.6 * size)),
-                           Region(hidden_negative(), "#FFFFFF")])  # fmt: skip
+    panel = Panel(
+        window,
+        y="$t$",
+        lines=lines,
+        dots=dots,
+        regions=[
+            Region(
+                whole,
+                label=r"$\mathcal{T}$",
+                words=r"$\mathcal{T}$: visible part of $V'$",
+                place=(right - 1.9 * size, 4.6 * size),
+            ),
+            Region(hidden_negative(), "#FFFFFF"),
+        ],
+    )
     caption = (
         "The unfolded negative swan on the impact surface: all of $t > 0$ is visible but the loop through $A$, "
         "$D$, $C$ and $B$. The arc $AD$ of the horizon is grazed by first hits, and hides the sheet behind it as "
         "far as the shadow $DC$. The map is discontinuous at the states of that arc."
     )
-    return Picture(14, "Negative swan: what is visible of V'", ("s6n-visible", "s6n-corr"), str(swan.model), [panel],
-                   caption=caption)  # fmt: skip
+    return Picture(
+        14,
+        "Negative swan: what is visible of V'",
+        ("s6n-visible", "s6n-corr"),
+        str(swan.model),
+        [panel],
+        caption=caption,
+    )
 
 
 IMAGES = r"images of the visible part $\mathcal{S}$"
 ZOOM = 5.0  # the swan's body is so much flatter than its cusps are high
 
 
-def _views(swan: SwanConfiguration, title: str, y: str, lines: list[Line], far: list[Dot], near: list[Dot],
-           regions: list[Region]) -> list[Panel]:  # fmt: skip
+def _views(
+    swan: SwanConfiguration,
+    title: str,
+    y: str,
+    lines: list[Line],
+    far: list[Dot],
+    near: list[Dot],
+    regions: list[Region],
+) -> list[Panel]:
     """The whole outline, and its body magnified."""
     v = 1.25 * abs(swan.projected["D"][1])
     steep = ("shadow", "Z")  # these leave the magnified panel: their letters stand in the whole one
@@ -160,11 +191,23 @@ def _views(swan: SwanConfiguration, title: str, y: str, lines: list[Line], far: 
     lines = [replace(line, label="") if line.pen in steep else line for line in lines]
     lower = [region for region in regions if region.label]
     return [
-        Panel(box(swan, -4.2, 4.2, -v, v), title=title, y=y, lines=plain, dots=far,
-              regions=[Region(each.points, each.tone, words=each.words) for each in lower]),
-        Panel(box(swan, -3.0, 3.0, -v / ZOOM, v / ZOOM), title=f"{title}, magnified", y=y, lines=lines, dots=near,
-              regions=regions),
-    ]  # fmt: skip
+        Panel(
+            box(swan, -4.2, 4.2, -v, v),
+            title=title,
+            y=y,
+            lines=plain,
+            dots=far,
+            regions=[Region(each.points, each.tone, words=each.words) for each in lower],
+        ),
+        Panel(
+            box(swan, -3.0, 3.0, -v / ZOOM, v / ZOOM),
+            title=f"{title}, magnified",
+            y=y,
+            lines=lines,
+            dots=near,
+            regions=regions,
+        ),
+    ]
 
 
 def figure_12() -> Picture:
@@ -199,8 +242,15 @@ def figure_12() -> Picture:
         "cusps $D'$ and $C''$. The two branches of $P$ are closer than a line's width near the cusps; below, the "
         f"velocities are magnified {ZOOM:g} times."
     )
-    return Picture(12, "Images of the positive swan under p and phi", ("s6p-BE", "s6p-AE", "p:phising-cusp"),
-                   str(swan.model), panels, 2, caption=caption)  # fmt: skip
+    return Picture(
+        12,
+        "Images of the positive swan under p and phi",
+        ("s6p-BE", "s6p-AE", "p:phising-cusp"),
+        str(swan.model),
+        panels,
+        2,
+        caption=caption,
+    )
 
 
 def figure_15() -> Picture:
@@ -229,9 +279,15 @@ def figure_15() -> Picture:
         Line(jump, "shadow", "arc D''C''", words=r"$\phi(DC)$, $DC$ the shadow"),
         Line(bottom, "Z", "arc C''B''", r"$\phi(DC)$, $\phi(CB)$", 0.4, words=r"$\phi(CB)$, $CB$ on $Z$: the same arc"),
     ]
-    second = _views(swan, r"(b) under $\phi$", r"$\dot x$", lines, [Dot("$C''$", images["C"])],
-                    [Dot("$A''$", images["A"]), Dot("$B''=D''$", images["B"]),
-                     Dot("$E''$", images["E"])], [])  # fmt: skip
+    second = _views(
+        swan,
+        r"(b) under $\phi$",
+        r"$\dot x$",
+        lines,
+        [Dot("$C''$", images["C"])],
+        [Dot("$A''$", images["A"]), Dot("$B''=D''$", images["B"]), Dot("$E''$", images["E"])],
+        [],
+    )
     facts = {"gap": float(np.hypot(*(jump[0] - np.array(images["D"]))))}
     caption = (
         r"The plane of states is cut along $\delta$, the image of the grazing arc $AD$ under $p$. Landing after "
@@ -240,5 +296,13 @@ def figure_15() -> Picture:
         "which is drawn dotted and dashed. The two branches of $P$ are closer than a line's width near the "
         f"cusps; below, the velocities are magnified {ZOOM:g} times."
     )
-    return Picture(15, "Images of the negative swan under p and phi", ("s6n-maps", "s6n-cusp", "s6n-AB"),
-                   str(swan.model), [first[0], second[0], first[1], second[1]], 2, facts, caption)  # fmt: skip
+    return Picture(
+        15,
+        "Images of the negative swan under p and phi",
+        ("s6n-maps", "s6n-cusp", "s6n-AB"),
+        str(swan.model),
+        [first[0], second[0], first[1], second[1]],
+        2,
+        facts,
+        caption,
+    )

@@ -42,8 +42,7 @@ def figure_13() -> Picture:
             words=r"$\varepsilon$: image of the interval from $E'$ to $A$",
         )
     )
-    dots = [Dot("$A$", places["A"]), Dot("$B$", places["B"]), Dot("$E'$", places["E"]),
-            Dot("$N$", swan.N)]  # fmt: skip
+    dots = [Dot("$A$", places["A"]), Dot("$B$", places["B"]), Dot("$E'$", places["E"]), Dot("$N$", swan.N)]
     facts = {"gamma_end": float(curve.points[-1, 0]), "E": places["E"][0], "A": swan.A, "N": float(swan.N[0])}
     panel = Panel(
         window,
@@ -57,8 +56,15 @@ def figure_13() -> Picture:
         r"it the impacts leave $S'$. The map takes the interval from $E'$ to $A$ to the curve $\varepsilon$, which "
         "ends on $P$ at $N$."
     )
-    return Picture(13, "Invariant foliation of S' at an unfolded positive swan", ("s6p-gamma", "s6p-eps", "t:t1"),
-                   str(swan.model), [panel], facts={**facts, "size": size}, caption=caption)  # fmt: skip
+    return Picture(
+        13,
+        "Invariant foliation of S' at an unfolded positive swan",
+        ("s6p-gamma", "s6p-eps", "t:t1"),
+        str(swan.model),
+        [panel],
+        facts={**facts, "size": size},
+        caption=caption,
+    )
 
 
 def _epsilon() -> Array:
@@ -85,34 +91,52 @@ def figure_16() -> Picture:
     left = np.array([[swan.A - 3 * size, 0.0], [swan.A, 0.0]])
     between, right = np.array([[swan.A, 0.0], [swan.B, 0.0]]), np.array([[swan.B, 0.0], [swan.B + 3 * size, 0.0]])
     onto = _landed_right(4 * size)
-    words = {"1": "1, 5: on $\\Pi_0$ outside $AB$, at rest", "2": r"2: lower edge of the cut $\delta$, and its image",
-             "3": r"3: upper edge of $\delta$ (drawn moved away), and its image",
-             "4": "4: interval $AB$, and its image (drawn moved right)"}  # fmt: skip
+    words = {
+        "1": "1, 5: on $\\Pi_0$ outside $AB$, at rest",
+        "2": r"2: lower edge of the cut $\delta$, and its image",
+        "3": r"3: upper edge of $\delta$ (drawn moved away), and its image",
+        "4": "4: interval $AB$, and its image (drawn moved right)",
+    }
 
     def step(points: Array, name: str, number: str, at: float = 0.5, arrow: bool = True) -> Line:
         pen = {"2": "graph", "3": "shadow", "4": "Z"}.get(number, "rest")
         told = words.get(number, words["1"])
         return Line(points, pen, name, number, at, arrow and pen != "rest", told)
 
-    first = [step(left, "left of A", "1"), step(jump, "lower edge", "2", 0.6),
-             step(jump + np.array([0.09 * size, 0.035 * v]), "upper edge", "3", 0.55),
-             step(between, "AB", "4"), step(right, "right of B", "5")]  # fmt: skip
-    second = [step(left, "image of 1", "1"),
-              step(np.array([swan.reset["A"], swan.reset["D"]]), "image of 2", "2"),
-              step(landed[::-1], "image of 3", "3"),
-              step(bottom + np.array([0.2 * size, 0.0]), "image of 4, moved right", "4", 0.4),
-              step(onto, "image of 5", "5")]  # fmt: skip
+    first = [
+        step(left, "left of A", "1"),
+        step(jump, "lower edge", "2", 0.6),
+        step(jump + np.array([0.09 * size, 0.035 * v]), "upper edge", "3", 0.55),
+        step(between, "AB", "4"),
+        step(right, "right of B", "5"),
+    ]
+    second = [
+        step(left, "image of 1", "1"),
+        step(np.array([swan.reset["A"], swan.reset["D"]]), "image of 2", "2"),
+        step(landed[::-1], "image of 3", "3"),
+        step(bottom + np.array([0.2 * size, 0.0]), "image of 4, moved right", "4", 0.4),
+        step(onto, "image of 5", "5"),
+    ]
     third = [replace(line, points=rebounded(line.points, 0.5)) for line in second]
     letters = [Dot("$A$", (swan.A, 0.0)), Dot("$B$", (swan.B, 0.0))]
     panels = [
-        Panel(box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"$\Pi^+$, cut along $\delta$", lines=first,
-              dots=[*letters, Dot("$D'$", swan.projected["D"])]),
-        Panel(box(swan, -4, 4.2, -1.1 * v, 0.25 * v), title=r"after $\phi\circ F$", y=r"$\dot x$", lines=second,
-              dots=[Dot("$A''$", swan.reset["A"]), Dot("$D''=B''$", swan.reset["B"]),
-                    Dot("$C''$", swan.reset["C"])]),
-        Panel(box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"after $R$", lines=third,
-              dots=[*letters, Dot("$Q$", swan.Q)]),
-    ]  # fmt: skip
+        Panel(
+            box(swan, -4, 4.2, -0.25 * v, 1.1 * v),
+            title=r"$\Pi^+$, cut along $\delta$",
+            lines=first,
+            dots=[*letters, Dot("$D'$", swan.projected["D"])],
+        ),
+        Panel(
+            box(swan, -4, 4.2, -1.1 * v, 0.25 * v),
+            title=r"after $\phi\circ F$",
+            y=r"$\dot x$",
+            lines=second,
+            dots=[Dot("$A''$", swan.reset["A"]), Dot("$D''=B''$", swan.reset["B"]), Dot("$C''$", swan.reset["C"])],
+        ),
+        Panel(
+            box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"after $R$", lines=third, dots=[*letters, Dot("$Q$", swan.Q)]
+        ),
+    ]
     caption = (
         "How the map acts on five segments at an unfolded negative swan. The two edges 2 and 3 of the cut are one "
         r"arc $\delta$, and the map is discontinuous there: 2 goes to the interval $A''D''$ of the axis, 3 to the "
@@ -120,9 +144,15 @@ def figure_16() -> Picture:
         "drawn beside their true places, so that they can be seen. The rebound $R$ turns the velocities around "
         "and halves them, and $C''$ becomes $Q$."
     )
-    return Picture(16, "The action of the map on the segments of a negative swan",
-                   ("s6n-maps", "s6n-AB", "s2-discontinuity"),
-                   str(model), panels, 2, caption=caption)  # fmt: skip
+    return Picture(
+        16,
+        "The action of the map on the segments of a negative swan",
+        ("s6n-maps", "s6n-AB", "s2-discontinuity"),
+        str(model),
+        panels,
+        2,
+        caption=caption,
+    )
 
 
 def _landed_right(length: float) -> Array:
@@ -174,9 +204,13 @@ def figure_17() -> Picture:
     lines.append(
         Line(across, "epsilon", "R(D''C'')", r"$R(D''C'')$", 0.45, words=r"$R(D''C'')$: image of $\delta$ from above")
     )
-    dots = [Dot("$A$", (swan.A, 0.0)), Dot("$B=D''$", (swan.B, 0.0)),
-            Dot("$X$", (swan.X, 0.0)),
-            Dot("$Q$", swan.Q), Dot("$D'$", swan.projected["D"])]  # fmt: skip
+    dots = [
+        Dot("$A$", (swan.A, 0.0)),
+        Dot("$B=D''$", (swan.B, 0.0)),
+        Dot("$X$", (swan.X, 0.0)),
+        Dot("$Q$", swan.Q),
+        Dot("$D'$", swan.projected["D"]),
+    ]
     facts = {"X": swan.X, "Q": swan.Q[0], "pieces": float(len(manifold)), "generations": float(len(loops))}
     facts |= _accumulation(loops, arcs[0].points, swan.projected["D"][1] / 2)
     panels = [Panel(window, title="(a)", lines=lines, dots=dots), _beside_gamma(lines, arcs[0].points, window[1][1])]
@@ -187,9 +221,16 @@ def figure_17() -> Picture:
         "threshold of complete chatter, each nearer by one and the same factor in the limit. (b) The lower left "
         r"of (a), with the distance from $\gamma$ along $\tau$ instead of $\tau$: there the loops are seen apart."
     )
-    return Picture(17, "Dynamics created at the unfolding of a negative swan",
-                   ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate"), str(swan.model),
-                   panels, 1, facts, caption)  # fmt: skip
+    return Picture(
+        17,
+        "Dynamics created at the unfolding of a negative swan",
+        ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate"),
+        str(swan.model),
+        panels,
+        1,
+        facts,
+        caption,
+    )
 
 
 def _beside_gamma(lines: list[Line], gamma: Array, height: float) -> Panel:

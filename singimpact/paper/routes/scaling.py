@@ -55,9 +55,11 @@ def scaled(weights: Weights) -> tuple[Any, Any]:
     if weights.velocity != weights.height - weights.time:
         raise ArithmeticError("x' is not scaled like x by time")
     images = {
-        sigma: H**weights.time * sigma, e: H**weights.unfolding * e, x: H**weights.height * x,
+        sigma: H**weights.time * sigma,
+        e: H**weights.unfolding * e,
+        x: H**weights.height * x,
         y: H**weights.velocity * y,
-    }  # fmt: skip
+    }
     unit = weights.height - 2 * weights.time
     found = sympy.expand(pushed().subs(images, simultaneous=True) / H**unit)
     if not found.is_polynomial(H):

@@ -94,8 +94,12 @@ def value_at_point(expression: Any, point: tuple[Any, Any]) -> Any:
 
 def _certified(expression: Any, images: dict[Any, Any], found: Any, order: int | None = None) -> None:
     """Leave the certificate of a substitution; a square root in the images is w."""
-    radicands = {part.base for image in images.values() for part in sympy.sympify(image).atoms(sympy.Pow)
-                 if part.exp == sympy.Rational(1, 2)}  # fmt: skip
+    radicands = {
+        part.base
+        for image in images.values()
+        for part in sympy.sympify(image).atoms(sympy.Pow)
+        if part.exp == sympy.Rational(1, 2)
+    }
     (radicand,) = radicands or {None}
     if radicand is not None:
         root = sympy.sqrt(radicand)

@@ -18,11 +18,15 @@ from singimpact.paper.routes.equations import equation
 u, E, P, P1, b, b1, q, q1 = sympy.symbols("xdot E P P1 b b1 q q1")
 f_x, f_u, dg, v, A, e = sympy.symbols("f_x f_u dg v A e")
 RATES = {
-    u: E, E: dg - f_x * u - f_u * E,
-    P: P1, P1: dg - f_x * P - f_u * P1,
-    b: b1, b1: -f_x * b - f_u * b1,
-    q: q1, q1: -f_x * q - f_u * q1,
-}  # fmt: skip
+    u: E,
+    E: dg - f_x * u - f_u * E,
+    P: P1,
+    P1: dg - f_x * P - f_u * P1,
+    b: b1,
+    b1: -f_x * b - f_u * b1,
+    q: q1,
+    q1: -f_x * q - f_u * q1,
+}
 START = {u: v, E: A, P: 0, P1: 0, b: 0, b1: 1, q: 1, q1: 0}
 """At the launch: E is the acceleration A there, and x = c, x-dot = v at t = 0 whatever tau is."""
 

@@ -164,9 +164,11 @@ def _hertz() -> tuple[Step, ...]:
     found = tuple(sympy.factor(part) for part in (hertz.FACTOR, hertz.SECOND))
     shown = (
         3 * (1 - hertz.q) / (2 * (3 + (2 + hertz.q) * j)),
-        hertz.q * (3 + (2 + hertz.q) * j) * (3 + (1 + 2 * hertz.q) * j)
+        hertz.q
+        * (3 + (2 + hertz.q) * j)
+        * (3 + (1 + 2 * hertz.q) * j)
         / (3 * (1 - hertz.q) * (3 + 2 * j + 2 * j * hertz.q - j * hertz.q**2)),
-    )  # fmt: skip
+    )
     if any(sympy.cancel(one - other) != 0 for one, other in zip(found, shown, strict=True)):
         raise ArithmeticError("a constant of gamma is not the one that is printed")
     return (

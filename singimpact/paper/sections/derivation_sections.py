@@ -29,10 +29,17 @@ SECTIONS: dict[str, Callable[[], Section]] = {
     "beyond": beyond_words.told,
 }
 OTHER_NAMES = {
-    "2": "section2", "3": "section3", "4": "section4", "5": "section5", "6": "section6",
-    "surface": "section2", "regular": "section3", "tangency": "section4", "swan": "section5",
+    "2": "section2",
+    "3": "section3",
+    "4": "section4",
+    "5": "section5",
+    "6": "section6",
+    "surface": "section2",
+    "regular": "section3",
+    "tangency": "section4",
+    "swan": "section5",
     "unfolding": "section6",
-}  # fmt: skip
+}
 
 
 def sections(names: Sequence[str] = ()) -> list[Section]:

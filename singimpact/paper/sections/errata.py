@@ -129,8 +129,9 @@ class Errata(Sequence[Erratum]):
         for number, group in enumerate(self.remarks, 1):
             remark = group[0].remark
             head = f"{number}. {_places(group)}: {GRADES[remark.grade]}\n  why        {_plain(remark.reason)}\n"
-            parts.append(head + "\n".join(_text_entry(entry) for entry in group)
-                         + f"\n  survives   {_plain(remark.survives)}")  # fmt: skip
+            parts.append(
+                head + "\n".join(_text_entry(entry) for entry in group) + f"\n  survives   {_plain(remark.survives)}"
+            )
         return "\n\n".join(parts)
 
     def markdown(self) -> str:
@@ -142,8 +143,9 @@ class Errata(Sequence[Erratum]):
         for number, group in enumerate(self.remarks, 1):
             remark = group[0].remark
             head = f"### {number}. {_places(group)}: {GRADES[remark.grade]}\n\n{remark.reason}\n\n"
-            parts.append(head + "\n".join(_markdown_entry(entry) for entry in group)
-                         + f"\n- what survives: {remark.survives}")  # fmt: skip
+            parts.append(
+                head + "\n".join(_markdown_entry(entry) for entry in group) + f"\n- what survives: {remark.survives}"
+            )
         return "\n\n".join(parts) + "\n"
 
     def latex(self) -> str:

@@ -164,9 +164,12 @@ class _Orbit:
         by_h = (6 * y * y + (4 * y + time) * time) * time
         rate = -(by_y * self.dy + self.dw + by_h) / slope
         bend = (
-            (12 * h * y - 12) * self.dy + 6 * y * y + 8 * (self.dy * h * time + y * time) + 3 * time * time
+            (12 * h * y - 12) * self.dy
+            + 6 * y * y
+            + 8 * (self.dy * h * time + y * time)
+            + 3 * time * time
             + (8 * h * y - 8 + 6 * h * time) * rate
-        )  # fmt: skip
+        )
         return _Orbit(r, h, y + time, -r * time * slope, self.dy + rate, -r * (rate * slope + time * bend))
 
     def _time(self) -> Any | None:

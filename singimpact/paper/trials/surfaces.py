@@ -163,8 +163,10 @@ def exact_sheet(height: Any) -> tuple[Any, Any]:
     landing = sympy.expand(sympy.diff(height, t).subs(v, launch))
     jets = [forcing.nth(n) for n in range(forcing.degree() + 1)]
     # at other launch times the motion has the same acceleration, counted from there
-    moved = sum(jet * ((sigma + t) ** (n + 2) - sigma ** (n + 2) - (n + 2) * sigma ** (n + 1) * t)
-                / ((n + 1) * (n + 2)) for n, jet in enumerate(jets))  # fmt: skip
+    moved = sum(
+        jet * ((sigma + t) ** (n + 2) - sigma ** (n + 2) - (n + 2) * sigma ** (n + 1) * t) / ((n + 1) * (n + 2))
+        for n, jet in enumerate(jets)
+    )
     whole = sympy.expand(v * t + moved)
     motion((sigma, v, t), whole, jets, {}, launch=sympy.expand(-sympy.cancel(moved / t)))
     return launch, landing
@@ -257,8 +259,12 @@ def _touching(model: Any, tau: float) -> float | None:
     if not len(sign):
         return None
     (x, xdot), begun = flown[:, sign[0]], times[sign[0]]  # the rest of the way is one step of DOP853
-    t = brentq(lambda u: float(at(tau - begun, x, xdot, begun - u)[0]) - c if u > begun else x - c, begun,
-               times[sign[0] + 1], xtol=1e-13)  # fmt: skip
+    t = brentq(
+        lambda u: float(at(tau - begun, x, xdot, begun - u)[0]) - c if u > begun else x - c,
+        begun,
+        times[sign[0] + 1],
+        xtol=1e-13,
+    )
     v = float(at(tau - begun, x, xdot, begun - t)[1])
     return abs(float(at(tau - t, c, v, t)[1]))
 

@@ -60,13 +60,17 @@ def _contracts(stated: tuple[int, Any, str]) -> Check:
     return every(
         [
             (check.evidence, check.holds),
-            ("m3 = 1/2 + lambda runs once through (1/2, 3/2) as r does through (0, 1)",
-             ray_m3((HALF, THREE_HALVES)).holds),
-            (f"what it lacks of 1 is {sympy.factor(rest)}" if side == "below" else "it is above 1",
-             positive_on(rest, lam, 0, 1)),
+            (
+                "m3 = 1/2 + lambda runs once through (1/2, 3/2) as r does through (0, 1)",
+                ray_m3((HALF, THREE_HALVES)).holds,
+            ),
+            (
+                f"what it lacks of 1 is {sympy.factor(rest)}" if side == "below" else "it is above 1",
+                positive_on(rest, lam, 0, 1),
+            ),
         ],
         witness=lambda: dict(check.witness or {"lambda": "1/2", "value": str(formula.subs(lam, HALF))}),
-    )  # fmt: skip
+    )
 
 
 def _in_r(stated: tuple[int, int]) -> Check:

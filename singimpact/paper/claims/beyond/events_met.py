@@ -12,11 +12,17 @@ from singimpact.surface.transitions import transitions
 
 claim = in_section("beyond")
 MODELS = (
-    ("x", "cos(2*t)"), ("x", "cos(3.3*t)"), ("x + 0.1*xdot", "cos(2.8*t)"), ("x + 0.1*xdot", "cos(3.6*t)"),
-    ("x + 0.3*xdot", "cos(1.5*t)"), ("x + 0.1*xdot", "cos(2.8*t) + 0.2*cos(5.6*t + 1)"),
-    ("x + 0.1*xdot", "cos(3.6*t) + 0.2*cos(7.2*t + 1)"), ("x + 0.2*xdot", "cos(4.4*t) + 0.1*cos(8.8*t + 2)"),
-    ("x + 0.2*xdot", "cos(3.3*t) + 0.15*cos(6.6*t - 1)"), ("x + 0.05*xdot", "cos(2.2*t) + 0.22*cos(4.4*t + 1/2)"),
-)  # fmt: skip
+    ("x", "cos(2*t)"),
+    ("x", "cos(3.3*t)"),
+    ("x + 0.1*xdot", "cos(2.8*t)"),
+    ("x + 0.1*xdot", "cos(3.6*t)"),
+    ("x + 0.3*xdot", "cos(1.5*t)"),
+    ("x + 0.1*xdot", "cos(2.8*t) + 0.2*cos(5.6*t + 1)"),
+    ("x + 0.1*xdot", "cos(3.6*t) + 0.2*cos(7.2*t + 1)"),
+    ("x + 0.2*xdot", "cos(4.4*t) + 0.1*cos(8.8*t + 2)"),
+    ("x + 0.2*xdot", "cos(3.3*t) + 0.15*cos(6.6*t - 1)"),
+    ("x + 0.05*xdot", "cos(2.2*t) + 0.22*cos(4.4*t + 1/2)"),
+)
 REACH = 10
 
 

@@ -177,8 +177,10 @@ def _phi_cusp(conditions: tuple[Any, ...]) -> Check:
     whole = all(any(_same_zeros(each, part) for each in conditions) for part in needed)
     return every(
         [
-            (f"the third derivative is {third} over x_v, the mixed one {mixed} W over x_v^2: both must not vanish",
-             stated and whole),
+            (
+                f"the third derivative is {third} over x_v, the mixed one {mixed} W over x_v^2: both must not vanish",
+                stated and whole,
+            ),
             (
                 f"on x'' = (t^3 (1-t)^2)'', c = 0, the point (0, 0; 1) has a = 0, a' = {touching.slope}, x-dot = 0 and "
                 "v_(sigma t) = 0: no cusp",
@@ -193,7 +195,7 @@ def _phi_cusp(conditions: tuple[Any, ...]) -> Check:
             "x-dot": "0",
             "v_(sigma t)": str(touching.mixed),
         },
-    )  # fmt: skip
+    )
 
 
 def _lift_off(level: Any) -> Check:

@@ -64,9 +64,16 @@ def _cusps(_printed: Any, corrected: tuple[Any, ...]) -> list[Trial]:
         holds = len(corrected) == 2 and passing.velocity != 0 and passing.mixed != 0
         told = f"{at_rest.mixed} where x-dot = 0, {passing.mixed} where x-dot = {passing.velocity} on {crossing}"
         found.append(
-            Trial(f"x = {touching}", "v_(sigma t), not 0 at a cusp", told, "not 0 at all", "not 0 where x-dot is not",
-                  not (ready and at_rest.mixed == 0), holds)
-        )  # fmt: skip
+            Trial(
+                f"x = {touching}",
+                "v_(sigma t), not 0 at a cusp",
+                told,
+                "not 0 at all",
+                "not 0 where x-dot is not",
+                not (ready and at_rest.mixed == 0),
+                holds,
+            )
+        )
     return found
 
 
@@ -79,9 +86,16 @@ def _lift_off(printed: Any, corrected: Any) -> list[Trial]:
         flies = place.model.first_hit(place.tau, 0.0).status != Status.sticks
         says = {level: height > number(level, {"c": clearance}) for level in (printed, corrected)}
         found.append(
-            Trial(place.name, f"it lifts off, x_c(0.01) = {height:.9f}, c = {clearance:g}", str(flies),
-                  str(says[printed]), str(says[corrected]), says[printed] == flies, says[corrected] == flies)
-        )  # fmt: skip
+            Trial(
+                place.name,
+                f"it lifts off, x_c(0.01) = {height:.9f}, c = {clearance:g}",
+                str(flies),
+                str(says[printed]),
+                str(says[corrected]),
+                says[printed] == flies,
+                says[corrected] == flies,
+            )
+        )
     return found
 
 
@@ -93,9 +107,16 @@ def rest_at_tangency(_printed: Any, _corrected: Any) -> list[Trial]:
         pressed = ImpactOscillator(f, f"-{g}", 0, "0.5").impact_map(0.0, 0.0).status == Status.sticks
         told = f"{time:.8g} where a' > 0; {'rests' if pressed else 'flies'} where a' < 0"
         found.append(
-            Trial(name, "first flight from (tau_*, 0)", told, "rests", "flies where a' > 0", not time > 0.1,
-                  time > 0.1 and pressed)
-        )  # fmt: skip
+            Trial(
+                name,
+                "first flight from (tau_*, 0)",
+                told,
+                "rests",
+                "flies where a' > 0",
+                not time > 0.1,
+                time > 0.1 and pressed,
+            )
+        )
     return found
 
 
@@ -111,9 +132,16 @@ def _sets(_printed: Any, _corrected: Any) -> list[Trial]:
         flown = place.model.flight(place.tau, 0.0, times)
         nearest = float(np.min(np.hypot(flown.x - surfaces.clearance(place.model), flown.xdot)))
         found.append(
-            Trial(place.name, "distance from (c, 0) of the flight from (tau, 0), |t| > 0.1", f"{nearest:.3g}", "0",
-                  "not 0", nearest < 1e-2, nearest > 1e-2 and worst < 1e-9)
-        )  # fmt: skip
+            Trial(
+                place.name,
+                "distance from (c, 0) of the flight from (tau, 0), |t| > 0.1",
+                f"{nearest:.3g}",
+                "0",
+                "not 0",
+                nearest < 1e-2,
+                nearest > 1e-2 and worst < 1e-9,
+            )
+        )
     return found
 
 
@@ -127,9 +155,14 @@ def _semiconjugacy(_printed: Any, _corrected: Any) -> list[Trial]:
         later = float(times[np.flatnonzero(above[1:] != above[:-1])[0]])
         step = place.model.impact_map(place.tau, 0.5)
         found.append(
-            compared(place.name, "tau of G(p(z)), z the next crossing", float(step.tau), place.tau + later,
-                     place.tau + _first_return(place, t))
-        )  # fmt: skip
+            compared(
+                place.name,
+                "tau of G(p(z)), z the next crossing",
+                float(step.tau),
+                place.tau + later,
+                place.tau + _first_return(place, t),
+            )
+        )
     return found
 
 

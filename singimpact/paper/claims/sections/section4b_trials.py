@@ -50,9 +50,16 @@ def _range(printed: Any, corrected: Any) -> list[Trial]:
         last = place.leading(lambda h, p=place, e=edge: float(p.model.impact_map(p.tau + h, e * h * h).flight_time) / h)
         ends = [number(part, jets) for part in (printed, corrected)]
         found.append(
-            Trial(place.name, "l of the edge that the rays must reach", f"{last:.8g}", f"l <= {ends[0]:.8g}",
-                  f"l <= {ends[1]:.8g}", last <= ends[0], last <= ends[1])
-        )  # fmt: skip
+            Trial(
+                place.name,
+                "l of the edge that the rays must reach",
+                f"{last:.8g}",
+                f"l <= {ends[0]:.8g}",
+                f"l <= {ends[1]:.8g}",
+                last <= ends[0],
+                last <= ends[1],
+            )
+        )
     return found
 
 

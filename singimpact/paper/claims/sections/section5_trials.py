@@ -65,8 +65,14 @@ def _eigenvalue(printed: Any, corrected: Any) -> list[Trial]:
         rate = true_orbits.lambda_of(place.r, 2)
         truth = float(true_orbits.extrapolated([(s, _larger(place, s, v)) for s, v in _on_gamma(place, rate)]))
         stated = [number(part, {"lambda": rate}) for part in (printed, corrected)]
-        found.append(compared(place.name, f"larger eigenvalue of DG at w_*, r = {Fraction(place.r).limit_denominator(99)}",
-                              truth, *stated))  # fmt: skip
+        found.append(
+            compared(
+                place.name,
+                f"larger eigenvalue of DG at w_*, r = {Fraction(place.r).limit_denominator(99)}",
+                truth,
+                *stated,
+            )
+        )
     return found
 
 

@@ -19,8 +19,7 @@ def _separated(stated: tuple[bool, bool]) -> Check:
     parts = []
     for rate in RATES:
         lines = universal_orbits.fates(rate)
-        changes = {line: sum(one != other for one, other in pairwise(found))
-                   for line, found in lines.items()}  # fmt: skip
+        changes = {line: sum(one != other for one, other in pairwise(found)) for line, found in lines.items()}
         below = [found[0] for line, found in lines.items() if changes[line]]
         above = [found[-1] for line, found in lines.items() if changes[line]]
         parts.append(

@@ -108,8 +108,12 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
     found = {}
     for sign in (1, -1):
         cusps = sympy.Poly(pressed.subs({kappa: 1, scaling.e: sign}), s).real_roots()
-        apart = [root for factor, _ in meeting
-                 for root in sympy.Poly(factor.subs({kappa: 1, scaling.e: sign}), s).real_roots() if root not in cusps]  # fmt: skip
+        apart = [
+            root
+            for factor, _ in meeting
+            for root in sympy.Poly(factor.subs({kappa: 1, scaling.e: sign}), s).real_roots()
+            if root not in cusps
+        ]
         found[sign] = (len(cusps), len(apart) // 2)
     doubled = -3 * scaling.e  # s^2 at the crossing, whose other flight is that from -s
     substitution(At(steep, {s: -s}), -steep)
