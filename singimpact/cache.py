@@ -106,7 +106,7 @@ def packed(thing: Any) -> bytes:
 
 
 def unpacked(content: bytes, kinds: Iterable[type]) -> Any:
-    """What was packed; `kinds` are the dataclasses that may occur in it.
+    """The value that was packed; `kinds` are the dataclasses that may occur in it.
 
     Raises
     ------

@@ -28,7 +28,7 @@ DIGEST = 32  # bytes of the digest of a chunk's cases
 
 @dataclass(frozen=True)
 class StoreSettings:
-    """How a Zarr store is cut into files."""
+    """Sizes of the files of a Zarr store."""
 
     bytes: int = 1 << 18  # of a file before compression; it is written anew for each chunk of cases in it, in 2 ms
     rows: int = 1 << 15  # results in a file, at most
@@ -77,7 +77,7 @@ class InMemory:
         return InputError(OTHERS)
 
     def expect(self, count: int | None) -> None:
-        """How many cases there will be, when that is known."""
+        """The number of cases that will come, where it is known."""
 
     def leave(self) -> None:
         """End before all cases are done: what there is can be taken up again."""
@@ -124,7 +124,7 @@ class NpzFile(InMemory):
         return values
 
     def add(self, record: Record, values: Array) -> None:
-        """As of any store, and into the journal."""
+        """The results of some cases, put into the store and into the journal."""
         require_numbers(values)
         if record.start not in self.records:
             super().add(record, values)

@@ -45,7 +45,7 @@ class Journal:
         self._stream: BinaryIO | None = None
 
     def read(self) -> Iterator[tuple[Record, bytes]]:
-        """What is there; an end that was not written whole is cut off."""
+        """The records of the journal; an end that was not written whole is cut off."""
         if not self.path.exists():
             return
         stream = self._opened()

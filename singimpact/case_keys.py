@@ -304,7 +304,7 @@ class _Digest:
             raise self._refused(value, "it reaches what the code does not name")
 
     def _of_library(self, value: Any, rest: Chain, depth: int) -> None:
-        """What an installed package holds under a name: by its own name and version, if it is the package's.
+        """The text of an object of an installed package: its name and version, if it is the package's own.
 
         Numbers, and functions that a program has put in there, count with their values.
         """
@@ -369,7 +369,7 @@ class _Digest:
         self.text("ufunc", value.__name__)
 
     def _wrapper_or_object(self, value: Any, depth: int) -> None:
-        """What holds functions, by these; any other object by the values that pickle would build it from."""
+        """The text of an object: its functions where it holds some, else the values that pickle builds it from."""
         functions: list[Any] | None = None
         if isinstance(value, functools.partial):
             functions = [value.func, value.args, value.keywords]

@@ -1,4 +1,4 @@
-"""What the code of a function names, and which modules are installed packages.
+"""Names in the code of a function, and which modules are installed packages.
 
 Not here: the key of what is named (`case_keys`).
 """

@@ -93,7 +93,7 @@ class FileLock:
             self._descriptor = None
 
     def holder(self) -> str | None:
-        """What the process that holds the lock wrote about itself; None when no living process holds it."""
+        """The text that the process that holds the lock wrote about itself; None when no living process holds it."""
         try:
             descriptor = self._opened(os.O_RDWR)
         except OSError:

@@ -1,4 +1,4 @@
-"""How things show themselves in a notebook: tables as HTML, and a line of progress that is rewritten in its cell."""
+"""Results in a notebook: tables as HTML, and a line of progress that is rewritten in its cell."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class CellLine:
         self._handle: Any = display(HTML(""), display_id=True)
 
     def add_task(self, description: str, total: int | None) -> tuple[str, int | None]:
-        """What is counted."""
+        """Begin a line for a count."""
         return description, total
 
     def start(self) -> None:

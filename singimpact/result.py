@@ -130,7 +130,7 @@ class Results(Result):
     called: ClassVar[str] = "items"
 
     def as_dict(self) -> dict[str, Any]:
-        """What each of them is; whether the list is complete may take a proof, and is not asked here."""
+        """The dictionaries of all items; whether the list is complete may take a proof, and is left out."""
         return {self.called: [item.as_dict() for item in cast("Iterable[Result]", self)]}
 
 

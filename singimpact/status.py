@@ -11,7 +11,7 @@ from singimpact.notebook import table
 
 
 class Status(IntEnum):
-    """What became of a flight, a chatter sequence or an orbit.
+    """The outcome of a flight, a chatter sequence or an orbit.
 
     Notes
     -----

@@ -25,7 +25,7 @@ Box = Mapping[Any, tuple[Any, Any]]
 
 @dataclass(frozen=True)
 class Effort:
-    """How far positive expansions are searched.
+    """Limits of the search for positive expansions.
 
     Parameters
     ----------

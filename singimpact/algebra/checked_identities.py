@@ -15,7 +15,7 @@ ONE = Fraction(1)
 
 
 class Cut(NamedTuple):
-    """What is kept: terms of weighted degree <= order; all of them for None."""
+    """The truncation: terms of weighted degree <= order; all terms for None."""
 
     weights: Sequence[int]
     order: int | None

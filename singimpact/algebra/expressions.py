@@ -16,7 +16,7 @@ FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "atan", "abs")
 
 @dataclass(frozen=True)
 class Folding:
-    """What is computed of rationals.
+    """Limits of the sums and products that are computed as rationals.
 
     Parameters
     ----------
@@ -300,7 +300,7 @@ def names_in(tree: Expression) -> frozenset[str]:
 
 
 class Ring(Protocol):
-    """What `evaluate` needs besides the operators + and * of the values."""
+    """Operations that `evaluate` needs besides + and * of the values."""
 
     def rational(self, value: Fraction) -> Any: ...
     def pi(self) -> Any: ...

@@ -20,7 +20,7 @@ Value = dict[Exponents, Any]
 
 @dataclass(frozen=True)
 class ReadingSettings:
-    """How coefficients are read.
+    """Settings of the reading of coefficients.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def _denominator(residue: int, base: int) -> int:
 
 
 def in_lowest_terms(above: Any, below: Any) -> tuple[Any, Any]:
-    """The same quotient without common factor; the coefficients of the denominator are whole and have none either.
+    """A quotient without common factor; the coefficients of its denominator are whole and have none either.
 
     Examples
     --------

@@ -28,7 +28,7 @@ Place = tuple[Any, ...]
 
 @dataclass(frozen=True)
 class BoxSettings:
-    """How boxes are cut.
+    """Settings of the subdivision of boxes.
 
     Parameters
     ----------

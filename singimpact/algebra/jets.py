@@ -46,7 +46,7 @@ class JetSpace:
 
     @kept_property
     def polynomials(self) -> Any:
-        """What the parts of a jet are made of."""
+        """The ring of the terms of a jet."""
         own = getattr(self.ring, "polynomials", None)
         return own(self.variables) if own is not None else SparsePolynomials(self.variables, self.ring)
 
@@ -83,7 +83,7 @@ class JetSpace:
         return tuple(self.of_parts({weight: poly}) for weight, poly in made)
 
     def to_order(self, order: int) -> JetSpace:
-        """The same space cut at another order."""
+        """A space of the same variables, cut at another order."""
         return self if order == self.order else JetSpace(self.variables, order, self.ring, self.weights)
 
     def evaluate(self, tree: Expression, values: Mapping[str, Jet]) -> Jet:

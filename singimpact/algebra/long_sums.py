@@ -232,13 +232,13 @@ class LongSum(sympy.Add):
 
     @classmethod
     def of(cls, total: Any) -> Any:
-        """The same sum; what is no sum is returned as it is."""
+        """A sum as one of these objects; anything else is returned unchanged."""
         made: Any = cls._from_args
         return made(total.args, is_commutative=True) if type(total) is sympy.Add else total
 
     @property
     def func(self) -> Any:
-        """What sympy builds from changed terms."""
+        """The function from which sympy builds a sum of changed terms."""
         return sympy.Add
 
     def __eq__(self, other: object) -> Any:

@@ -35,7 +35,7 @@ from singimpact.inputs import InputError, meant, shown
 
 @dataclass(frozen=True)
 class Limits:
-    """How much an expression may ask for; a model of mechanics stays far below each of these.
+    """Limits of an expression; a model of mechanics stays far below each of them.
 
     Parameters
     ----------

@@ -87,7 +87,7 @@ def digits_at(digits: int) -> Precision:
 
 
 def bits_at(bits: int) -> Precision:
-    """As `digits_at`, with a precision in bits."""
+    """A context with a precision in bits, as `digits_at` has one in digits."""
     return Precision(_own_context(), "prec", bits)
 
 
@@ -112,7 +112,7 @@ class series_of_any_length:
 
 
 def for_user(value: Any) -> Any:
-    """The same number in `mpmath.mp`, with all its bits."""
+    """A number as one of `mpmath.mp`, with all its bits."""
     import mpmath
 
     if hasattr(value, "_mpc_"):

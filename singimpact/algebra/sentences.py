@@ -1,4 +1,4 @@
-"""What a certificate says, as a sentence made from its data alone: what a reader sees is what was checked."""
+"""Sentences of certificates, made from their data alone: a reader sees what was checked."""
 
 from __future__ import annotations
 

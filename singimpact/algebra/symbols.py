@@ -67,7 +67,7 @@ class SymbolRing:
         raise ArithmeticError(f"{function}({argument}) is not a polynomial")
 
     def letters(self) -> list[Any]:
-        """What sympy shows for the names."""
+        """Names -> the symbols that sympy shows for them."""
         import sympy
 
         return [sympy.Symbol(name) for name in self.names]

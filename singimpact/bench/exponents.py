@@ -1,4 +1,4 @@
-"""How cost grows: the exponent of a power law through measured times, with its standard error."""
+"""Growth of cost: the exponent of a power law through measured times, with its standard error."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class NotInstalled(InputError):
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is measured.
+    """Numbers of cases, rounds and seconds of a measurement.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, fresh=1, states=4, j
 
 @dataclass(frozen=True)
 class Judged:
-    """How answers are compared.
+    """Settings of the comparison of answers with the truth.
 
     Parameters
     ----------
@@ -264,7 +264,7 @@ def measure(group: str, case: Case, effort: Effort) -> list[Row]:
 
 
 def _rounds(method: Method, fresh: bool, effort: Effort) -> int:
-    """How often a method is timed after the first round; not at all where that one is what is asked."""
+    """The number of rounds after the first; 0 where the first one is the measurement."""
     if method.first or (fresh and effort.fresh == 1):
         return 0
     return min(effort.fresh, effort.rounds) if fresh else effort.rounds

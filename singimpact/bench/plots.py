@@ -20,7 +20,7 @@ STYLES = ("solid", DASHES, DASH_DOT, DOTS)
 
 @dataclass(frozen=True)
 class Sheet:
-    """How a page of panels looks.
+    """Sizes of a page of panels.
 
     Parameters
     ----------

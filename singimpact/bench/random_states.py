@@ -26,7 +26,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class Draw:
-    """How states are drawn.
+    """Settings of the random states.
 
     Parameters
     ----------

@@ -81,7 +81,7 @@ def _aim(row: Row) -> str:
 
 
 def reached(found: Measured) -> str:
-    """How many aims are reached, and the rows that miss theirs; empty without aims."""
+    """The number of aims that are reached, and the rows that miss theirs; empty without aims."""
     aimed = [row for row in found.rows if row.reached is not None]
     if not aimed:
         return ""

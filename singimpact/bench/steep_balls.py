@@ -129,7 +129,7 @@ def _off(found: float | str, ball: Any) -> float:
 
 @dataclass(frozen=True)
 class Estimate:
-    """How an estimate of the error compares: states, how often it is below the true error, median of their ratio."""
+    """An estimate of the error beside the true error: states, how often it is smaller, median of the ratio."""
 
     states: int
     below: int

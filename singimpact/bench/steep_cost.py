@@ -18,7 +18,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class CostSettings:
-    """How much is flown for a figure.
+    """The number of flights behind a figure.
 
     Parameters
     ----------

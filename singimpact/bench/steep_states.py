@@ -29,7 +29,7 @@ Generator = np.random.Generator
 
 @dataclass(frozen=True)
 class DrawSettings:
-    """How states are drawn, and when a flight time is wrong.
+    """Settings of the random states, and the limit at which a flight time is wrong.
 
     Parameters
     ----------

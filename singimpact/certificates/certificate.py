@@ -41,7 +41,7 @@ LOST, LOOSE = 6, 1000
 
 @dataclass(frozen=True)
 class Certificate:
-    """What is certified, as text that the second program reads.
+    """A certified result as text that the second program reads.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ def _sealed(statement: str, model: Oscillator, numbers: dict[str, Any]) -> Certi
 
 
 def _of_orbit(orbit: EnclosedOrbit) -> dict[str, Any]:
-    """What is said of a periodic orbit, as text."""
+    """The statement of a certificate of a periodic orbit, as text."""
     assert orbit.oscillator is not None
     states = [
         {"tau": _narrow(tau).as_dict(), "v": _narrow(v).as_dict()} for tau, v in zip(orbit.tau, orbit.v, strict=True)
@@ -207,7 +207,7 @@ def _of_border(orbit: BorderOrbit) -> Certificate:
 
 
 def _of_horseshoe(found: Horseshoe) -> dict[str, Any]:
-    """What is said of a horseshoe, as text."""
+    """The statement of a certificate of a horseshoe, as text."""
     sets = [{"centre": [str(x) for x in each.centre], "frame": [[str(x) for x in row] for row in each.frame],
              "radii": [str(x) for x in each.radii]} for each in found.sets]  # fmt: skip
     return {"period": str(found.oscillator.period), "loops": [str(n) for n in found.loops], "sets": sets,
@@ -215,7 +215,7 @@ def _of_horseshoe(found: Horseshoe) -> dict[str, Any]:
 
 
 def _of_gamma(found: CertifiedGamma) -> dict[str, Any]:
-    """What is said of gamma, as text; bounds leave room for another evaluation of the same lemmas."""
+    """The statement of a certificate of gamma, as text; bounds leave room for another evaluation of the same lemmas."""
     loose = FREER if found.fastest else LOOSER
     boxes = [{"lambda": [str(box.low), str(box.high)], "N": str(box.settings.N), "D": str(box.settings.D),
               "pieces": str(box.settings.pieces), "eta": f"{float(box.eta):.6g}", "M": f"{float(box.M):.6g}",

@@ -149,7 +149,7 @@ def check(told: Any, below: Mapping[str, Mapping[str, Any]] | None = None) -> in
 
 
 def read(path: Path) -> Any:
-    """What a file says; without numbers that are too long, and names that occur twice."""
+    """The content of a file, without numbers that are too long and names that occur twice."""
 
     def whole(text: str) -> int:
         need(len(text) < DIGITS, "a number that is too long")
@@ -177,7 +177,7 @@ class Folder:
         self.answers: dict[Path, tuple[Any, int] | Refused] = {}
 
     def held(self, path: Path, above: tuple[Path, ...] = ()) -> tuple[Any, int]:
-        """What a file says, and the number of its certificates."""
+        """The content of a file, and the number of its certificates."""
         if path not in self.answers:
             try:
                 with answered():

@@ -98,7 +98,7 @@ class Letters:
         return {tuple(map(int, key)): value for key, value in poly.to_dict().items()}
 
     def with_degree(self, poly: Any, weights: Sequence[int], order: int | None) -> Any:
-        """What is left of a polynomial up to a weighted degree."""
+        """A polynomial cut at a weighted degree."""
         if order is None:
             return poly
         degrees = {key: sum(n * w for n, w in zip(key, weights, strict=True)) for key in self.terms(poly)}
@@ -209,7 +209,7 @@ def place_of(at: str) -> tuple[int, Fraction]:
 
 
 def sign_part(letters: Letters, poly: Any, index: int, at: str) -> Any:
-    """What has the sign of a polynomial at a place of one variable: its value, or its leading coefficient, signed."""
+    """A polynomial that has the sign at a place of one variable: its value, or its leading coefficient, signed."""
     if at not in ENDS:
         return letters.at(poly, index, number(at))
     top = letters.degree(poly, index)

@@ -23,7 +23,7 @@ def columns(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """The same as a table of Markdown.
+    """Rows of cells as a table of Markdown.
 
     Examples
     --------

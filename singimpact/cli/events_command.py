@@ -117,7 +117,7 @@ def choose(branches: list[Branch], kinds: tuple[str, ...], index: int | None) ->
 
 
 def _with_impact(event: Event, free: Branch) -> Event:
-    """The same graze on the branch of orbits with the impact that begins there."""
+    """A graze of orbits without impact, on the branch of orbits with the impact that begins there."""
     from singimpact.branches.branch import branch
 
     ends = float(free.parameter.min()), float(free.parameter.max())

@@ -23,7 +23,7 @@ TIMES = ("seconds", "true_seconds")
 
 @dataclass(frozen=True)
 class SteepStates:
-    """What is printed, as data and as text, and whether anything is wrong."""
+    """The output, as data and as text, and whether a flight is wrong."""
 
     data: dict[str, Any]
     text: str

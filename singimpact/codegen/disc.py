@@ -72,7 +72,7 @@ class DiscWriter:
         return self.known[tree]
 
     def _rounded(self, tree: Expression) -> str:
-        """What the rounding of a part is relative to: its value, and the constant that it adds."""
+        """The sizes to which the rounding error of a part is relative: its value, and the constant that it adds."""
         steady = [term for term in tree.terms if not moves(term)] if isinstance(tree, Sum) else []
         constants = [f"abs({self.constant(add(number(0), *steady))})"] if steady else []
         return " + ".join([f"abs({self.centre(tree)})", *constants]).join("()")

@@ -102,7 +102,7 @@ WITHOUT_EFFECT = {"NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "NUMBA_NUM_THREADS", "
 
 
 def processor() -> str:
-    """What object code depends on beside its sources."""
+    """The processor and its features, on which object code depends beside its sources."""
     import os
     from importlib.metadata import version
 

@@ -1,4 +1,4 @@
-"""How far a function can move on a disc, as kernel text: plain arithmetic for doubles and mpf alike.
+"""Bounds of a function's variation on a disc, as kernel text: plain arithmetic for doubles and mpf alike.
 
 `quotient` and `real_power` are what the recurrence itself divides and raises by.  Each other function bounds
 |phi(w') - phi(w)| over all complex w' with |w' - w| <= r, for a real centre w.  It is inf where the disc may meet a

@@ -27,7 +27,7 @@ class Factored:
 
 @dataclass(frozen=True)
 class Unit:
-    """What lengths are measured in.
+    """The unit of length.
 
     Attributes
     ----------

@@ -73,7 +73,7 @@ class Recurrence:
 
     @property
     def price(self) -> float:
-        """What a Taylor step takes, in such sums, of 10 to 25 us in Python; a row without a sum is a tenth of one."""
+        """The cost of a Taylor step, in such sums, of 10 to 25 us in Python; a row without a sum is a tenth of one."""
         return max(self.sums + self.rows / 10, 1.0)
 
 

@@ -39,7 +39,7 @@ from singimpact.oscillator.model import Oscillator
 
 @dataclass(frozen=True)
 class ZeroSettings:
-    """How zeros of a_c are told apart.
+    """Settings of the isolation of zeros of a_c.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ _STACKED = re.compile(r"\\[dt]?frac\s*")
 
 @dataclass(frozen=True)
 class Page:
-    """How much formula fits a line of the template (16 cm at 11 pt), in widths of a digit (5.5 pt)."""
+    """The width of a line of the template (16 cm at 11 pt), in widths of a digit (5.5 pt)."""
 
     line: float = 68.0  # measured: the widest line that the template sets without an overfull box is 76
     indent: float = 4.0

@@ -16,7 +16,7 @@ from singimpact.inputs import InputError
 
 @dataclass(frozen=True)
 class CompileSettings:
-    """How long a document may take."""
+    """The time limit of a document."""
 
     seconds: float = 300.0  # a section of twenty pages takes 3 s; the rest is a first run that builds fonts
 

@@ -1,4 +1,4 @@
-"""What a derivation is: a section is steps in order; a step is words, perhaps an equation, and the claims it shows."""
+"""Derivations: a section is a list of steps; a step is words, perhaps an equation, and the claims that it shows."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Mark:
-    """What stands beside an equation for one claim.
+    """The mark beside an equation for one claim.
 
     Attributes
     ----------

@@ -86,7 +86,7 @@ def _stacked(words: str, width: int = 30) -> str:
 
 
 def notes(step: Step, marks: Marks) -> list[tuple[str, str, str]]:
-    """What is said below an equation: (claim, verdict, printed), without what already stands beside it."""
+    """Notes below an equation, (claim, verdict, printed), without those that already stand beside it."""
     own = [("", "", marks[claim].printed) for claim in step.claims if claim == step.label and marks[claim].printed]
     others = [(claim, marks[claim].text, marks[claim].printed) for claim in step.claims if claim != step.label]
     return own + sorted(others, key=lambda note: bool(note[2]))

@@ -142,7 +142,7 @@ class Oscillator:
         return found is None or found.whole
 
     def replace(self, **changes: Any) -> Self:
-        """The same model with some fields changed; a parameter is changed by its own name.
+        """A model with some fields changed; a parameter is changed by its own name.
 
         Examples
         --------

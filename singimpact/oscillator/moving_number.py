@@ -15,7 +15,7 @@ LINEAR = {"amplitude": 1, "damping": 0, "stiffness": 1, "phase": 0}
 
 
 def with_number(osc: Oscillator, name: str) -> Oscillator:
-    """The same model with a number among its fields and parameters.
+    """A model that has a number among its fields and parameters.
 
     Parameters
     ----------

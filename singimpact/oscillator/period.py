@@ -94,7 +94,7 @@ def period_of(forcing: Expression) -> Expression | None:
 
 
 def common_period(forcing: Expression) -> Expression | None:
-    """The same up to its sign, where rates may hold letters.
+    """A common period up to its sign, where rates may hold letters.
 
     Examples
     --------

@@ -120,7 +120,7 @@ def _extent(text: Any) -> Array:
 
 
 def _reach(half: Array, offset: Array) -> float:
-    """How far the box of a name reaches from its middle back towards the point."""
+    """The reach of the box of a name from its middle back towards the point."""
     direction = np.abs(offset) / np.hypot(*offset)
     with np.errstate(divide="ignore"):
         return float(np.min(half / direction))
@@ -153,7 +153,7 @@ def _offset(point: Array, half: Array, obstacles: Array, taken: list[Array], spa
 
 
 def _between(point: Array, direction: Array, ends: tuple[float, float], obstacles: Array, clear: float) -> int:
-    """How many obstacles lie on the straight line from a point to its name, from one distance to another."""
+    """The number of obstacles on the straight line from a point to its name, from one distance to another."""
     along = (obstacles - point) @ direction
     aside = (obstacles - point) @ np.array([-direction[1], direction[0]])
     return int(((along > ends[0]) & (along < ends[1]) & (np.abs(aside) < clear)).sum())

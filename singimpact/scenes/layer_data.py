@@ -27,7 +27,7 @@ STORED = ("lines", "visible", "shadow", "gamma", "stable-manifolds", "foliation"
 
 
 class Shown(Protocol):
-    """What is read of a scene."""
+    """The fields of a scene that its layers read."""
 
     @property
     def model(self) -> Oscillator: ...

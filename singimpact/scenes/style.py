@@ -1,4 +1,4 @@
-"""How curves look: Okabe and Ito's colours, and line styles and widths that tell them apart without colour."""
+"""Styles of curves: Okabe and Ito's colours, and line styles and widths that tell them apart without colour."""
 
 from __future__ import annotations
 

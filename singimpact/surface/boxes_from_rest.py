@@ -66,7 +66,7 @@ class Tangencies:
         return self._push({"t": tau, self.over: number})
 
     def lean(self, tau: Any, number: Any) -> Lean | None:
-        """How members with a_c = 0 deviate from the middle of a box; None where there is none."""
+        """Deviations of members with a_c = 0 from the middle of a box; None where there is none."""
         middle = centre(tau), centre(number)
         deviations = tau - middle[0], number - middle[1]
         at_middle = self.push(*middle)[0]

@@ -27,7 +27,7 @@ from singimpact.surface.swan_families import MARGIN
 
 @dataclass(frozen=True)
 class TouchSettings:
-    """How boxes are flown and cut.
+    """Settings of the flights over boxes and of their subdivision.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ class _Search:
         return IsolatedZeros(tuple(found), tuple(undecided), count)
 
     def _size(self, window: Box) -> Fraction:
-        """What the number counts as much as a period: along a_c = 0 boxes are then about as long in both directions."""
+        """The change of the number that weighs as much as a period: boxes along a_c = 0 are about as long both ways."""
         with balls_at(self.balls.bits):
             _, by_tau, by_value = map(upper, self.of.push(*(self.balls.interval(*ends) for ends in window)))
             ratio = by_tau / by_value

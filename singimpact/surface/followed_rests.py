@@ -78,7 +78,7 @@ class FollowedRests:
         self.share = np.linspace(-1 / GRID_OF.columns, 1 + 1 / GRID_OF.columns, GRID_OF.columns + 3)
 
     def met(self, wanted: Collection[str]) -> list[Rests]:
-        """Those of "tacnode", "triple point" and "periodic graze" that are asked for."""
+        """Events of the kinds "tacnode", "triple point" and "periodic graze" that are wanted."""
         found = list[Rests]()
         if len(self.values) < 2:
             return found

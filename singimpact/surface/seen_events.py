@@ -28,7 +28,7 @@ Launch = tuple[float, float] | None
 
 @dataclass(frozen=True)
 class SightSettings:
-    """How a flight is looked at.
+    """Settings of the search for the visible part of a flight.
 
     flat : a_c or a_c' below this, of the largest a_c, is zero: rests are known to 1e-12. step : of the flight in time.
     aside : of a rest, where x - c is too flat to be compared. near : of x - c, below which a minimum is one more rest.

@@ -61,7 +61,7 @@ class Transition(Result):
 
     @property
     def event(self) -> str:
-        """What the flight does, without what P looks like.
+        """The event of the flight alone, whatever P looks like.
 
         "swan", "swallowtail", "tangency first" (the first of two rests is a tangency point), "tangency last", "tangency
         to tangency", "tacnode", "triple point", "periodic graze".

@@ -77,7 +77,7 @@ class Transitions(Results, tuple[Transition, ...]):
     _proof: Callable[[Transitions], tuple[str, ...]] | None = None
 
     def as_dict(self) -> dict[str, Any]:
-        """What each of them is, whether a swan may be missing, and why."""
+        """The dictionaries of all transitions, whether a swan may be missing, and why."""
         return super().as_dict() | {"swans_complete": self.swans_complete, "notes": list(self.notes)}
 
     @property
@@ -97,7 +97,7 @@ class Transitions(Results, tuple[Transition, ...]):
 
     @property
     def visible(self) -> tuple[Transition, ...]:
-        """Those at which first hits change."""
+        """The transitions at which first hits change."""
         return tuple(each for each in self if each.visible)
 
 

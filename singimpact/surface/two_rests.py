@@ -49,7 +49,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GridSettings:
-    """How events are met.
+    """Settings of the grid on which events are met.
 
     step : of the times s and d. least : d from which on two rests are told apart; nearer ones begin at a positive swan.
     start : of the grid, off 0, where models have symmetries. settled : Newton's last step. most : of its steps.

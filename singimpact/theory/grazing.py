@@ -199,7 +199,7 @@ def _weight(name: str) -> int:
 
 @lru_cache(maxsize=16)
 def _generic(j: int, order: int) -> GrazingMap:
-    """With symbols for the jets and r: lengths are first measured so that a_j/j! = 1."""
+    """The map with symbols for the jets and r: lengths are first measured so that a_j/j! = 1."""
     import sympy
 
     from singimpact.algebra.interpolation import RationalCoefficients

@@ -126,7 +126,7 @@ class _Solver:
         self._extend(0, self.zero)
 
     def _shift(self, i: int, k: int) -> int:
-        """How many levels X^i X'^k lies above a_j."""
+        """The number of levels by which X^i X'^k lies above a_j."""
         return i * (self.j + 2) + k * (self.j + 1) - self.j
 
     def _tangent(self) -> None:
@@ -260,7 +260,7 @@ class _Solver:
         self.impact[level] = self.impact[level] + self.impact_tangent * tau
 
     def curve(self) -> InvariantCurve:
-        """What was found, in the ring's own elements."""
+        """The curve in the ring's own elements."""
         element, j = self.polys.element, self.j
         return InvariantCurve(
             contact=self.contact,

@@ -14,7 +14,7 @@ from singimpact.inputs import InputError, refuse
 
 @dataclass(frozen=True)
 class TrustSettings:
-    """How `valid_within` estimates the terms beyond those that are computed.
+    """Settings of the estimate of terms beyond those that are computed, which `valid_within` uses.
 
     root : part of the radius estimated from the last terms that is used; 0.7 holds on the reference models with margin.
     further : terms beyond the last one that are computed for the judgement; enough to see past zeros by parity.

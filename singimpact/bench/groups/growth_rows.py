@@ -109,7 +109,7 @@ def _line(name: str, sizes: Sequence[int], run: Callable[[int], Any]) -> list[Me
 
 
 def _first(name: str, sizes: Sequence[int], run: Callable[[int], Any]) -> list[Method]:
-    """The same, timed once, for what a public function has computed it keeps; `run` gives the number of terms."""
+    """A method that is timed once, because a public function stores its results; `run` gives the number of terms."""
     return [Method(name, str(n), partial(_counted, run, n), n, first=True, counts=True) for n in sizes]
 
 

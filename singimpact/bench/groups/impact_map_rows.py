@@ -27,7 +27,7 @@ FASTER = Aim(times=4.0)
 
 @dataclass(frozen=True)
 class Sizes:
-    """How many states a timed run has.
+    """Numbers of states of a timed run.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Sizes:
 
 
 def sizes_of(effort: Effort) -> Sizes:
-    """Those of an effort."""
+    """The numbers of states of an effort."""
     judged = {"linear": effort.judged, "duffing": max(effort.judged // 10, 1)}
     if effort.quick:
         return Sizes(50 * effort.judged, 250 * effort.judged, 5 * effort.judged, 5, judged)
@@ -61,7 +61,7 @@ class Calls:
 
     @property
     def name(self) -> str:
-        """As the table shows the case."""
+        """The name of the case in the table."""
         return f"{'Duffing' if self.family == 'duffing' else self.family}, {self.kind}"
 
 
@@ -162,7 +162,7 @@ def _coarse(tolerance: float, states: States) -> Any:
 def _beside(
     own: Sequence[Method], family: str, states: tuple[Callable[[int], Any], Sizes], aim: Aim
 ) -> tuple[list[Method], list[str]]:
-    """With the peers, a state a flight."""
+    """Methods of the peers, which fly one state after another."""
     return with_peers(
         own,
         lambda: [flown_by(HEYOKA, taylor_stepper(family), (states[0], states[1].heyoka), aim)],

@@ -135,7 +135,7 @@ def _asked_of_orbits(effort: Effort) -> Iterator[Case]:
 
 
 def _sampled(count: int, states: States) -> Counted:
-    """With the orbit, which is flown first."""
+    """Samples of an orbit, which is computed first."""
     orbit = states.osc.orbit(float(states.tau[0]), float(states.v[0]), 1000)
     found = orbit.sample(np.linspace(orbit.tau[0], orbit.tau[-1], count))
     return Counted(count, found.x[:1].tolist())

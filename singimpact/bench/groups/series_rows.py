@@ -97,7 +97,7 @@ class Task:
         return cost(f"made = {self.made}", self.before + AT, self.judged)
 
     def timed(self) -> Timed:
-        """As a method runs it."""
+        """The call that a method times."""
         found = self.cost()
         return Timed(found.seconds, found.answer)
 

@@ -26,7 +26,7 @@ UNSETTLED = ("chaotic", "not decided")
 
 @dataclass(frozen=True)
 class PixelSettings:
-    """How many pixels, and when one is decided."""
+    """The number of pixels, and the limit at which one is decided."""
 
     size: int = 8  # pixels a side
     followed: int = 16  # of them

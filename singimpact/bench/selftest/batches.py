@@ -27,7 +27,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class BatchSettings:
-    """How many states, and what may differ."""
+    """The number of states, and the tolerances of their comparison."""
 
     states: int = 197  # three batches of 64 and five states more
     impacts: tuple[int, ...] = (1, 3)

@@ -139,7 +139,7 @@ class Follower:
         return later if later and later[0] < n and later[0] * k == n * later[1] else closed
 
     def last(self, fate: Fate) -> Fate:
-        """What comes for ever: after a chatter that completes the mass rests and lifts off, again and again."""
+        """The motion for ever: after a chatter that completes the mass rests and lifts off, again and again."""
         if fate.kind != "chatter":
             return fate
         place = self.plain.next_lift_off(fate.tau)

@@ -24,7 +24,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class OrbitSettings:
-    """How many orbits and chatter sequences, and what they may differ by."""
+    """The number of orbits and chatter sequences, and the tolerances of their comparison."""
 
     orbits: int = 6
     slow_orbits: int = 4  # beside those of the fastest states: slow ones where a_c < 0, which chatter
@@ -151,7 +151,7 @@ def _lift_off(plain: PlainOrbits, rest: float, lifted: float, state: str, tally:
 def _last(
     plain: PlainOrbits, phase: tuple[str, float, float], last: tuple[float, float], state: str, tally: Tally
 ) -> None:
-    """What follows the last event: no impact, or rest for ever."""
+    """The motion after the last event: no impact, or rest for ever."""
     if phase[0] == "no_return":
         hit = plain.impact(*last) if last[1] > 0 else plain.lifted(last[0])
         if hit.status == UNDECIDED:

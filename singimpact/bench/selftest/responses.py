@@ -22,7 +22,7 @@ DERIVATIVE, REBOUND = "D G against differences", "rebound"
 
 @dataclass(frozen=True)
 class ResponseSettings:
-    """How many states, and what may differ."""
+    """The number of states, and the tolerances of their comparison."""
 
     states: int = 100
     # of an entry, relative to its natural size, beside the error of the differences

@@ -22,7 +22,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class RoundTripSettings:
-    """What a launch may differ by.
+    """Tolerances of a launch that was flown forward and back.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def _other_branch(velocity: float, before: float, trip: bool) -> bool:
 
 
 def allowed(flown: Flown, places: Array) -> tuple[tuple[Array, Array], bool]:
-    """How far tau and v may be off after a flight forward and back, and whether rho is an expression.
+    """Tolerances of tau and v after a flight forward and back, and whether rho is an expression.
 
     Notes
     -----

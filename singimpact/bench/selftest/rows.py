@@ -141,12 +141,12 @@ class SelfTest:
 
     @property
     def wrong(self) -> int:
-        """How many states or points are wrong; 0 where nothing is."""
+        """The number of states or points that are wrong; 0 where none is."""
         return sum(row.wrong for row in self.rows)
 
     @property
     def undecided(self) -> int:
-        """How many states or points were not decided."""
+        """The number of states or points that were not decided."""
         return sum(row.undecided for row in self.rows)
 
     def as_data(self) -> dict[str, Any]:

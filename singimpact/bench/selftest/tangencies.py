@@ -23,7 +23,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GridSettings:
-    """How finely the phases are looked at.
+    """Settings of the grid of phases.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ ENDED = (Status.no_return, Status.escaped)
 
 @dataclass(frozen=True)
 class TruthSettings:
-    """How many states, and when a flight is wrong.
+    """The number of states, and the limit at which a flight is wrong.
 
     Parameters
     ----------

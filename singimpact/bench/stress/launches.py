@@ -205,7 +205,7 @@ PLACES: dict[str, Launches] = {
 
 
 def both(place: str, points: int) -> Iterator[Launch]:
-    """Those of the linear or steep oscillators, then a third as many of the cubic one, whose truth takes fifty times
+    """Launches of linear or steep oscillators, then a third as many of the cubic one, whose truth takes fifty times
     longer.
     """
     yield from PLACES[place]("linear", points)

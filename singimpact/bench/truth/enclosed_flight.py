@@ -24,7 +24,7 @@ from singimpact.oscillator.model import Oscillator
 
 @dataclass(frozen=True)
 class EnclosureSettings:
-    """How flights are enclosed.
+    """Precision, degree and limits of the enclosures of flights.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ KERNEL = ("added", "rate", "side", "increments", "bracketed_root", "flown")
 
 @dataclass(frozen=True)
 class FinenessSettings:
-    """How finely flights are flown before they count.
+    """Sizes of the steps, and how well two flights have to agree.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def added(total: float, lost: float, term: float) -> tuple[float, float]:
 
 
 def rate(layers: Array, t: float, x: float, u: float, e: float) -> float:
-    """How fast the motion changes: 2 for a smooth one, and the speed towards each layer over the distance to it."""
+    """The rate of the motion: 2 for a smooth one, plus the speed towards each layer over the distance to it."""
     total: float = 2 + abs(e) / (1 + abs(u))
     for row in range(len(layers)):
         kind, centre, width, stiffness, spacing = layers[row]

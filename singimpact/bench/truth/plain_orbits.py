@@ -24,7 +24,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class PlainOrbitSettings:
-    """How orbits are followed."""
+    """Settings of the orbits by fixed steps."""
 
     # of the first of the flights that must agree; at 0.2 the velocities of a friction of steepness 50 are off by 2e-10
     first: float = 0.1

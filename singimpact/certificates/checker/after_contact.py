@@ -1,4 +1,4 @@
-"""What comes after a contact point: contact is lost, or, at a swan, chatter completes.
+"""The motion after a contact point: contact is lost, or, at a swan, chatter completes.
 
 Where a_c > 0 the motion y is convex in s, so it meets the wall at most once more.  After a negative swan |A| increases
 with s up to some place.  There each flight is at most r times as long as the one before: from sigma to e it lands with

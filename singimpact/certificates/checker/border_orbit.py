@@ -25,7 +25,7 @@ SIDES = {"above": [PASSES, COMPLETES], "below": [COMPLETES, PASSES]}
 
 
 def border_orbit(_model: Model, told: dict[str, Any], bits: int) -> None:
-    """That a border orbit exists for a value of the number within the radius, with chatter on the side that is told."""
+    """Check that a border orbit exists within the radius of the number, and on which side chatter completes."""
     value, radius = (Fraction(told["parameter"][part]) for part in ("value", "radius"))
     came_back(Model(told["model"], told["over"], read(told["parameter"])), told, bits)
     ends = [fate(Model(told["model"], told["over"], ball(end)), told, bits) for end in (value - radius, value + radius)]
@@ -77,7 +77,7 @@ def require_pressing(model: Model, tau: Any, end: Any) -> None:
 
 
 def fate(model: Model, told: dict[str, Any], bits: int) -> str:
-    """What the orbit of one value does before the later zero."""
+    """The fate of the orbit of one value before the later zero."""
     (tau, v, end), r = came_back(model, told, bits), model.ratio()
     for _ in range(IMPACTS):
         left = rest(model, tau, v, model.push(tau, v * 0), r)

@@ -19,7 +19,7 @@ IMPACTS = 200_000  # at most
 
 
 def chatter_limit(model: Model, told: dict[str, Any], bits: int) -> None:
-    """That the impacts from the launch accumulate at tau; or that a_c > 0 first at the impact at tau."""
+    """Check that the impacts from the launch accumulate at tau, or that a_c > 0 first at the impact at tau."""
     (tau, v), written = launched(told, moving=True), read(told["tau"])
     r = model.ratio()
     for count in range(IMPACTS):

@@ -32,7 +32,7 @@ ROUNDS = 12  # of Newton's method and of secants
 
 
 def event(model: Model, told: dict[str, Any], bits: int) -> None:
-    """That an event with its number and an orbit within the radii exists."""
+    """Check that an event exists whose number and orbit lie within the radii."""
     kind, over, touches = told["kind"], told["over"], told["kind"] in TOUCHING
     others = {name: text for name, text in model.g.parameters.items() if name != over}
     free = len(others) < len(model.g.parameters) and over not in model.c.names()
@@ -60,7 +60,7 @@ class Curve:
         self.orbits, self.kind, self.bits = orbits, kind, orbits.bits
 
     def test(self, slopes: list[Any]) -> Any:
-        """What vanishes at the event."""
+        """The function that vanishes at the event."""
         total = return_map(slopes)
         trace, determinant = total[0, 0] + total[1, 1], total.det()
         complex_ = self.kind != "torus" or trace * trace < 4 * determinant
@@ -102,7 +102,7 @@ class Curve:
         return image
 
     def sign(self, point: list[Any], radius: Any) -> int:
-        """That of the test of the one orbit in a box; 0 : not shown.  Krawczyk's operator narrows the box round it."""
+        """The sign of the test of the one orbit in a box; 0 : not shown.  Krawczyk's operator narrows the box."""
         box = [x if k == self.orbits.held else x + within(radius) for k, x in enumerate(point)]
         while True:
             centre = [arb(x.mid()) for x in box]

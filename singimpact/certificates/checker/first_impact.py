@@ -11,7 +11,7 @@ PARTS = ("flight_time", "velocity", "tau", "v")
 
 
 def first_impact(model: Model, told: dict[str, Any], bits: int) -> None:
-    """That the motion from the launch meets the wall first where and as fast as it is written."""
+    """Check that the motion from the launch meets the wall first where and as fast as it is written."""
     tau, v = launched(told)
     time, velocity, _ = Flight(model, tau, v, bits).first_hit()
     found = zip(PARTS, (time, velocity, tau + time, model.rebound(velocity)), strict=True)

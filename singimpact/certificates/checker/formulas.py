@@ -18,7 +18,7 @@ class Refused(Exception):
 
 
 class Wrong(Refused):
-    """One that more digits do not help."""
+    """A certificate is refused for a reason that more digits do not remove."""
 
 
 def need(name: str, holds: Any, why: str, error: type[Refused] = Wrong) -> None:
@@ -43,7 +43,7 @@ class Clock:
 
     @classmethod
     def stop(cls) -> None:
-        """What this process computes after a certificate has no limit."""
+        """End the limit on the CPU time of this process."""
         cls.seconds = cls.end = float("inf")
 
     @classmethod

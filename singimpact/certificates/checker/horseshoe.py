@@ -59,7 +59,7 @@ def column(parts: Any) -> Any:
 
 
 def horseshoe(model: Model, told: dict[str, Any], bits: int) -> None:
-    """That the sets are crossed as the loops say, and that the entropy is what they give."""
+    """Check that the sets are crossed as the loops say, and that the entropy follows from them."""
     require_period(model.g, told["period"])
     period = Formula(told["period"], model.g.parameters)()
     (short, long), (home, *way) = map(int, told["loops"]), map(Set, told["sets"])

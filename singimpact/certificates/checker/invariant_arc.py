@@ -1,4 +1,4 @@
-"""That gamma exists before a contact point, is the only invariant arc there, and decides the fate of every launch.
+"""Check that gamma exists before a contact point, is the only invariant arc there, and decides every launch's fate.
 
 Launches (S, l), 0 < S <= s0: see `gravity`, and `nonlinear` for a certificate that names the fastest launch.
 L(S) = lambda + L_1 S + ... annuls E(S) = l^(j+1) (1-L(lS)) W(lS, L(lS)) - r (1-l) U(S, l), l = L(S), below order N, so
@@ -269,7 +269,7 @@ def lowest(parts: Any) -> Any:
 
 
 def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:  # noqa: ARG001
-    """That gamma is as the certificate says, for the r of the model or for all r of an interval."""
+    """Check that gamma is as the certificate says, for the r of the model or for all r of an interval."""
     j, reach = int(told["order"]), ball(Fraction(told["reach"]))
     tau = contact(model, told["tau"], j)
     o = Flights(model, tau, j, reach) if "fastest" in told else Gravity(model, tau, j, reach)

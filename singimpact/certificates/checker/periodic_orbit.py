@@ -113,7 +113,7 @@ def require_shortest(point: list[Any], radii: list[Any], span: Any, periods: int
 
 
 def periodic_orbit(model: Model, told: dict[str, Any], bits: int) -> None:
-    """That one orbit has its states in the balls that are written, and no other is near; and its multipliers."""
+    """Check that one orbit has its states in the balls that are written, that no other is near, and its multipliers."""
     states, k = told["states"], int(told["periods"])
     require_period(model.g, told["period"])
     numbers = [state[name] for state in states for name in ("tau", "v")]

@@ -1,4 +1,4 @@
-"""That g has a period, in exact arithmetic."""
+"""The period of g, checked in exact arithmetic."""
 
 from __future__ import annotations
 

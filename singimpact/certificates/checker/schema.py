@@ -41,7 +41,7 @@ def expect(holds: Any, why: str) -> None:
 
 
 def read(path: str) -> Any:
-    """What a file says, as JSON whose objects have each key once, without numbers that JSON does not have."""
+    """The content of a file: JSON whose objects have each key once, without numbers that JSON does not have."""
     expect(not Path(path).exists() or Path(path).is_file(), "it is no file")
     with Path(path).open("rb") as file:
         data = file.read(BYTES + 1)
@@ -176,7 +176,7 @@ def touching(told: dict[str, Any]) -> Form:
 
 
 def after(told: dict[str, Any]) -> Form:
-    """What may be said of the time after a contact point; nothing where a certificate names the fastest launch."""
+    """Keys and types of the statement after a contact point; none where a certificate names the fastest launch."""
     names = ("near", "time") if str(told.get("order"))[-1:] in tuple("13579") else ("launch", "speed", "first", "end")
     return dict.fromkeys(names if told.get("after") and "fastest" not in told else (), SIZE)
 

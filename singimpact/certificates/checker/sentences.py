@@ -18,7 +18,7 @@ def below(told: dict[str, str], digits: int = 12) -> str:
 
 
 def sentence(told: dict[str, Any]) -> str:
-    """What a certificate says."""
+    """The statement of a certificate as a sentence."""
     return SENTENCES[told["statement"]](told)
 
 

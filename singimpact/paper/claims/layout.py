@@ -24,7 +24,7 @@ class Row(NamedTuple):
 
 @dataclass(frozen=True)
 class Widths:
-    """How wide the columns may be."""
+    """Largest widths of the columns."""
 
     narrow: int = 96  # columns; below, statement and evidence would get less than 25 each and a stack reads better
     evidence: int = 72  # in a pipe, longer evidence runs on instead of padding every other line

@@ -46,7 +46,7 @@ def gravity(t: Array) -> Array:
 
 
 def figure_B1() -> Picture:
-    """The same swan, the same orbit from A, in t and in the s of the ball."""
+    """One swan, and one orbit from A, in t and in the s of the ball."""
     model = damped()
     swan = swan_configuration(model, near=0)
     t = np.linspace(*WINDOW, 2001)

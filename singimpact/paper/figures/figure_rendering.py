@@ -144,7 +144,7 @@ def _entries(picture: Picture, look: Look) -> list[tuple[Any, str]]:
 
 
 def _columns(entries: list[str], width: float) -> int:
-    """How many columns of a legend fit into a width in inches."""
+    """The number of columns of a legend that fit into a width in inches."""
     longest = max((len(re.sub(r"\\[a-z]+|[${}^]", "", words)) for words in entries), default=1)
     return int(np.clip(72 * width / (PRINT.letter * longest + 45), 1, max(len(entries), 1)))
 

@@ -115,7 +115,7 @@ def _surface(model: Oscillator, clearance: float, tau: tuple[float, float], row:
 
 
 def _ends(surface: ImpactSurface, tau: tuple[float, float]) -> int:
-    """How many ends visible arcs have in the window."""
+    """The number of ends of visible arcs in the window."""
     ends = np.vstack([arc.points[[0, -1]] for arc in surface.discontinuities])
     return int(((ends[:, 0] > tau[0]) & (ends[:, 0] < tau[1])).sum())
 

@@ -18,7 +18,7 @@ NAMED = {-3.0: "D", -(3**0.5): "E", -1.0: "A"}
 
 
 def figure_9() -> Picture:
-    """As c passes c_0 two zeros of a appear, and the outline is born with two cusps."""
+    """A swan over the clearance: two zeros of a appear as c passes c_0, and the outline is born with two cusps."""
     panels, facts = [], {}
     for letter, swan, values in (("a", positive(), VALUES[0]), ("b", negative(), VALUES[1])):
         kind = swan.kind

@@ -283,7 +283,7 @@ def _loops(pieces: list[Array], foot: float) -> list[tuple[Array, Array]]:
 
 
 def _accumulation(loops: list[tuple[Array, Array]], gamma: Array, height: float) -> dict[str, float]:
-    """How far right of gamma the branches, and delta, pass a height."""
+    """Distances to the right of gamma at which the branches, and delta, pass a height."""
 
     def at(points: Array) -> float:
         order = np.argsort(points[:, 1])

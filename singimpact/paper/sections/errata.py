@@ -40,7 +40,7 @@ class Erratum:
 
     @property
     def remark(self) -> Remark:
-        """What kind of misprint it is, why, and what it does not touch; several misprints may share one remark."""
+        """The kind of misprint, its reason, and what it does not touch; several misprints may share one remark."""
         found = remark_on(self.verdict.id)
         if found is None:
             raise LookupError(f"{self.verdict.id} is corrected and has no remark in remarks.py")
@@ -115,7 +115,7 @@ class Errata(Sequence[Erratum]):
 
     @property
     def summary(self) -> str:
-        """How many statements fail, and how many of which grade."""
+        """Numbers of statements that fail, by grade."""
         grades = Counter(entry.remark.grade for entry in self)
         errors = ", ".join(f"{grades[name]} {PLURALS[name]}" for name in GRADES if name != "reading")
         return (

@@ -1,4 +1,4 @@
-"""What the letters mean: stands before any section."""
+"""Meanings of the letters, which stand before any section."""
 
 from singimpact.documents.document_steps import Section, Step
 

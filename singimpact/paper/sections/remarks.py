@@ -1,4 +1,4 @@
-"""What the errata say of each misprint in words: what kind of misprint it is, why, and what it does not touch.
+"""Remarks of the errata on each misprint: its kind, its reason, and what it does not touch.
 
 Verdicts, corrections and numbers are computed by the claims; a claim that is corrected and has no remark here, or has
 one and is not corrected, fails a test.

@@ -64,7 +64,7 @@ def shortening(j: int, side: int) -> Step:
 
 
 def leaves() -> Step:
-    """That the levels of the time at which chatter ends are arcs."""
+    """Proof that the levels of the time at which chatter ends are arcs."""
     return Step(
         "Flight times therefore sum to a continuous function $E(\\sigma, v)$, the phase at which chatter ends. It "
         "grows strictly with $v$: with the landing phase the next flight time grows or falls by at most a part $b$ "

@@ -26,7 +26,7 @@ LAST = Fraction(2, 3)  # h from which the first impact comes at B or later: sigm
 
 
 class Side(Enum):
-    """What all orbits of an interval of h do."""
+    """The common fate of all orbits of an interval of h."""
 
     complete = "chatter is complete before B"
     left = "no impact follows before B"
@@ -43,7 +43,7 @@ class Bracket:
 
 @dataclass(frozen=True)
 class Effort:
-    """How far intervals are divided and orbits followed.
+    """Limits of the division of intervals and of the orbits.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def _ball(value: Fraction) -> Any:
 
 
 def _side(r: Any, low: Fraction, high: Fraction) -> Side | None:
-    """What all orbits from rest at -1 - h do, h between two numbers; None when it is not decided."""
+    """The common fate of all orbits from rest at -1 - h, h between two numbers; None when it is not decided."""
     middle, radius = _ball((low + high) / 2), _ball((high - low) / 2)
     spread = arb(0).union(radius).union(-radius)
     h = middle + spread
@@ -140,7 +140,7 @@ class _Orbit:
         return _Orbit(r, h, time - 1, w, rate, -r * (2 * time * rate * slope + time * time * bend))
 
     def narrowed(self, y: Any, w: Any) -> _Orbit:
-        """With balls for y and w that also hold all states, by the mean value theorem."""
+        """A state with narrower balls for y and w that also hold all states, by the mean value theorem."""
         return replace(self, y=self.y.intersection(y), w=self.w.intersection(w))
 
     def p(self, time: Any) -> Any:

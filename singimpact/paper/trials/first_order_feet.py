@@ -43,7 +43,7 @@ MODELS = (
 
 @dataclass(frozen=True)
 class Feet:
-    """What was found of one model and r.
+    """Measurements of the foot for one model and r.
 
     Attributes
     ----------

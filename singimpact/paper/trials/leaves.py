@@ -26,7 +26,7 @@ def places() -> list[tuple[str, ImpactOscillator, float, float]]:
 
 @dataclass(frozen=True)
 class Steps:
-    """How many neighbouring states were compared, and the largest change of the flight time between them."""
+    """The number of neighbouring states compared, and the largest change of the flight time between them."""
 
     states: int
     largest: float

@@ -46,7 +46,7 @@ STARTS = (
 
 @dataclass(frozen=True)
 class Beside:
-    """What follows at relative distances delta and delta/mu^steps from gamma.
+    """Orbits at relative distances delta and delta/mu^steps from gamma.
 
     Attributes
     ----------

@@ -236,7 +236,7 @@ def _touch(model: Any, tau: float, low: float, high: float) -> float:
 
 @dataclass(frozen=True)
 class Images:
-    """How many points were mapped, and the worst deviation."""
+    """The number of points that were mapped, and the worst deviation."""
 
     count: int
     worst: float

@@ -60,7 +60,7 @@ def eigenvalue() -> Eigenvalue:
 
 @dataclass(frozen=True)
 class Fates:
-    """How many orbits were followed, how many left, and the largest a where the others came to rest."""
+    """Numbers of orbits followed and of those that left, and the largest a where the others came to rest."""
 
     count: int
     lost: int

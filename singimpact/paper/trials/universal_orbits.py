@@ -95,7 +95,7 @@ def _jump(h: float, count: int, low: float, high: float) -> tuple[float, float]:
 
 
 def _impacts_before_leaving(sigma: float, v: float, most: int = 60) -> int:
-    """How many short flights an orbit near A makes before one that takes longer than 1."""
+    """The number of short flights of an orbit near A before one that takes longer than 1."""
     osc, tau, speed = negative("1/2"), sigma, v
     for count in range(most):
         step = osc.impact_map(tau, speed)
@@ -197,7 +197,7 @@ def fates(r: str) -> dict[float, tuple[bool, ...]]:
 
 
 def _crossings(sigma: float, low: float, high: float, coarse: int = 76, fine: int = 20, more: float = 0.0) -> int:
-    """How often foot - X - more changes sign, without a jump, for v between two multiples of the outline's.
+    """The number of sign changes of foot - X - more without a jump, for v between two multiples of the outline's.
 
     Looked for between neighbours of a coarse grid whose signs differ: a jump may stand beside a crossing.
     """

@@ -1,4 +1,4 @@
-"""What a swan meets: P and Pi_0 as the preimage of one curve of flights, and the events of that curve over c.
+"""Events of a swan: P and Pi_0 as the preimage of one curve of flights, and the events of that curve over c.
 
 R(t; s) is the flight at rest at the wall at s, Y(t, s) its variation with Y = 0, Y' = 1 at s, a the acceleration at the
 wall.  psi takes a launch (tau, v) to its flight, told by (x, x') at one time.

@@ -73,7 +73,7 @@ def closed_forms() -> list[tuple[str, bool]]:
 
 
 def _ray(count: int) -> Check:
-    """How many rays l > 0 of flights with one ratio there are for each r in (0, 1) and every j."""
+    """The number of rays l > 0 of flights with one ratio, for each r in (0, 1) and every j."""
     spare = sympy.factor(j * (i + 1) - i * (i + 1))  # coefficient of l^i in j Q - l Q'
     rising = same(spare, (j - i) * (i + 1))
     # the coefficients of P are those of Q in reverse, so P(1) = Q(1)
@@ -202,7 +202,7 @@ def _exponents(power: int) -> Check:
 
 
 def _parity(stated: tuple[int, int]) -> Check:
-    """How many negative ratios solve l^(j+1) P = r Q for every r: (for odd j, for even j), for j up to TURNED."""
+    """The number of negative solutions of l^(j+1) P = r Q for every r: (for odd j, for even j), for j up to TURNED."""
     found: dict[int, set[int]] = {0: set(), 1: set()}
     monotone = True
     for order in range(1, TURNED + 1):

@@ -25,7 +25,7 @@ BEFORE = 2
 
 
 class Stated(NamedTuple):
-    """What is stated of x'' + f = cos 2t.
+    """A statement about x'' + f = cos 2t.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ def _certified(stated: Stated) -> Check:
 
 
 def _after(found: CertifiedGamma, stated: Stated) -> tuple[str, bool]:
-    """What is proved of the time after tau_*, and whether it is as much as is stated."""
+    """The proof of the time after tau_*, and whether it covers the statement."""
     if found.lost:
         time = found.lost.time
         return f"after tau_* at most one impact comes within {float(time):.6g}", time >= Fraction(stated.after)

@@ -67,7 +67,7 @@ def _slopes(stated: Any) -> Check:
 
 
 def _counts(stated: int) -> Check:
-    """How many impacts more follow when delta is divided by mu."""
+    """The number of additional impacts when delta is divided by mu."""
     checks, worst = [], dict[str, str]()
     for start in STARTS:
         told = []

@@ -30,7 +30,7 @@ NEAR = Fraction(1, 10)
 
 
 class Stated(NamedTuple):
-    """What is stated of the model with a restitution: decimals, correct to half a unit of their last place.
+    """A statement about the model with a restitution: decimals, correct to half a unit of their last place.
 
     saddle : (tau, v) of the (1, 1) orbit. away : the impacts that are not near it. angle : at the second of these.
     """

@@ -1,4 +1,4 @@
-"""What is born at a negative swan: nothing that recurs within it, and one chattering orbit that starts at A."""
+"""Orbits born at a negative swan: none that recurs within it, and one chattering orbit that starts at A."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What corrected statements of the paper need and the paper does not say."""
+"""Lemmas that corrected statements of the paper need and the paper does not have."""
 
 from __future__ import annotations
 

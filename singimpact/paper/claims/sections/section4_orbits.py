@@ -1,4 +1,4 @@
-"""What orbits near a tangency or swan point do: the argument that t:t2, t:t3 and t:foliate share.
+"""Orbits near a tangency or swan point: the argument that t:t2, t:t3 and t:foliate share.
 
 Each function returns the computed hypotheses of one step, as parts for `verifiers.every`.  The forms are exact leading
 parts; what is left out is O(S) on a compact set of ratios, so that a strict inequality of the leading parts holds for
@@ -78,7 +78,7 @@ def saddle(j: int) -> list[Part]:
 
 
 def limit_of_DG(j: int) -> list[Part]:
-    """That DG at points of gamma, its entries scaled by powers of S, tends to the matrix of the homogeneous model.
+    """Check that DG on gamma, its entries scaled by powers of S, tends to the matrix of the homogeneous model.
 
     In (S, l) launch and landing are smooth, and G is the second after the inverse of the first.
     """

@@ -115,7 +115,7 @@ def _arcs(_printed: Any, _corrected: Any) -> list[Trial]:
 
 
 def arcs_at(places: tuple[Place, ...], j: int) -> list[Trial]:
-    """How many invariant arcs end at a contact point, v > 0 on them or not."""
+    """The number of invariant arcs that end at a contact point, v > 0 on them or not."""
     curves = {case.name.partition(",")[0]: case for case in true_orbits.gamma_cases(j)}
     found = []
     for place in places:

@@ -306,7 +306,7 @@ def _limit(stated: Any) -> Check:
 
 
 def _others(stated: str) -> Check:
-    """What launches near a swan with a'' < 0 and off gamma do, below and above it: "chatter", or contact is "lost"."""
+    """Fates of launches near a swan with a'' < 0, below and above gamma: "chatter", or contact is "lost"."""
     behind, reason = orbits.after(2)
     below = "chatter" if orbits.drift(2) == 1 else behind
 

@@ -122,7 +122,7 @@ def _inside(polynomial: Any, low: Any, high: Any) -> Any:
 
 
 def _left_of(point: dict[Any, Any], arc: Arc) -> int:
-    """How many points of an arc lie at the height of a point, to its left."""
+    """The number of points of an arc that lie at the height of a point, to its left."""
     if not arc.low < point[t] < arc.high:
         return 0
     line = sympy.Poly(arc.conic.subs(t, point[t]), sigma)
@@ -210,7 +210,7 @@ def chatter_check(stated: Any) -> Check:
 
 
 def epsilon_check(stated: int) -> Check:
-    """How often R phi(AE) meets the outline p(BE) over AB, for every r in (0, 1).
+    """The number of points at which R phi(AE) meets the outline p(BE) over AB, for every r in (0, 1).
 
     BE is sigma = w z, t = w (1 - 4 z)/3 for -1/2 <= z <= 1/4, where w > 0 and w^2 (1 + 2 z^2) = 18.  AE is launched at
     sigma = -w (1 + z)/3 and takes t = w (1 + 4 z)/3 to w z, for -1/4 <= z <= 1/2.  So both curves are over w z.

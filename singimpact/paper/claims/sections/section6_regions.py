@@ -93,7 +93,7 @@ def _cusp_of_phi(point: tuple[Any, Any]) -> Check:
 
 
 def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
-    """How many cusps and crossings the curve of flights from rest has before and after a swan, for the signs of e.
+    """Numbers of cusps and crossings of the curve of flights from rest before and after a swan, for the signs of e.
 
     The flight from rest at s of x'' = a is R(T; s) = F(T) - F(s) - F'(s)(T - s), F'' = a, so dR/ds = -a(s)(T - s).  In
     the plane of flights the curve has the direction of T - s everywhere, and stops where a(s) = 0.
