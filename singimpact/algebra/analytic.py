@@ -224,8 +224,10 @@ class Program:
                     done[at] = done[parts[0]] * done[parts[1]]
                 elif kind == "+":
                     done[at] = done[parts[0]] + done[parts[1]]
+                elif kind == "name":
+                    done[at] = values[parts[0]]
                 else:
-                    done[at] = _done(kind, parts, done, values)
+                    done[at] = call(kind, done[parts[0]])
             return [done[at] for at in results]
 
         return run

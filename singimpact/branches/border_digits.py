@@ -23,7 +23,8 @@ from singimpact.algebra.precision import balls_at, digits_at, for_user
 from singimpact.algebra.solving import newton_in_balls
 from singimpact.branches.released import Return
 from singimpact.contact.next_zero import ContactZero, next_zero
-from singimpact.dynamics.enclosed import Flow, enclosable, end_of_gamma, flow_of, searched, side
+from singimpact.dynamics.enclosed import enclosable, end_of_gamma, searched, side
+from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.flights.impact_map import impact_map
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
@@ -123,7 +124,7 @@ class DigitOrbits:
         return found[0], found[1]
 
     def _in_balls(self, model: Oscillator, start: ContactZero, end: Any, count: int) -> list[Landing]:
-        flow, rows = flow_of(model, self.bits), list[Landing]()
+        flow, rows = AnalyticFlow(model, self.bits), list[Landing]()
         time, v, removed = start.moved(self.bits).mid(), flow.number(Fraction(0)), start.order + 2
         while len(rows) < count:
             hit = flow.first_hit(time, v, removed=removed)
@@ -208,22 +209,22 @@ def _proved(found: Return, near: Fraction, digits: int) -> tuple[Certified | Non
     return from_ends(low, high, digits), ""
 
 
-def _flow(found: Return, ends: tuple[Fraction, Fraction], bits: int) -> Flow:
+def _flow(found: Return, ends: tuple[Fraction, Fraction], bits: int) -> AnalyticFlow:
     """The flow of all values from one to another."""
     low, high = ends
     if low == high:
-        return flow_of(found.releases.model(low), bits)
+        return AnalyticFlow(found.releases.model(low), bits)
     ball = Balls(bits).interval(low, high)
-    return flow_of(found.releases.model((low + high) / 2), bits, (found.releases.over, ball))
+    return AnalyticFlow(found.releases.model((low + high) / 2), bits, (found.releases.over, ball))
 
 
-def _fate(flow: Flow, times: tuple[float, float], entry: int) -> int | None:
+def _fate(flow: AnalyticFlow, times: tuple[float, float], entry: int) -> int | None:
     """-1 where chatter completes before the second zero, 1 where a flight passes it; None undecided."""
     reached = _followed(flow, times, entry)
     return None if reached is None else side(flow, reached[2], *reached[:2])
 
 
-def _followed(flow: Flow, times: tuple[float, float], entry: int) -> tuple[Any, Any, Any] | None:
+def _followed(flow: AnalyticFlow, times: tuple[float, float], entry: int) -> tuple[Any, Any, Any] | None:
     """Time and velocity of an impact of the released orbit, and the zero of a_c before which a_c presses.
 
     Parameters
@@ -243,7 +244,7 @@ def _followed(flow: Flow, times: tuple[float, float], entry: int) -> tuple[Any, 
     return (time, v, end) if _presses(flow.acceleration, time, end, SETTINGS.around) else None
 
 
-def _rising_zero(flow: Flow, near: float) -> Any | None:
+def _rising_zero(flow: AnalyticFlow, near: float) -> Any | None:
     """The zero of a_c next to a double, where it is the only one and a_c rises; for every value in the flow's balls."""
     middle = flow.number(Fraction(near))
     reach = flow.number(SETTINGS.around)

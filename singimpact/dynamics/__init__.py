@@ -6,7 +6,7 @@ Files: `orbit` (impacts, rest and chatter in order), `sampling` (x and x' of an 
 exponents), `gamma_proof` (gamma proved, a folder), `release` (when a mass lifts off), `chatter`
 (when impacts end), `completion` (its map), `remaining` (its terms in doubles),
 `fractional_chatter` (for rho that is not smooth at rest), `gathered` (results of many states),
-`threshold` (the velocity between complete and incomplete chatter), `enclosed` (both in balls, of linear models),
+`threshold` (the velocity between complete and incomplete chatter), `enclosed` (both in balls),
 `guide` (a velocity on gamma in many digits, not proved),
 `growth` (an invariant curve of a map, cut at discontinuities),
 `invariant_arcs` (gamma and the stable manifolds, grown), `swan_configuration` (the named points of an unfolded swan),

@@ -21,17 +21,14 @@ from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.algebra.precision import balls_at
 from singimpact.contact.next_zero import ContactZero
 from singimpact.dynamics.guide import guided, newton, spread
-from singimpact.flights.balls import LinearFlow
 from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.flights.states import States
-from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
 from singimpact.theory.invariant_curve import multiplier_across
 
 Found = TypeVar("Found")
-Flow = LinearFlow | AnalyticFlow
 
 
 @dataclass(frozen=True)
@@ -41,12 +38,14 @@ class BallOrbits:
     Parameters
     ----------
     impacts : flown at most; r = 0.999 to 30 digits takes 35 000. bits : of the balls at most, per digit asked for.
+    early : the velocity at which bounds are next made, over that at which they are expected to be narrow enough.
     spare : bits beside the digits. wide : the window on which the rest is bounded, in units of its first guess.
     stage, stages, secants : impacts along gamma in the first search for the threshold, its growth, steps at each.
     """
 
     impacts: int = 200_000
     bits: int = 64
+    early: int = 2
     spare: int = 64
     wide: int = 3
     stage: int = 6
@@ -62,24 +61,14 @@ def enclosable(osc: Oscillator) -> bool:
     return not names_in(osc.restitution) and as_float(osc.restitution) < 1
 
 
-def flow_of(osc: Oscillator, bits: int, number: tuple[str, Any] | None = None) -> Flow:
-    """The flights of a model in balls at the precision that is set: a closed form, or enclosures.
-
-    Parameters
-    ----------
-    number : name and ball of a number of the model that takes every value in the ball.
-    """
-    return AnalyticFlow(osc, bits, number) if linear_form(osc) is None else LinearFlow(osc, bits, number)
-
-
 def with_more_bits(
-    attempt: Callable[[Flow], Found | None], osc: Oscillator, digits: int, expected: int = 0
+    attempt: Callable[[AnalyticFlow], Found | None], osc: Oscillator, digits: int, expected: int = 0
 ) -> Found | None:
     """attempt(flow) at growing precision, from that which is expected to be enough, until it decides."""
     bits = max(ceil(digits * 3.33), expected) + ORBITS.spare
     while bits <= ORBITS.bits * (digits + 32):
         with balls_at(bits):
-            found = attempt(flow_of(osc, bits))
+            found = attempt(AnalyticFlow(osc, bits))
         if found is not None:
             return found
         bits *= 2
@@ -116,8 +105,9 @@ def chatter_limit(osc: Oscillator, states: States, digits: int) -> EnclosedLimit
     return with_more_bits(lambda flow: _chatter(flow, tau, v, removed, digits), osc, digits)
 
 
-def _chatter(flow: Flow, tau: Expression, v: Expression, removed: int, digits: int) -> EnclosedLimit | None:
+def _chatter(flow: AnalyticFlow, tau: Expression, v: Expression, removed: int, digits: int) -> EnclosedLimit | None:
     time, speed = (evaluate(tree, {}, flow.balls) for tree in (tau, v))
+    slow: Any = None
     for count in range(ORBITS.impacts):
         a = flow.acceleration(time)
         if count and not (a > 0 or a < 0):
@@ -125,12 +115,15 @@ def _chatter(flow: Flow, tau: Expression, v: Expression, removed: int, digits: i
         if count and a > 0:
             found = as_certified(time, digits)
             return None if found is None else EnclosedLimit(found, count, True)
-        if a < 0 and (left := remaining(flow, time, speed)) is not None:
+        if a < 0 and (slow is None or speed < slow) and (left := remaining(flow, time, speed)) is not None:
             found = as_certified(time + left, digits)
             if found is not None:
                 return EnclosedLimit(found, count, False)
             if left.rad() < time.rad():
                 return None  # the flights have lost the digits, and further ones do not give them back
+            # the width falls like v^2: it is not looked at again until it is nearly small enough
+            wanted = max(abs(time + left).upper() / 10**digits, time.rad())
+            slow = ORBITS.early * speed * (wanted / left.rad()).sqrt()
         hit = flow.first_hit(time, speed, removed=removed)
         if hit is None or hit.time is None:
             return None
@@ -140,7 +133,7 @@ def _chatter(flow: Flow, tau: Expression, v: Expression, removed: int, digits: i
     return None
 
 
-def remaining(flow: Flow, tau: Any, v: Any) -> Any | None:
+def remaining(flow: AnalyticFlow, tau: Any, v: Any) -> Any | None:
     """A ball that contains what is left of a chatter from (tau, v); None when the bounds do not close.
 
     The bounds hold on a window; they close when what is left, by these bounds, fits into the window.
@@ -171,7 +164,7 @@ def threshold(osc: Oscillator, tau: Expression, rough: Any, end: ContactZero, di
     if guide is not None:
         bits = ceil(digits * 3.33) + ORBITS.spare
         with balls_at(bits):
-            flow = flow_of(osc, bits)
+            flow = AnalyticFlow(osc, bits)
             near = newton(flow, tau, float(rough), guide, digits)
             lost = 0 if near is None else spread(flow, tau, near, guide, digits)
     if near is None:
@@ -181,7 +174,7 @@ def threshold(osc: Oscillator, tau: Expression, rough: Any, end: ContactZero, di
     margin = abs(near) / (4 * 10**digits)
 
     def side_of(v: Fraction) -> int | None:
-        def attempt(flow: Flow) -> int | None:
+        def attempt(flow: AnalyticFlow) -> int | None:
             return side(flow, end.moved(flow.balls.bits), evaluate(tau, {}, flow.balls), flow.number(v))
 
         return with_more_bits(attempt, osc, digits, lost)
@@ -209,7 +202,7 @@ def end_of_gamma(osc: Oscillator, end: ContactZero, bits: int) -> tuple[Any, Any
 class _Gamma:
     """gamma near its end, v = sigma^(j+1) (first + second sigma) + ..., and the flights that follow it, in balls."""
 
-    def __init__(self, osc: Oscillator, flow: Flow, end: ContactZero) -> None:
+    def __init__(self, osc: Oscillator, flow: AnalyticFlow, end: ContactZero) -> None:
         self.flow, self.order, self.end = flow, end.order, end.moved(flow.balls.bits)
         self.first, self.second, self.rate = end_of_gamma(osc, end, flow.balls.bits)
 
@@ -275,7 +268,7 @@ def _secant(
     return other
 
 
-def side(flow: Flow, end: Any, time: Any, speed: Any) -> int | None:
+def side(flow: AnalyticFlow, end: Any, time: Any, speed: Any) -> int | None:
     """-1 when chatter from a state completes before the end of gamma, 1 when a flight passes it, None undecided.
 
     Parameters
@@ -297,7 +290,7 @@ def side(flow: Flow, end: Any, time: Any, speed: Any) -> int | None:
     return None
 
 
-def _left_before(flow: Flow, time: Any, speed: Any, end: Any) -> Any | None:
+def _left_before(flow: AnalyticFlow, time: Any, speed: Any, end: Any) -> Any | None:
     """`remaining`, where its window lies before a zero of a_c: next to gamma it does not, and no bounds close."""
     a = flow.acceleration(time)
     if not (a < 0 and ORBITS.wide * 2 * speed < -a * (1 - flow.r) * (end - time)):

@@ -17,7 +17,6 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.next_zero import ContactZero
-from singimpact.flights.balls import LinearFlow
 from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.flights.orbits import orbit_segment
 from singimpact.oscillator.model import Oscillator
@@ -112,7 +111,7 @@ def guided(osc: Oscillator, tau: Expression, v: float, end: ContactZero, digits:
     return Guide(series, j, end.moved(bits), *chosen, growth)
 
 
-def spread(flow: LinearFlow | AnalyticFlow, tau: Expression, v: Fraction, guide: Guide, digits: int) -> int:
+def spread(flow: AnalyticFlow, tau: Expression, v: Fraction, guide: Guide, digits: int) -> int:
     """Bits that balls lose on the way of an orbit which leaves gamma, a velocity apart from it by the last digit."""
     time, speed, widths = evaluate(tau, {}, flow.balls), flow.number(v), []
     for _ in range(guide.impacts):
@@ -128,9 +127,7 @@ def spread(flow: LinearFlow | AnalyticFlow, tau: Expression, v: Fraction, guide:
     return ceil((digits + 1) * log2(10) / guide.growth * by_impact)
 
 
-def newton(
-    flow: LinearFlow | AnalyticFlow, tau: Expression, rough: float, guide: Guide, digits: int
-) -> Fraction | None:
+def newton(flow: AnalyticFlow, tau: Expression, rough: float, guide: Guide, digits: int) -> Fraction | None:
     """The velocity on gamma to so many digits, by Newton's method on the miss after the flights of a guide."""
     start, v = evaluate(tau, {}, flow.balls).mid(), flow.number(Fraction(rough))
     small, last = Fraction(1, 10 ** (digits + SETTINGS.spare - 1)), None
@@ -148,7 +145,7 @@ def newton(
     return None
 
 
-def _miss(flow: LinearFlow | AnalyticFlow, time: Any, speed: Any, guide: Guide) -> Any | None:
+def _miss(flow: AnalyticFlow, time: Any, speed: Any, guide: Guide) -> Any | None:
     """v - gamma after the flights; None where one is not decided or passes the end."""
     for _ in range(guide.impacts):
         hit = flow.first_hit(time, speed, guide.end - time)

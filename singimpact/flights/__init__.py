@@ -6,8 +6,8 @@ a model needs and is the one caller of the kernels: `kernels/` are plain modules
 `machine` keeps them compiled, `compiler_process` compiles them, `interpreted` runs them until then; `model_numbers`,
 `phase`, `limits` are what it is made from. `undecided` decides flights that end in no plain hit: `no_return/` proves
 that none returns, `closing` that one touches, `causes` says why one is open. `in_digits` flies states with many digits:
-`certified_flights` proves them by closed forms (`balls`, `short_balls`) or in `enclosures/`, `enclosed_impact` boxes of
-them; `multiprecision` flies the rest.
+`certified_flights` proves them in `enclosures/`, `enclosed_impact` boxes of them; `multiprecision` flies the rest, and
+`refined_hit` places a hit that double-double arithmetic leaves open.
 `horizons` says when a flight is given up. `response` and `rebound_law` are derivatives at a hit and what the impact
 makes of them, `determinant` that of D G; `counted` counts flights,
 `together` makes many flights at rest at once on arrays, `family` flies models with derivatives by their numbers,
@@ -18,7 +18,6 @@ Not here: flights after flights (`dynamics`), curves of flights (`surface`), pow
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "balls": "LinearFlow",
     "bind": "Compiler Emitted LAW MODULES constants floats_of over_floats over_lists",
     "certified_flights": "proof",
     "compiled_model": "CompiledModel allowed recurrence_of",
@@ -51,7 +50,6 @@ _FILES = {
     "orbits": "iterate orbit_segment",
     "path": "places",
     "rebound_law": "rebound speed_before",
-    "short_balls": "GROWTH ShortFlights",
     "states": "States",
     "together": "NotTogether in_step rest_flights runs_on_arrays",
 }

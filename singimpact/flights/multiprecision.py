@@ -14,11 +14,9 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_mpf
 from singimpact.algebra.precision import balls_at, bits_at, digits_at
 from singimpact.codegen.over_lists import FUNCTIONS
-from singimpact.flights.balls import linear_flow
 from singimpact.flights.bind import over_lists, over_mpmath
 from singimpact.flights.closing import common_period, touches_again
 from singimpact.flights.interpreted import workspace
@@ -123,22 +121,6 @@ def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[i
     if _touches(numbers):
         return int(Status.graze), [float(value) for value in numbers]
     return None
-
-
-def refined_hit(osc: Oscillator, states: States, index: int, time: float) -> list[float] | None:
-    """Flight time and velocity of a hit of a linear model, correctly rounded up to a unit.
-
-    Which root is the first has been decided; here it is only placed. None where balls do not confirm it.
-    """
-    balls = Balls(LIMITS.refine_bits)
-    flow: Any = linear_flow(osc, balls.bits)
-    with balls_at(balls.bits):
-        tau, v = (evaluate(tree, {}, balls) for tree in (states.exact_tau(index), states.exact_v(index)))
-        try:
-            found = flow.refined_hit(tau, v, time)
-        except (ArithmeticError, ValueError, TypeError):  # a ball that left the domain of log or a root
-            return None
-        return None if found is None else [float(part.mid()) for part in found]
 
 
 def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:

@@ -186,7 +186,8 @@ def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array
     wanted, left = np.flatnonzero(codes == NOT_REFINED).tolist(), LIMITS.settled
     if not wanted:
         return
-    from singimpact.flights.multiprecision import refined_hit, settle  # 8 ms that few calls need
+    from singimpact.flights.multiprecision import settle  # 8 ms that few calls need
+    from singimpact.flights.refined_hit import refined_hit
 
     for index in wanted:
         fates.status[index] = Status.hit

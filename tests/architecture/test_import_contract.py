@@ -28,7 +28,7 @@ PLANTED = {
         "Theory and all below it work with generated/ emptied",
     ),
     "flows": (
-        "flights/balls.py",
+        "flights/enclosures/analytic_flow.py",
         "from singimpact.flights.kernels import roots",
         "Balls and kernels are witnesses of each other",
     ),

@@ -6,6 +6,6 @@ ball, `framed_motion` as a centre, columns and a rotated box; `ball_flight` foll
 raises the precision until the digits asked for are there, `timed_flight` flies to a given time, where it touches the
 wall; `jet_flight` flies a box with first and second derivatives, in the algebra of `jets`; `free_motion` flies a box
 through the wall, `clocked_motion` at equal times of the clock; `analytic_flow` flies impact after impact at one
-precision.
-Not here: closed forms of linear models (`flights.balls`), doubles (`flights.kernels`), orbits (`dynamics`).
+precision, `short_flight` those of them that are over soon.
+Not here: doubles (`flights.kernels`), orbits (`dynamics`).
 """

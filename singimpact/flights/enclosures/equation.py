@@ -42,15 +42,18 @@ class Programs:
 
     Parameters
     ----------
+    linear : whether f is shown linear in x and x': its slopes have neither among their letters.
     force : f, f_x, f_v. slopes : f_x, f_v, then f by each name. disc : f, f_x, f_v, then f by each name.
     box : f_x, f_v, f_xx, f_xv, f_vv, then the mixed derivatives f_px, f_pv of each name.
-    forcing : g, g', then g by each name. rho : the rebound, its slope, then its derivative by each name.
+    drive : g. forcing : g, g', then g by each name. rho : the rebound, its slope, then its derivative by each name.
     """
 
     names: tuple[str, ...]
+    linear: bool
     force: Program
     disc: Program
     box: Program
+    drive: Program
     forcing: Program
     rho: Program
 
@@ -85,11 +88,14 @@ def programs_of(osc: Oscillator, names: tuple[str, ...]) -> Programs:
     by_names = [force.derivative(f, name) for name in names]
     second = [force.derivative(by_x, "x"), force.derivative(by_x, "xdot"), force.derivative(by_v, "xdot")]
     mixed = [force.derivative(part, name) for part in by_names for name in ("x", "xdot")]
+    slopes = force.program([by_x, by_v])
     return Programs(
         names,
+        not any(operation in slopes.operations for operation in (("name", ("x",)), ("name", ("xdot",)))),
         force.program([f, by_x, by_v]),
         force.program([f, by_x, by_v, *by_names]),
         force.program([by_x, by_v, *second, *mixed]),
+        forcing.program([g]),
         forcing.program([g, forcing.derivative(g, "t"), *(forcing.derivative(g, name) for name in names)]),
         law.program([rho, law.derivative(rho, "v"), *(law.derivative(rho, name) for name in names)]),
     )
@@ -106,6 +112,7 @@ class Equation:
 
     def __init__(self, programs: Programs, numbers: Mapping[str, Any]) -> None:
         self.names, self.programs, self.numbers = programs.names, programs, dict(numbers)
+        self.linear = programs.linear
         self._ready: dict[tuple[str, int], Any] = {}
 
     def run(self, kind: str, **values: Any) -> list[Any]:
@@ -114,3 +121,12 @@ class Equation:
         if key not in self._ready:
             self._ready[key] = getattr(self.programs, kind).prepared(self.numbers)
         return self._ready[key](values)  # type: ignore[no-any-return]
+
+    def at_wall(self) -> list[Any]:
+        """f, f_x and f_v at rest on the wall, at the working precision; where f is linear they are all of it."""
+        key = "wall", bits_of_balls()
+        if key not in self._ready:
+            import flint
+
+            self._ready[key] = self.run("force", x=flint.arb(0), xdot=flint.arb(0))
+        return self._ready[key]  # type: ignore[no-any-return]

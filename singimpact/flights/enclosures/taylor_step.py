@@ -140,7 +140,9 @@ def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, r
     from flint import arb, arb_series
 
     t, z, v = state
-    g = listed(equation.run("forcing", t=arb_series([t, 1], prec=degree))[0], degree)
+    g = drive(equation, t, degree)
+    if equation.linear:
+        return linear_coefficients(g[: degree - 1], equation.at_wall(), (z, v), removed)
     X, V = [z, v], [v]
     while len(X) <= degree:
         m = len(X) - 1
@@ -160,6 +162,32 @@ def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, r
             # the first ones of a mass at rest vanish exactly, where balls only contain 0
             X.append(arb(0) if k + 2 < removed else rest / ((k + 1) * (k + 2)))
             V.append((k + 2) * X[-1])
+    return X
+
+
+def drive(equation: Equation, t: Any, count: int) -> list[Any]:
+    """Taylor coefficients of g at a time."""
+    from flint import arb_series
+
+    return listed(equation.run("drive", t=arb_series([t, 1], prec=count))[0], count)
+
+
+def linear_coefficients(g: list[Any], force: list[Any], start: tuple[Any, Any], removed: int = 1) -> list[Any]:
+    """Taylor coefficients of z where f is linear, two more than those of g.
+
+    Parameters
+    ----------
+    force : f, f_x and f_v at rest on the wall. start : z and z'. removed : as for `coefficients`.
+    """
+    from flint import arb
+
+    at_wall, k, d = force
+    X, damped = list(start), not d.is_zero()
+    for m, push in enumerate([g[0] - at_wall, *g[1:]]):
+        rest = push - k * X[m]
+        if damped:
+            rest -= d * ((m + 1) * X[m + 1])
+        X.append(arb(0) if m + 2 < removed else rest / ((m + 1) * (m + 2)))
     return X
 
 
@@ -201,8 +229,8 @@ def listed(series: Any, count: int) -> list[Any]:
 
     if not isinstance(series, arb_series):
         return [arb(series)] + [arb(0)] * (count - 1)
-    found = series.coeffs()[:count]
-    return [*found, *[arb(0)] * (count - len(found))]
+    values = series.coeffs()
+    return values[:count] if len(values) >= count else [*values, *[arb(0)] * (count - len(values))]
 
 
 def sums_of(X: list[Any]) -> tuple[Any, Any, Any]:

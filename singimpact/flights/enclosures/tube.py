@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 
-class Tube(NamedTuple):
+class Tube:
     """A function within sum e s^k of a polynomial on [0, h], with (e, k) its errors.
 
     Examples
@@ -16,11 +16,18 @@ class Tube(NamedTuple):
     [3e+0 +/- 0.126]
     """
 
-    polynomial: Any
-    errors: tuple[tuple[Any, int], ...]
+    __slots__ = ("_whole", "errors", "polynomial")
+
+    def __init__(self, polynomial: Any, errors: tuple[tuple[Any, int], ...]) -> None:
+        import flint
+
+        self.polynomial, self.errors, self._whole = polynomial, errors, polynomial
+        # an error e s^k is a ball in the coefficient of s^k: one evaluation then gives polynomial and errors
+        for e, k in errors:
+            self._whole += flint.arb_poly([*[0] * k, ball(e)])
 
     def __call__(self, s: Any) -> Any:
-        return self.polynomial(s) + ball(sum((e * s**k for e, k in self.errors), s * 0))
+        return self._whole(s)
 
 
 def height(coefficients: list[Any], bound: Any) -> Tube:
@@ -51,9 +58,7 @@ def divided(tube: Tube, slope: Tube, removed: int) -> tuple[Tube, Tube]:
 
 def upper(value: Any) -> Any:
     """An exact upper bound of the modulus of a ball or of a complex ball."""
-    import flint
-
-    return flint.arb(abs(value).upper())
+    return abs(value).upper()
 
 
 def ball(bound: Any) -> Any:

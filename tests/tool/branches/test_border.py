@@ -17,7 +17,7 @@ import singimpact as si
 from singimpact.algebra import Balls, balls_at, exact
 from singimpact.branches import Releases, border_digits, cascade, settled_orbit
 from singimpact.cli import told
-from singimpact.flights import AnalyticFlow, LinearFlow
+from singimpact.flights import AnalyticFlow
 from singimpact.inputs import InputError
 from singimpact.scenes import draw_border
 
@@ -219,7 +219,7 @@ def test_where_a_c_does_not_press_nothing_is_followed():
     found = doubles("3/10").returned
     ends = found.ends(found.releases.model(found.value))
     with balls_at(200):
-        flow = LinearFlow(found.releases.model(found.value), 200)
+        flow = AnalyticFlow(found.releases.model(found.value), 200)
         assert border_digits._followed(flow, ends, found.entry) is not None
         assert border_digits._followed(flow, ends, 0) is None
         assert border_digits._rising_zero(flow, ends[0] + 0.1) is None
@@ -230,10 +230,10 @@ def test_a_flow_of_all_numbers_in_a_ball_contains_each():
     for name, middle in (("clearance", 0.6), ("restitution", 0.5), ("omega", 2.8), ("damping", 0.05)):
         with balls_at(160):
             low, high = Fraction(middle) - Fraction(1, 10**9), Fraction(middle) + Fraction(1, 10**9)
-            wide = LinearFlow(osc, 160, (name, Balls(160).interval(low, high)))
+            wide = AnalyticFlow(osc, 160, (name, Balls(160).interval(low, high)))
             hit = wide.first_hit(wide.number(Fraction(3)), wide.number(Fraction(1, 5)))
             for value in (low, high, Fraction(middle)):
-                one = LinearFlow(osc.replace(**{name: value}), 160)
+                one = AnalyticFlow(osc.replace(**{name: value}), 160)
                 inside = one.first_hit(one.number(Fraction(3)), one.number(Fraction(1, 5)))
                 assert hit.time.contains(inside.time)
                 assert (wide.r * hit.velocity).contains(one.r * inside.velocity)

@@ -10,7 +10,7 @@ from singimpact.algebra import Certified, as_rational, balls_at, exact
 from singimpact.bench import values
 from singimpact.dynamics import chatter, enclosed
 from singimpact.dynamics.threshold import threshold
-from singimpact.flights import LinearFlow, States
+from singimpact.flights import AnalyticFlow, States
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.inputs import InputError
 from singimpact.status import Status
@@ -83,12 +83,12 @@ def test_impacts_are_not_flown_when_their_digits_are_lost(osc, state, monkeypatc
     """Next to gamma the flights lose digits: 200 000 impacts were flown at a precision that could not decide."""
     flown = []
 
-    class Counted(enclosed.AnalyticFlow if enclosed.linear_form(osc) is None else LinearFlow):
+    class Counted(AnalyticFlow):
         def first_hit(self, *given, **more):
             flown.append(self.balls.bits)
             return super().first_hit(*given, **more)
 
-    monkeypatch.setattr(enclosed, "flow_of", lambda osc, bits, number=None: Counted(osc, bits, number))
+    monkeypatch.setattr(enclosed, "AnalyticFlow", Counted)
     for digits in (16, 20, 22, 24, 32):
         flown.clear()
         found = chatter.chatter_limit(osc, *state, digits=digits)
@@ -114,11 +114,11 @@ def test_rest_bounds_contain_the_bouncing_ball_and_open_when_they_must():
     import flint
 
     with flint.ctx.workprec(200):
-        ball = LinearFlow(ImpactOscillator("0", "-2", 0, "0.5"), 200)
+        ball = AnalyticFlow(ImpactOscillator("0", "-2", 0, "0.5"), 200)
         left = enclosed.remaining(ball, ball.number(Fraction(0)), ball.number(Fraction(1)))
         assert left.contains(2)
         assert not left.contains(flint.arb("2.001"))
-        fast = LinearFlow(linear("2.8", 0, "0.8"), 200)
+        fast = AnalyticFlow(linear("2.8", 0, "0.8"), 200)
         assert enclosed.remaining(fast, fast.number(Fraction(9, 10)), fast.number(Fraction(1, 2))) is None
 
 
@@ -129,7 +129,7 @@ def test_first_hit_contains_the_kernels(state):
     osc = linear(2, "0.3", "0.5")
     step = osc.first_hit(*state, digits=50)
     with flint.ctx.workprec(140):
-        flow = LinearFlow(osc, 140)
+        flow = AnalyticFlow(osc, 140)
         hit = flow.first_hit(*(flow.number(Fraction(part)) for part in state))
         for ball, truth in ((hit.time, step.flight_time), (hit.velocity, step.velocity)):
             near = flint.arb(mpmath.nstr(truth, 50), abs(float(truth)) * 1e-37)
@@ -143,7 +143,7 @@ def test_a_graze_is_not_decided():
 
     # x = t^3 (1 - t)^2/10 has no linear model; x'' + x = cos 2t touches c = -1/3 at rest after pi, from rest at 0
     with flint.ctx.workprec(100):
-        flow = LinearFlow(linear(2, "-1/3", "0.5"), 100)
+        flow = AnalyticFlow(linear(2, "-1/3", "0.5"), 100)
         assert flow.first_hit(flow.number(Fraction(0)), flow.number(Fraction(0)), removed=2) is None
 
 
@@ -219,7 +219,7 @@ def test_what_is_left_of_a_chatter_lies_between_its_bounds():
     osc = ANALYTIC["cubic, damped"][0]
     end = osc.chatter_limit("0.9", "0.0005", digits=25).certified
     with balls_at(200):
-        flow = enclosed.flow_of(osc, 200)
+        flow = AnalyticFlow(osc, 200)
         left = enclosed.remaining(flow, flow.number(Fraction(9, 10)), flow.number(Fraction(1, 2000)))
         assert left is not None
         low, high = (as_rational(part) for part in (left.lower(), left.upper()))

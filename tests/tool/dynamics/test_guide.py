@@ -8,7 +8,7 @@ import singimpact as si
 from singimpact.algebra import constant
 from singimpact.contact.next_zero import next_zero
 from singimpact.dynamics import enclosed, guided, newton
-from singimpact.flights import LinearFlow
+from singimpact.flights import AnalyticFlow
 from singimpact.status import Status
 
 MODELS = {
@@ -37,8 +37,8 @@ def test_the_guided_search_finds_what_the_secants_find(name, monkeypatch):
 def test_thirty_digits_take_few_flights_and_one_precision(name, monkeypatch):
     """What a threshold costs: some thirty flights three times for v, and two orbits that leave gamma."""
     osc, tau = MODELS[name]
-    flown, fly = [], LinearFlow.first_hit
-    monkeypatch.setattr(LinearFlow, "first_hit", lambda self, *given: flown.append(self.balls.bits) or fly(
+    flown, fly = [], AnalyticFlow.first_hit
+    monkeypatch.setattr(AnalyticFlow, "first_hit", lambda self, *given: flown.append(self.balls.bits) or fly(
         self, *given))  # fmt: skip
     found = si.threshold(osc, tau, digits=30)
     assert found.certified.radius < found.v * 10**-30
