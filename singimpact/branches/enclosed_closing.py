@@ -21,10 +21,9 @@ from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
 from singimpact.algebra.isolated_zeros import IsolatedZeros, Place, zeros_of
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at, series_of_any_length
-from singimpact.flights.enclosures.clocked_motion import ClockedMotion
 from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
 from singimpact.flights.enclosures.first_root import narrowed
-from singimpact.flights.enclosures.free_motion import Met
+from singimpact.flights.enclosures.motion import CarriedMotion, Met, Start
 from singimpact.flights.enclosures.tube import Tube, centre, divided
 from singimpact.oscillator.model import Oscillator
 
@@ -117,9 +116,14 @@ class ClosingBoxes:
             if end is not None:
                 yield first, end
 
+    def _motion(self, tau: Any, v: Any) -> CarriedMotion:
+        """The flights of a box of launches, at equal times of the clock."""
+        equations = self.equation, self.equation
+        return CarriedMotion(equations, Start(tau, v), BITS, coarse=BITS, deviations={}, clocked=True)
+
     def _end(self, launch: tuple[Any, Any], clock: Any, visible: bool) -> Met | None:
         """The box at a time of the clock, which may be a ball; None where all of it is below the wall before."""
-        motion = ClockedMotion(self.equation, *launch, BITS)
+        motion = self._motion(*launch)
         left = clock - launch[0]
         if not left > 0:  # members whose first impact is later than the end are no orbits
             left = (left * 0).union(left.upper())
@@ -140,7 +144,7 @@ class ClosingBoxes:
 
     def _impacts(self, tau: Any, v: Any) -> Iterator[Met]:
         """Where the flight may meet the wall, until all of it is below."""
-        motion, end = ClockedMotion(self.equation, tau, v, BITS), tau + self.span
+        motion, end = self._motion(tau, v), tau + self.span
         while not motion.middle_tau + motion.time > end:
             height, speed, length = motion.tubes()
             value, rate = divided(height, speed, 1) if motion.launched else (height, speed)

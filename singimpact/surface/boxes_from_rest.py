@@ -20,8 +20,7 @@ from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import ZERO, Expression, Name, add, multiply, names_in, substitute, subtract
 from singimpact.flights.enclosures.equation import Equation, programs_of
 from singimpact.flights.enclosures.first_root import narrowed
-from singimpact.flights.enclosures.framed_motion import Pair, added
-from singimpact.flights.enclosures.free_motion import FreeMotion, Met
+from singimpact.flights.enclosures.motion import CarriedMotion, Met, Pair, Start, added
 from singimpact.flights.enclosures.tube import Tube, ball, centre, upper
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
@@ -82,7 +81,7 @@ class Tangencies:
         return Lean((-slopes[1] / slopes[0], zero + 1), deviations[1], (ball(at_middle / slopes[0]), zero))
 
 
-class FlightFromRest(FreeMotion):
+class FlightFromRest(CarriedMotion):
     """A box of flights from rest.
 
     Parameters
@@ -94,7 +93,8 @@ class FlightFromRest(FreeMotion):
     def __init__(self, of: Tangencies, tau: Any, number: Any, bits: int, lean: Lean | None = None) -> None:
         middle = centre(number)
         equations = Equation(of.programs, {of.over: middle}), Equation(of.programs, {of.over: number})
-        super().__init__(equations, tau, tau * 0, bits, bits, {of.over: number - middle})
+        deviations = {of.over: number - middle}
+        super().__init__(equations, Start(tau, tau * 0), bits, coarse=bits, deviations=deviations, through=True)
         self.lean, self.of, self.number = lean, of, number
         self._higher = of._higher.prepared({of.over: number})
 
@@ -114,13 +114,13 @@ class FlightFromRest(FreeMotion):
         if self.lean is None:
             return super()._spread()
         value, slope = self.own
-        for (psi, rate), size in zip(self.by_state, self.delta, strict=True):
+        for (psi, rate), size in zip(self.by[:2], self.delta, strict=True):
             value, slope = added(value, psi, size), added(slope, rate, size)
         along, size, rest = self.lean
-        (by_tau, rate_by_tau), (by_number, rate_by_number) = self.by_drive
+        (by_tau, rate_by_tau), (by_number, rate_by_number) = self.by[2:]
         value = added(value, _combined(by_tau, by_number, along), size)
         slope = added(slope, _combined(rate_by_tau, rate_by_number, along), size)
-        for (psi, rate), part in zip(self.by_drive, rest, strict=True):
+        for (psi, rate), part in zip(self.by[2:], rest, strict=True):
             value, slope = added(value, psi, part), added(slope, rate, part)
         return value, slope
 

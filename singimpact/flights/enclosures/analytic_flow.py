@@ -11,7 +11,7 @@ from singimpact.algebra.precision import series_of_any_length
 from singimpact.flights.enclosures.ball_flight import first_hit
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE
 from singimpact.flights.enclosures.equation import Equation, NoHit, Refused, programs_of
-from singimpact.flights.enclosures.plain_motion import PlainMotion
+from singimpact.flights.enclosures.motion import CarriedMotion, Start
 from singimpact.flights.enclosures.short_flight import ShortFlights
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION
@@ -88,7 +88,8 @@ class AnalyticFlow:
             a = self.acceleration(tau)
             expected = float((2 * v / -a).mid()) if removed == 1 and a < 0 else 0.0
             horizon = self.number(self.longest) if limit is None else limit
-            motion = PlainMotion(self.equation, tau, v, self.balls.bits - ENCLOSURE.guard, removed, expected=expected)
+            equations, bits = (self.equation, self.equation), self.balls.bits - ENCLOSURE.guard
+            motion = CarriedMotion(equations, Start(tau, v, removed, expected), bits)
             try:
                 hit = first_hit(motion, horizon, ENCLOSURE.idle_steps)
             except NoHit:

@@ -22,8 +22,7 @@ from singimpact.flights.enclosures.equation import (
     equation_of,
     programs_of,
 )
-from singimpact.flights.enclosures.framed_motion import FramedMotion
-from singimpact.flights.enclosures.plain_motion import PlainMotion
+from singimpact.flights.enclosures.motion import CarriedMotion, Start
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import common_period
 
@@ -179,7 +178,7 @@ def working_at(bits: int) -> Iterator[None]:
 
 def motion_from(
     osc: Oscillator, launch: Launch, bits: int, coarse: int, derivative: bool, framed: bool, time: float = 0.0
-) -> Any:
+) -> CarriedMotion:
     """The flight from a launch at the working precision.
 
     Parameters
@@ -192,8 +191,9 @@ def motion_from(
     names = launch.names
     programs = programs_of(osc, names)
     if not framed and not names:
-        tau, v = _phase(osc, launch.tau, bits, names), _ball(launch.v, bits)
-        return PlainMotion(equation_of(osc), tau, v, bits, launch.removed, derivative, time)
+        tau, v, own = _phase(osc, launch.tau, bits, names), _ball(launch.v, bits), equation_of(osc)
+        start = Start(tau, v, launch.removed, time)
+        return CarriedMotion((own, own), start, bits, deviations={} if derivative else None)
     tau, v, wide_numbers = box_of(osc, launch, bits)
     numbers = {name: _ball(_number(osc, name), bits) for name in names}
     deviations = {name: _radius(launch.radii[name]) for name in names}
@@ -203,7 +203,8 @@ def motion_from(
         raise Refused("the launch velocity is not shown positive")
     assert isinstance(v, flint.arb)
     carried = deviations if derivative or any(launch.radii.values()) else None
-    return FramedMotion((own, wide), tau, v, bits, min(coarse, bits), carried, launch.removed)
+    start = Start(tau, v, launch.removed)
+    return CarriedMotion((own, wide), start, bits, coarse=min(coarse, bits), deviations=carried)
 
 
 def box_of(osc: Oscillator, launch: Launch, bits: int) -> tuple[Any, Any, dict[str, Any]]:

@@ -14,7 +14,7 @@ from singimpact.algebra.balls import BITS_A_DIGIT
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, bits_of_a_set, motion_from, working_at
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
-from singimpact.flights.enclosures.framed_motion import FramedMotion, Pair
+from singimpact.flights.enclosures.motion import CarriedMotion, Pair
 from singimpact.flights.enclosures.tube import Tube, centre, divided
 from singimpact.oscillator.model import Oscillator
 
@@ -108,7 +108,7 @@ def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int) -> No
             motion.advance(part)
 
 
-def _touches_in_step(motion: FramedMotion, inner: tuple[Tube, Tube], left: Any) -> None:
+def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any) -> None:
     """The same in the step of the touching point."""
     last = centre(left)
     for _ in range(TIMED.halvings):
@@ -121,11 +121,9 @@ def _touches_in_step(motion: FramedMotion, inner: tuple[Tube, Tube], left: Any) 
     raise Refused("the mass is not shown to be driven off the wall where it touches it")
 
 
-def _begun(osc: Oscillator, launch: Launch, bits: int, derivative: bool) -> FramedMotion:
+def _begun(osc: Oscillator, launch: Launch, bits: int, derivative: bool) -> CarriedMotion:
     coarse = bits_of_a_set(launch, bits) if any(launch.radii.values()) else bits
-    motion = motion_from(osc, launch, bits, coarse, derivative, True)
-    assert isinstance(motion, FramedMotion)
-    return motion
+    return motion_from(osc, launch, bits, coarse, derivative, True)
 
 
 def _flown(osc: Oscillator, launch: Launch, time: Any, bits: int, derivative: bool) -> Arrival:
@@ -135,14 +133,13 @@ def _flown(osc: Oscillator, launch: Launch, time: Any, bits: int, derivative: bo
             _, length = _step(motion)
             left = time - motion.time
             if _reaches(length, left):
-                assert motion.members is not None
                 z, v = (part(left) for part in motion.members)
                 columns = motion.columns_at(left) if derivative else []
                 return Arrival(z, v, _acceleration(motion, left), columns)
             motion.advance(_piece(length, left))
 
 
-def _step(motion: FramedMotion) -> tuple[tuple[Tube, Tube], Any]:
+def _step(motion: CarriedMotion) -> tuple[tuple[Tube, Tube], Any]:
     """z and its slope on the next step, without the zero of the launch; and the length of the step."""
     motion.flown += 1
     if motion.flown > ENCLOSURE.steps:
@@ -175,13 +172,12 @@ def _above(inner: tuple[Tube, Tube], length: Any, bits: int) -> None:
         raise Refused("the flight meets the wall before it touches it")
 
 
-def _bends_upwards(motion: FramedMotion, during: Any) -> bool:
+def _bends_upwards(motion: CarriedMotion, during: Any) -> bool:
     return bool(_acceleration(motion, during) > 0)
 
 
-def _acceleration(motion: FramedMotion, during: Any) -> Any:
+def _acceleration(motion: CarriedMotion, during: Any) -> Any:
     """z'' at times since the beginning of the step."""
-    assert motion.members is not None
     z, v = (part(during) for part in motion.members)
     forcing = motion.equation.run("forcing", t=motion.tau + motion.time + during)[0]
     return forcing - motion.equation.run("force", x=z, xdot=v)[0]

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from singimpact.algebra import Balls, balls_at, series_of_any_length
-from singimpact.flights import ClockedMotion, FreeMotion, Refused, centre, equation_of
+from singimpact.flights import CarriedMotion, Refused, Start, centre, equation_of
 from singimpact.oscillator import Oscillator
 
 OSC = Oscillator("x + x**3/10 + xdot/20", "cos(2.8*t)", "0.1", "0.8")
@@ -36,12 +36,11 @@ def inside(ball, value, slack=1e-9):
     return abs(float(ball.mid()) - value) <= float(ball.rad()) + slack
 
 
-def launched(spread=SPREAD, kind=ClockedMotion):
+def launched(spread=SPREAD, clocked=True):
     balls = Balls(BITS + 24)
     box = [balls.interval(Fraction(x - r), Fraction(x + r)) for x, r in zip(LAUNCH, spread, strict=True)]
-    if kind is FreeMotion:
-        return FreeMotion((equation_of(OSC), equation_of(OSC)), *box, BITS, BITS, {})
-    return ClockedMotion(equation_of(OSC), *box, BITS)
+    equations = equation_of(OSC), equation_of(OSC)
+    return CarriedMotion(equations, Start(*box), BITS, coarse=BITS, deviations={}, through=True, clocked=clocked)
 
 
 def reached(motion, clock):
@@ -71,7 +70,7 @@ def test_members_and_derivatives_lie_within(clock):
 def test_the_derivative_by_the_launch_time_is_narrower_than_at_equal_time_since_the_launch():
     with balls_at(BITS + 24), series_of_any_length():
         clocked = reached(launched(), 4.6)
-        free = launched(kind=FreeMotion).at(flint.arb(4.6) - flint.arb(LAUNCH[0]))
+        free = launched(clocked=False).at(flint.arb(4.6) - flint.arb(LAUNCH[0]))
         assert 3 * clocked.columns[0][0].rad() < free.columns[0][0].rad()
         assert clocked.height.rad() < free.height.rad()
 
