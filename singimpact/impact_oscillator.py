@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
     from singimpact.dynamics.orbit import Orbit
     from singimpact.flights.enclosed_impact import EnclosedImpact
+    from singimpact.flights.flight_path import Path
     from singimpact.flights.off_wall import Launched
     from singimpact.flights.orbits import Ends as Iterates
-    from singimpact.flights.path import Path
     from singimpact.flights.results import Derivative, Flight, Step
     from singimpact.oscillator.shaken_wall import ShakenWall
 
@@ -145,7 +145,7 @@ class ImpactOscillator(Oscillator):
         >>> linear(2, "0.3", "0.5").flight(0, 1, [0, 1]).x.round(6).tolist()
         [0.3, 1.322378]
         """
-        from singimpact.flights.path import path
+        from singimpact.flights.flight_path import path
 
         return path(self, tau, v, t)
 
@@ -158,7 +158,7 @@ class ImpactOscillator(Oscillator):
         [0.0, -1.860079008832274]
         """
         from singimpact.flights.states import States
-        from singimpact.oscillator.acceleration import acceleration, at_exactly
+        from singimpact.oscillator.wall_acceleration import acceleration, at_exactly
 
         if isinstance(order, bool) or not isinstance(order, int) or not 0 <= order <= 60:
             raise refuse("order", order, "a whole number from 0 to 60")
@@ -351,7 +351,7 @@ class ImpactOscillator(Oscillator):
         >>> print(f"{linear(2, '0.3', '0.5').release(1.2):.12f}")
         2.508540817200
         """
-        from singimpact.dynamics.release import release
+        from singimpact.dynamics.lift_off import release
         from singimpact.flights.states import States
 
         states = States.read(tau, 0.0).in_period(self)

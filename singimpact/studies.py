@@ -16,8 +16,8 @@ from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
     from singimpact.contact.swans import SwanPoints
-    from singimpact.dynamics.basins import Basins
-    from singimpact.dynamics.bifurcation import Bifurcation
+    from singimpact.dynamics.basins_of_attraction import Basins
+    from singimpact.dynamics.bifurcation_diagram import Bifurcation
     from singimpact.surface.classification import Classification
     from singimpact.surface.curve import Curve
 
@@ -111,7 +111,7 @@ def basins(
     >>> basins(linear(2, "0.7", "0.5"), ((0, 3), (0, 1)), 8)
     Basins(8 x 8 states: (inf, 1) chatter for ever 100 %)
     """
-    from singimpact.dynamics.basins import basins
+    from singimpact.dynamics.basins_of_attraction import basins
 
     whole("size", size, 2, 10_000)
     tau, v = (None, (0, 2)) if window is None else _two_ends(window, "((tau_low, tau_high), (v_low, v_high))")
@@ -161,7 +161,7 @@ def bifurcation(
     >>> found.events[0, :, 1].round(6).tolist()
     [1.066667, 1.066667, 1.066667, 1.066667]
     """
-    from singimpact.dynamics.bifurcation import bifurcation
+    from singimpact.dynamics.bifurcation_diagram import bifurcation
 
     for name in sweeping:
         if name not in ("executor", "output", "settle"):

@@ -7,7 +7,6 @@ from singimpact.handed_on import names_of
 
 _FILES = {
     "drawn": "Draws Fed KINDS RESTITUTIONS",
-    "exponents": "fitted",
     "fresh": "cost",
     "groups": "GROUPS measured usual",
     "groups.command_rows": "COMMANDS PUBLIC SERIES",
@@ -15,13 +14,14 @@ _FILES = {
     "groups.regime_rows": "of_states",
     "groups.series_rows": "LIMITED",
     "groups.start_rows": "MODELS first_answer first_model script",
+    "growth_exponents": "exponents fitted",
     "measuring": (
         "Aim Case Counted EPSILON Effort FULL Measured Method Timed condition cpu_seconds measure relative_error"
     ),
     "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND TITLES stress_page",
     "peers.last_terms": "last_terms",
     "plots": "plotted",
-    "problems": "Problem values",
+    "problems": "Problem states values",
     "report": "reached tables",
     "selftest.basin_pixels": "row",
     "selftest.batches": "grazes lanes",
@@ -30,6 +30,7 @@ _FILES = {
     "selftest.followed_orbits": "limits orbits",
     "selftest.responses": "derivatives rebounds",
     "selftest.truths": "balls digits fixed_steps",
+    "steep_balls": "COLUMNS Flown enclosed summary",
     "steep_families": "FAMILIES Family NAMES SMOOTH STEEP",
     "steep_states": "drawn_of family_of",
     "stress.flown": "landing",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from singimpact.bench.exponents import exponents
+from singimpact.bench.growth_exponents import exponents
 from singimpact.bench.measuring import Measured, Row
 
 HEADER = ("case", "method", "setting", "time", "to reach", "error", "wrong", "missed", "times the first", "quartiles")

@@ -22,7 +22,7 @@ from singimpact.algebra.numbers import as_float, exact
 from singimpact.algebra.precision import balls_at, digits_at, for_user
 from singimpact.algebra.solving import newton_in_balls
 from singimpact.branches.released import Return
-from singimpact.contact.next_zero import ContactZero, next_zero
+from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics.enclosed import enclosable, end_of_gamma, searched, side
 from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.flights.impact_map import impact_map

@@ -16,9 +16,9 @@ from singimpact.branches.saddle_arcs import LocalArc, checked_saddle, directions
 from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.growth import LEFT, LOST, NATURAL, TORN, Carried, Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
-from singimpact.flights.counted import counted
+from singimpact.flights.flight_count import counted
 from singimpact.inputs import refuse
-from singimpact.oscillator.acceleration import acceleration, largest_push
+from singimpact.oscillator.wall_acceleration import acceleration, largest_push
 from singimpact.store import write_table
 from singimpact.surface.curve import RESOLUTION, STATES, Curve, Mark, Window
 

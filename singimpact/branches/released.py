@@ -13,12 +13,12 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float
 from singimpact.dynamics.chatter import ENDING, chatter_left
+from singimpact.dynamics.lift_off import release
 from singimpact.dynamics.long_run import lift_offs
-from singimpact.dynamics.release import release
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import orbit_segment
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]

@@ -11,9 +11,9 @@ from singimpact.algebra.numbers import as_float
 from singimpact.branches.closing import lowest
 from singimpact.branches.free import FreeClosing
 from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, chatter_orbit
+from singimpact.dynamics.lift_off import turns_between
 from singimpact.dynamics.long_run import lift_offs
 from singimpact.dynamics.orbit import orbit
-from singimpact.dynamics.release import turns_between
 from singimpact.flights.family import Family, family
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator

@@ -10,8 +10,8 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.branches.orbits import PeriodicOrbit, chatter_orbit
 from singimpact.branches.resting import SAME_PHASE
+from singimpact.dynamics.lift_off import turns_between
 from singimpact.dynamics.orbit import Orbit, orbit
-from singimpact.dynamics.release import turns_between
 from singimpact.flights.derivative import derivative
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status

@@ -12,12 +12,12 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.branches.closing import Closing
 from singimpact.branches.resting import free_orbits
 from singimpact.flights.family import LinearFamily, SteppedFamily
+from singimpact.flights.flight_path import ends
 from singimpact.flights.impact_map import impact_map
-from singimpact.flights.path import ends
 from singimpact.flights.rebound_law import rebound_slope
 from singimpact.flights.response import variations
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 
 Array = np.ndarray[Any, Any]
 

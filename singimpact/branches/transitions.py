@@ -19,16 +19,16 @@ from singimpact.branches.branch import Branch, branch
 from singimpact.branches.events import Event
 from singimpact.branches.orbits import PeriodicOrbit, same_states
 from singimpact.branches.periodic import periodic
-from singimpact.dynamics.basins import Basins, basins
+from singimpact.dynamics.basins_of_attraction import Basins, basins
 from singimpact.inputs import InputError, refuse, whole
-from singimpact.oscillator.acceleration import largest_push
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
+from singimpact.oscillator.wall_acceleration import largest_push
 from singimpact.surface.classification import default_window
 from singimpact.surface.curve import window_ends
+from singimpact.surface.outline_transitions import Transitions
+from singimpact.surface.outline_transitions import transitions as transitions_of_outline
 from singimpact.surface.swan_families import Transition
-from singimpact.surface.transitions import Transitions
-from singimpact.surface.transitions import transitions as transitions_of_outline
 
 Array = np.ndarray[Any, Any]
 SEEN_ALONE = ("tacnode", "triple point")

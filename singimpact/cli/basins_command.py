@@ -60,7 +60,7 @@ def command(
         from contextlib import nullcontext
 
         from singimpact.case_pools import WorkerPool
-        from singimpact.dynamics.basins import basins
+        from singimpact.dynamics.basins_of_attraction import basins
         from singimpact.scenes.basins_picture import draw_basins, draw_first_chatter
 
         with nullcontext() if workers is None else WorkerPool(workers) as pool:

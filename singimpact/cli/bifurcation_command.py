@@ -74,7 +74,7 @@ def command(
     from contextlib import nullcontext
 
     from singimpact.case_pools import WorkerPool
-    from singimpact.dynamics.bifurcation import bifurcation
+    from singimpact.dynamics.bifurcation_diagram import bifurcation
     from singimpact.scenes.bifurcation_picture import bifurcation_sheet
 
     if direction is not None:

@@ -14,7 +14,7 @@ from singimpact.inputs import InputError
 if TYPE_CHECKING:
     from singimpact.branches.transitions import Interval, OrbitTransitions
     from singimpact.surface.classification import Classification
-    from singimpact.surface.transitions import Transitions
+    from singimpact.surface.outline_transitions import Transitions
 
 
 @click.command()
@@ -72,7 +72,7 @@ def command(
 def _transitions(oscillator: Any, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
     """Without orbits nothing of branches is loaded, which takes 0.2 s."""
     if orbits is None:
-        from singimpact.surface.transitions import transitions
+        from singimpact.surface.outline_transitions import transitions
 
         return transitions(oscillator, over, between, t)
     from singimpact.branches.transitions import transitions as with_orbits

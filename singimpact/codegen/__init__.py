@@ -15,5 +15,6 @@ _FILES = {
         "atan_radius bell_radius circular_radius exp_radius log_of_square_radius log_radius power_of_square_radius "
         "power_radius softplus_radius tan_radius tanh_radius whole_power_radius"
     ),
+    "taylor_recurrence": "recurrence",
 }
 __getattr__ = names_of(__name__, _FILES)

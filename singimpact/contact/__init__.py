@@ -10,5 +10,6 @@ _FILES = {
     "contact": "Contact NAMED_ORDERS acceleration acceleration_jet contact_order",
     "points": "MOST_DIGITS TangencyPoints enclosed tangency_points",
     "swans": "swan_points_over_clearance",
+    "zero_ahead": "next_zero",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -9,9 +9,9 @@ _FILES = {
     "arranging": "by_degree factored in_powers",
     "breaking": "PAGE lines_of width",
     "compiling": "CompileError compiled",
+    "document_steps": "Mark Section Step claims_of equations_of",
     "escape": "latex",
     "formats": "as_files as_text",
     "rendering": "as_data as_latex as_markdown",
-    "document_steps": "Mark Section Step claims_of equations_of",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -20,7 +20,7 @@ from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory import chatter_limit, dynamics_on_gamma, fibre, gamma, normal_form, v_c
 from singimpact.theory.contact_points import Place, place, points_of
-from singimpact.theory.fold_form import FoldForm
+from singimpact.theory.fold_normal_form import FoldForm
 from singimpact.theory.formulas import LIMITS
 from singimpact.theory.frozen import COMMAND, curve_functions, sheet_functions
 from singimpact.theory.homogeneous import r_of_lambda

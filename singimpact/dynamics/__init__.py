@@ -2,23 +2,14 @@
 
 Not here: one flight (`flights`), periodic orbits (`branches`), power series of the chatter limit (`theory`), pictures
 (`scenes`).
-Files: `orbit` (impacts, rest and chatter in order), `sampling` (x and x' of an orbit at times), `lyapunov` (its
-exponents), `gamma_proof` (gamma proved, a folder), `release` (when a mass lifts off), `chatter`
-(when impacts end), `completion` (its map), `remaining` (its terms in doubles),
-`fractional_chatter` (for rho that is not smooth at rest), `gathered` (results of many states),
-`threshold` (the velocity between complete and incomplete chatter), `enclosed` (both in balls),
-`guide` (a velocity on gamma in many digits, not proved),
-`growth` (an invariant curve of a map, cut at discontinuities),
-`invariant_arcs` (gamma and the stable manifolds, grown), `swan_configuration` (the named points of an unfolded swan),
-`attractors`, `nearby_orbit` (beside a state that almost returns), `settling` (which one is reached), `basins`,
-`long_run` (what follows a rest), `bifurcation`.
 """
 
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "orbit": "Orbit",
     "attractors": "CHAOS CHATTER OTHER caught closing_orbits new_attractors",
+    "basins_of_attraction": "basins",
+    "bifurcation_diagram": "bifurcation",
     "chatter": "ENDING chatter_left chatter_limit",
     "enclosed": "end_of_gamma",
     "fractional_chatter": "chatter_completes rest_after sum_of_speeds",
@@ -31,8 +22,11 @@ _FILES = {
     "growth": "held",
     "guide": "guided newton",
     "invariant_arcs": "before grown_gamma model_step stable_manifold",
+    "lift_off": "release",
     "long_run": "Future chaotic settled",
+    "orbit": "Orbit",
     "settling": "Study chattering",
     "threshold": "SEARCH",
+    "unfolded_swan": "swan_configuration",
 }
 __getattr__ = names_of(__name__, _FILES)

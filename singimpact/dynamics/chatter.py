@@ -26,8 +26,8 @@ from singimpact.flights.kernels.chatter import COMPLETED, EXHAUSTED, LIFTED, NO_
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
 from singimpact.inputs import whole
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result
 from singimpact.status import Cause, Status, status_array
 from singimpact.words import in_words

@@ -15,7 +15,7 @@ from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.contact.contact import Contact
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.rho_series import series_of_rho
-from singimpact.theory.sheet import sheet
+from singimpact.theory.impact_sheet import sheet
 
 
 def completion(osc: Oscillator, tau: Any, order: int, ring: Any) -> list[Any]:

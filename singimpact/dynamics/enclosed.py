@@ -19,14 +19,14 @@ from singimpact.algebra.certified import Certified, as_certified, from_ends
 from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.algebra.precision import balls_at
-from singimpact.contact.next_zero import ContactZero
+from singimpact.contact.zero_ahead import ContactZero
 from singimpact.dynamics.guide import guided, newton, spread
 from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.flights.states import States
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
-from singimpact.theory.invariant_curve import multiplier_across
+from singimpact.theory.gamma_series import multiplier_across
 
 Found = TypeVar("Found")
 
@@ -189,7 +189,7 @@ def end_of_gamma(osc: Oscillator, end: ContactZero, bits: int) -> tuple[Any, Any
     Examples
     --------
     >>> from singimpact.algebra.numbers import constant
-    >>> from singimpact.contact.next_zero import next_zero
+    >>> from singimpact.contact.zero_ahead import next_zero
     >>> osc = Oscillator("x + 0.1*xdot", "cos(2*t)", "0.3", "1/2")
     >>> [round(float(part.mid()), 12) for part in end_of_gamma(osc, next_zero(osc, constant("tau", 1)).zero, 128)]
     [0.287254555699, -0.071343715825, 0.660442249724]

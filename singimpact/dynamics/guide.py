@@ -16,7 +16,7 @@ from typing import Any
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.numbers import as_float
-from singimpact.contact.next_zero import ContactZero
+from singimpact.contact.zero_ahead import ContactZero
 from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.flights.orbits import orbit_segment
 from singimpact.oscillator.model import Oscillator
@@ -80,7 +80,7 @@ def guided(osc: Oscillator, tau: Expression, v: float, end: ContactZero, digits:
     Examples
     --------
     >>> from singimpact.algebra.numbers import constant
-    >>> from singimpact.contact.next_zero import next_zero
+    >>> from singimpact.contact.zero_ahead import next_zero
     >>> osc, tau = Oscillator("x", "cos(2.8*t)", 0, "0.5"), constant("tau", "pi/2.8")
     >>> found = guided(osc, tau, 0.10086999126925593, next_zero(osc, tau).zero, 30)
     >>> 5 < found.impacts < 40

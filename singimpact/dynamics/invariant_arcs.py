@@ -19,8 +19,8 @@ from singimpact.dynamics.growth import Carried, Piece, adds, held
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards, inverse_map
 from singimpact.inputs import InputError, refuse
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
 from singimpact.surface.curve import STATES, Curve, Mark, Window
 from singimpact.theory.contact_points import points_of

@@ -15,11 +15,11 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.attractors import CHATTER, OTHER
+from singimpact.dynamics.lift_off import release
 from singimpact.dynamics.orbit import orbit
-from singimpact.dynamics.release import release
 from singimpact.flights.orbits import iterate
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 
 Array = np.ndarray[Any, Any]
 

@@ -18,7 +18,7 @@ from singimpact.algebra.numbers import as_float, compare
 from singimpact.dynamics.attractors import apart
 from singimpact.dynamics.chatter import ENDING, chatter_limit
 from singimpact.dynamics.fractional_chatter import chatter_completes
-from singimpact.dynamics.release import periods_between, release
+from singimpact.dynamics.lift_off import periods_between, release
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.determinant import log_determinant

@@ -12,14 +12,14 @@ import numpy as np
 from singimpact.algebra.expressions import subtract
 from singimpact.algebra.numbers import as_float, constant, float_array
 from singimpact.dynamics.chatter import ENDING, chatter_left, impacts_until
-from singimpact.dynamics.release import periods_between, release
+from singimpact.dynamics.lift_off import periods_between, release
 from singimpact.dynamics.sampling import Section, sampled
+from singimpact.flights.flight_path import Path
 from singimpact.flights.horizons import horizon_of
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.off_wall import Launched, launch
 from singimpact.flights.orbits import orbit_segment
-from singimpact.flights.path import Path
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
 from singimpact.inputs import InputError, refuse, whole

@@ -18,8 +18,8 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import Contact
 from singimpact.dynamics.fractional_chatter import left_of_chatter
 from singimpact.generated.completion import chatter_terms
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 
 Array = np.ndarray[Any, Any]
 ORDER = 4

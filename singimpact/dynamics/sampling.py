@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
+from singimpact.flights.flight_path import along, dropped
 from singimpact.flights.orbits import orbit_segment
-from singimpact.flights.path import along, dropped
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 

@@ -33,8 +33,8 @@ from singimpact.dynamics.attractors import SETTINGS as ATTRACTORS
 from singimpact.dynamics.fractional_chatter import rest_after
 from singimpact.dynamics.long_run import chaotic, next_lift_off
 from singimpact.flights.orbits import iterate
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]

@@ -13,7 +13,7 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
 from singimpact.algebra.precision import digits_at, for_user
-from singimpact.contact.next_zero import ContactZero, next_zero
+from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.fractional_chatter import chatter_completes, power_of_gamma, rest_after
 from singimpact.dynamics.gathered import gathered
@@ -24,8 +24,8 @@ from singimpact.flights.kernels.gamma import TERMS_OF_GAMMA
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.states import require_room
 from singimpact.inputs import InputError, whole
-from singimpact.oscillator.acceleration import acceleration, sign_of_acceleration
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
+from singimpact.oscillator.wall_acceleration import acceleration, sign_of_acceleration
 from singimpact.result import Result
 from singimpact.status import Status
 from singimpact.theory.contact_points import Place

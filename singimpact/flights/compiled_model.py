@@ -18,7 +18,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
-from singimpact.flights import counted
+from singimpact.flights import flight_count
 from singimpact.flights.bind import LAW, Emitted
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
@@ -305,7 +305,7 @@ class CompiledModel:
         ----------
         pushes : a_c at the launches of a Taylor flow, nan where it is not known.
         """
-        counted.add(int(np.count_nonzero(v)))
+        flight_count.add(int(np.count_nonzero(v)))
         status, out = np.empty(tau.size, np.int8), np.empty((10, tau.size))
         if self.linear:
             given: tuple[Array, ...] = (tau, v)
@@ -372,7 +372,7 @@ class CompiledModel:
         addresses = [ctypes.c_void_p(address) for address in (
             *(part.ctypes.data for part in (sizes, self.flat, scratch)), at, at + 8, at + 16, ctypes.addressof(out),
             ctypes.addressof(status))]  # fmt: skip
-        count, alone = counted.add, Lock()
+        count, alone = flight_count.add, Lock()
 
         def quick(tau: float, v: float, push: float = np.nan, kept: Any = (sizes, scratch)) -> Any:  # noqa: ARG001
             if not alone.acquire(blocking=False):
@@ -389,7 +389,7 @@ class CompiledModel:
 
     def releases(self, tau: Array, removed: Array) -> tuple[Array, Array]:
         """Codes and flight time, velocity, depth and bound, shape (10, n), of masses released at rest."""
-        counted.add(tau.size)
+        flight_count.add(tau.size)
         status, out, orders = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan), removed.astype(float)
         name = "linear_entry" if self.linear else "judge_entry"
         entry = self._compiled(name, self.price * tau.size)
@@ -404,7 +404,7 @@ class CompiledModel:
 
     def drops(self, tau: Array, v: Array, heights: Array) -> tuple[Array, Array]:
         """Codes and flight time, velocity, depth and bound, shape (10, n), of starts off the wall; for Taylor flows."""
-        counted.add(tau.size)
+        flight_count.add(tau.size)
         status, out = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan)
         entry = self._compiled("judge_entry", self.price * tau.size)
         if entry is None:
@@ -423,13 +423,13 @@ class CompiledModel:
         if entry is None:
             try:
                 flown, code = self.interpreter.segment(tau, v, near, self.rho, out)
-                counted.add(flown)
+                flight_count.add(flown)
                 return out[:flown], code
             except LEFT_OPEN:
                 entry = self._here(self.main, self.law)
         given = np.array([tau]), np.array([v]), np.concatenate([[near], self.rho])
         flown = self._call(entry, (entries.SEGMENT, count, 0), given, out, status)
-        counted.add(flown)
+        flight_count.add(flown)
         return out[:flown], int(status[0])
 
     def iterate(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array]:
@@ -505,7 +505,7 @@ class CompiledModel:
             out[:, part] = rows
             begin += codes.size
             flown = int(rows[2].sum())
-            counted.add(flown)
+            flight_count.add(flown)
             many = max(1, min(TABLES.block, 4 * many, TABLES.block * codes.size // max(flown, 1)))
         return status, out
 

@@ -17,8 +17,8 @@ from singimpact.flights.response import response, touching
 from singimpact.flights.results import Derivative
 from singimpact.flights.states import States
 from singimpact.flights.undecided import flights_and_rows
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]

@@ -16,7 +16,7 @@ from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import evaluate, names_in, substitute
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
-from singimpact.flights.path import many_paths
+from singimpact.flights.flight_path import many_paths
 from singimpact.flights.rebound_law import rebound_slope
 from singimpact.oscillator.model import Oscillator
 

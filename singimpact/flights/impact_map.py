@@ -26,8 +26,8 @@ from singimpact.flights.response import response
 from singimpact.flights.results import SCALAR_STATUS, Flight, Step
 from singimpact.flights.states import States
 from singimpact.inputs import refuse
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Cause, Status, status_array
 
 Array = np.ndarray[Any, Any]

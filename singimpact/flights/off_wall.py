@@ -20,13 +20,13 @@ from singimpact.algebra.precision import digits_at
 from singimpact.flights.bind import over_mpmath
 from singimpact.flights.causes import decoded, where
 from singimpact.flights.compiled_model import CompiledModel, allowed
+from singimpact.flights.flight_path import off_wall_places
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.state import Rules
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, has_table, recurrence_of
-from singimpact.flights.path import off_wall_places
 from singimpact.flights.rebound_law import rebound
 from singimpact.flights.states import States, require_room
 from singimpact.flights.undecided import Fates, escapes

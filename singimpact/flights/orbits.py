@@ -17,8 +17,8 @@ from singimpact.flights.kernels.hits import PRESSED
 from singimpact.flights.phase import reduced
 from singimpact.flights.states import States
 from singimpact.inputs import require_memory
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, default_axes
 from singimpact.status import Status, status_array
 from singimpact.words import in_words

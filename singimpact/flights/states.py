@@ -24,9 +24,9 @@ from singimpact.flights.blocks import LEAST
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.phase import phase_of
 from singimpact.inputs import InputError, refuse, require_memory
-from singimpact.oscillator.acceleration import sign_of_acceleration
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.nearest_zero import Zero, zero_beside
+from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 
 FAR = 2.0**25
 """Periods from which on launch times are reduced exactly: kernels reduce those before, to twice a double's bits."""

@@ -9,19 +9,19 @@ import numpy as np
 
 from singimpact.flights.causes import decoded, explained
 from singimpact.flights.compiled_model import EPSILON, CompiledModel
+from singimpact.flights.flight_path import path
 from singimpact.flights.kernels.hits import CANCELS, NOT_REFINED
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.no_return.averaged import stays_up
 from singimpact.flights.no_return.barrier import kept_up
 from singimpact.flights.no_return.linear import never_returns
 from singimpact.flights.no_return.polynomial import never_turns
-from singimpact.flights.path import path
 from singimpact.flights.phase import reduced
 from singimpact.flights.response import response, usual_errors
 from singimpact.flights.results import JUDGED, Flight
 from singimpact.flights.states import States
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Cause, Status
 
 Array = np.ndarray[Any, Any]

@@ -6,9 +6,10 @@ Not here: points of the tau-axis (`contact`), motion (`flights`), a user's metho
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "toml_files": "fields_of read_fields",
     "linear": "linear_form",
     "model": "Oscillator",
     "rho_series": "series_of_rho",
+    "toml_files": "fields_of read_fields",
+    "wall_acceleration": "acceleration",
 }
 __getattr__ = names_of(__name__, _FILES)

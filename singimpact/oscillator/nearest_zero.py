@@ -14,8 +14,8 @@ from typing import Any
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression, Number
 from singimpact.algebra.taylor import NotSmooth
-from singimpact.oscillator.acceleration import around
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import around
 
 HIGHEST = 6
 """The highest order of a zero that is recognised."""

@@ -23,6 +23,7 @@ _FILES = {
     "explore": "CURVES explore_page",
     "layers": "LAYERS",
     "scene": "LONGEST_TEXT Scene",
+    "stored_layers": "keep recall",
     "style": "BLUE EVENT_PENS LINES MARKS ON_DARK PENS Pen VERMILLION on_dark orbit_color orbit_width",
 }
 __getattr__ = names_of(__name__, _FILES)

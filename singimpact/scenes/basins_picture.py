@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.dynamics.basins import Basins
+from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.scenes.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
 
 FIXED = {

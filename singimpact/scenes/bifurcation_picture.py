@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.branches.branch import Branch
-from singimpact.dynamics.bifurcation import Bifurcation
+from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.scenes.branch_picture import HEIGHTS, draw_branches
 from singimpact.scenes.style import BLACK, BLUE, GREY, LETTERS, VERMILLION
 
@@ -27,7 +27,7 @@ def bifurcation_sheet(found: Bifurcation, branches: Sequence[Branch] = ()) -> An
 
     Examples
     --------
-    >>> from singimpact.dynamics.bifurcation import bifurcation
+    >>> from singimpact.dynamics.bifurcation_diagram import bifurcation
     >>> from singimpact.oscillator.model import Oscillator
     >>> found = bifurcation(Oscillator("x", "cos(2*t)", 0, "1/2"), "clearance", (0.2, 0.3), 2, impacts=60, kept=4)
     >>> [axes.get_ylabel() for axes in bifurcation_sheet(found).axes]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.branches.transitions import BothSides
-from singimpact.dynamics.basins import Basins
+from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.inputs import refuse
 from singimpact.oscillator.moving_number import value_of, with_number
 from singimpact.scenes.basins_picture import class_colors, draw_basins

@@ -17,8 +17,8 @@ from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.dynamics.invariant_arcs import grown_gamma
 from singimpact.flights.together import in_step
 from singimpact.inputs import refuse
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.studies import clearances
 from singimpact.surface.classification import default_window
 from singimpact.surface.curve import Curve, Window

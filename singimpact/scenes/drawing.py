@@ -13,8 +13,8 @@ from singimpact.branches.homoclinic import Crossings
 from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.manifold import Manifold
 from singimpact.branches.transitions import BothSides
-from singimpact.dynamics.basins import Basins
-from singimpact.dynamics.bifurcation import Bifurcation
+from singimpact.dynamics.basins_of_attraction import Basins
+from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.sampling import Section
 from singimpact.inputs import refuse

@@ -15,9 +15,9 @@ import numpy as np
 
 from singimpact.dynamics.invariant_arcs import gammas_within, stable_manifold
 from singimpact.dynamics.orbit import orbit
-from singimpact.flights.counted import counted
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.flights.flight_count import counted
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.scenes.stored_layers import keep, key_of, recall
 from singimpact.surface.curve import STATES, SURFACE, Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface

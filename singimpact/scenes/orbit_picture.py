@@ -10,7 +10,7 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.sampling import Section
-from singimpact.flights.path import path
+from singimpact.flights.flight_path import path
 
 
 @dataclass(frozen=True)

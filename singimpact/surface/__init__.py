@@ -12,10 +12,10 @@ _FILES = {
     "enclosed_touches": "EnclosedTouches",
     "followed_rests": "FollowedRests",
     "impact_surface": "ImpactSurface",
+    "outline_transitions": "Transitions transitions",
     "proved_touches": "RestFlight doubts_left rest_flight",
     "rest_flights": "RestFlights",
     "swan_families": "Family swan_curves",
-    "transitions": "Transitions",
     "two_rests": "linear_rests newton",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -19,8 +19,8 @@ from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import tangency_points
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.inputs import InputError, refuse
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.flights.path import many_paths
+from singimpact.flights.flight_path import many_paths
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.swan_families import Family
 from singimpact.surface.two_rests import GRID, Rests, distinct, is_whole, newton

@@ -17,8 +17,8 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import acceleration
+from singimpact.flights.flight_path import many_paths
 from singimpact.flights.inverse_map import backwards
-from singimpact.flights.path import many_paths
 from singimpact.flights.response import variations
 from singimpact.flights.together import Meeting
 from singimpact.oscillator.model import Oscillator

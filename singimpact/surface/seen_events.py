@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
+from singimpact.flights.flight_path import many_paths
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards
-from singimpact.flights.path import many_paths
-from singimpact.oscillator.acceleration import acceleration, largest_push
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration, largest_push
 from singimpact.status import Status
 from singimpact.surface.swan_families import Transition
 

@@ -13,7 +13,7 @@ from singimpact.theory.formulas import fibre as fibre
 from singimpact.theory.formulas import gamma as gamma
 from singimpact.theory.formulas import v_c as v_c
 from singimpact.theory.formulas import v_c_on_arrays as v_c_on_arrays
-from singimpact.theory.sheet import Sheet as Sheet
+from singimpact.theory.impact_sheet import Sheet as Sheet
 
 if TYPE_CHECKING:
     from singimpact.theory.grazing import grazing_map as grazing_map
@@ -25,18 +25,19 @@ _FILES = {
     "completion": "leaves symbolic_completion",
     "contact_points": "multiplier",
     "fixed_points": "as_dict swan tangency",
+    "fold_normal_form": "fold_form",
     "frozen": "CURVED MOVED PLACES completion_module curve_module sheet_module",
+    "gamma_in_symbols": "rho_names symbolic_curve",
+    "gamma_series": "invariant_curve multiplier_across restitution_of",
     "grazing": "grazing_map",
     "homogeneous": (
         "DG_on_ray P Q eigenvalues_on_gamma lambda_ launch_velocity leading_coefficient mu_of_lambda r_of_lambda"
     ),
-    "invariant_curve": "multiplier_across restitution_of",
+    "impact_sheet": "Sheet generic_sheet sheet",
     "involution": "iota",
     "multipliers": "minimal_polynomial of_m series",
     "notation": "latex",
     "plane_forms": "normal_form",
-    "sheet": "Sheet generic_sheet",
-    "symbolic_curve": "rho_names",
 }
 _value_of = names_of(__name__, _FILES)
 

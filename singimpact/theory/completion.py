@@ -21,8 +21,8 @@ from singimpact.algebra.interpolation import RationalCoefficients, in_lowest_ter
 from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.algebra.polynomials import Exponents
 from singimpact.contact.contact import Contact, derivative_name
-from singimpact.theory.sheet import Sheet, sheet
-from singimpact.theory.symbolic_curve import in_length, length_weight, rho_names
+from singimpact.theory.gamma_in_symbols import in_length, length_weight, rho_names
+from singimpact.theory.impact_sheet import Sheet, sheet
 
 
 def foliation(

@@ -14,8 +14,8 @@ from singimpact.algebra.rings import DOUBLES, EXACT, Doubles
 from singimpact.algebra.solving import newton_in_balls
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet
-from singimpact.contact.next_zero import ContactZero
 from singimpact.contact.points import TangencyPoint, tangency_points
+from singimpact.contact.zero_ahead import ContactZero
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.rho_series import TASK, series_of_rho

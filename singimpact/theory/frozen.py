@@ -12,10 +12,10 @@ from singimpact.algebra.polynomials import Exponents
 from singimpact.codegen.polynomial_source import function_source, module_source
 from singimpact.codegen.rational_series import Factored, RationalSeries, Unit, rational_series_source
 from singimpact.contact.contact import NAMED_ORDERS, Contact, derivative_name
-from singimpact.germs.normal_form import normal_form
+from singimpact.germs.germ_forms import normal_form
 from singimpact.theory.completion import symbolic_completion
-from singimpact.theory.sheet import generic_sheet, sheet
-from singimpact.theory.symbolic_curve import length_weight, symbolic_curve
+from singimpact.theory.gamma_in_symbols import length_weight, symbolic_curve
+from singimpact.theory.impact_sheet import generic_sheet, sheet
 
 ORDER = 6  # total degree of what is frozen: one digit of v_c per third of a decade in t, and a file that can be read
 PLACES = ("generic", "tangency", "swan")

@@ -30,12 +30,12 @@ from singimpact.algebra.rings import EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.inputs import InputError, refuse, whole
-from singimpact.oscillator.acceleration import sign_of_acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 from singimpact.theory.contact_points import Place, place
 from singimpact.theory.digits import all_digits, with_digits
+from singimpact.theory.gamma_in_symbols import length_weight
 from singimpact.theory.power_series import PowerSeries
-from singimpact.theory.symbolic_curve import length_weight
 
 PARTS = ("x", "xdot", "depth", "time")
 LENGTHS = {"x": 1, "xdot": 1, "depth": 1, "time": 0}
@@ -203,7 +203,7 @@ def _generic(j: int, order: int) -> GrazingMap:
     import sympy
 
     from singimpact.algebra.interpolation import RationalCoefficients
-    from singimpact.theory.symbolic_curve import in_length, rho_names
+    from singimpact.theory.gamma_in_symbols import in_length, rho_names
 
     more = (*rho_names(j, order), "r")
     contact = Contact.generic(j, order, unit=True, more=more)

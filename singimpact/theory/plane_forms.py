@@ -19,13 +19,13 @@ from singimpact.algebra.polynomials import Exponents
 from singimpact.algebra.rings import EXACT
 from singimpact.algebra.symbols import SymbolRing
 from singimpact.contact.contact import contact_order
-from singimpact.germs.normal_form import NormalForm
-from singimpact.germs.normal_form import normal_form as reduced
+from singimpact.germs.germ_forms import NormalForm
+from singimpact.germs.germ_forms import normal_form as reduced
 from singimpact.inputs import InputError, refuse
 from singimpact.theory.contact_points import exact_contact, place
 from singimpact.theory.digits import sympy_digits, with_digits
-from singimpact.theory.fold_form import FoldForm, fold_form
-from singimpact.theory.sheet import sheet
+from singimpact.theory.fold_normal_form import FoldForm, fold_form
+from singimpact.theory.impact_sheet import sheet
 
 HIGHEST = {"tangency": 12, "cusp": 8}  # for symbols: seconds; each order takes about twice the one before
 HIGHEST_NUMBERS = 30

@@ -39,7 +39,7 @@ PLANTED = {
     ),
     "routes, inside a function": (
         "paper/routes/swan.py",
-        "def late() -> None:\n    from singimpact.theory.invariant_curve import invariant_curve",
+        "def late() -> None:\n    from singimpact.theory.gamma_series import invariant_curve",
         "The paper's routes and the theory share no solver",
     ),
     "theory takes a route": (

@@ -23,6 +23,7 @@ from singimpact.bench import (
     Draws,
     Effort,
     Fed,
+    exponents,
     fitted,
     measure,
     measured,
@@ -32,7 +33,6 @@ from singimpact.bench import (
     timed_digest,
     usual,
 )
-from singimpact.bench.exponents import exponents
 from singimpact.bench.groups import series_rows
 from singimpact.bench.measuring import QUICK
 

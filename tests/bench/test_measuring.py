@@ -17,13 +17,13 @@ from singimpact.bench import (
     Method,
     Timed,
     condition,
+    exponents,
     fitted,
     measure,
     plotted,
     reached,
     tables,
 )
-from singimpact.bench.exponents import exponents
 
 EFFORT = Effort(rounds=5, least=0, once=100, fresh=5)
 

@@ -101,7 +101,7 @@ def more_periods():
     def wrong(true):
         return lambda *given: (*true(*given)[:2], true(*given)[2] + 1)
 
-    return "dynamics.basins.settled", wrong
+    return "dynamics.basins_of_attraction.settled", wrong
 
 
 def orbits_twice():

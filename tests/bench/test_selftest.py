@@ -15,7 +15,7 @@ from singimpact.bench import orbits as orbits_orbits
 from singimpact.bench import row as basin_pixels_row
 from singimpact.bench.selftest import round_trip, rows, tangencies
 from singimpact.contact import TangencyPoints
-from singimpact.dynamics import basins
+from singimpact.dynamics import basins_of_attraction
 from singimpact.inputs import InputError
 
 DUFFING = si.ImpactOscillator("x + xdot/10 + 3*x**3/10", "cos(omega*t)", "0.3", "0.6", {"omega": "1.7"})
@@ -115,14 +115,14 @@ def test_orbits_and_chatter_that_are_off_are_wrong():
 
 @pytest.mark.slow
 def test_pixels_of_a_wrong_class_are_wrong(monkeypatch):
-    states, true = flown(si.linear(2, "0.3", "0.5"), 3, 0), basins.basins
+    states, true = flown(si.linear(2, "0.3", "0.5"), 3, 0), basins_of_attraction.basins
     assert basin_pixels_row(states).agree == 16
 
     def planted(*given):
         found = true(*given)
         return replace(found, first_chatter_completes=~found.first_chatter_completes)
 
-    monkeypatch.setattr(basins, "basins", planted)
+    monkeypatch.setattr(basins_of_attraction, "basins", planted)
     assert basin_pixels_row(states).wrong > 0
 
 

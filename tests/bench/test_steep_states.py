@@ -10,6 +10,7 @@ import pytest
 
 from singimpact.algebra import DOUBLES, evaluate
 from singimpact.bench import (
+    COLUMNS,
     FAMILIES,
     HIT,
     MISS,
@@ -20,9 +21,11 @@ from singimpact.bench import (
     UNDECIDED,
     VELOCITY,
     Family,
+    Flown,
     Motion,
-    steep_balls,
+    enclosed,
     steep_states,
+    summary,
 )
 from singimpact.bench.truth import enclosed_flight, graded_steps
 from singimpact.impact_oscillator import ImpactOscillator
@@ -156,12 +159,12 @@ def test_errors_are_measured_against_balls() -> None:
     case = steep_states.drawn(0, 0)
     ball = enclosed_flight.first_hit(case.oscillator(), float(case.tau[0]), float(case.v[0]), 30.0)
     time, u = float(ball.flight_time), float(ball.velocity)
-    row = steep_balls.enclosed(0, steep_balls.Flown(0, 0, time * (1 + 1e-6), u, time, u, False))
-    balls = {name: np.array([value]) for name, value in zip(steep_balls.COLUMNS, row, strict=True)}
+    row = enclosed(0, Flown(0, 0, time * (1 + 1e-6), u, time, u, False))
+    balls = {name: np.array([value]) for name, value in zip(COLUMNS, row, strict=True)}
     assert balls["time_error"] == pytest.approx(1e-6, rel=1e-6)
     assert balls["velocity_error"] < 1e-15
     found = columns() | {name: np.array([1e-9]) for name in ("error", "velocity_error", "velocity_condition")}
-    summed = steep_balls.summary(found, balls)
+    summed = summary(found, balls)
     assert (summed.agree, summed.disagree, summed.refused) == (1, 0, 0)
     assert summed.time is not None
     assert summed.velocity is not None

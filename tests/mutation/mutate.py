@@ -35,10 +35,10 @@ CLAIMS = [
 ]
 # files -> the tests that guard them, the quickest first; doctests of the file itself come before
 GUARDS = {
-    "singimpact/theory/sheet.py": ["tests/tool/theory", *CLAIMS],
+    "singimpact/theory/impact_sheet.py": ["tests/tool/theory", *CLAIMS],
     "singimpact/theory/homogeneous.py": ["tests/tool/theory", *CLAIMS],
     "singimpact/theory/fixed_points.py": ["tests/tool/theory", "tests/tool/algebra"],
-    "singimpact/theory/invariant_curve.py": ["tests/tool/theory", "tests/tool/dynamics"],
+    "singimpact/theory/gamma_series.py": ["tests/tool/theory", "tests/tool/dynamics"],
     "singimpact/theory/completion.py": ["tests/tool/theory", "tests/tool/dynamics"],
     "singimpact/contact/contact.py": ["tests/tool/contact", "tests/tool/theory"],
     "singimpact/contact/points.py": ["tests/tool/contact", "tests/tool/surface"],

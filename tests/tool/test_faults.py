@@ -15,7 +15,7 @@ import pytest
 
 from singimpact import cache
 from singimpact.paper.figures import stored_figures as kept_figures
-from singimpact.scenes import stored_layers
+from singimpact.scenes import keep, recall
 from singimpact.surface import Curve
 
 SWEEP = [
@@ -247,11 +247,11 @@ DAMAGES = {
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_damaged_curves_are_named(damage, tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
-    stored_layers.keep("key", [Curve("a", np.array([[0.0, 1.0], [2.0, 3.0]]), ("tau", "t"), (), False, 0.1)])
-    assert stored_layers.recall("key")[0].points.tolist() == [[0, 1], [2, 3]]
+    keep("key", [Curve("a", np.array([[0.0, 1.0], [2.0, 3.0]]), ("tau", "t"), (), False, 0.1)])
+    assert recall("key")[0].points.tolist() == [[0, 1], [2, 3]]
     (path,) = (tmp_path / "curves").iterdir()
     path.write_bytes(DAMAGES[damage](path.read_bytes()))
-    assert stored_layers.recall("key") is None
+    assert recall("key") is None
     assert str(path) in capsys.readouterr().err
 
 

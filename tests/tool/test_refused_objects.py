@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.bifurcation import bifurcation
+from singimpact.dynamics import bifurcation
 from singimpact.inputs import InputError
 from singimpact.status import Status
 

@@ -43,7 +43,7 @@ def test_basins_are_written_and_drawn(basins, tmp_path):
 
 
 def test_basins_are_those_of_the_room_on_every_executor(basins):
-    from singimpact.dynamics.basins import basins as of_room
+    from singimpact.dynamics import basins as of_room
 
     with ThreadPoolExecutor(2) as pool:
         assert np.array_equal(of_room(OSC, (0, 3), (0, 1), 6, pool).codes, basins.codes)

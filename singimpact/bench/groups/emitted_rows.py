@@ -21,7 +21,7 @@ from singimpact.contact.contact import Contact
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.theory.formulas import v_c_on_arrays
 from singimpact.theory.frozen import sheet_functions
-from singimpact.theory.sheet import sheet
+from singimpact.theory.impact_sheet import sheet
 
 POINTS, JUDGED = 1000, 50
 ORDERS = (3, 4, 6, 8)  # at a swan v_c begins with the third

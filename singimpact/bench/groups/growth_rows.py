@@ -24,8 +24,8 @@ from singimpact.bench.problems import Problem
 from singimpact.contact.contact import Contact
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.theory.fixed_points import tangency
-from singimpact.theory.invariant_curve import invariant_curve
-from singimpact.theory.sheet import sheet
+from singimpact.theory.gamma_series import invariant_curve
+from singimpact.theory.impact_sheet import sheet
 
 DUFFING = ImpactOscillator("x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3", "0.3", "117/275")
 LINEAR, PERIOD = linear(2, "0.3", "0.8"), np.pi
@@ -132,7 +132,7 @@ def _pixels(side: int) -> None:
     """In this process: a pool costs more than the smallest picture."""
     from concurrent.futures import ThreadPoolExecutor
 
-    from singimpact.dynamics.basins import basins
+    from singimpact.dynamics.basins_of_attraction import basins
 
     with ThreadPoolExecutor(1) as pool:
         basins(LINEAR, size=side, executor=pool)

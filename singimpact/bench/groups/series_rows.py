@@ -25,8 +25,8 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.contact.contact import Contact
 from singimpact.oscillator.model import Oscillator
-from singimpact.theory.invariant_curve import invariant_curve
-from singimpact.theory.sheet import sheet
+from singimpact.theory.gamma_series import invariant_curve
+from singimpact.theory.impact_sheet import sheet
 
 FORCE, FORCING = "x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3"
 DUFFING = Oscillator(FORCE, FORCING, "0.3", "1/2")
@@ -227,7 +227,7 @@ LIMITED = (
         "kernel",
         8,
         "symbolic_curve(1, 8)",
-        OURS + "from singimpact.theory.symbolic_curve import symbolic_curve",
+        OURS + "from singimpact.theory.gamma_in_symbols import symbolic_curve",
         limit=3.0,
     ),
     Task(

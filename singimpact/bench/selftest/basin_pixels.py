@@ -15,7 +15,7 @@ import numpy as np
 from singimpact.bench.selftest.draws import Flown
 from singimpact.bench.selftest.fates import FOLLOWED, Fate, Follower
 from singimpact.bench.selftest.rows import Row, Tally
-from singimpact.dynamics import basins
+from singimpact.dynamics import basins_of_attraction
 from singimpact.flights.horizons import horizon_of
 from singimpact.inputs import InputError
 
@@ -51,7 +51,7 @@ def row(flown: Flown) -> Row:
     try:
         follower = Follower(flown.plain, fast, PIXELS.impacts, horizon_of(osc, None))
         with ThreadPoolExecutor(1) as pool:
-            answer = basins.basins(osc, None, (0, fast), PIXELS.size, pool, None, PIXELS.impacts)
+            answer = basins_of_attraction.basins(osc, None, (0, fast), PIXELS.size, pool, None, PIXELS.impacts)
     except (InputError, TypeError) as reason:
         return Row(NAME, note=f"does not apply: {reason}")
     tally.restart()
@@ -68,7 +68,9 @@ def row(flown: Flown) -> Row:
     return tally.row()
 
 
-def _pixel(follower: Follower, state: tuple[float, float], answer: basins.LongRun, first: bool, tally: Tally) -> None:
+def _pixel(
+    follower: Follower, state: tuple[float, float], answer: basins_of_attraction.LongRun, first: bool, tally: Tally
+) -> None:
     """Judge one pixel, or leave it with a cause."""
     call = f"basins from tau {state[0]!r}, v {state[1]!r}: {answer.name}, first chatter completes: {first}"
     if answer.kind == "unresolved":
@@ -92,7 +94,7 @@ def _pixel(follower: Follower, state: tuple[float, float], answer: basins.LongRu
         tally.judge(np.inf, call)
 
 
-def _agrees(follower: Follower, answer: basins.LongRun, first: bool, fate: Fate) -> bool:
+def _agrees(follower: Follower, answer: basins_of_attraction.LongRun, first: bool, fate: Fate) -> bool:
     """Whether the first chatter, and what comes of the orbit for ever, are those of `basins`."""
     if first != (fate.kind == "chatter"):
         return False
@@ -108,7 +110,7 @@ def _agrees(follower: Follower, answer: basins.LongRun, first: bool, fate: Fate)
     return answer.kind == last.kind == "rest"
 
 
-def _near(follower: Follower, answer: basins.LongRun, fate: Fate) -> bool:
+def _near(follower: Follower, answer: basins_of_attraction.LongRun, fate: Fate) -> bool:
     """Whether the last state is one of the attractor."""
     period = follower.plain.period
     assert period is not None
@@ -117,7 +119,7 @@ def _near(follower: Follower, answer: basins.LongRun, fate: Fate) -> bool:
     return bool(near.any())
 
 
-def _explained(follower: Follower, state: tuple[float, float], answer: basins.LongRun, fate: Fate) -> str:
+def _explained(follower: Follower, state: tuple[float, float], answer: basins_of_attraction.LongRun, fate: Fate) -> str:
     """Why a difference decides nothing; empty where nothing explains it."""
     last = follower.last(fate)
     if "undecided" in (last.kind, fate.kind):
@@ -145,7 +147,7 @@ def _unsettled_beside(follower: Follower, state: tuple[float, float], fate: Fate
     return next((beside for beside in fates if beside.kind == "unsettled"), None)
 
 
-def _unsettled(follower: Follower, answer: basins.LongRun, fate: Fate, call: str, tally: Tally) -> None:
+def _unsettled(follower: Follower, answer: basins_of_attraction.LongRun, fate: Fate, call: str, tally: Tally) -> None:
     """No period here either; "chaotic" says that neighbours separate too."""
     if answer.kind == "not decided" or follower.separates((fate.tau, fate.v), FOLLOWED.chaos, PIXELS.impacts):
         tally.judge(0.0, call)

@@ -18,7 +18,7 @@ from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.plain_orbits import PlainOrbits, plain_orbits
 from singimpact.flights.results import Step
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.wall_acceleration import acceleration
 
 Array = np.ndarray[Any, Any]
 

@@ -14,7 +14,7 @@ from singimpact.codegen.over_lists import plain
 from singimpact.contact.contact import Contact
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.theory.frozen import sheet_functions
-from singimpact.theory.sheet import sheet
+from singimpact.theory.impact_sheet import sheet
 
 ORDER = 6
 JETS = {"a_d2": 2 / 3, "f_01": 0.125, "f_10": 1.0, "f_30": 1.5}

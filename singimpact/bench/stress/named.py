@@ -12,7 +12,7 @@ import numpy as np
 from singimpact.bench.stress.judging import Function, Trial, moved, powers
 from singimpact.bench.stress.launches import Launch, both
 from singimpact.contact.points import tangency_points
-from singimpact.dynamics.swan_configuration import swan_configuration
+from singimpact.dynamics.unfolded_swan import swan_configuration
 from singimpact.impact_oscillator import universal
 from singimpact.paper.routes import unfolding
 from singimpact.studies import swan_points

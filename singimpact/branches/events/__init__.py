@@ -2,11 +2,6 @@
 
 Not here: where along a branch tests vanish (`branches.step_search`), curves of events (`branches.event_curve`), proofs
 (`branches.enclosed_event`).
-Files: `table` (all kinds), `kind` (the protocol `EventKind`, and what most kinds have in common), `orbit_state` (what
-tests are computed from), `return_map` (kinds that the return map decides) with `fold`, `period_doubling`,
-`neimark_sacker`; `touching` (kinds at which the orbit touches the wall) with `graze`, `interior_graze`;
-`meeting_branches` (pitchforks, transcritical points); `own_event` (those that a user defines); `event` (an event of a
-branch).
 """
 
 from singimpact.branches.events.event import Event as Event

@@ -43,7 +43,7 @@ class Graze(TouchingKind):
     def remark(self, orbit: PeriodicOrbit, time: float, parameter: float) -> str:
         """Where a_c vanishes too, the graze is degenerate."""
         from singimpact.branches.solutions import orbit_period
-        from singimpact.oscillator.acceleration import acceleration
+        from singimpact.oscillator.wall_acceleration import acceleration
 
         if not orbit.n:
             return ""

@@ -1,6 +1,6 @@
 """gamma of an analytic model proved before a contact point: it exists, is unique, and decides the fate of every launch.
 
-Not here: its series in (tau, v) (`theory.invariant_curve`), single thresholds (`dynamics.threshold`), the certificate
+Not here: its series in (tau, v) (`theory.gamma_series`), single thresholds (`dynamics.threshold`), the certificate
 as a file and its check (`certificates`).
 Files: `gravity` (the model as a ball under gravity: power series with a bound of its tail), `gauge` (times and places),
 `folded` (Taylor models in S and lambda), `relation` (launch and landing speeds, in balls), `nonlinear` (the same from

@@ -6,7 +6,7 @@ from typing import Any
 
 from flint import arb
 
-from singimpact.contact.next_zero import ContactZero
+from singimpact.contact.zero_ahead import ContactZero
 from singimpact.dynamics.gamma_proof.folded import symmetric
 from singimpact.dynamics.gamma_proof.gravity import LinearNumbers, numbers_of
 from singimpact.oscillator.linear import linear_form

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.precision import balls_at, series_of_any_length
-from singimpact.contact.next_zero import ContactZero
+from singimpact.contact.zero_ahead import ContactZero
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
@@ -102,7 +102,7 @@ def gravity(osc: Oscillator, zero: ContactZero, reach: Fraction, bits: int, smal
     Examples
     --------
     >>> from singimpact.algebra.numbers import constant
-    >>> from singimpact.contact.next_zero import next_zero
+    >>> from singimpact.contact.zero_ahead import next_zero
     >>> osc = Oscillator("x", "cos(2*t)", 1, "1/2")
     >>> found = gravity(osc, next_zero(osc, constant("tau", 3)).zero, Fraction(1, 4), 96)
     >>> [round(float(b.mid()), 12) for b in found.b[:5]]

@@ -7,9 +7,9 @@ notation: T = S at launch and l S at landing, T = tau_* - t;  x - c = S^(j+2) X(
 
           with f_x, f_xdot averaged between rest and the flight.  W^ = -Z'(1), U^ = Z'(0).
 
-W^ and U^ are power series in S whose coefficients are polynomials in l, those of v_c (`theory.sheet`).  The map from
-right side to right side of this problem is defined for complex S and l, |S| <= R, l within `beside` of [-1, 1].  Where
-it contracts, |Z''| <= z, so |W^|, |U^| <= z/2, and Cauchy's bounds hold for all that the series leave out.
+W^ and U^ are power series in S whose coefficients are polynomials in l, those of v_c (`theory.impact_sheet`).  The map
+from right side to right side of this problem is defined for complex S and l, |S| <= R, l within `beside` of [-1, 1].
+Where it contracts, |Z''| <= z, so |W^|, |U^| <= z/2, and Cauchy's bounds hold for all that the series leave out.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.precision import balls_at
 from singimpact.contact.contact import Contact, acceleration
-from singimpact.contact.next_zero import ContactZero
+from singimpact.contact.zero_ahead import ContactZero
 from singimpact.dynamics.gamma_proof.folded import Models, symmetric
 from singimpact.dynamics.gamma_proof.relation import Hats
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
-from singimpact.theory.sheet import sheet
+from singimpact.theory.impact_sheet import sheet
 
 TERMS = 28  # powers of S, below which the coefficients are known
 BITS = 192  # of the balls of the series: its coefficients are turned round l = 1
@@ -115,7 +115,7 @@ def nonlinear_relation(osc: Oscillator, zero: ContactZero, reach: Fraction, bits
     Examples
     --------
     >>> from singimpact.algebra.numbers import constant
-    >>> from singimpact.contact.next_zero import next_zero
+    >>> from singimpact.contact.zero_ahead import next_zero
     >>> osc = Oscillator("x + x**3/5", "cos(2*t)", "3/10", "1/2")
     >>> with balls_at(96):
     ...     found = nonlinear_relation(osc, next_zero(osc, constant("tau", 2)).zero, Fraction(1, 8), 96)

@@ -16,7 +16,7 @@ from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
 from singimpact.algebra.numbers import as_float, as_fraction, compare, constant
 from singimpact.algebra.precision import balls_at
-from singimpact.contact.next_zero import ContactZero, next_zero
+from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics.gamma_proof.after import PIECES, Lost, Settled, lost_contact, settled
 from singimpact.dynamics.gamma_proof.folded import between
 from singimpact.dynamics.gamma_proof.gauge import clock_of, place_of, speed_factor, time_of
@@ -25,9 +25,9 @@ from singimpact.dynamics.gamma_proof.lemmas import BoxProof, ProofSettings, Unde
 from singimpact.dynamics.gamma_proof.nonlinear import NonlinearRelation, nonlinear_relation
 from singimpact.dynamics.gamma_proof.relation import Flights, Relation, restitution_at
 from singimpact.inputs import InputError, refuse
-from singimpact.oscillator.acceleration import sign_of_acceleration
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 
 BITS = 96  # of the balls
 DIGITS = 20  # that bounds and places are printed with

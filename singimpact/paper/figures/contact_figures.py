@@ -11,7 +11,7 @@ import numpy as np
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.invariant_arcs import gammas_within, model_step, stable_manifold
 from singimpact.impact_oscillator import ImpactOscillator, linear
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Point, Region
 from singimpact.paper.figures.projections import projected, rebounded, reset
 from singimpact.studies import swan_points

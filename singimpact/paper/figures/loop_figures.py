@@ -9,7 +9,7 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.dynamics.orbit import orbit
 from singimpact.impact_oscillator import ImpactOscillator, linear
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.figures.panel import Array, Line, Panel, Picture, Region
 from singimpact.paper.trials import loop_heights
 from singimpact.paper.trials.universal_foot import covering, elastic, foot, scaled

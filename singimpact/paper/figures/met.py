@@ -12,8 +12,8 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture, Point
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface.outline_transitions import transitions
 from singimpact.surface.swan_families import Transition
-from singimpact.surface.transitions import transitions
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,7 @@ def damped() -> ImpactOscillator:
 
 @dataclass(frozen=True)
 class Change:
-    """A transition of the outline of `damped`, as `surface.transitions` finds it.
+    """A transition of the outline of `damped`, as `surface.outline_transitions` finds it.
 
     over, value : the name of a number and its value. tau, t : the flight from rest. half : of the window around it.
     step : of the number, before and after. degree : of the polynomial in tau that is taken off v, so that branches

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.flights.path import many_paths
+from singimpact.flights.flight_path import many_paths
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]

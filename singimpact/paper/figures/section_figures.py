@@ -6,7 +6,7 @@ import numpy as np
 
 from singimpact.flights.impact_map import first_hit
 from singimpact.impact_oscillator import linear
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture
 from singimpact.paper.figures.projections import launch_and_landing
 from singimpact.paper.figures.swan_figures import box, half, negative, positive, ring

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from singimpact.dynamics.swan_configuration import SwanConfiguration, swan_configuration
+from singimpact.dynamics.unfolded_swan import SwanConfiguration, swan_configuration
 from singimpact.impact_oscillator import linear
 from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture, Point, Region, arc
 from singimpact.paper.figures.projections import reset

@@ -10,8 +10,8 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float
 from singimpact.dynamics.orbit import Orbit, orbit
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 
 RATES = ("3/10", "4/5")
 DEPTHS = (4, 5)  # k: the clearance is c_0 - 10^-k

@@ -24,7 +24,7 @@ from singimpact.contact.contact import Contact, acceleration_jet, contact_order,
 from singimpact.contact.points import tangency_points
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.trials import true_orbits
-from singimpact.theory.sheet import Sheet, generic_sheet, sheet
+from singimpact.theory.impact_sheet import Sheet, generic_sheet, sheet
 
 RAY = (Fraction(-1), Fraction(7, 10))  # (sigma, t) = h RAY: inside the visible part, off every curve named in the paper
 STEPS = (0.02, 0.01, 0.005)  # h for DOP853: small enough for one term to rule, remainders well above rounding

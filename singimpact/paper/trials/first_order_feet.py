@@ -16,8 +16,8 @@ from singimpact.contact.points import tangency_points
 from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.impact_oscillator import universal
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 
 RATES = ("3/10", "1/2", "4/5")
 SIZES = (0.004, 0.002)  # half distances H tried, to leading order in c_0 - c

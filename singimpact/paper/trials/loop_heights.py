@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.dynamics.chatter import chatter_limit
-from singimpact.dynamics.swan_configuration import swan_configuration
 from singimpact.dynamics.threshold import threshold
+from singimpact.dynamics.unfolded_swan import swan_configuration
 from singimpact.flights.impact_map import impact_map
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.theory.fixed_points import multipliers
 
 Array = np.ndarray[Any, Any]

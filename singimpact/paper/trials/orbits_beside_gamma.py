@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from singimpact.algebra.numbers import constant
-from singimpact.contact.next_zero import next_zero
+from singimpact.contact.zero_ahead import next_zero
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.threshold import threshold
 from singimpact.flights.orbits import orbit_segment

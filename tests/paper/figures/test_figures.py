@@ -70,7 +70,7 @@ def test_2_cusps_come_and_go():
 @pytest.mark.slow
 def test_2_shows_what_the_transitions_are():
     from singimpact.paper import CHANGES, damped
-    from singimpact.surface.transitions import transitions
+    from singimpact.surface import transitions
 
     for change in CHANGES:
         near = change.value - 0.01, change.value + 0.01

@@ -5,7 +5,7 @@ import sympy
 from singimpact.paper import eta as fold_eta
 from singimpact.paper import next_sigma, psi_q
 from singimpact.paper.routes.implicit import sigma
-from singimpact.theory.fold_form import fold_form
+from singimpact.theory import fold_form
 
 eta = fold_eta
 

@@ -8,8 +8,7 @@ from singimpact.paper import Dh_bar, derived_from, equation, f_map, g_map, h_bar
 from singimpact.paper import m as swan_m
 from singimpact.paper import r as route_r
 from singimpact.paper.routes import fold
-from singimpact.theory import eigenvalues_on_gamma, lambda_, mu_of_lambda, r_of_lambda
-from singimpact.theory.fold_form import fold_form
+from singimpact.theory import eigenvalues_on_gamma, fold_form, lambda_, mu_of_lambda, r_of_lambda
 
 m, r = fold.m, route_r
 

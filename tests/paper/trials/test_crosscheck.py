@@ -5,8 +5,7 @@ import pytest
 from singimpact.contact import Contact
 from singimpact.paper import gamma_cases, scipy_flow, sides
 from singimpact.paper.trials import crosscheck
-from singimpact.theory import Sheet
-from singimpact.theory.sheet import sheet
+from singimpact.theory import Sheet, sheet
 
 CASES = [(0, 3), (0, 4), (1, 2), (1, 3), (1, 5), (2, 3), (2, 4)]
 

@@ -9,7 +9,7 @@ import pytest
 import singimpact as si
 from singimpact.algebra import EXACT, Horner
 from singimpact.contact import Contact
-from singimpact.theory.sheet import sheet
+from singimpact.theory import sheet
 
 EPSILON = 2.0**-52
 

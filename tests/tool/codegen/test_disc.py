@@ -19,12 +19,12 @@ from singimpact.codegen import (
     log_radius,
     power_of_square_radius,
     power_radius,
+    recurrence,
     softplus_radius,
     tan_radius,
     tanh_radius,
     whole_power_radius,
 )
-from singimpact.codegen.taylor_recurrence import recurrence
 from singimpact.flights import Work, over_floats
 
 CIRCLE = np.exp(2j * np.pi * np.arange(64) / 64)

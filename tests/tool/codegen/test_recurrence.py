@@ -10,8 +10,7 @@ import mpmath
 import pytest
 
 from singimpact.algebra import parse
-from singimpact.codegen import FUNCTIONS
-from singimpact.codegen.taylor_recurrence import recurrence
+from singimpact.codegen import FUNCTIONS, recurrence
 from singimpact.flights import Work, over_lists
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.impact_oscillator import ImpactOscillator

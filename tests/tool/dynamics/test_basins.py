@@ -6,10 +6,19 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics import CHATTER, OTHER, Future, caught, chaotic, closing_orbits, new_attractors, settled
+from singimpact.dynamics import (
+    CHATTER,
+    OTHER,
+    Future,
+    basins,
+    bifurcation,
+    caught,
+    chaotic,
+    closing_orbits,
+    new_attractors,
+    settled,
+)
 from singimpact.dynamics.attractors import SETTINGS
-from singimpact.dynamics.basins import basins
-from singimpact.dynamics.bifurcation import bifurcation
 from singimpact.flights import iterate
 from singimpact.inputs import InputError
 from singimpact.scenes import bifurcation_sheet, draw_basins, draw_first_chatter
@@ -144,7 +153,7 @@ def test_refusals(ask, told):
 
 def to_the_end(model, size, v):
     """Classes of a grid by flying every state as long as the slowest chatter takes, without a look in between."""
-    from singimpact.oscillator.acceleration import acceleration
+    from singimpact.oscillator import acceleration
 
     found = basins(model, v=(0, v), size=size)
     tau, speed = (part.ravel() for part in np.meshgrid(found.tau, found.v))

@@ -6,7 +6,7 @@ import pytest
 
 import singimpact as si
 from singimpact.algebra import constant
-from singimpact.contact.next_zero import next_zero
+from singimpact.contact import next_zero
 from singimpact.dynamics import threshold
 from singimpact.flights import REACH, SERIES, TERMS_OF_GAMMA, Search, over_floats
 from singimpact.flights.compiled_model import compiled_model

@@ -11,7 +11,7 @@ import pytest
 
 import singimpact as si
 from singimpact.algebra import balls_at, constant
-from singimpact.contact.next_zero import next_zero
+from singimpact.contact import next_zero
 from singimpact.dynamics import (
     Models,
     ProofSettings,

@@ -6,7 +6,7 @@ import pytest
 
 import singimpact as si
 from singimpact.algebra import constant
-from singimpact.contact.next_zero import next_zero
+from singimpact.contact import next_zero
 from singimpact.dynamics import enclosed, guided, newton
 from singimpact.flights import AnalyticFlow
 from singimpact.status import Status

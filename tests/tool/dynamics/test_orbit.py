@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from singimpact.bench import values
-from singimpact.dynamics.release import release
+from singimpact.dynamics import release
 from singimpact.impact_oscillator import ImpactOscillator, linear, universal
 from singimpact.inputs import InputError
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.dynamics.swan_configuration import swan_configuration
+from singimpact.dynamics import swan_configuration
 from singimpact.inputs import InputError
 
 R3 = 3**0.5

@@ -8,8 +8,7 @@ import pytest
 
 import singimpact as si
 from singimpact.algebra import constant
-from singimpact.contact import swan_points_over_clearance
-from singimpact.contact.next_zero import next_zero
+from singimpact.contact import next_zero, swan_points_over_clearance
 from singimpact.dynamics import end_of_gamma
 from singimpact.status import Status
 

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from singimpact.bench.problems import states
+from singimpact.bench import states
 from singimpact.flights import iterate, orbit_segment
 from singimpact.flights.impact_map import impact_map
 from singimpact.impact_oscillator import ImpactOscillator, linear

@@ -13,6 +13,7 @@ from singimpact.flights import (
     SEARCH,
     CompiledModel,
     Machine,
+    counted,
     fastest_kept,
     floats_of,
     never_turns,
@@ -20,7 +21,6 @@ from singimpact.flights import (
     steps_of,
 )
 from singimpact.flights.compiled_model import compiled_model
-from singimpact.flights.counted import counted
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Cause, Status
 

@@ -36,12 +36,12 @@ from singimpact.flights import (
     Compiler,
     Emitted,
     constants,
+    counted,
     first_wanted,
     interruptible,
     machine,
 )
 from singimpact.flights.compiled_model import compiled_model
-from singimpact.flights.counted import counted
 
 MODELS = {
     "linear": si.linear("2.8", 0, "0.8"),

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from singimpact.algebra import as_float
-from singimpact.flights import forcing_phases, linear_numbers, numbers_of, over_floats, places
-from singimpact.flights.path import path
-from singimpact.oscillator import Oscillator
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.flights import forcing_phases, linear_numbers, numbers_of, over_floats, path, places
+from singimpact.oscillator import Oscillator, acceleration
 
 MODELS = {
     "undamped": ("x", "cos(2*t)"),

@@ -6,8 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from singimpact.bench import Problem
-from singimpact.bench.problems import states
+from singimpact.bench import Problem, states
 from singimpact.status import Status
 
 EPSILON = 2.0**-52

@@ -151,7 +151,7 @@ def test_both_bounds_against_flights() -> None:
 def test_release_from_rest_sees_a_pulse() -> None:
     from scipy.optimize import brentq
 
-    from singimpact.dynamics.release import release
+    from singimpact.dynamics import release
 
     osc = si.ImpactOscillator("x", "-1/5+10*exp(1000*(cos(t)-1))", 0, "1/2")
     true = brentq(lambda t: -0.2 + 10 * np.exp(1000 * (np.cos(t) - 1)), 6, 6.28)

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from singimpact.flights import NotTogether, in_step, rest_flights, runs_on_arrays, together
+from singimpact.flights import NotTogether, in_step, path, rest_flights, runs_on_arrays, together
 from singimpact.flights.model_numbers import recurrence_of
-from singimpact.flights.path import path
 from singimpact.oscillator import Oscillator
 
 DUFFING = Oscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t) + 0.2*t", "0.7", 1)

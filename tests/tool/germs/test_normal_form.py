@@ -8,7 +8,7 @@ import sympy
 
 import singimpact as si
 from singimpact.algebra import EXACT, Balls, Jet, JetSpace, Multiprecision, precision_of
-from singimpact.germs.normal_form import normal_form
+from singimpact.germs import normal_form
 from singimpact.inputs import InputError
 from singimpact.paper import D, impact_velocity, kappa, launch_velocity
 from singimpact.theory import normal_form as public_form

@@ -7,7 +7,7 @@ import pytest
 
 from singimpact.algebra import EXACT, Balls, JetSpace
 from singimpact.germs import recognised
-from singimpact.theory.sheet import sheet
+from singimpact.theory import sheet
 
 u, t = JetSpace(("u", "t"), 5, EXACT).generators()
 NORMAL = {

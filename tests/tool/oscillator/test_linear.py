@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from singimpact.oscillator import Oscillator, linear_form
-from singimpact.oscillator.acceleration import acceleration
+from singimpact.oscillator import Oscillator, acceleration, linear_form
 
 
 @pytest.mark.parametrize("f", ["x**2", "x*xdot", "sin(x)", "1/(1 + x)", "exp(xdot)"])

@@ -106,8 +106,7 @@ def test_a_coarse_picture_costs_a_third_of_a_fine_one(layers, clearance, window,
 def test_growth_ends_where_the_picture_tells_nothing_new():
     """Loops of W^s accumulate on gamma: a fine picture shows more of them, and none without end."""
     model, window = si.linear(2, "0.95", "0.5"), ((-1.2, 1.0), (0.0, 0.06))
-    from singimpact.dynamics import stable_manifold
-    from singimpact.dynamics.swan_configuration import swan_configuration
+    from singimpact.dynamics import stable_manifold, swan_configuration
     from singimpact.surface import Window
 
     foot = repr(swan_configuration(model, near=0).X)

@@ -7,8 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import singimpact as si
-from singimpact.surface import Family, FollowedRests, linear_rests, newton
-from singimpact.surface.transitions import transitions
+from singimpact.surface import Family, FollowedRests, linear_rests, newton, transitions
 
 LIGHT = si.ImpactOscillator("x + 0.04*xdot", "cos(2.8*t) + 0.5*cos(5.6*t + 2)", 0, "0.8")
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + x**3/10", "cos(2.8*t)", 0, "0.8")

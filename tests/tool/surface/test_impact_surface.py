@@ -135,7 +135,7 @@ def test_refusals(ask, told):
 
 
 def test_only_what_may_be_a_first_hit_is_asked_for():
-    from singimpact.flights.counted import counted
+    from singimpact.flights import counted
 
     surface = ImpactSurface(si.ImpactOscillator("x", "cos(2*t)", "0.7", "1/2"), (-1.2, 1.0), (-3, 3), 1 / 400)
     lines = surface.lines

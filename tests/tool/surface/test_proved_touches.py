@@ -8,8 +8,7 @@ import pytest
 import singimpact as si
 from singimpact.algebra.isolated_zeros import isolated_zeros
 from singimpact.paper import damped
-from singimpact.surface import Family, RestFlight, RestFlights, Transitions, doubts_left, rest_flight
-from singimpact.surface.transitions import transitions
+from singimpact.surface import Family, RestFlight, RestFlights, Transitions, doubts_left, rest_flight, transitions
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 

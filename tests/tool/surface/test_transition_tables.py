@@ -11,9 +11,8 @@ import pytest
 import singimpact as si
 from singimpact.algebra import as_float
 from singimpact.flights import backwards, first_hit
-from singimpact.oscillator.acceleration import acceleration
-from singimpact.surface import Transitions
-from singimpact.surface.transitions import transitions
+from singimpact.oscillator import acceleration
+from singimpact.surface import Transitions, transitions
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 

@@ -6,8 +6,7 @@ import pytest
 
 import singimpact as si
 from singimpact.inputs import InputError
-from singimpact.surface import ImpactSurface, swan_curves
-from singimpact.surface.transitions import transitions
+from singimpact.surface import ImpactSurface, swan_curves, transitions
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(w*t)", "0.3", "0.6", parameters={"w": "1.7"})
 

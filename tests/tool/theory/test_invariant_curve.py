@@ -10,10 +10,7 @@ from sympy_ring import SympyExact
 from singimpact.algebra import DOUBLES, EXACT, Balls, Multiprecision, precision_of
 from singimpact.contact import Contact
 from singimpact.paper import fold_series
-from singimpact.theory import P, lambda_, multiplier_across, restitution_of
-from singimpact.theory.invariant_curve import invariant_curve
-from singimpact.theory.sheet import sheet
-from singimpact.theory.symbolic_curve import symbolic_curve
+from singimpact.theory import P, invariant_curve, lambda_, multiplier_across, restitution_of, sheet, symbolic_curve
 
 LAMBDA = Fraction(3, 5)
 RHO = {2: Fraction(1, 7), 3: Fraction(-2, 11)}

@@ -11,8 +11,7 @@ import sympy
 import singimpact as si
 from singimpact.contact import Contact
 from singimpact.inputs import InputError
-from singimpact.theory import leaves, multiplier, restitution_of, rho_names, symbolic_completion
-from singimpact.theory.sheet import sheet
+from singimpact.theory import leaves, multiplier, restitution_of, rho_names, sheet, symbolic_completion
 
 DUFFING = ("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 

@@ -20,9 +20,9 @@ from singimpact.theory import (
     leading_coefficient,
     mu_of_lambda,
     r_of_lambda,
+    sheet,
     v_c,
 )
-from singimpact.theory.sheet import sheet
 
 sigma, t = sympy.symbols("sigma t")
 

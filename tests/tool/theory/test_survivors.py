@@ -10,9 +10,16 @@ from singimpact.algebra import EXACT
 from singimpact.contact import Contact
 from singimpact.paper import A, E
 from singimpact.paper.routes import swan
-from singimpact.theory import DG_on_ray, eigenvalues_on_gamma, fixed_points, launch_velocity, mu_of_lambda, r_of_lambda
+from singimpact.theory import (
+    DG_on_ray,
+    eigenvalues_on_gamma,
+    fixed_points,
+    invariant_curve,
+    launch_velocity,
+    mu_of_lambda,
+    r_of_lambda,
+)
 from singimpact.theory import lambda_ as homogeneous_lambda_
-from singimpact.theory.invariant_curve import invariant_curve
 
 lambda_ = homogeneous_lambda_
 

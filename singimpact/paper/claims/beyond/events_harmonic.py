@@ -19,7 +19,7 @@ from singimpact.impact_oscillator import linear
 from singimpact.paper.claims.beyond.events import composed
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.verifiers import every
-from singimpact.surface.transitions import transitions
+from singimpact.surface.outline_transitions import transitions
 
 claim = in_section("beyond")
 kappa, omega, P, Q, g, u, y = sympy.symbols("kappa omega P Q g u y")
@@ -238,7 +238,7 @@ RATES = ("1.3", "2.3", "2.8", "3.3", "5.2")
 
 
 def _flown(below: Any, above: Any, border: int) -> bool:
-    """The search of `surface.transitions` on five rates."""
+    """The search of `surface.outline_transitions` on five rates."""
     for rate in RATES:
         found = [
             each

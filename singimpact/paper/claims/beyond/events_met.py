@@ -7,8 +7,8 @@ from functools import cache
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.verifiers import every
+from singimpact.surface.outline_transitions import transitions
 from singimpact.surface.swan_families import Transition
-from singimpact.surface.transitions import transitions
 
 claim = in_section("beyond")
 MODELS = (

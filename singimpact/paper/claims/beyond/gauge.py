@@ -19,7 +19,7 @@ from singimpact.algebra.rings import Exact
 from singimpact.contact.contact import Contact
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.verifiers import every, same
-from singimpact.theory.sheet import generic_sheet, sheet
+from singimpact.theory.impact_sheet import generic_sheet, sheet
 
 claim = in_section("beyond")
 X, V, E, C, S, a, b, w = sympy.symbols("X V E C S a b w")

@@ -19,8 +19,8 @@ from singimpact.paper.routes import fold
 from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.implicit import X, Y, a_symbol, f_symbol, sigma, t, v
 from singimpact.paper.trials import crosscheck
+from singimpact.theory.impact_sheet import generic_sheet
 from singimpact.theory.notation import latex
-from singimpact.theory.sheet import generic_sheet
 
 a, a1, a2 = (a_symbol(n) for n in range(3))
 b = sympy.Symbol("b")  # the paper's b: d(x'')/dv at rest, so b = -f_01

@@ -16,7 +16,7 @@ from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.fold import k
 from singimpact.paper.routes.implicit import X, Y, a_symbol, r, sigma, t
 from singimpact.paper.trials import leaves
-from singimpact.theory.sheet import generic_sheet
+from singimpact.theory.impact_sheet import generic_sheet
 
 ell, slope, mu, nu = sympy.symbols("ell p mu nu")
 THIRD, HALF = sympy.Rational(1, 3), sympy.Rational(1, 2)

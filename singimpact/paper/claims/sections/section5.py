@@ -16,7 +16,7 @@ from singimpact.paper.routes import swan
 from singimpact.paper.routes.implicit import r, v
 from singimpact.paper.trials import swan_orbits, true_orbits
 from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
-from singimpact.theory.sheet import generic_sheet
+from singimpact.theory.impact_sheet import generic_sheet
 
 m, s, ell, mbar = swan.m, swan.s, swan.ell, swan.mbar
 a2, sigma, t = sympy.symbols("a_d2 sigma t")

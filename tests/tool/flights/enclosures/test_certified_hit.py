@@ -9,8 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from singimpact.algebra import Balls, balls_at, constant, exact
-from singimpact.bench import SMOOTH, STEEP, drawn_of
-from singimpact.bench.problems import states
+from singimpact.bench import SMOOTH, STEEP, drawn_of, states
 from singimpact.flights import Launch, NoHit, Refused, certified_hit
 from singimpact.flights.enclosures import ball_flight
 from singimpact.impact_oscillator import ImpactOscillator, linear

@@ -8,8 +8,7 @@ import pytest
 
 import singimpact as si
 from singimpact.algebra import balls_at, series_of_any_length
-from singimpact.flights import AnalyticFlow
-from singimpact.flights.enclosures import short_flight, taylor_step
+from singimpact.flights import AnalyticFlow, Discs, coefficients
 
 MODELS = {
     "plain": si.linear("2.8", 0, "0.8"),
@@ -87,7 +86,7 @@ def test_a_degree_that_is_too_low_widens_the_hit_and_does_not_move_it(name, degr
         tau, v = flow.number(Fraction(6, 5)), flow.number(Fraction(1, 50))
         sharp = hit_of(flow, tau, v)
         for degree in degrees:
-            monkeypatch.setattr(short_flight.Discs, "degree", lambda *_, degree=degree: degree)
+            monkeypatch.setattr(Discs, "degree", lambda *_, degree=degree: degree)
             rough = hit_of(flow, tau, v)
             assert rough[0].contains(sharp[0])
             assert rough[0].rad() > 1000 * sharp[0].rad()
@@ -104,7 +103,7 @@ def test_coefficients_are_below_the_bound_that_their_discs_give(name):
         for tau in (discs.tau.lower(), flow.number(Fraction(9, 5)), discs.tau.upper()):
             for v in (discs.v / 10**6, discs.v):
                 with series_of_any_length():
-                    X = taylor_step.coefficients(flow.equation, (tau, flint.arb(0), v), 60)
+                    X = coefficients(flow.equation, (tau, flint.arb(0), v), 60)
                 for k in range(2, 61):
                     assert abs(X[k]) <= bound * radius ** (2 - k) / (k * (k - 1))
 

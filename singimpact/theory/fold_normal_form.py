@@ -17,9 +17,9 @@ from singimpact.algebra.derivations import At, substitution
 from singimpact.algebra.gathering import gathering, remembered
 from singimpact.algebra.jets import Jet
 from singimpact.contact.contact import Contact, derivative_name
-from singimpact.germs.normal_form import normal_form
-from singimpact.theory.sheet import Sheet, sheet
-from singimpact.theory.symbolic_curve import length_weight
+from singimpact.germs.germ_forms import normal_form
+from singimpact.theory.gamma_in_symbols import length_weight
+from singimpact.theory.impact_sheet import Sheet, sheet
 
 sigma, t, eta, k = sympy.symbols("sigma t eta k")
 T = sympy.Symbol("T")  # the true fold coordinate, in certificates

@@ -16,8 +16,8 @@ from singimpact.flights.kernels.roots import first_root
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.model_numbers import constants_of, recurrence_of
 from singimpact.flights.states import at_rest
-from singimpact.oscillator.acceleration import resting_force
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import resting_force
 
 ORDER = 22
 EPSILON = 2.0**-52

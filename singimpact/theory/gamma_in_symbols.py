@@ -16,7 +16,7 @@ from singimpact.algebra.interpolation import RationalCoefficients, interpolated
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.symbols import sympy_rational
 from singimpact.contact.contact import Contact, derivative_name
-from singimpact.theory.invariant_curve import InvariantCurve, invariant_curve
+from singimpact.theory.gamma_series import InvariantCurve, invariant_curve
 
 WHOLLY_FACTORED = 12
 """Degree of a numerator up to which it is written as a product of irreducible factors."""

@@ -11,16 +11,16 @@ import numpy as np
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float, float_array
 from singimpact.algebra.rings import DOUBLES
-from singimpact.flights import counted
+from singimpact.flights import flight_count
 from singimpact.flights.blocks import BLOCKS
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.kernels.double_double import product_twice
 from singimpact.flights.model_numbers import forcing_phases, numbers_of
 from singimpact.flights.states import States
 from singimpact.inputs import InputError
-from singimpact.oscillator.acceleration import acceleration
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, plain
 from singimpact.words import in_words
 
@@ -88,7 +88,7 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[Array]) -> lis
     >>> many_paths(Oscillator("0", "-2", 0, 1), np.zeros(2), np.array([3.0, 0.0]), [np.array([1.0]), np.array([-1.0])])
     [array([[2., 1.]]), array([[-1.,  2.]])]
     """
-    counted.add(len(times))
+    flight_count.add(len(times))
     if linear_form(osc) is not None:
         counts = [at.size for at in times]
         launch = np.repeat(forcing_phases(osc, tau), counts, axis=0)
@@ -118,7 +118,7 @@ def along(osc: Oscillator, tau: Array, v: Array, which: Array, times: Array) -> 
         cuts = np.flatnonzero(np.diff(at)) + 1
         parts = many_paths(osc, launches, speeds, np.split(times, cuts) if times.size else [])
         return np.concatenate([*parts, np.zeros((0, 2))])
-    counted.add(used.size)
+    flight_count.add(used.size)
     phases, pushes, numbers = forcing_phases(osc, launches), acceleration(osc, launches), numbers_of(osc)[0]
     out = np.empty((times.size, 2))
     for begin in range(0, times.size, BLOCKS.states):
@@ -255,7 +255,7 @@ def ends(osc: Oscillator, tau: Array, v: Array, times: Array) -> tuple[Array, Ar
     >>> [part.tolist() for part in ends(Oscillator("0", "-2", 0, 1), np.zeros(1), np.full(1, 3.0), np.full(1, 3.0))]
     [[0.0], [-3.0], [-2.0]]
     """
-    counted.add(tau.size)
+    flight_count.add(tau.size)
     if linear_form(osc) is not None:
         rows = places(forcing_phases(osc, tau), v, acceleration(osc, tau), times, numbers_of(osc)[0])
     else:
