@@ -167,6 +167,34 @@ def in_status_words(codes: Any, kind: type[Status] | type[Cause]) -> Any:
     return np.array(words, dtype=object).reshape(np.shape(codes))
 
 
+def one_table(tables: Iterable[Mapping[str, Any]]) -> dict[str, list[Any]]:
+    """Tables below one another, with the columns of the first; a number or word instead of a column is repeated.
+
+    Examples
+    --------
+    >>> one_table([{"branch": 1, "v": np.array([0.5, 1.0])}, {"branch": 2, "v": np.array([2.0])}])
+    {'branch': [1, 1, 2], 'v': [0.5, 1.0, 2.0]}
+    """
+    columns: dict[str, list[Any]] = {}
+    for table in tables:
+        rows = max(np.size(values) for values in table.values())
+        columns = columns or {name: [] for name in table}
+        for name, values in columns.items():
+            values += [table[name]] * rows if is_cell(table[name]) else as_storable(table[name]).tolist()
+    return columns
+
+
+def numbered(name: str, values: Array) -> dict[str, Array]:
+    """The columns of an array of two axes, numbered from 1.
+
+    Examples
+    --------
+    >>> {name: column.tolist() for name, column in numbered("v", np.array([[0.5, 1.0], [2.0, 3.0]])).items()}
+    {'v_1': [0.5, 2.0], 'v_2': [1.0, 3.0]}
+    """
+    return {f"{name}_{i + 1}": values[:, i] for i in range(values.shape[1])}
+
+
 def is_rows(values: list[Any]) -> bool:
     """Whether a list is one of dictionaries, such as the points of a classification."""
     return bool(values) and all(isinstance(value, Mapping) for value in values)

@@ -28,6 +28,7 @@ from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, value_of, with_number
+from singimpact.result import Result, Results
 from singimpact.status import Status
 from singimpact.surface.curve import window_ends
 
@@ -58,7 +59,7 @@ SETTINGS = SearchSettings()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BorderOrbit:
+class BorderOrbit(Result):
     """An orbit released at rest at a zero of a_c whose impacts accumulate exactly at a later one.
 
     Parameters
@@ -101,6 +102,21 @@ class BorderOrbit:
         scale = abs(self.v / self.slope) if self.slope else np.nan
         return cascade(self.returned, self.oscillator, (value, self.error, scale), self.digits)
 
+    def as_dict(self) -> dict[str, Any]:
+        """The number with its error or enclosure, both ends, the state on gamma, and the side of complete chatter."""
+        return {
+            "parameter": float(self.parameter) if self.digits is None else self.value_text,
+            "error": float(self.error),
+            "certified": None if self.certified is None else self.certified.as_dict(),
+            "release": self.release,
+            "end": self.end,
+            "periods": self.period,
+            "tau": self.tau,
+            "v": self.v,
+            "chatter_completes": self.side,
+            "notes": list(self.notes),
+        }
+
     @property
     def value_text(self) -> str:
         """The value of the parameter with `digits` digits, or as a double."""
@@ -119,13 +135,15 @@ class BorderOrbit:
         return f"<border orbit at {where}: {back}; chatter completes {self.side}>"
 
 
-class BorderOrbits(list[BorderOrbit]):
+class BorderOrbits(Results, list[BorderOrbit]):
     """Border orbits in the order of the number that is varied.
 
     Parameters
     ----------
     complete : whether it is shown that there are no others. notes : how they were found, and what may be missing.
     """
+
+    called = "orbits"
 
     def __init__(self, orbits: Iterable[BorderOrbit] = (), complete: bool = False, notes: tuple[str, ...] = ()) -> None:
         super().__init__(orbits)

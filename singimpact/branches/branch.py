@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,13 +16,15 @@ from singimpact.branches.solutions import closing_of, orbit_of
 from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
-from singimpact.store import write_text
+from singimpact.result import Result, numbered
 
 Array = np.ndarray[Any, Any]
+POINTS = ("parameter", "tau", "v", "stable", "visible", "multipliers")
+"""Arrays of a branch, a row for each of its points."""
 
 
 @dataclass(frozen=True, eq=False)
-class Branch:
+class Branch(Result):
     """Periodic orbits over a parameter.
 
     Parameters
@@ -69,21 +70,26 @@ class Branch:
         at = np.concatenate([self.tau[index], self.v[index], self.parameter[index : index + 1 or None][:1]])
         return orbit_of(closing, at)
 
-    def csv_lines(self) -> list[str]:
-        """The names of the columns, then one line for each point: parameter, states, multipliers, stable, visible."""
-        names = [self.over, *(f"{name}_{i + 1}" for name in ("tau", "v") for i in range(self.tau.shape[1]))]
-        names += ["multiplier_1_re", "multiplier_1_im", "multiplier_2_re", "multiplier_2_im", "stable", "visible"]
-        lines = [",".join(names)]
-        for i in range(len(self)):
-            numbers = [self.parameter[i], *self.tau[i], *self.v[i]]
-            numbers += [part for each in self.multipliers[i] for part in (np.real(each), np.imag(each))]
-            flags = [str(int(self.stable[i])), str(int(self.visible[i]))]
-            lines.append(",".join([*(repr(float(each)) for each in numbers), *flags]))
-        return lines
+    def as_dict(self) -> dict[str, Any]:
+        """n, k, the arrays of points, events and notes."""
+        points = {name: getattr(self, name) for name in POINTS}
+        return {"n": self.n, "k": self.k, "points": points, "events": [event.as_dict() for event in self.events],
+                "notes": list(self.notes)}  # fmt: skip
 
-    def to_csv(self, file: str | Path) -> None:
-        """Write `csv_lines` to a file, which appears only when complete."""
-        write_text(file, "\n".join(self.csv_lines()) + "\n")
+    def arrays(self) -> dict[str, tuple[tuple[str, ...], Array]]:
+        """The arrays of points, with the names of their axes."""
+        axes = {"tau": ("point", "impact"), "v": ("point", "impact"), "multipliers": ("point", "multiplier")}
+        return {name: (axes.get(name, ("point",)), values) for name, values in self.as_dict()["points"].items()}
+
+    def table(self) -> dict[str, Array]:
+        """One row for each point: parameter, states, multipliers, stable, visible."""
+        multipliers = {
+            f"multiplier_{i + 1}_{name}": part(self.multipliers[:, i])
+            for i in (0, 1)
+            for name, part in (("re", np.real), ("im", np.imag))
+        }
+        flags = {name: getattr(self, name).astype(int) for name in ("stable", "visible")}
+        return {self.over: self.parameter} | numbered("tau", self.tau) | numbered("v", self.v) | multipliers | flags
 
     def __repr__(self) -> str:
         low, high = (float(end) for end in (self.parameter.min(), self.parameter.max()))

@@ -25,6 +25,7 @@ from singimpact.branches.released import Return
 from singimpact.branches.settled import settled_orbit
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
+from singimpact.result import Result
 from singimpact.theory.fixed_points import tangency
 
 EPSILON = 2.0**-52
@@ -64,7 +65,7 @@ SETTINGS = CascadeSettings()
 
 
 @dataclass(frozen=True)
-class CascadeWindow:
+class CascadeWindow(Result):
     """What attracts the released orbit between two edges.
 
     Parameters
@@ -79,9 +80,24 @@ class CascadeWindow:
     distance: float
     orbit: PeriodicOrbit | None
 
+    def as_dict(self) -> dict[str, Any]:
+        """Impacts, parameter, n ("inf" for chatter), k and multipliers; null where no orbit is seen."""
+        values: dict[str, Any] = {
+            "impacts": self.impacts,
+            "parameter": self.parameter,
+            "n": None,
+            "k": None,
+            "multipliers": None,
+        }
+        orbit = self.orbit
+        if orbit is not None:
+            pairs = [[complex(each).real, complex(each).imag] for each in orbit.multipliers]
+            values |= {"n": "inf" if orbit.kind == "chatter" else int(orbit.n), "k": orbit.k, "multipliers": pairs}
+        return values
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Cascade:
+class Cascade(Result):
     """Edges between numbers of impacts, from the farthest to the nearest to the border orbit.
 
     Parameters
@@ -105,6 +121,26 @@ class Cascade:
 
     def __len__(self) -> int:
         return len(self.impacts)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Edges in doubles, ratios and their limit, the attractors between edges, and notes."""
+        limit, error = self.limit
+        return {
+            "impacts": self.impacts,
+            "distance": np.array([float(distance) for distance in self.distance]),
+            "ratios": np.array([float(ratio) for ratio in self.ratios]),
+            "limit": limit,
+            "limit_error": error,
+            "mu": float(self.mu),
+            "attractors": [window.as_dict() for window in self.windows],
+            "notes": list(self.notes),
+        }
+
+    def arrays(self) -> dict[str, tuple[tuple[str, ...], Array]]:
+        """Edges, and the ratios between them."""
+        values = self.as_dict()
+        edges = {name: (("edge",), values[name]) for name in ("impacts", "distance")}
+        return edges | {"ratios": (("pair",), values["ratios"])}
 
     @property
     def limit(self) -> tuple[float, float]:

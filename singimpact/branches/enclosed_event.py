@@ -33,6 +33,7 @@ from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.oscillator.model import Oscillator
+from singimpact.result import Result
 from singimpact.words import in_words
 
 
@@ -64,7 +65,7 @@ SETTINGS = EventSettings()
 
 
 @dataclass(frozen=True, repr=False)
-class EnclosedEvent:
+class EnclosedEvent(Result):
     """An event that exists.
 
     Attributes

@@ -16,10 +16,11 @@ from singimpact.algebra.precision import balls_at
 from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.krawczyk import Krawczyk, proved
 from singimpact.oscillator.model import Oscillator
+from singimpact.result import Result
 
 
 @dataclass(frozen=True)
-class EnclosedOrbit:
+class EnclosedOrbit(Result):
     """A periodic orbit that exists.
 
     Attributes

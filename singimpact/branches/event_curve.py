@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from singimpact.branches.solutions import AnyClosing, closing_of
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
-from singimpact.store import write_text
+from singimpact.result import Result, numbered
 
 Array = np.ndarray[Any, Any]
 NUDGE = 1e-6
@@ -28,7 +27,7 @@ NUDGE = 1e-6
 
 
 @dataclass(frozen=True)
-class Special:
+class Special(Result):
     """A point of codimension two.
 
     Parameters
@@ -42,9 +41,13 @@ class Special:
     parameters: tuple[float, float]
     index: int
 
+    def as_dict(self) -> dict[str, Any]:
+        """Kind, both numbers, and the point of the curve after which it lies."""
+        return {"kind": self.kind, "parameters": list(self.parameters), "after_point": self.index}
+
 
 @dataclass(frozen=True, eq=False)
-class EventCurve:
+class EventCurve(Result):
     """Events of one kind in two parameters.
 
     Parameters
@@ -68,18 +71,28 @@ class EventCurve:
     def __len__(self) -> int:
         return len(self.parameters)
 
-    def csv_lines(self) -> list[str]:
-        """The names of the columns, then one line for each point: both parameters, the states, visible."""
-        names = [*self.over, *(f"{name}_{i + 1}" for name in ("tau", "v") for i in range(self.tau.shape[1])), "visible"]
-        rows = zip(self.parameters, self.tau, self.v, self.visible, strict=True)
-        lines = [
-            ",".join([*(repr(float(each)) for part in row[:3] for each in part), str(int(row[3]))]) for row in rows
-        ]
-        return [",".join(names), *lines]
+    def as_dict(self) -> dict[str, Any]:
+        """Kind, n, k, the arrays of points, points of codimension two and notes."""
+        points = {name: getattr(self, name) for name in ("parameters", "tau", "v", "visible")}
+        return {
+            "kind": self.kind,
+            "n": self.n,
+            "k": self.k,
+            "points": points,
+            "special": [point.as_dict() for point in self.special],
+            "notes": list(self.notes),
+        }
 
-    def to_csv(self, file: str | Path) -> None:
-        """Write `csv_lines` to a file, which appears only when complete."""
-        write_text(file, "\n".join(self.csv_lines()) + "\n")
+    def arrays(self) -> dict[str, tuple[tuple[str, ...], Array]]:
+        """The arrays of points, with the names of their axes."""
+        axes = {"parameters": ("point", "number"), "tau": ("point", "impact"), "v": ("point", "impact")}
+        return {name: (axes.get(name, ("point",)), values) for name, values in self.as_dict()["points"].items()}
+
+    def table(self) -> dict[str, Array]:
+        """One row for each point: both parameters, the states, visible."""
+        numbers = dict(zip(self.over, self.parameters.T, strict=True))
+        states = numbered("tau", self.tau) | numbered("v", self.v)
+        return numbers | states | {"visible": self.visible.astype(int)}
 
     def __repr__(self) -> str:
         lines = [f"<curve of {self.kind} events of ({self.n}, {self.k}) orbits in {' and '.join(self.over)}, "

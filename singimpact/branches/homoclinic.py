@@ -23,6 +23,7 @@ from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse
+from singimpact.result import Result, Results
 from singimpact.surface.curve import RESOLUTION
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ SETTINGS = CrossingSettings()
 
 
 @dataclass(frozen=True, eq=False)
-class Crossing:
+class Crossing(Result):
     """An orbit that leaves one saddle along W^u and comes to a saddle along W^s.
 
     Parameters
@@ -157,13 +158,15 @@ class Crossing:
         )
 
 
-class Crossings(list[Crossing]):
+class Crossings(Results, list[Crossing]):
     """Orbits in which W^u and W^s cross, each once, those of fewest impacts first.
 
     Parameters
     ----------
     notes : what may be missing. manifolds : W^u and W^s.
     """
+
+    called = "orbits"
 
     def __init__(self, found: Iterable[Crossing], notes: tuple[str, ...], manifolds: tuple[Manifold, Manifold]) -> None:
         super().__init__(found)

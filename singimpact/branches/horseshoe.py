@@ -35,6 +35,7 @@ from singimpact.branches.saddle_cones import Cones, Pair, derivative_over, image
 from singimpact.flights.derivative import derivative
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.oscillator.model import Oscillator
+from singimpact.result import Result
 
 Array = np.ndarray[Any, Any]
 
@@ -63,7 +64,7 @@ SETTINGS = HorseshoeSettings()
 
 
 @dataclass(frozen=True)
-class CrossedSet:
+class CrossedSet(Result):
     """A parallelogram of states that an image crosses.
 
     Attributes
@@ -90,7 +91,7 @@ class CrossedSet:
 
 
 @dataclass(frozen=True)
-class Horseshoe:
+class Horseshoe(Result):
     """Proved chaos: every sequence of two loops is followed by an orbit.
 
     Attributes

@@ -19,7 +19,7 @@ from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.flight_count import counted
 from singimpact.inputs import refuse
 from singimpact.oscillator.wall_acceleration import acceleration, largest_push
-from singimpact.store import write_table
+from singimpact.result import Result
 from singimpact.surface.curve import RESOLUTION, STATES, Curve, Mark, Window
 
 Array = np.ndarray[Any, Any]
@@ -53,7 +53,7 @@ SETTINGS = ManifoldSettings()
 
 
 @dataclass(frozen=True)
-class Cut:
+class Cut(Result):
     """A cut of a manifold at a discontinuity of the map.
 
     Parameters
@@ -76,7 +76,7 @@ class Cut:
 
 
 @dataclass(frozen=True, eq=False)
-class Manifold:
+class Manifold(Result):
     """W^s or W^u of a saddle.
 
     Parameters
@@ -124,18 +124,22 @@ class Manifold:
         lines = [piece.points for piece in self.pieces]
         return distances(np.asarray(points, dtype=float), lines, self.window.sides, self.window.resolution)
 
-    def csv_columns(self) -> dict[str, list[Any]]:
-        """Columns of `to_csv`: piece, tau, v, mark (empty where there is none)."""
-        rows = [(number, point, mark) for number, piece in enumerate(self.pieces, 1)
-                for point, mark in zip(piece.points.tolist(), _names(piece), strict=True)]  # fmt: skip
+    def as_dict(self) -> dict[str, Any]:
+        """Of each vertex the piece, tau, v and mark (empty where there is none); length, flights and notes."""
+        points = np.concatenate([piece.points for piece in self.pieces]) if self.pieces else np.empty((0, 2))
+        marks = [mark for piece in self.pieces for mark in _names(piece)]
         return {
-            "piece": [row[0] for row in rows], "tau": [row[1][0] for row in rows], "v": [row[1][1] for row in rows],
-            "mark": [row[2] for row in rows],
-        }  # fmt: skip
-
-    def to_csv(self, file: Any) -> None:
-        """Write piece, tau, v and mark, a line a point; an interrupted write leaves no file."""
-        write_table(file, self.csv_columns())
+            "piece": np.repeat(np.arange(1, len(self.pieces) + 1), [len(piece) for piece in self.pieces]),
+            "tau": points[:, 0],
+            "v": points[:, 1],
+            "mark": np.array(marks, dtype=object),
+            "stable": self.stable,
+            "multiplier": self.multiplier,
+            "length": self.length,
+            "flights": self.flights,
+            "cuts": [cut.as_dict() for cut in self.cuts],
+            "notes": list(self.notes),
+        }
 
     def __repr__(self) -> str:
         n, k = int(self.saddle.n), self.saddle.k

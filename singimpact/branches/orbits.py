@@ -11,6 +11,7 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
+from singimpact.result import Result, Results
 from singimpact.status import Status
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ Sentences = tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicOrbit:
+class PeriodicOrbit(Result):
     """An orbit that closes after k periods of the forcing.
 
     Parameters
@@ -51,6 +52,25 @@ class PeriodicOrbit:
     kind: str = "impacts"
     visible: bool = True
     x: Any = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """n (none for chatter), k, kind, stability, visibility, states and multipliers."""
+        return {
+            "n": None if self.kind == "chatter" else int(self.n),
+            "k": self.k,
+            "kind": self.kind,
+            "stable": self.stable,
+            "visible": bool(self.visible),
+            "tau": np.array(self.tau),
+            "v": np.array(self.v),
+            "multipliers": np.array(self.multipliers),
+        }
+
+    def arrays(self) -> dict[str, tuple[tuple[str, ...], Any]]:
+        """States by impact, and both multipliers."""
+        values = self.as_dict()
+        states = {name: (("impact",), values[name]) for name in ("tau", "v")}
+        return states | {"multipliers": (("multiplier",), values["multipliers"])}
 
     @property
     def stable(self) -> bool:
@@ -126,13 +146,15 @@ def same_states(one: PeriodicOrbit, other: PeriodicOrbit, within: float) -> bool
     return False
 
 
-class PeriodicOrbits(list[PeriodicOrbit]):
+class PeriodicOrbits(Results, list[PeriodicOrbit]):
     """Periodic orbits, and whether the list is shown to be complete.
 
     Parameters
     ----------
     doubts : why there may be others, or a computation that finds out when it is asked. notes : what else to know.
     """
+
+    called = "orbits"
 
     def __init__(
         self, orbits: Iterable[PeriodicOrbit] = (), doubts: Sentences | Callable[[], Sentences] = (),

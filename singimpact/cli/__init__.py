@@ -7,7 +7,7 @@ from singimpact.cli.group import main as main
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "border_command": "told",
+    "border_command": "as_listed",
     "certify_command": "EVENTS",
     "events_command": "on_curve",
     "group": "COMMANDS main",

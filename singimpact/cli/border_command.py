@@ -57,7 +57,7 @@ def command(
             raise InputError(f"no border orbit to draw: {'; '.join(found.notes)}")
         save(_picture(found[0]), output)
     if as_json:
-        rows = [told(each, cascade) for each in found]
+        rows = [as_listed(each, cascade) for each in found]
         click.echo(as_json_text({"model": model.to_dict(), "over": over, "orbits": rows, "notes": list(found.notes)}))
     else:
         parts = [part for each in found for part in shown(each, cascade)] or ["no border orbit found"]
@@ -73,43 +73,9 @@ def _picture(border: BorderOrbit) -> Any:
     return draw_border(border, *figure.subplots(2, sharex=True, height_ratios=(3, 2))).figure
 
 
-def told(border: BorderOrbit, cascade: bool) -> dict[str, Any]:
-    """A border orbit as JSON."""
-    data: dict[str, Any] = {
-        "parameter": float(border.parameter) if border.digits is None else border.value_text,
-        "error": float(border.error),
-        "certified": None if border.certified is None else border.certified.as_dict(),
-        "release": border.release,
-        "end": border.end,
-        "periods": border.period,
-        "tau": border.tau,
-        "v": border.v,
-        "chatter_completes": border.side,
-        "notes": list(border.notes),
-    }
-    if cascade:
-        found = border.cascade
-        limit, error = found.limit
-        data["cascade"] = {
-            "impacts": found.impacts.tolist(),
-            "distance": [float(each) for each in found.distance],
-            "ratios": [float(each) for each in found.ratios],
-            "limit": limit,
-            "limit_error": error,
-            "mu": float(found.mu),
-            "attractors": [_attractor(each) for each in found.windows],
-            "notes": list(found.notes),
-        }
-    return data
-
-
-def _attractor(window: Any) -> dict[str, Any]:
-    orbit = window.orbit
-    data = {"impacts": window.impacts, "parameter": window.parameter, "n": None, "k": None, "multipliers": None}
-    if orbit is not None:
-        pairs = [[complex(each).real, complex(each).imag] for each in orbit.multipliers]
-        data |= {"n": "inf" if orbit.kind == "chatter" else int(orbit.n), "k": orbit.k, "multipliers": pairs}
-    return data
+def as_listed(border: BorderOrbit, cascade: bool) -> dict[str, Any]:
+    """A border orbit as JSON, with its cascade or without."""
+    return border.as_dict() | ({"cascade": border.cascade.as_dict()} if cascade else {})
 
 
 def shown(border: BorderOrbit, cascade: bool) -> list[str]:

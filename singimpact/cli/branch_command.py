@@ -11,7 +11,8 @@ from singimpact.cli.followed import orbit_options, over_option, take_branches, t
 from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import blank_axes, save, suffix_of
-from singimpact.store import require_writable, write_text
+from singimpact.result import one_table
+from singimpact.store import require_writable, write_table
 
 if TYPE_CHECKING:
     from singimpact.branches.branch import Branch
@@ -62,47 +63,16 @@ def command(
     model = take_model(options)
     found = take_branches(take_orbits(model, orbit, start), over, ends, points)
     if csv is not None:
-        write_text(csv, table(found))
+        write_table(csv, one_table({"branch": number, **each.table()} for number, each in enumerate(found, 1)))
     if output is not None:
         from singimpact.scenes import plot
 
         save(plot(found, blank_axes(), height=height).figure, output)
     click.echo(
-        as_json_text({"model": model.to_dict(), "over": over, "branches": [told(each) for each in found]})
+        as_json_text({"model": model.to_dict(), "over": over, "branches": [each.as_dict() for each in found]})
         if as_json
         else shown(found)
     )
-
-
-def table(branches: list[Branch]) -> str:
-    """Lines of a CSV file, the number of the branch first."""
-    lines = [f"branch,{branches[0].csv_lines()[0]}"]
-    lines += [f"{number},{line}" for number, each in enumerate(branches, 1) for line in each.csv_lines()[1:]]
-    return "\n".join(lines) + "\n"
-
-
-def told(branch: Branch) -> dict[str, Any]:
-    """A branch as JSON."""
-    pairs = [[[each.real, each.imag] for each in row] for row in branch.multipliers.tolist()]
-    points = {name: getattr(branch, name).tolist() for name in ("parameter", "tau", "v", "stable", "visible")}
-    events = [
-        {
-            "kind": event.kind,
-            "parameter": event.parameter,
-            "tau": [float(part) for part in event.orbit.tau],
-            "v": [float(part) for part in event.orbit.v],
-            "visible": bool(event.orbit.visible),
-            "after_point": event.index,
-        }
-        for event in branch.events
-    ]
-    return {
-        "n": branch.n,
-        "k": branch.k,
-        "points": points | {"multipliers": pairs},
-        "events": events,
-        "notes": list(branch.notes),
-    }
 
 
 def shown(branches: list[Branch]) -> str:

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from singimpact.surface.classification import Classification
     from singimpact.surface.outline_transitions import Transitions
 
+ORBIT = ("n", "k", "kind", "stable", "tau", "v")
+CHANGE = ("kind", "value", "n", "k", "below", "above")
+"""Of an orbit and of a change of orbits, in JSON."""
+
 
 @click.command()
 @model_options
@@ -85,30 +89,10 @@ def _with_orbits(changes: Transitions) -> TypeGuard[OrbitTransitions]:
     return hasattr(changes, "orbit_notes")
 
 
-def _interval(each: Interval) -> dict[str, Any]:
-    orbits = [
-        {
-            "n": None if orbit.kind == "chatter" else int(orbit.n),
-            "k": orbit.k,
-            "kind": orbit.kind,
-            "stable": orbit.stable,
-            "tau": [float(tau) for tau in orbit.tau],
-            "v": [float(v) for v in orbit.v],
-        }
-        for orbit in each.orbits
-    ]
-    events = [
-        {
-            "kind": change.kind,
-            "value": change.value,
-            "n": change.n,
-            "k": change.k,
-            "below": change.below,
-            "above": change.above,
-        }
-        for change in each.changes
-    ]
-    return {"from": each.low, "to": each.high, "orbits_in_the_middle": orbits, "changes": events}
+def _interval(interval: Interval) -> dict[str, Any]:
+    orbits = [{name: value for name, value in orbit.as_dict().items() if name in ORBIT} for orbit in interval.orbits]
+    changes = [{name: getattr(change, name) for name in CHANGE} for change in interval.changes]
+    return {"from": interval.low, "to": interval.high, "orbits_in_the_middle": orbits, "changes": changes}
 
 
 def _as_listed(found: Classification, over: str | None, changes: Transitions | None) -> dict[str, Any]:

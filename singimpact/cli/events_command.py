@@ -14,7 +14,8 @@ from singimpact.cli.output import as_json_text
 from singimpact.cli.pictures import blank_axes, save, suffix_of
 from singimpact.inputs import InputError
 from singimpact.oscillator.moving_number import value_of
-from singimpact.store import require_writable, write_text
+from singimpact.result import one_table
+from singimpact.store import require_writable, write_table
 
 if TYPE_CHECKING:
     from singimpact.branches.branch import Branch
@@ -87,13 +88,14 @@ def command(
         if not any(on_curve(event, each) for each in found):
             found.append(event_curve(event, over, both, points=points))
     if csv is not None:
-        write_text(csv, table(found))
+        tables = [{"curve": number, "kind": each.kind, **each.table()} for number, each in enumerate(found, 1)]
+        write_table(csv, one_table(tables))
     if output is not None:
         from singimpact.scenes import plot
 
         save(plot(found, blank_axes()).figure, output)
     click.echo(
-        as_json_text({"model": model.to_dict(), "over": over, "curves": [told(each) for each in found]})
+        as_json_text({"model": model.to_dict(), "over": over, "curves": [each.as_dict() for each in found]})
         if as_json
         else shown(found)
     )
@@ -143,27 +145,6 @@ def on_curve(event: Event, curve: EventCurve) -> bool:
     share = (((at - points[:-1]) * move).sum(axis=1) / length**2).clip(0, 1)
     gap = np.linalg.norm(points[:-1] + share[:, None] * move - at, axis=1)
     return bool((gap < NEAR * length).any())
-
-
-def table(curves: list[EventCurve]) -> str:
-    """Lines of a CSV file, the number and the kind of the curve first."""
-    lines = [f"curve,kind,{curves[0].csv_lines()[0]}"]
-    lines += [f"{number},{each.kind},{line}" for number, each in enumerate(curves, 1) for line in each.csv_lines()[1:]]
-    return "\n".join(lines) + "\n"
-
-
-def told(curve: EventCurve) -> dict[str, Any]:
-    """A curve as JSON."""
-    points = {name: getattr(curve, name).tolist() for name in ("parameters", "tau", "v", "visible")}
-    special = [{"kind": each.kind, "parameters": each.parameters, "after_point": each.index} for each in curve.special]
-    return {
-        "kind": curve.kind,
-        "n": curve.n,
-        "k": curve.k,
-        "points": points,
-        "special": special,
-        "notes": list(curve.notes),
-    }
 
 
 def shown(curves: list[EventCurve]) -> str:

@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from functools import cache
 
 import numpy as np
 import pytest
@@ -16,6 +17,12 @@ SWEEP = ("clearance", ("0.1", "0.2"))
 
 def ball():
     return si.ImpactOscillator("0", "-2", 0, "1/2")
+
+
+@cache
+def followed():
+    model = si.ImpactOscillator("x + 0.1*xdot", "-A*cos(w*t)", -1, "0.8", {"A": "0.45", "w": "0.8"})
+    return si.branch(model.periodic(1, 1)[0], "A", (0.3, 0.5))
 
 
 CALLS = {
@@ -43,6 +50,14 @@ CALLS = {
     "bifurcation": lambda: si.bifurcation(OSC, *SWEEP, 3, impacts=60, kept=6),
     "classify": lambda: si.classify(OSC),
     "transitions": lambda: si.transitions(si.linear(2, 0, "1/2"), "clearance", ("0.2", "0.6")),
+    "periodic": lambda: OSC.periodic(1, 1),
+    "an orbit": lambda: OSC.periodic(1, 1)[0],
+    "branch": lambda: followed(),
+    "an event": lambda: followed().events[0],
+    "event_curve": lambda: si.event_curve(followed().events[0], ("A", "w"), ((0.3, 0.5), (0.75, 0.85)), points=6),
+    "manifold": lambda: si.manifold(si.linear("2.8", 0, "0.8").periodic(1, 1)[0], length=1),
+    "border_orbits": lambda: si.border_orbits(si.linear("2.8", 0, "1/2"), between=("0.6", "0.61"), points=10),
+    "enclosed orbit": lambda: OSC.periodic(1, 1)[0].certified(15),
     "fixed_points": lambda: si.fixed_points.tangency("1/2", digits=20),
 }
 

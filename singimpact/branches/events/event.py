@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from singimpact.branches.events.kind import EventKind
 from singimpact.branches.events.table import KINDS, kind_of
 from singimpact.inputs import InputError, refuse
+from singimpact.result import Result
 
 if TYPE_CHECKING:
     from singimpact.branches.enclosed_event import EnclosedEvent
@@ -21,7 +22,7 @@ NEAR = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Event:
+class Event(Result):
     """An event at a point of a branch.
 
     Parameters
@@ -46,6 +47,17 @@ class Event:
     time: float = np.nan
     over: str = ""
     other: PeriodicOrbit | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Kind, parameter, states and visibility of the orbit, and the point of the branch after which it lies."""
+        return {
+            "kind": self.kind,
+            "parameter": self.parameter,
+            "tau": np.array([float(tau) for tau in self.orbit.tau]),
+            "v": np.array([float(v) for v in self.orbit.v]),
+            "visible": bool(self.orbit.visible),
+            "after_point": self.index,
+        }
 
     @property
     def described(self) -> EventKind:

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 import singimpact as si
 from singimpact.algebra import Balls, balls_at, exact
 from singimpact.branches import Releases, border_digits, cascade, settled_orbit
-from singimpact.cli import told
+from singimpact.cli import as_listed
 from singimpact.flights import AnalyticFlow
 from singimpact.inputs import InputError
 from singimpact.scenes import draw_border
@@ -437,7 +437,7 @@ def test_picture():
 
 
 def test_cascade_as_json():
-    cascade = told(doubles("3/10"), True)["cascade"]
+    cascade = as_listed(doubles("3/10"), True)["cascade"]
     assert cascade["attractors"][-1]["k"] == 1
     assert abs(cascade["limit"] / cascade["mu"] - 1) < 1e-6
 
