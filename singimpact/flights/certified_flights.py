@@ -52,9 +52,13 @@ def proof(
     removed = rest.order + 2 if standing and rest is not None else 1
     try:
         hit = certified_hit(
-            osc, Launch(*launch, removed), digits, Fraction(horizon),
-            steps=ENCLOSURE.idle_steps if rough is None else ENCLOSURE.steps, expected=_expected(rough),
-        )  # fmt: skip
+            osc,
+            Launch(*launch, removed),
+            digits,
+            Fraction(horizon),
+            steps=ENCLOSURE.idle_steps if rough is None else ENCLOSURE.steps,
+            expected=_expected(rough),
+        )
     except NoHit as none:
         return Proof(None, None, None, f"proved: {none}", missed=True)
     except (Refused, ArithmeticError, ValueError, TypeError) as reason:  # a ball that left the domain of a function

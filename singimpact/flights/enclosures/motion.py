@@ -69,9 +69,16 @@ class CarriedMotion:
     """
 
     def __init__(
-        self, equations: tuple[Equation, Equation], start: Start, bits: int, *, coarse: int | None = None,
-        deviations: Mapping[str, Any] | None = None, through: bool = False, clocked: bool = False,
-    ) -> None:  # fmt: skip
+        self,
+        equations: tuple[Equation, Equation],
+        start: Start,
+        bits: int,
+        *,
+        coarse: int | None = None,
+        deviations: Mapping[str, Any] | None = None,
+        through: bool = False,
+        clocked: bool = False,
+    ) -> None:
         from flint import arb
 
         (self.of_centre, self.equation), self.bits, self.coarse = equations, bits, coarse
@@ -134,8 +141,11 @@ class CarriedMotion:
         if self.coarse is None:
             return [Column(pair, drive) for pair, drive in zip(self.full, self.drives, strict=True)]
         one, zero = arb(1), arb(0)
-        return [Column((one, zero), -1), Column((zero, one), -1),
-                *(Column((zero, zero), drive) for drive in self.drives if drive >= 0)]  # fmt: skip
+        return [
+            Column((one, zero), -1),
+            Column((zero, one), -1),
+            *(Column((zero, zero), drive) for drive in self.drives if drive >= 0),
+        ]
 
     def _of_set(self, length: Any, removed: int) -> Step:
         """The step of the whole set, with few bits."""
@@ -232,8 +242,10 @@ class CarriedMotion:
         (a, b), box = self.turn, self.box
         # the image of a box is a thin parallelogram; a frame along its longer side wraps it closely
         sides = _mapped(flow, (a, b)), _mapped(flow, (-b, a))
-        lengths = [float(abs(side[0]).mid() + abs(side[1]).mid()) * float(width.rad())
-                   for side, width in zip(sides, box, strict=True)]  # fmt: skip
+        lengths = [
+            float(abs(side[0]).mid() + abs(side[1]).mid()) * float(width.rad())
+            for side, width in zip(sides, box, strict=True)
+        ]
         longer = sides[0] if lengths[0] >= lengths[1] else sides[1]
         p, q = centre(longer[0]), centre(longer[1])
         size = float((p * p + q * q).sqrt().mid())
@@ -259,8 +271,10 @@ class CarriedMotion:
         total = self.time + root
         if not self.by:
             return total, velocity, []
-        f, g = self.equation.run("force", x=velocity * 0, xdot=velocity)[0], self.equation.run(
-            "forcing", t=self.tau + total)[0]  # fmt: skip
+        f, g = (
+            self.equation.run("force", x=velocity * 0, xdot=velocity)[0],
+            self.equation.run("forcing", t=self.tau + total)[0],
+        )
         pairs: list[Pair] = []
         for value, slope in self.by:
             if not self.launched:
@@ -302,8 +316,10 @@ class CarriedMotion:
             return Met(self.time + s, z, v, columns)
         if not self.launched:
             # by the mean value theorem each member is the centre and its columns times what it deviates
-            near = [tube(s) + sum((column[k] * size for column, size in zip(columns, self.D, strict=True)), s * 0)
-                    for k, tube in enumerate(self.own)]  # fmt: skip
+            near = [
+                tube(s) + sum((column[k] * size for column, size in zip(columns, self.D, strict=True)), s * 0)
+                for k, tube in enumerate(self.own)
+            ]
             z, v = z.intersection(near[0]), v.intersection(near[1])
         return Met(self.tau + self.time + s, z, v, columns)
 
@@ -351,8 +367,9 @@ def added(tube: Tube, column: Tube, size: Any) -> Tube:
     if size == 0:
         return tube
     largest = upper(size)
-    return Tube(tube.polynomial + column.polynomial * size,
-                (*tube.errors, *((largest * e, k) for e, k in column.errors)))  # fmt: skip
+    return Tube(
+        tube.polynomial + column.polynomial * size, (*tube.errors, *((largest * e, k) for e, k in column.errors))
+    )
 
 
 def _mapped(flow: list[Pair], pair: Pair, driven: Pair | None = None) -> Pair:
