@@ -1,31 +1,27 @@
 """Closing conditions in balls: F and D F of n impacts in k periods, over the states and a number of the model.
 
-    F_i = G(tau_i, v_i) - (tau_(i+1), v_(i+1)),       k periods P taken off where the orbit closes.
+    z(T_i) = 0,   rho(z'(T_i)) = v_(i+1),   z = x - c,   T_i = tau_(i+1) - tau_i,   tau_(n+1) = tau_1 + k P,
 
-All flights are first hits, for balls that prove nothing else are refused. Of an orbit that touches the wall with v = 0
-the touching point is launched from, at rest, and the last flight ends there by x - c = x' = 0: both conditions are
-smooth, where G is not.
+as in doubles (`closing`). They are smooth where the orbit touches the wall: v_1 = 0 is then known, and no unknown. That
+flights are above the wall until they meet it is shown apart, by `first_hits`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
 from singimpact.branches.enclosed_map import SPARE
-from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
+from singimpact.flights.enclosures.certified_hit import Launch
+from singimpact.flights.enclosures.equation import programs_of
 from singimpact.flights.enclosures.jet_flight import JetHit, jet_hit
 from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
 from singimpact.flights.horizons import horizon_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import common_period
-
-CONDITION = 2.0**6
-"""Condition number that is expected of a flight: with it most flights have their digits at the first precision."""
 
 
 class Spans:
@@ -62,6 +58,21 @@ class Spans:
         return (length, slope) if length > 0 else (-length, -slope)
 
 
+class Slopes(NamedTuple):
+    """What D F over a box is made from.
+
+    Parameters
+    ----------
+    blocks : D G of each flight; none where an orbit touches the wall. ends : z and z' of each flight at its end.
+    laws : the velocity after it, the slope of rho, and its derivative by the number. longer : that of k P.
+    """
+
+    blocks: list[list[list[Any]]]
+    ends: list[Arrival]
+    laws: list[list[Any]]
+    longer: Any
+
+
 class BallClosing:
     """F and D F of the closing conditions of n impacts.
 
@@ -72,6 +83,8 @@ class BallClosing:
 
     The unknowns are tau_1, v_1, ..., tau_n, v_n and the number.
     """
+
+    touches = False
 
     def __init__(self, osc: Oscillator, k: int, digits: int, bits: int, over: str | None = None) -> None:
         self.osc, self.digits, self.over = osc, digits, over
@@ -88,15 +101,20 @@ class BallClosing:
         """The model with the number of a point."""
         return self.osc if self.over is None else self.osc.replace(**{self.over: point[-1]})
 
+    def number(self, point: list[Fraction], radius: Fraction) -> dict[str, Any]:
+        """The number over a box, by its name."""
+        return {} if self.over is None else {self.over: self.balls.interval(point[-1] - radius, point[-1] + radius)}
+
     def span(self, point: list[Fraction], radius: Fraction = Fraction(0)) -> tuple[Any, Any]:
         """k P and its derivative over a box."""
-        value = None if self.over is None else self.balls.interval(point[-1] - radius, point[-1] + radius)
-        return self.spans.at(value, self.balls)
+        return self.spans.at(self.number(point, radius).get(self.over or ""), self.balls)
 
     def states(self, point: list[Fraction]) -> list[tuple[Fraction, Fraction]]:
         """tau_i, v_i of a point."""
-        count = len(point) // 2
-        return [(point[2 * i], point[2 * i + 1]) for i in range(count)]
+        numbers = list(point if self.over is None else point[:-1])
+        if self.touches:
+            numbers.insert(1, Fraction(0))
+        return list(zip(numbers[::2], numbers[1::2], strict=True))
 
     def launch(self, state: tuple[Fraction, Fraction], radius: Fraction) -> Launch:
         """The box of a radius round a state and the number; from rest where v is 0."""
@@ -105,76 +123,71 @@ class BallClosing:
         radii = dict.fromkeys(names, radius) if radius else {}
         return Launch(number(state[0]), number(state[1]), 2 if rests else 1, radii)
 
-    def hit(self, point: list[Fraction], index: int, radius: Fraction = Fraction(0)) -> Any:
-        """The impact after a state of a point, with D G over the box where there is a radius."""
-        states = self.states(point)
-        launch, last = self.launch(states[index], radius), index == len(states) - 1
-        time = float(states[(index + 1) % len(states)][0] - states[index][0])
-        time += float(self.span(point)[0].mid()) if last else 0.0
-        return certified_hit(
-            self.model(point), launch, self.digits + SPARE, self.horizon, derivative=bool(radius),
-            expected=(max(time, 0.0), CONDITION),
-        )  # fmt: skip
+    def flights(self, point: list[Fraction], radius: Fraction) -> list[tuple[Launch, Any]]:
+        """The launch and the time of each flight over a box."""
+        states, span = self.states(point), self.span(point, radius)[0]
+        launches = [self.launch(state, radius) for state in states]
+        if len(states) == 1:  # tau_1 is no part of the time, whose ball would be wider for it
+            return [(launches[0], span)]
+        times = [self.balls.interval(tau - radius, tau + radius) for tau, _ in states]
+        times.append(times[0] + span)
+        return [(launch, times[i + 1] - times[i]) for i, launch in enumerate(launches)]
+
+    def ends(self, point: list[Fraction], radius: Fraction) -> tuple[list[Arrival], list[list[Any]]]:
+        """z and z' at the end of each flight over a box; the velocity after it, and its derivatives."""
+        model = self.model(point)
+        ends = [timed_flight(model, launch, time, self.digits + SPARE, derivative=bool(radius))
+                for launch, time in self.flights(point, radius)]  # fmt: skip
+        numbers = self.number(point, radius)
+        law = programs_of(model, tuple(numbers)).rho.prepared(numbers)
+        return ends, [list(law({"v": end.velocity})) for end in ends]
+
+    def first_hits(self, point: list[Fraction], radius: Fraction) -> None:
+        """Refuse a box unless each flight of its orbits is above the wall until it meets it."""
+        flights = self.flights(point, radius)
+        for i, (launch, time) in enumerate(flights):
+            crosses = not (self.touches and i == len(flights) - 1)
+            touches_first(self.model(point), launch, time, self.digits + SPARE, crosses=crosses)
 
     def miss(self, point: list[Fraction]) -> Any:
         """F at a point, as a column."""
         import flint
 
         states, rows = self.states(point), []
-        for i in range(len(states)):
-            hit = self.hit(point, i)
-            tau, v = (self.balls.rational(part) for part in states[(i + 1) % len(states)])
-            later = self.span(point)[0] if i == len(states) - 1 else 0
-            rows += [[hit.tau - tau - later], [hit.v - v]]
+        for i, (end, law) in enumerate(zip(*self.ends(point, Fraction(0)), strict=True)):
+            rows += [[end.height], [law[0] - self.balls.rational(states[(i + 1) % len(states)][1])]]
         return flint.arb_mat(rows)
 
-    def slopes(self, point: list[Fraction], radius: Fraction) -> tuple[list[list[list[Any]]], Any]:
-        """D G over the box round each state, with a third column for the number; and the derivative of k P."""
-        count = len(self.states(point))
-        return [self.hit(point, i, radius).derivative for i in range(count)], self.span(point, radius)[1]
+    def slopes(self, point: list[Fraction], radius: Fraction) -> Slopes:
+        """The derivatives of each flight over the box round each state and the number; and of k P."""
+        ends, laws = self.ends(point, radius)
+        blocks = [] if self.touches else [_impact(end, law) for end, law in zip(ends, laws, strict=True)]
+        return Slopes(blocks, ends, laws, self.span(point, radius)[1])
 
-    def bends(self, point: list[Fraction], radius: Fraction) -> tuple[list[JetHit], Any]:
-        """G with D G and D^2 G over the box round each state, by the number too; and the derivative of k P."""
+    def bends(self, point: list[Fraction], radius: Fraction) -> list[JetHit]:
+        """G with D G and D^2 G over the box round each state, by the number too."""
         model = self.model(point)
-        hits = [jet_hit(model, self.launch(state, radius), self.horizon) for state in self.states(point)]
-        return hits, self.span(point, radius)[1]
+        return [jet_hit(model, self.launch(state, radius), self.horizon) for state in self.states(point)]
 
-    def matrix(self, slopes: tuple[list[list[list[Any]]], Any]) -> Any:
-        """D F from the D G: blocks beside the diagonal, less the identity."""
+    def matrix(self, slopes: Slopes) -> Any:
+        """D F, without the column of v_1 where the orbit touches the wall."""
         import flint
 
-        blocks, longer = slopes
-        size = 2 * len(blocks)
+        size = 2 * len(slopes.ends)
         rows = [[flint.arb(0)] * (size + (self.over is not None)) for _ in range(size)]
-        for i, block in enumerate(blocks):
-            for p in (0, 1):
-                for q in (0, 1):
-                    rows[2 * i + p][2 * i + q] += block[p][q]
-                rows[2 * i + p][(2 * i + 2 + p) % size] -= 1
-                if self.over is not None:
-                    rows[2 * i + p][-1] += block[p][2]
-        if self.over is not None:
-            rows[-2][-1] -= longer
-        return flint.arb_mat(rows)
-
-
-def return_slope(slopes: tuple[list[list[list[Any]]], Any]) -> Any:
-    """The derivative of the return map: the product of the D G."""
-    import flint
-
-    total = flint.arb_mat([[1, 0], [0, 1]])
-    for block in slopes[0]:
-        total = flint.arb_mat([row[:2] for row in block]) * total
-    return total
-
-
-@dataclass(frozen=True)
-class TouchingSlopes:
-    """D G of the flights that end in an impact, D of the one that ends at the touching point, and of k P."""
-
-    blocks: list[list[list[Any]]]
-    arrival: Arrival
-    longer: Any
+        for i, (end, law) in enumerate(zip(slopes.ends, slopes.laws, strict=True)):
+            for p, (by_time, factor) in enumerate(((end.velocity, 1), (end.acceleration, law[1]))):
+                row, late = rows[2 * i + p], by_time * factor
+                by_tau, by_v, *by_number = (column[p] * factor for column in end.columns)
+                row[2 * i] += by_tau - late
+                row[2 * i + 1] += by_v
+                row[(2 * i + 2) % size] += late
+                if by_number:
+                    # the last flight ends k periods later, and rho has the number too
+                    row[-1] += by_number[0] + (law[2] if p else 0)
+                    row[-1] += late * slopes.longer if 2 * i + 2 == size else 0
+            rows[2 * i + 1][(2 * i + 3) % size] -= 1
+        return flint.arb_mat([row[:1] + row[2:] for row in rows] if self.touches else rows)
 
 
 class TouchingClosing(BallClosing):
@@ -183,65 +196,24 @@ class TouchingClosing(BallClosing):
     The unknowns are tau_1, then tau_2, v_2, ..., tau_n, v_n, and the number.
     """
 
-    def states(self, point: list[Fraction]) -> list[tuple[Fraction, Fraction]]:
-        """tau_i, v_i of a point, those of the touching point first."""
-        count = (len(point) - 2) // 2
-        return [(point[0], Fraction(0)), *((point[2 * i + 1], point[2 * i + 2]) for i in range(count))]
+    touches = True
 
-    def arrival(self, point: list[Fraction], radius: Fraction) -> Arrival:
-        """The last flight at the time of the touching point, k periods later."""
-        launch, time = self._last(point, radius)
-        return timed_flight(self.model(point), launch, time, self.digits + SPARE, derivative=bool(radius))
 
-    def _last(self, point: list[Fraction], radius: Fraction) -> tuple[Launch, Any]:
-        """The launch of the last flight, and its time."""
-        tau, v = self.states(point)[-1]
-        ends = [self.balls.interval(part - radius, part + radius) for part in (point[0], tau)]
-        return self.launch((tau, v), radius), self.span(point, radius)[0] + (ends[0] - ends[1] if len(point) > 2 else 0)
+def _impact(end: Arrival, law: list[Any]) -> list[list[Any]]:
+    """D G of a flight from the derivatives at its end: the hit moves by -dz/z'."""
+    rows: list[list[Any]] = [[], []]
+    for index, (height, velocity) in enumerate(end.columns):
+        late = -height / end.velocity
+        rows[0].append(late + (index == 0))
+        rows[1].append(law[1] * (velocity + end.acceleration * late) + (law[2] if index == 2 else 0))
+    return rows
 
-    def touches(self, point: list[Fraction], radius: Fraction) -> None:
-        """Refuse a box unless the last flight of each of its orbits is above the wall until it touches it."""
-        launch, time = self._last(point, radius)
-        touches_first(self.model(point), launch, time, self.digits + SPARE)
 
-    def miss(self, point: list[Fraction]) -> Any:
-        import flint
+def return_slope(slopes: Any) -> Any:
+    """The derivative of the return map: the product of the D G."""
+    import flint
 
-        rows = []
-        for i, after in enumerate(self.states(point)[1:]):
-            hit = self.hit(point, i)
-            rows += [[hit.tau - self.balls.rational(after[0])], [hit.v - self.balls.rational(after[1])]]
-        last = self.arrival(point, Fraction(0))
-        return flint.arb_mat([*rows, [last.height], [last.velocity]])
-
-    def slopes(self, point: list[Fraction], radius: Fraction) -> Any:
-        blocks = [self.hit(point, i, radius).derivative for i in range(len(self.states(point)) - 1)]
-        return TouchingSlopes(blocks, self.arrival(point, radius), self.span(point, radius)[1])
-
-    def matrix(self, slopes: Any) -> Any:
-        import flint
-
-        assert isinstance(slopes, TouchingSlopes)
-        size = 2 * len(slopes.blocks) + 2
-        rows = [[flint.arb(0)] * size for _ in range(size)]
-        for i, block in enumerate(slopes.blocks):
-            for p in (0, 1):
-                if i:
-                    rows[2 * i + p][2 * i - 1] += block[p][0]
-                    rows[2 * i + p][2 * i] += block[p][1]
-                else:
-                    rows[p][0] += block[p][0]
-                rows[2 * i + p][2 * i + 1 + p] -= 1
-                rows[2 * i + p][-1] += block[p][2]
-        last, alone = slopes.arrival, size == 2
-        for p, by_time in enumerate((last.velocity, last.acceleration)):
-            by_tau, by_v, by_number = (column[p] for column in last.columns)
-            row = rows[size - 2 + p]
-            if alone:
-                row[0] += by_tau
-            else:
-                row[0] += by_time
-                row[-3] += by_tau - by_time
-                row[-2] += by_v
-            row[-1] += by_number + slopes.longer * by_time
-        return flint.arb_mat(rows)
+    total = flint.arb_mat([[1, 0], [0, 1]])
+    for block in slopes[0]:
+        total = flint.arb_mat([row[:2] for row in block]) * total
+    return total

@@ -152,7 +152,7 @@ def _touching(kind: str, orbit: PeriodicOrbit, over: str, parameter: float, digi
         tight = operator.image(point, step, own)
         if tight is None:
             return "Krawczyk's operator does not map the box into itself: the graze may be degenerate, or be two"
-        closing.touches(point, own)
+        closing.first_hits(point, own)
         unique = operator.unique_within(point, step, own)
         tau, *rest = _numbers(closing.balls, point, tight.offsets, digits)
         rested = from_ball(closing.balls.rational(Fraction(0)), digits)
@@ -261,7 +261,10 @@ class _Curve:
         refusal = kind_of(self.kind).refusal(return_slope(curve.slopes))
         if refusal:
             return refusal
-        balls, offsets = operator.equations.balls, list(curve.offsets)
+        closing = operator.equations
+        assert isinstance(closing, BallClosing)
+        closing.first_hits(near, radius)
+        balls, offsets = closing.balls, list(curve.offsets)
         assert operator.held is not None
         offsets.insert(operator.held, balls.interval(-half, half))
         *states, parameter = _numbers(balls, near, offsets, self.digits)

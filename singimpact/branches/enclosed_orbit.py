@@ -66,6 +66,7 @@ def _enclosed(orbit: BallClosing, states: list[Fraction], digits: int) -> Enclos
     step = operator.step(states)
     own = operator.own_radius(step)
     tight = operator.tight(states, step, own)
+    orbit.first_hits(states, own)
     unique = operator.unique_within(states, step, own)
     numbers = [from_ball(orbit.balls.rational(x) + part, digits) for x, part in zip(states, tight.offsets, strict=True)]
     multipliers, stable = _multipliers(return_slope(tight.slopes), digits)

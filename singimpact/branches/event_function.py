@@ -34,9 +34,8 @@ def rate_over(kind: str, closing: BallClosing, operator: Krawczyk, point: Point,
     """
     import flint
 
-    hits, longer = closing.bends(point, radius)
-    matrix = closing.matrix(([hit.slopes() for hit in hits], longer))
-    tangent = operator.tangent_over(matrix)
+    hits = closing.bends(point, radius)
+    tangent = operator.tangent_over(closing.matrix(closing.slopes(point, radius)))
     total, change = flint.arb_mat([[1, 0], [0, 1]]), flint.arb_mat([[0, 0], [0, 0]])
     for i, hit in enumerate(hits):
         slopes = flint.arb_mat([row[:2] for row in hit.slopes()])

@@ -58,7 +58,7 @@ def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, der
 
     Raises
     ------
-    Refused : x - c is not shown positive at the end of a step before; or the digits are not reached.
+    Refused : x - c is not shown positive at the end of a step before the time; or the digits are not reached.
 
     Examples
     --------
@@ -86,10 +86,11 @@ def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, der
         bits = min(int(bits * ENCLOSURE.more), most)
 
 
-def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int) -> None:
-    """Show that z > 0 between the launch and a time at which z = z' = 0; the caller has proved the latter.
+def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int, *, crosses: bool = False) -> None:
+    """Show that z > 0 between the launch and a time at which z = 0, and z' = 0 unless it crosses the wall.
 
-    z > 0 is shown up to a last piece, and there z'' > 0: a function with z = z' = 0 at its end is then positive on it.
+    The caller has proved what holds at the time. z > 0 is shown up to a last piece, and there z'' > 0: a function with
+    z = z' = 0 at its end is then positive on it. Where it crosses the wall z' < 0 on the last piece.
 
     Raises
     ------
@@ -102,22 +103,25 @@ def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int) -> No
             inner, length = _step(motion)
             left = time - motion.time
             if _reaches(length, left):
-                return _touches_in_step(motion, inner, left)
+                return _touches_in_step(motion, inner, left, crosses)
             part = _piece(length, left)
-            _above(inner, part, bits)
+            _above(motion, inner, part, crosses)
             motion.advance(part)
 
 
-def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any) -> None:
+def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any, crosses: bool) -> None:
     """The same in the step of the touching point."""
     last = centre(left)
     for _ in range(TIMED.halvings):
         before = centre(left - last)
-        if _bends_upwards(motion, before.union(left)):
+        during = before.union(left)
+        if _falls(motion, during) if crosses else _bends_upwards(motion, during):
             if before > 0:
-                _above(inner, before, motion.bits)
+                _above(motion, inner, before, crosses)
             return
         last = last / 2
+    if crosses:
+        raise Refused("the mass is not shown to fall onto the wall at the impact")
     raise Refused("the mass is not shown to be driven off the wall where it touches it")
 
 
@@ -162,18 +166,27 @@ def _piece(length: Any, left: Any) -> Any:
     return length if length < left * TIMED.near else centre(left / 2)
 
 
-def _above(inner: tuple[Tube, Tube], length: Any, bits: int) -> None:
+def _above(motion: CarriedMotion, inner: tuple[Tube, Tube], length: Any, crosses: bool) -> None:
     """Show that there is no zero up to a length."""
+    ends = "its impact" if crosses else "it touches it"
     try:
-        root = first_root(*inner, length, bits)
-    except (NearGraze, RootAtEnd):
-        raise Refused("the flight is not shown to be above the wall before it touches it") from None
+        root = first_root(*inner, length, motion.bits)
+    except (NearGraze, RootAtEnd) as near:
+        if crosses and isinstance(near, NearGraze):
+            after = float((motion.time + near.at).mid())
+            raise Refused(f"x - c and x' both vanish {after:.6g} after the launch, as far as balls tell") from None
+        raise Refused(f"the flight is not shown to be above the wall before {ends}") from None
     if root is not None:
-        raise Refused("the flight meets the wall before it touches it")
+        raise Refused(f"the flight meets the wall before {ends}")
 
 
 def _bends_upwards(motion: CarriedMotion, during: Any) -> bool:
     return bool(_acceleration(motion, during) > 0)
+
+
+def _falls(motion: CarriedMotion, during: Any) -> bool:
+    assert motion.members is not None
+    return bool(motion.members[1](during) < 0)
 
 
 def _acceleration(motion: CarriedMotion, during: Any) -> Any:

@@ -407,7 +407,7 @@ def test_d_f_is_that_of_differences():
     """Columns by the states and by numbers, one of which the period depends on; both closings."""
     (orbit,) = DUFFING.periodic(2, 1, start=(1.95786, 0.662042))
     point = [Fraction(float(part)) for pair in zip(orbit.tau, orbit.v, strict=True) for part in pair]
-    touching = [Fraction("4.4"), Fraction("5.9"), Fraction("0.6")]
+    touching = [Fraction("3.5"), Fraction("5.4"), Fraction("1.5")]  # both flights are above the wall until they end
     for over in ("A", "w", "clearance", "restitution"):
         value = Fraction({"A": "1", "w": "1.7", "clearance": "0.3", "restitution": "0.6"}[over])
         for kind, at in ((BallClosing, [*point, value]), (TouchingClosing, [*touching, value])):

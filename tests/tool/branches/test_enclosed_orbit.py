@@ -2,8 +2,10 @@
 
 import mpmath
 import numpy as np
+import paired_events
 import pytest
 
+import singimpact as si
 from singimpact.branches import BallClosing, EnclosedOrbit
 from singimpact.branches.enclosed_orbit import enclosed_orbit
 from singimpact.impact_oscillator import ImpactOscillator, linear
@@ -58,3 +60,26 @@ def test_a_box_without_the_orbit_is_not_accepted(monkeypatch):
     monkeypatch.setattr(BallClosing, "miss", forged)
     found = enclosed_orbit(DUFFING, orbit.tau + 1e-2, orbit.v, 1, 20)
     assert isinstance(found, str) or not isinstance(found, EnclosedOrbit)
+
+
+def states_beside(distance):
+    """States that close through the wall, of the model beside an interior graze, where the orbit is virtual."""
+    pair = paired_events.drawn("hidden impact", np.random.default_rng(5), (1e-2, 1e-1))
+    branch = si.branch(pair.orbit, "q", pair.between)
+    event = next(event for event in branch.events if event.kind == "hidden impact")
+    for side in (1, -1):
+        ends = sorted((event.parameter, event.parameter + side * distance))
+        beside = si.branch(event.orbit, "q", (ends[0] - 1e-12, ends[1] + 1e-12))
+        at = int(np.argmin(beside.parameter) if side < 0 else np.argmax(beside.parameter))
+        if not beside.visible[at]:
+            return beside.oscillator.replace(q=beside.parameter[at]), beside.tau[at], beside.v[at], pair.orbit.k
+    raise AssertionError(f"no virtual orbit beside {event!r}")
+
+
+@pytest.mark.parametrize("distance", [1e-3, 1e-5, 1e-6])
+def test_an_orbit_that_dips_below_the_wall_is_refused(distance, monkeypatch):
+    """The closing conditions hold through the wall: that flights are first hits is shown apart, and decides here."""
+    osc, tau, v, k = states_beside(distance)
+    assert isinstance(enclosed_orbit(osc, tau, v, k, 15), str)
+    monkeypatch.setattr(BallClosing, "first_hits", lambda *_: None)
+    assert isinstance(enclosed_orbit(osc, tau, v, k, 15), EnclosedOrbit)
