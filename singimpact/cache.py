@@ -38,22 +38,22 @@ AGES = CacheSettings()
 _SAID: list[str] = []  # why results are not kept, once in a process
 
 
-def keep(place: Path, content: bytes) -> None:
+def keep(file: Path, content: bytes) -> None:
     """Write an entry, which appears only when complete. A cache that cannot be written gives one warning, no error."""
     try:
-        _swept(folder(place.parent))
-        reason = _changeable(place)
+        _swept(folder(file.parent))
+        reason = _changeable(file)
         if reason is not None:
-            raise InputError(f"{shown(str(place.parent))}: {reason}")
-        if place.is_symlink():
-            place.unlink()  # an entry is a regular file: a link is removed, its target is not written to
-        with written(place) as draft:
-            draft.write_bytes(_seal(place, content) + content)
+            raise InputError(f"{shown(str(file.parent))}: {reason}")
+        if file.is_symlink():
+            file.unlink()  # an entry is a regular file: a link is removed, its target is not written to
+        with written(file) as draft:
+            draft.write_bytes(_seal(file, content) + content)
     except (InputError, OSError) as error:
         not_kept(error)
 
 
-def recall(place: Path) -> bytes | None:
+def recall(file: Path) -> bytes | None:
     """The content of an entry, or None when there is none; a damaged one is named on standard error.
 
     Examples
@@ -64,21 +64,21 @@ def recall(place: Path) -> bytes | None:
     >>> recall(place), recall(place.with_name("other"))
     (b'42', None)
     """
-    if _changeable(place) is not None:
+    if _changeable(file) is not None:
         return None
     try:
         with os.fdopen(
-            os.open(place, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)), "rb"
+            os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)), "rb"
         ) as f:
             found = f.read()
     except FileNotFoundError:
         return None
     except OSError as error:
-        damaged(place, error.strerror or str(error))
+        damaged(file, error.strerror or str(error))
         return None
-    content = unsealed(place, found)
+    content = unsealed(file, found)
     if content is None and not found.startswith(OLD_SEAL):
-        damaged(place, "its content is not what was written under this name")
+        damaged(file, "its content is not what was written under this name")
     return content
 
 
@@ -123,11 +123,11 @@ def _tree(thing: Any, arrays: list[Any]) -> Any:
         arrays.append(thing)
         return ["array", None]
     if is_dataclass(thing):
-        return [type(thing).__name__, {each.name: _tree(getattr(thing, each.name), arrays) for each in fields(thing)}]
+        return [type(thing).__name__, {item.name: _tree(getattr(thing, item.name), arrays) for item in fields(thing)}]
     if isinstance(thing, Mapping):
         return ["dict", {key: _tree(value, arrays) for key, value in thing.items()}]
     if isinstance(thing, list | tuple):
-        return ["list" if isinstance(thing, list) else "tuple", [_tree(each, arrays) for each in thing]]
+        return ["list" if isinstance(thing, list) else "tuple", [_tree(item, arrays) for item in thing]]
     return thing.item() if isinstance(thing, np.generic) else thing
 
 
@@ -140,7 +140,7 @@ def _grown(tree: Any, kinds: Mapping[str, type], array: Callable[[], Any]) -> An
     if isinstance(inside, dict):
         parts = {key: _grown(value, kinds, array) for key, value in inside.items()}
         return parts if kind == "dict" else kinds[kind](**parts)
-    parts_in_order = [_grown(each, kinds, array) for each in inside]
+    parts_in_order = [_grown(entry, kinds, array) for entry in inside]
     return tuple(parts_in_order) if kind == "tuple" else parts_in_order
 
 
@@ -172,9 +172,9 @@ def source_digest(folder: Path, without: tuple[str, ...] = ()) -> str:
     """
     digest = hashlib.sha256()
     for path in sorted(path for path in folder.rglob("*") if path.suffix in SOURCES):
-        part = path.relative_to(folder).as_posix()
-        if not part.startswith(without):
-            digest.update(part.encode() + b"\0" + path.read_bytes())
+        name = path.relative_to(folder).as_posix()
+        if not name.startswith(without):
+            digest.update(name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
 
 

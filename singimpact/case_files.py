@@ -154,9 +154,9 @@ class NpzFile(InMemory):
 
     def _write(self) -> None:
         records = [self.records[start] for start in sorted(self.records)]
-        index = [np.arange(each.start, each.start + each.count) for each in records]
-        cases = np.array([each.cases for each in records])
-        chunks = np.array([(each.start, each.count) for each in records])
+        index = [np.arange(record.start, record.start + record.count) for record in records]
+        cases = np.array([record.cases for record in records])
+        chunks = np.array([(record.start, record.count) for record in records])
         with written(self.path) as draft, draft.open("wb") as stream:
             np.savez(
                 stream,
@@ -171,20 +171,20 @@ class NpzFile(InMemory):
     def _load(self) -> None:
         try:
             with self.path.open("rb") as stream:
-                found = np.load(stream)
-                if not hasattr(found, "files"):
+                values = np.load(stream)
+                if not hasattr(values, "files"):
                     raise ValueError("an array, no archive")
-                if str(found["key"]) != self.key:
+                if str(values["key"]) != self.key:
                     raise InputError(f"output = {shown(str(self.path))} {OTHERS}: name another file")
-                result, chunks, cases = found["result"], found["chunks"], found["cases"]
+                result, chunks, cases = values["result"], values["chunks"], values["cases"]
                 if cases.ndim != 1 or cases.dtype.kind != "U":
                     raise ValueError(f"cases of type {cases.dtype}")
                 _check(result.shape, result.dtype, chunks, len(cases))
         except InputError:
             raise
         except (OSError, ValueError, KeyError, EOFError, TypeError, MemoryError, zipfile.BadZipFile) as error:
-            told = f"output = {shown(str(self.path))} is not a file of results ({error}): name another"
-            raise InputError(told) from None
+            refusal = f"output = {shown(str(self.path))} is not a file of results ({error}): name another"
+            raise InputError(refusal) from None
         ends = np.cumsum(chunks[:, 1])
         for (start, count), end, case in zip(chunks.tolist(), ends.tolist(), cases.tolist(), strict=True):
             InMemory.add(self, Record(start, count, str(case)), result[end - count : end])
@@ -258,13 +258,13 @@ class ZarrStore(InMemory):
     def _open(self) -> None:
         try:
             self.array = self.zarr.open_group(self.part, mode="r+")["result"]
-            cases = max((each.start + each.count for each in self.records.values()), default=0)
+            cases = max((record.start + record.count for record in self.records.values()), default=0)
             if self.array.dtype.kind not in NUMBERS or self.array.shape[0] < cases:
                 raise ValueError(f"results of shape {self.array.shape} and type {self.array.dtype}")
         except Exception as error:
             self.journal.close()
-            told = f"{shown(str(self.part))} is damaged ({error}): remove it, or name another output"
-            raise InputError(told) from None
+            refusal = f"{shown(str(self.part))} is damaged ({error}): remove it, or name another output"
+            raise InputError(refusal) from None
         self.shape, self.dtype = self.array.shape[1:], self.array.dtype
 
     def _reopen(self) -> None:
@@ -343,8 +343,8 @@ class ZarrStore(InMemory):
         group = self.zarr.open_group(self.part, mode="r+")
         self.array.resize((self.done, *(self.shape or ())))
         records = [self.records[start] for start in sorted(self.records)]
-        chunks = np.array([(each.start, each.count) for each in records], dtype=np.int64).reshape(-1, 2)
-        cases = np.array([list(bytes.fromhex(each.cases)) for each in records], dtype=np.uint8).reshape(-1, DIGEST)
+        chunks = np.array([(record.start, record.count) for record in records], dtype=np.int64).reshape(-1, 2)
+        cases = np.array([list(bytes.fromhex(record.cases)) for record in records], dtype=np.uint8).reshape(-1, DIGEST)
         group.create_array("chunks", data=chunks, overwrite=True)
         group.create_array("cases", data=cases, overwrite=True)
         group.attrs["key"] = self.key

@@ -59,9 +59,9 @@ class Journal:
             self.close()
             raise InputError(f"output = {shown(str(self.output))} {OTHERS} (in {self.path.name}): name another file")
         end = stream.seek(0, os.SEEK_CUR) if head.endswith(b"\n") else 0
-        while (found := _record(stream)) is not None:
+        while (record := _record(stream)) is not None:
             end = stream.tell()
-            yield found
+            yield record
         stream.seek(end)
         stream.truncate()
 

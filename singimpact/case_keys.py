@@ -345,7 +345,7 @@ class _Digest:
         self.text("class", _name(kind))
         if is_installed(kind.__module__) and is_found_by_name(kind):
             self._package(kind.__module__)
-            replaced = {name: each for name, each in vars(kind).items() if _is_put_in(each)}
+            replaced = {name: member for name, member in vars(kind).items() if _is_put_in(member)}
             self._named(replaced, depth)
             return
         self.names.append(kind.__name__)
@@ -419,7 +419,7 @@ class _Digest:
             return
         slots = copyreg._slotnames(type(value))  # type: ignore[attr-defined]
         held = getattr(value, "__dict__", {}) | {name: getattr(value, name) for name in slots if hasattr(value, name)}
-        parts = [part for part in (state if isinstance(state, tuple) else (state,)) if isinstance(part, dict)]
+        parts = [piece for piece in (state if isinstance(state, tuple) else (state,)) if isinstance(piece, dict)]
         self.add("dropped")
         for name in sorted(set(held).difference(*parts)):
             if not _is_cached(type(value), name):

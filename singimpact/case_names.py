@@ -66,7 +66,7 @@ def chains(code: types.CodeType) -> set[Chain]:
         if chain:
             names.add(chain)
         chain = (step.argval,) if step.opname in LOADS else ()
-    return names.union(*(chains(part) for part in code.co_consts if isinstance(part, types.CodeType)))
+    return names.union(*(chains(constant) for constant in code.co_consts if isinstance(constant, types.CodeType)))
 
 
 def attribute_names(code: types.CodeType) -> set[str]:
@@ -90,7 +90,7 @@ def imports(code: types.CodeType, package: str) -> set[tuple[str, str]]:
         if step.opname in BETWEEN:
             continue
         if step.opname == "IMPORT_NAME":
-            level = next((each for each in constants[-2:] if isinstance(each, int)), 0)
+            level = next((constant for constant in constants[-2:] if isinstance(constant, int)), 0)
             module = _absolute(step.argval, level, package)
             pairs.add((module, ""))
         elif step.opname == "IMPORT_FROM" and module:
@@ -99,7 +99,7 @@ def imports(code: types.CodeType, package: str) -> set[tuple[str, str]]:
         elif not step.opname.startswith("STORE"):
             module = ""
         constants.append(step.argval)
-    return pairs.union(*(imports(part, package) for part in code.co_consts if isinstance(part, types.CodeType)))
+    return pairs.union(*(imports(inner, package) for inner in code.co_consts if isinstance(inner, types.CodeType)))
 
 
 def _absolute(name: str, level: int, package: str) -> str:
@@ -124,7 +124,7 @@ def followed(chain: Chain, space: dict[str, Any]) -> tuple[Any, Chain, bool]:
     rest = chain[1:]
     while isinstance(value, types.ModuleType) and rest:
         library = is_installed(value.__name__)
-        if library and not any(vars(value).get(rest[0], MISSING) is each for each in UNSEEN):
+        if library and not any(vars(value).get(rest[0], MISSING) is prefix for prefix in UNSEEN):
             return value, rest, True
         value, rest = getattr(value, rest[0], MISSING), rest[1:]
     return value, rest, library
@@ -148,8 +148,8 @@ def is_installed(name: Any) -> bool:
     top = name.partition(".")[0]
     if top == PACKAGE:
         return True
-    for each in (name, top):
-        file = _file(sys.modules.get(each))
+    for module in (name, top):
+        file = _file(sys.modules.get(module))
         if file is not None:
             return _is_library(file)
     return top in sys.builtin_module_names or top in sys.stdlib_module_names

@@ -268,8 +268,10 @@ def script_can_be_imported() -> bool:
     except (OSError, SyntaxError, ValueError):
         return False
     line = frame.f_lineno
-    calls = [part for part in tree.body if part.lineno <= line <= (part.end_lineno or part.lineno)]
-    return any(isinstance(part, ast.If) and "__name__" in ast.unparse(part.test) for part in calls)
+    calls = [
+        statement for statement in tree.body if statement.lineno <= line <= (statement.end_lineno or statement.lineno)
+    ]
+    return any(isinstance(statement, ast.If) and "__name__" in ast.unparse(statement.test) for statement in calls)
 
 
 def _packed(function: Function, items: Sequence[Any], dumps: Callable[[Any], bytes]) -> bytes:

@@ -178,23 +178,23 @@ class _Work:
         if first is None:
             return
         self.waiting.append(first)
-        place = place_of(executor, self.function, first.items)
+        pool = place_of(executor, self.function, first.items)
         while True:
             try:
-                with place.opened():
-                    self._drain(place)
+                with pool.opened():
+                    self._drain(pool)
                 return
             except BrokenExecutor:
                 self._put_back(lost=True)
-                if not place.replaceable:
+                if not pool.replaceable:
                     raise
             suspects = [chunk for chunk in self.waiting if chunk.losses >= POOL.losses]
             self.waiting = deque(chunk for chunk in self.waiting if chunk.losses < POOL.losses)
             for suspect in suspects:
-                self._alone(place, suspect)
+                self._alone(pool, suspect)
             if len(self.fatal) >= POOL.fatal:
                 return
-            place = place.again()
+            pool = pool.again()
 
     def refuse_fatal(self) -> None:
         """Raise `Unfinished`, which names the cases that ended their process."""
@@ -208,35 +208,35 @@ class _Work:
             "others are done"
         )
 
-    def _drain(self, place: Place) -> None:
+    def _drain(self, pool: Place) -> None:
         """Send chunks and store results until no case is left."""
-        begun, said = time.monotonic(), not place.reason
+        begun, said = time.monotonic(), not pool.reason
         try:
-            while self._fill(place):
+            while self._fill(pool):
                 self._take_in(self._next())
                 if not said and time.monotonic() - begun > POOL.serial_note:
                     said = True
-                    tell(f"cases are computed one after another in this process: {place.reason}")
+                    tell(f"cases are computed one after another in this process: {pool.reason}")
         except BrokenExecutor:
             raise
         except BaseException:
             for future in self.running:
                 # the management thread of a ProcessPoolExecutor fails on futures that are cancelled from outside
-                if not place.replaceable:
+                if not pool.replaceable:
                     future.cancel()
             self._put_back(lost=False)
             raise
 
-    def _fill(self, place: Place) -> bool:
+    def _fill(self, pool: Place) -> bool:
         """Send chunks to every free worker; False when no case is left."""
-        width = place.width
+        width = pool.width
         seconds = POOL.seconds * max(1.0, width / POOL.served)
         while len(self.running) < POOL.ahead * width:
             chunk = self.waiting.popleft() if self.waiting else self.source.take(self.size)
             if chunk is None:
                 break
             try:
-                future = place.submit(self.function, chunk.items, seconds)
+                future = pool.submit(self.function, chunk.items, seconds)
             except BaseException:
                 self.waiting.appendleft(chunk)
                 raise
@@ -299,11 +299,11 @@ class _Work:
                 self.waiting.appendleft(chunk)
         self.running = {}
 
-    def _alone(self, place: Place, suspect: _Chunk) -> None:
+    def _alone(self, pool: Place, suspect: _Chunk) -> None:
         """Run a chunk in pools of one worker, and halve it each time the worker ends, down to single cases."""
         deaths, stack = Counter[int](), [suspect]
         while stack and len(self.fatal) < POOL.fatal:
-            single = place.again(1)
+            single = pool.again(1)
             try:
                 with single.opened():
                     while stack:

@@ -424,8 +424,8 @@ def linear(
     """  # noqa: E501
     if compare(constant("omega", omega), 0) <= 0:
         raise refuse("omega", omega, "a number > 0")
-    given = {"damping": (damping, 0), "stiffness": (stiffness, 1), "amplitude": (amplitude, 1), "phase": (phase, 0)}
-    changed = {name: value for name, (value, usual) in given.items() if compare(constant(name, value), usual)}
+    numbers = {"damping": (damping, 0), "stiffness": (stiffness, 1), "amplitude": (amplitude, 1), "phase": (phase, 0)}
+    changed = {name: value for name, (value, usual) in numbers.items() if compare(constant(name, value), usual)}
     force = ("stiffness*x" if "stiffness" in changed else "x") + (" + damping*xdot" if "damping" in changed else "")
     wave = "cos(omega*t + phase)" if "phase" in changed else "cos(omega*t)"
     forcing = f"amplitude*{wave}" if "amplitude" in changed else wave

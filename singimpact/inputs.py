@@ -129,7 +129,7 @@ SYNONYMS = {
 """Other names of what the package names so."""
 
 
-def meant(name: str, known: Iterable[str]) -> str | None:
+def meant(name: str, accepted: Iterable[str]) -> str | None:
     """The known name that was meant by another one: a synonym, or the nearest in letters; None where none is near.
 
     Examples
@@ -137,15 +137,15 @@ def meant(name: str, known: Iterable[str]) -> str | None:
     >>> meant("r", ["omega", "restitution"]), meant("omga", ["omega", "restitution"]), meant("eq:1", ["t:t1"])
     ('restitution', 'omega', None)
     """
-    names = list(known)
+    names = list(accepted)
     if SYNONYMS.get(name) in names:
         return SYNONYMS[name]
     return next(iter(nearest(name, names, count=1)), None)
 
 
-def unknown(kind: str, name: str, known: Iterable[str]) -> InputError:
+def unknown(kind: str, name: str, accepted: Iterable[str]) -> InputError:
     """The error for a name that does not exist, with the nearest names that do, or with some where none is near."""
-    names = list(known)
+    names = list(accepted)
     near = nearest(name, names)
     if SYNONYMS.get(name) in names:
         near = [SYNONYMS[name]]

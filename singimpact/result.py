@@ -54,7 +54,7 @@ class Result:
         'hit'
         """
         assert is_dataclass(self)
-        names = [each.name for each in fields(self) if each.name not in NO_NUMBERS and not each.name.startswith("_")]
+        names = [item.name for item in fields(self) if item.name not in NO_NUMBERS and not item.name.startswith("_")]
         return {name: value for name in names if (value := plain(getattr(self, name), name)) is not None}
 
     def arrays(self) -> dict[str, tuple[tuple[str, ...], Array]]:

@@ -119,15 +119,15 @@ def require_writable(path: str | Path) -> None:
 
 def folder(path: str | Path) -> Path:
     """A folder to write into, created if it is missing; a cache folder is created with access for its user alone."""
-    place = Path(path)
+    target = Path(path)
     try:
-        if place.is_relative_to(cache_folder()):
-            for part in (*reversed(place.parents), place):
-                part.mkdir(mode=0o700, exist_ok=True)
-        place.mkdir(parents=True, exist_ok=True)
+        if target.is_relative_to(cache_folder()):
+            for directory in (*reversed(target.parents), target):
+                directory.mkdir(mode=0o700, exist_ok=True)
+        target.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         raise _unwritable(path, error) from None
-    return place
+    return target
 
 
 def cache_folder() -> Path:
@@ -141,11 +141,11 @@ def cache_folder() -> Path:
     named = os.environ.get("SINGIMPACT_CACHE", "")
     if named == "off":
         return passing_folder()
-    place = Path(named).expanduser() if named else _users_folder()
-    reason = changeable(place)
+    directory = Path(named).expanduser() if named else _users_folder()
+    reason = changeable(directory)
     if reason is None:
-        return place
-    _tell_once(f"cache {shown(str(place), 300)} is not used: {reason} (SINGIMPACT_CACHE names another folder)")
+        return directory
+    _tell_once(f"cache {shown(str(directory), 300)} is not used: {reason} (SINGIMPACT_CACHE names another folder)")
     return passing_folder()
 
 
@@ -155,7 +155,7 @@ def _users_folder() -> Path:
     return user_cache_path("singimpact", appauthor=False)
 
 
-def changeable(place: Path) -> str | None:
+def changeable(path: Path) -> str | None:
     """The reason why another user could change files in a folder; None for a folder that is safe or does not exist.
 
     Examples
@@ -165,14 +165,14 @@ def changeable(place: Path) -> str | None:
     True
     """
     try:
-        found = os.stat(place)
+        state = os.stat(path)
     except OSError:
         return None
     if not hasattr(os, "getuid"):
         return None
-    if found.st_uid != os.getuid():
+    if state.st_uid != os.getuid():
         return "it belongs to another user"
-    return "others can write it" if found.st_mode & 0o022 else None
+    return "others can write it" if state.st_mode & 0o022 else None
 
 
 def tell(sentence: str) -> None:

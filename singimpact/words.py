@@ -30,7 +30,7 @@ def in_words(record: Any) -> str:
     """
     names = getattr(record, "_fields", None)
     if names is None:
-        names = [name for name, each in record.__dataclass_fields__.items() if each.repr]
+        names = [name for name, field in record.__dataclass_fields__.items() if field.repr]
     shown = {name: value_in_words(getattr(record, name), KINDS.get(name)) for name in names}
     if not np.any(getattr(record, "cause", 0)):
         shown.pop("cause", None)

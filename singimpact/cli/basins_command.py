@@ -64,11 +64,11 @@ def command(
         from singimpact.scenes.basins_picture import draw_basins, draw_first_chatter
 
         with nullcontext() if workers is None else WorkerPool(workers) as pool:
-            found = basins(model, tau, v, size, pool, keep, impacts)
+            result = basins(model, tau, v, size, pool, keep, impacts)
         draw = draw_basins if layer == "for-ever" else draw_first_chatter
-        values = found.as_dict()
+        values = result.as_dict()
         first = float(values["first_chatter_completes"].mean())
-        return draw(found).figure, {"classes": values["classes"], "first_chatter_completes": first}
+        return draw(result).figure, {"classes": values["classes"], "first_chatter_completes": first}
 
     if keep is None:
         told = save_once(("basins", model, tau, v, size, impacts, layer), output, make)
@@ -78,6 +78,6 @@ def command(
     if as_json:
         click.echo(as_json_text({"model": model.to_dict(), "output": output} | told))
     else:
-        rows = [[str(each["class"]), f"{each['share']:.4f}"] for each in told["classes"]]
+        rows = [[str(item["class"]), f"{item['share']:.4f}"] for item in told["classes"]]
         click.echo(columns(["class", "share"], rows))
         click.echo(f"first chatter completes  {told['first_chatter_completes']:.4f}")

@@ -103,22 +103,22 @@ def command(
     for group in chosen:
         if group not in (*GROUPS, "states"):
             raise unknown("group", group, (*GROUPS, "states"))
-    place = None if plots is None else folder(plots)
-    found = _measured([group for group in chosen if group != "states"], effort)
-    told = {"quick": quick, **_joined(found)}
-    texts = _page(found, place, picture, output) if form == "page" else [_text(each, form) for each in found]
+    directory = None if plots is None else folder(plots)
+    tables = _measured([group for group in chosen if group != "states"], effort)
+    values = {"quick": quick, **_joined(tables)}
+    texts = _page(tables, directory, picture, output) if form == "page" else [_text(each, form) for each in tables]
     wrong = False
     if "states" in chosen and family == "steep":
         steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs, smooth_pairs), not quick)
-        told["states"], wrong = steep.data, steep.wrong
+        values["states"], wrong = steep.data, steep.wrong
         texts.append(steep.text)
     elif "states" in chosen:
-        told["states"], text = _states(states, seed, workers, keep)
-        wrong = any(row["wrong"] for row in told["states"])
+        values["states"], text = _states(states, seed, workers, keep)
+        wrong = any(row["wrong"] for row in values["states"])
         texts.append(text)
-    if place is not None:
-        _draw(found, place, picture)
-    emit(as_json_text(told) if as_json else "\n\n".join(texts), output)
+    if directory is not None:
+        _draw(tables, directory, picture)
+    emit(as_json_text(values) if as_json else "\n\n".join(texts), output)
     if wrong:
         sys.exit(1)
 

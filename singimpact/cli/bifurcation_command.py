@@ -78,18 +78,20 @@ def command(
     from singimpact.scenes.bifurcation_picture import bifurcation_sheet
 
     if direction is not None:
-        found = bifurcation(model, over, (low, high), points, start, impacts, kept, direction, output=keep)
+        diagram = bifurcation(model, over, (low, high), points, start, impacts, kept, direction, output=keep)
     else:
         with nullcontext() if workers is None else WorkerPool(workers) as pool:
-            found = bifurcation(model, over, (low, high), points, start, impacts, kept, executor=pool, output=keep)
+            diagram = bifurcation(model, over, (low, high), points, start, impacts, kept, executor=pool, output=keep)
     branches = [
-        each for n, k in follow for each in take_branches(take_orbits(model, (n, k), None), over, (low, high), 2000)
+        branch for n, k in follow for branch in take_branches(take_orbits(model, (n, k), None), over, (low, high), 2000)
     ]
-    save(bifurcation_sheet(found, branches), output)
+    save(bifurcation_sheet(diagram, branches), output)
     if as_json:
-        rows = zip(found.values.tolist(), found.events.tolist(), strict=True)
-        click.echo(as_json_text({"over": over, "cases": [{"value": value, "events": each} for value, each in rows]}))
+        rows = zip(diagram.values.tolist(), diagram.events.tolist(), strict=True)
+        click.echo(
+            as_json_text({"over": over, "cases": [{"value": value, "events": branch} for value, branch in rows]})
+        )
     else:
-        left = int((~found.settled).sum())
-        open_ = f"; {left} of them without a period seen in at most {found.settle} impacts" if left else ""
+        left = int((~diagram.settled).sum())
+        open_ = f"; {left} of them without a period seen in at most {diagram.settle} impacts" if left else ""
         click.echo(f"{output}: {points} values of {over}, {kept} events of each{open_}")

@@ -51,17 +51,17 @@ def command(
     model = take_model(options)
     from singimpact.branches.border import border_orbits
 
-    found = border_orbits(model, over, ends, digits=digits, periods=periods, points=points)
+    borders = border_orbits(model, over, ends, digits=digits, periods=periods, points=points)
     if output is not None:
-        if not found:
-            raise InputError(f"no border orbit to draw: {'; '.join(found.notes)}")
-        save(_picture(found[0]), output)
+        if not borders:
+            raise InputError(f"no border orbit to draw: {'; '.join(borders.notes)}")
+        save(_picture(borders[0]), output)
     if as_json:
-        rows = [as_listed(each, cascade) for each in found]
-        click.echo(as_json_text({"model": model.to_dict(), "over": over, "orbits": rows, "notes": list(found.notes)}))
+        rows = [as_listed(border, cascade) for border in borders]
+        click.echo(as_json_text({"model": model.to_dict(), "over": over, "orbits": rows, "notes": list(borders.notes)}))
     else:
-        parts = [part for each in found for part in shown(each, cascade)] or ["no border orbit found"]
-        click.echo("\n".join([*parts, *(f"  {note}" for note in found.notes)]))
+        parts = [line for border in borders for line in shown(border, cascade)] or ["no border orbit found"]
+        click.echo("\n".join([*parts, *(f"  {note}" for note in borders.notes)]))
 
 
 def _picture(border: BorderOrbit) -> Any:
@@ -82,16 +82,16 @@ def shown(border: BorderOrbit, cascade: bool) -> list[str]:
     """A border orbit for people."""
     lines = [repr(border)[1:-1], *(f"  {note}" for note in border.notes)]
     if cascade:
-        found = border.cascade
+        edges = border.cascade
         rows = []
-        for i, number in enumerate(found.impacts.tolist()):
-            ratio = f"{float(found.ratios[i]):.10f}" if i < len(found.ratios) else ""
-            orbit = found.windows[i].orbit if i < len(found.windows) else None
+        for i, number in enumerate(edges.impacts.tolist()):
+            ratio = f"{float(edges.ratios[i]):.10f}" if i < len(edges.ratios) else ""
+            orbit = edges.windows[i].orbit if i < len(edges.windows) else None
             size = name = ""
             if orbit is not None:
                 size = f"{abs(complex(orbit.multipliers[0])):.4f}"
                 name = f"({'inf' if orbit.kind == 'chatter' else int(orbit.n)}, {orbit.k})"
-            rows.append([str(number), f"{float(found.distance[i]):.6e}", ratio, name, size])
+            rows.append([str(number), f"{float(edges.distance[i]):.6e}", ratio, name, size])
         names = ["impacts", "distance of the edge", "ratio to the next", "attractor", "multiplier"]
-        lines += [repr(found)[1:-1], columns(names, rows), *(f"  {note}" for note in found.notes)]
+        lines += [repr(edges)[1:-1], columns(names, rows), *(f"  {note}" for note in edges.notes)]
     return lines

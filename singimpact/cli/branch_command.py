@@ -61,33 +61,33 @@ def command(
         suffix_of(output)
     ends, points = take_ends(options.pop("low"), options.pop("high")), options.pop("points")
     model = take_model(options)
-    found = take_branches(take_orbits(model, orbit, start), over, ends, points)
+    branches = take_branches(take_orbits(model, orbit, start), over, ends, points)
     if csv is not None:
-        write_table(csv, one_table({"branch": number, **each.table()} for number, each in enumerate(found, 1)))
+        write_table(csv, one_table({"branch": number, **branch.table()} for number, branch in enumerate(branches, 1)))
     if output is not None:
         from singimpact.scenes import plot
 
-        save(plot(found, blank_axes(), height=height).figure, output)
+        save(plot(branches, blank_axes(), height=height).figure, output)
     click.echo(
-        as_json_text({"model": model.to_dict(), "over": over, "branches": [each.as_dict() for each in found]})
+        as_json_text({"model": model.to_dict(), "over": over, "branches": [branch.as_dict() for branch in branches]})
         if as_json
-        else shown(found)
+        else shown(branches)
     )
 
 
 def shown(branches: list[Branch]) -> str:
     """Branches as text: a table of events, then the end of each branch."""
     parts = []
-    for number, each in enumerate(branches, 1):
-        ends = f"{each.over} from {each.parameter.min():.9g} to {each.parameter.max():.9g}"
-        parts.append(f"branch {number}: ({each.n}, {each.k}) orbits, {len(each)} points, {ends}")
+    for number, branch in enumerate(branches, 1):
+        ends = f"{branch.over} from {branch.parameter.min():.9g} to {branch.parameter.max():.9g}"
+        parts.append(f"branch {number}: ({branch.n}, {branch.k}) orbits, {len(branch)} points, {ends}")
         rows = [
             [event.kind, f"{event.parameter:.15g}", *state(event.orbit), "" if event.orbit.visible else "virtual"]
-            for event in each.events
+            for event in branch.events
         ]
         if rows:
-            parts.append(columns(["event", each.over, "tau", "v", ""], rows))
-        parts += [f"  {note}" for note in each.notes]
+            parts.append(columns(["event", branch.over, "tau", "v", ""], rows))
+        parts += [f"  {note}" for note in branch.notes]
     return "\n".join(parts)
 
 

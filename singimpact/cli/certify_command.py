@@ -92,9 +92,9 @@ def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: A
         )
     if options["output"] is not None:
         require_writable(options["output"])
-    found = _made(take_model(options), kinds[0] if kinds else "", near, options)
-    found.check()
-    emit(found.text.rstrip("\n"), options["output"])
+    certificate = _made(take_model(options), kinds[0] if kinds else "", near, options)
+    certificate.check()
+    emit(certificate.text.rstrip("\n"), options["output"])
 
 
 def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> None:
@@ -110,11 +110,11 @@ def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> 
         options["model"] = files[0]
     if options["output"] is not None:
         require_writable(options["output"])
-    found = take_model(options).certified_gamma(tau, reach=options["reach"], restitution=options["between"])
-    made = certify(found)
-    made.check()
-    click.echo("\n".join([repr(found)[1:-1], *found.notes.values()]), err=True)
-    emit(made.text.rstrip("\n"), options["output"])
+    proof = take_model(options).certified_gamma(tau, reach=options["reach"], restitution=options["between"])
+    certificate = certify(proof)
+    certificate.check()
+    click.echo("\n".join([repr(proof)[1:-1], *proof.notes.values()]), err=True)
+    emit(certificate.text.rstrip("\n"), options["output"])
 
 
 def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:

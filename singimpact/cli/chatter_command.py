@@ -28,10 +28,10 @@ def command(
     end = osc.chatter_limit(tau, v, digits=digits, impacts=impacts)
     status = Status(int(end.status))
     enclosure = end.certified.as_dict() if end.certified else {}
-    place, error = number_text(end.tau, digits), float(end.error)
+    time, error = number_text(end.tau, digits), float(end.error)
     if as_json:
-        values = {"tau": place, "error": error, "impacts": end.impacts, **enclosure, "status": status.name}
+        values = {"tau": time, "error": error, "impacts": end.impacts, **enclosure, "status": status.name}
         emit(as_json_text({"model": osc.to_dict(), **values}), output)
     else:
-        rows = {"tau": place, "error": f"{error:.1e}", **enclosure, "impacts": end.impacts}
+        rows = {"tau": time, "error": f"{error:.1e}", **enclosure, "impacts": end.impacts}
         emit("\n".join(lines_of(rows, status)), output)

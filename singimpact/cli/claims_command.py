@@ -39,12 +39,12 @@ def show(name: str, as_json: bool, output: str | None) -> None:
     from singimpact.paper.claims import BEYOND, CLAIMS, INDEX, run, select
     from singimpact.paper.claims.graph import dependants
 
-    known = INDEX | BEYOND
+    index = INDEX | BEYOND
     verdict = run(select([name]), kept=True)[-1]
     data: dict[str, Any] = verdict.as_dict() | {
         "mutants": len(CLAIMS[name].mutants),
-        "rested_on_by": [other for other, entry in known.items() if name in entry.rests_on],
-        "falls_with_it": dependants(known, name),
+        "rested_on_by": [other for other, entry in index.items() if name in entry.rests_on],
+        "falls_with_it": dependants(index, name),
     }
     emit(
         as_json_text(data) if as_json else "\n".join(f"{key:14} {_told(value)}" for key, value in data.items()), output
@@ -98,10 +98,10 @@ def impact(name: str, as_json: bool, output: str | None) -> None:
     from singimpact.paper.claims.graph import dependants
 
     select([name])  # an unknown id is refused with the nearest known ones
-    found = dependants(INDEX, name)
-    rows = [[other, INDEX[other].title] for other in found]
+    affected = dependants(INDEX, name)
+    rows = [[other, INDEX[other].title] for other in affected]
     emit(
-        as_json_text({"id": name, "falls": found})
+        as_json_text({"id": name, "falls": affected})
         if as_json
         else columns(["id", "statement"], rows)
         if rows

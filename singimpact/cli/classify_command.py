@@ -65,12 +65,12 @@ def command(
     from singimpact.surface.classification import classify
 
     swans_between = clearances(between) if between is not None and over in (None, "clearance") else None
-    found = classify(oscillator, window_tau, window_t, swans_between)
-    changes = None if over is None else _transitions(oscillator, over, between, found.t, orbits)
+    points = classify(oscillator, window_tau, window_t, swans_between)
+    changes = None if over is None else _transitions(oscillator, over, between, points.t, orbits)
     if as_json:
-        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(found, over, changes)}), output)
+        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(points, over, changes)}), output)
     else:
-        emit(_text(found, over, changes), output)
+        emit(_text(points, over, changes), output)
 
 
 def _transitions(oscillator: Any, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
@@ -107,23 +107,23 @@ def _as_listed(found: Classification, over: str | None, changes: Transitions | N
     return values
 
 
-def _text(found: Classification, over: str | None, changes: Transitions | None) -> str:
+def _text(points: Classification, over: str | None, changes: Transitions | None) -> str:
     tables = [
         _table(
             "points of V_c' where p or phi is singular",
             ["point", "of", "kind", "tau", "t", "image tau", "image v"],
-            [[p.name, p.maps, p.kind, *_numbers(p.tau, p.t, *p.image)] for p in found.points],
+            [[p.name, p.maps, p.kind, *_numbers(p.tau, p.t, *p.image)] for p in points.points],
         ),
         _table(
             "fold lines",
             ["of", "from tau", "from t", "to tau", "to t", "ends"],
-            [[f.maps, *_numbers(*f.start, *f.end), " to ".join(dict.fromkeys(f.bounds))] for f in found.folds],
+            [[f.maps, *_numbers(*f.start, *f.end), " to ".join(dict.fromkeys(f.bounds))] for f in points.folds],
         ),
         _table(
             "swan points over the clearance",
             ["c_0", "tau", "kind"],
-            [[*_numbers(s.clearance, s.tau), s.kind] for s in found.swans],
-            found.notes,
+            [[*_numbers(s.clearance, s.tau), s.kind] for s in points.swans],
+            points.notes,
         ),
     ]
     if changes is not None:
@@ -134,7 +134,7 @@ def _text(found: Classification, over: str | None, changes: Transitions | None) 
             tables.append(f"periodic orbits:\n{changes!r}")
         if changes.swans_complete:
             tables.append("no swan between these ends is missing (by interval bounds)")
-    low, high = _numbers(*found.tau), _numbers(*found.t)
+    low, high = _numbers(*points.tau), _numbers(*points.t)
     return "\n\n".join([f"window: tau from {' to '.join(low)}, t from {' to '.join(high)}", *tables])
 
 

@@ -73,14 +73,14 @@ def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
     from singimpact.paper.sections.marks import marks_of
     from singimpact.paper.sections.stored_sections import kept_sections
 
-    told = kept_sections(names)
+    derived = kept_sections(names)
     with ProgressLine() as line:
         done = iter(range(1, sys.maxsize))
-        marks = marks_of(told, lambda claim, _, total: line.show(next(done), total, claim.id))
+        marks = marks_of(derived, lambda claim, _, total: line.show(next(done), total, claim.id))
     if output is None:
-        click.echo(as_text(told, marks, form), nl=False)
+        click.echo(as_text(derived, marks, form), nl=False)
     else:
-        _write(told, marks, form, output)
+        _write(derived, marks, form, output)
 
 
 def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> SeriesRequest:
@@ -110,20 +110,20 @@ def _series(request: SeriesRequest, form: str, output: str | None) -> None:
         with written(Path(output) / name) as draft:
             draft.write_bytes(text.encode())
         return
-    told = [NOTATION, series_section(request)]
+    document = [NOTATION, series_section(request)]
     if output is None:
-        click.echo(as_text(told, {}, form), nl=False)
+        click.echo(as_text(document, {}, form), nl=False)
     else:
-        _write(told, {}, form, output)
+        _write(document, {}, form, output)
 
 
-def _write(told: list[Section], marks: dict[str, Mark], form: str, output: str) -> None:
+def _write(document: list[Section], marks: dict[str, Mark], form: str, output: str) -> None:
     from singimpact.documents.compiling import CompileError
     from singimpact.documents.formats import as_files
     from singimpact.store import written
 
     try:
-        files = as_files(told, marks, form, _picture)
+        files = as_files(document, marks, form, _picture)
     except CompileError as error:
         raise click.ClickException(str(error)) from None
     for name, content in files.items():
@@ -139,7 +139,7 @@ def _picture(name: str) -> bytes:
     from singimpact.paper.figures.figure_rendering import drawn
     from singimpact.paper.figures.stored_figures import kept_picture
 
-    with TemporaryDirectory() as place:
+    with TemporaryDirectory() as directory:
         number = name.removeprefix("figure")
-        save(drawn(kept_picture(int(number) if number.isdigit() else number)), f"{place}/{name}.pdf")
-        return Path(place, f"{name}.pdf").read_bytes()
+        save(drawn(kept_picture(int(number) if number.isdigit() else number)), f"{directory}/{name}.pdf")
+        return Path(directory, f"{name}.pdf").read_bytes()

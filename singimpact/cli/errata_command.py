@@ -32,13 +32,13 @@ def command(form: str, as_json: bool, output: str | None) -> None:
         require_writable(output)
     with ProgressLine() as line:
         done = iter(range(1, sys.maxsize))
-        found = errata(lambda claim, _, total: line.show(next(done), total, claim.id))
+        misprints = errata(lambda claim, _, total: line.show(next(done), total, claim.id))
     if form == "pdf":
-        _write_pdf(found.latex(), str(output))
+        _write_pdf(misprints.latex(), str(output))
     elif form == "json":
-        emit(as_json_text(found.as_dict()), output)
+        emit(as_json_text(misprints.as_dict()), output)
     else:
-        emit(getattr(found, form)(), output)
+        emit(getattr(misprints, form)(), output)
 
 
 def _write_pdf(source: str, output: str) -> None:

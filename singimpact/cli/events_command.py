@@ -83,21 +83,21 @@ def command(
     chosen = choose(branches, kinds, index)
     from singimpact.branches.event_curve import event_curve
 
-    found: list[EventCurve] = []
+    curves: list[EventCurve] = []
     for event in chosen:
-        if not any(on_curve(event, each) for each in found):
-            found.append(event_curve(event, over, both, points=points))
+        if not any(on_curve(event, curve) for curve in curves):
+            curves.append(event_curve(event, over, both, points=points))
     if csv is not None:
-        tables = [{"curve": number, "kind": each.kind, **each.table()} for number, each in enumerate(found, 1)]
+        tables = [{"curve": number, "kind": curve.kind, **curve.table()} for number, curve in enumerate(curves, 1)]
         write_table(csv, one_table(tables))
     if output is not None:
         from singimpact.scenes import plot
 
-        save(plot(found, blank_axes()).figure, output)
+        save(plot(curves, blank_axes()).figure, output)
     click.echo(
-        as_json_text({"model": model.to_dict(), "over": over, "curves": [each.as_dict() for each in found]})
+        as_json_text({"model": model.to_dict(), "over": over, "curves": [curve.as_dict() for curve in curves]})
         if as_json
-        else shown(found)
+        else shown(curves)
     )
 
 
@@ -109,13 +109,13 @@ def choose(branches: list[Branch], kinds: tuple[str, ...], index: int | None) ->
     InputError : there is none.
     """
     every = [event for branch in branches for event in branch.events]
-    found = [
-        event for place, event in enumerate(every, 1) if index in (None, place) and event.kind in (kinds or FOLLOWED)
+    chosen = [
+        event for number, event in enumerate(every, 1) if index in (None, number) and event.kind in (kinds or FOLLOWED)
     ]
-    if not found:
-        given = ", ".join(f"{place} {event.kind}" for place, event in enumerate(every, 1)) or "none"
-        raise InputError(f"no such event: those of the branch are {given}; --from and --to make it longer")
-    return [event if event.orbit.n else _with_impact(event, branches[0]) for event in found]
+    if not chosen:
+        names = ", ".join(f"{number} {event.kind}" for number, event in enumerate(every, 1)) or "none"
+        raise InputError(f"no such event: those of the branch are {names}; --from and --to make it longer")
+    return [event if event.orbit.n else _with_impact(event, branches[0]) for event in chosen]
 
 
 def _with_impact(event: Event, free: Branch) -> Event:

@@ -43,19 +43,19 @@ def command(
     that needs no network and no other program. It has sliders for r and the parameters too; a click in the plane of
     launch phase and velocity starts an orbit, which the browser computes.
     """
-    place = _place(html, output)
+    file = _place(html, output)
     oscillator = take_model(_with_path(options, path))
     if as_json:
-        emit(as_json_text({"model": oscillator.to_dict(), **_told(_film(oscillator, between, steps))}), place)
+        emit(as_json_text({"model": oscillator.to_dict(), **_told(_film(oscillator, between, steps))}), file)
         return
-    kept = kept_at(("explore", oscillator, between, steps), ("contourpy",))
-    page = cache.recall(kept)
+    stored = kept_at(("explore", oscillator, between, steps), ("contourpy",))
+    page = cache.recall(stored)
     if page is None:
         from singimpact.scenes.explore import explore_page
 
         page = explore_page(_film(oscillator, between, steps)).encode()
-        cache.keep(kept, page)
-    _show(page.decode(), place)
+        cache.keep(stored, page)
+    _show(page.decode(), file)
 
 
 def _film(oscillator: Any, between: tuple[str, str] | None, steps: int) -> ClearanceFilm:
@@ -81,10 +81,10 @@ def _with_path(options: dict[str, Any], path: str | None) -> dict[str, Any]:
     return options if path is None else {**options, "model": path}
 
 
-def _show(page: str, place: str | None) -> None:
+def _show(page: str, file: str | None) -> None:
     """Into the file, or into a browser's window."""
-    if place is not None:
-        write_text(place, page)
+    if file is not None:
+        write_text(file, page)
         return
     import tempfile
     import webbrowser

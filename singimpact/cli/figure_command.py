@@ -56,7 +56,7 @@ def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: b
             written.append((number, title, claims, str(target), round(process_time() - start, 3)))
     if as_json:
         keys = ("figure", "title", "claims", "file", "seconds")
-        click.echo(as_json_text({"figures": [dict(zip(keys, each, strict=True)) for each in written]}))
+        click.echo(as_json_text({"figures": [dict(zip(keys, path, strict=True)) for path in written]}))
     else:
         for _, title, claims, file, _ in written:
             click.echo(f"{file}  {title} ({', '.join(claims)})")

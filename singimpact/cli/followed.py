@@ -53,14 +53,14 @@ def take_orbits(model: ImpactOscillator, orbit: tuple[int, int], start: tuple[st
     ------
     InputError : there is none.
     """
-    found = model.periodic(*orbit, start=start)
-    if not found:
-        more = f" ({'; '.join(found.notes)})" if found.notes else ""
+    orbits = model.periodic(*orbit, start=start)
+    if not orbits:
+        more = f" ({'; '.join(orbits.notes)})" if orbits.notes else ""
         raise InputError(
             f"--orbit {orbit[0]} {orbit[1]}: the model has no such orbit{more}: give another N K, another value of a "
             "number, or --start TAU V"
         )
-    return list(found)
+    return list(orbits)
 
 
 def take_branches(orbits: list[PeriodicOrbit], over: str, ends: tuple[str, str] | None, points: int) -> list[Branch]:
@@ -94,13 +94,13 @@ def on_branch(orbit: PeriodicOrbit, branch: Branch) -> bool:
     gap = branch.parameter - value_of(osc, branch.over)
     for i in (gap[:-1] * gap[1:] <= 0).nonzero()[0].tolist():
         share = gap[i] / (gap[i] - gap[i + 1]) if gap[i] != gap[i + 1] else 0.0
-        tau, v = ((1 - share) * part[i] + share * part[i + 1] for part in (branch.tau, branch.v))
+        tau, v = ((1 - share) * states[i] + share * states[i + 1] for states in (branch.tau, branch.v))
         try:
             near = periodic(osc, branch.n, branch.k, start=list(zip(tau.tolist(), v.tolist(), strict=True)))
         except InputError:
             continue
-        for each in near:
-            if abs(each.tau[0] - orbit.tau[0]) < SAME and abs(each.v[0] - orbit.v[0]) <= SAME * abs(orbit.v[0]):
+        for other in near:
+            if abs(other.tau[0] - orbit.tau[0]) < SAME and abs(other.v[0] - orbit.v[0]) <= SAME * abs(orbit.v[0]):
                 return True
     return False
 

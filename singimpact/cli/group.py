@@ -94,7 +94,9 @@ def _in_our_words(error: click.ClickException, args: Sequence[str] | None) -> st
     """The message of click, with the option that was meant, its value, and the accepted values."""
     match error:
         case click.NoSuchOption(ctx=click.Context() as ctx):
-            names = [name.lstrip("-") for each in ctx.command.params for name in each.opts if name.startswith("--")]
+            names = [
+                name.lstrip("-") for parameter in ctx.command.params for name in parameter.opts if name.startswith("--")
+            ]
             instead = meant(error.option_name.lstrip("-"), names)
             return f"no option {error.option_name}: " + (
                 f"give --{instead}" if instead else "--help lists those there are"
@@ -102,9 +104,9 @@ def _in_our_words(error: click.ClickException, args: Sequence[str] | None) -> st
         case click.MissingParameter(param=click.Option() as option) if set(option.opts) & set(args or sys.argv[1:]):
             return f"{option.opts[0]} was read as a value of the option before it, which takes two: --tau 0 3"
         case click.BadParameter(param=click.Option(type=click.IntRange() | click.types.IntParamType()) as option):
-            found = re.fullmatch(r"'(.*)' is not a valid integer( range)?\.", error.message)
-            if found:
-                return f"{option.opts[-1]} = {found[1]} is not accepted: give a whole number"
+            match_ = re.fullmatch(r"'(.*)' is not a valid integer( range)?\.", error.message)
+            if match_:
+                return f"{option.opts[-1]} = {match_[1]} is not accepted: give a whole number"
     return error.format_message()
 
 

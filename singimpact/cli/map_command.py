@@ -43,11 +43,11 @@ def command(
     )
     rows = [_row(step, at, digits) for at in range(len(states))]
     if as_json:
-        told = _told(states, rows)
+        steps = _told(states, rows)
         if digits is not None:
-            for at, each in enumerate(told):
-                each |= _certified(step, at)
-        emit(as_json_text({"model": oscillator.to_dict(), "steps": told}), output)
+            for at, step_ in enumerate(steps):
+                step_ |= _certified(step, at)
+        emit(as_json_text({"model": oscillator.to_dict(), "steps": steps}), output)
     else:
         emit(_table(states, rows), output)
 

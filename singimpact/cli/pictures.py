@@ -21,10 +21,10 @@ def suffix_of(output: str) -> str:
     ------
     InputError : not .png, .pdf or .svg.
     """
-    found = Path(output).suffix.lower()
-    if found not in PICTURES:
+    suffix = Path(output).suffix.lower()
+    if suffix not in PICTURES:
         raise refuse("output", output, "a file name ending in .png, .pdf or .svg")
-    return found
+    return suffix
 
 
 def save(figure: Any, output: str | Path, dpi: int = 150) -> None:
@@ -38,25 +38,25 @@ def save(figure: Any, output: str | Path, dpi: int = 150) -> None:
         figure.savefig(draft, format=kind, dpi=dpi, metadata=dated)
 
 
-def save_once(asked: tuple[Any, ...], output: str | Path, make: Callable[[], tuple[Any, Any]], dpi: int = 150) -> Any:
+def save_once(request: tuple[Any, ...], output: str | Path, make: Callable[[], tuple[Any, Any]], dpi: int = 150) -> Any:
     """Write a picture, from the cache if it was drawn before, and return the text that is printed with it.
 
     Parameters
     ----------
-    asked : all that the picture depends on beside the package, as texts and numbers.
+    request : all that the picture depends on beside the package, as texts and numbers.
     make : gives a matplotlib figure and what is to be said of it, which JSON holds.
     """
-    place = kept_at((*asked, suffix_of(str(output)), dpi), ("matplotlib", "contourpy"))
-    content = cache.recall(place)
+    stored = kept_at((*request, suffix_of(str(output)), dpi), ("matplotlib", "contourpy"))
+    content = cache.recall(stored)
     if content is None:
-        figure, told = make()
+        figure, values = make()
         save(figure, output, dpi)
-        cache.keep(place, json.dumps(told).encode() + b"\n" + Path(output).read_bytes())
-        return json.loads(json.dumps(told))
-    told, _, picture = content.partition(b"\n")
+        cache.keep(stored, json.dumps(values).encode() + b"\n" + Path(output).read_bytes())
+        return json.loads(json.dumps(values))
+    values, _, picture = content.partition(b"\n")
     with written(output) as draft:
         draft.write_bytes(picture)
-    return json.loads(told)
+    return json.loads(values)
 
 
 def kept_at(asked: tuple[Any, ...], libraries: tuple[str, ...]) -> Path:

@@ -31,7 +31,7 @@ def command(file: str | None, states: int, seed: int, as_json: bool, output: str
     osc = take_model(options)
     from singimpact.bench.selftest.run import selftest
 
-    found = selftest(osc, states=states, seed=seed)
-    emit(as_json_text({"model": osc.to_dict(), **found.as_data()}) if as_json else str(found), output)
-    if found.wrong:
+    report = selftest(osc, states=states, seed=seed)
+    emit(as_json_text({"model": osc.to_dict(), **report.as_data()}) if as_json else str(report), output)
+    if report.wrong:
         sys.exit(1)

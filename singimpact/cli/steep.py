@@ -48,33 +48,33 @@ def steep_states(
 
     beside = None if keep is None else Path(keep).with_name(f"{Path(keep).stem}-balls.npz")
     with WorkerPool(workers) as pool:
-        found = steep_states.check(states, seed, pool, keep)
-        enclosures = steep_balls.check(found, balls[:2], seed, pool, beside)
+        checked = steep_states.check(states, seed, pool, keep)
+        enclosures = steep_balls.check(checked, balls[:2], seed, pool, beside)
         pairs = {
             name: steep_digits.check(count, seed, pool, steep=name == "steep")
             for name, count in zip(("steep", "smooth"), balls[2:], strict=True)
         }
-    rows = steep_states.rows(found)
+    rows = steep_states.rows(checked)
     timed = {family.name: cost(family) for family in FAMILIES} if costs else {}
-    listed = _listed(found, seed)
+    listed = _listed(checked, seed)
     data = {
         "families": [asdict(row) for row in rows],
         "balls": asdict(enclosures),
-        "pairs": {name: asdict(each) for name, each in pairs.items()},
+        "pairs": {name: asdict(pair) for name, pair in pairs.items()},
         "cost": {name: asdict(figure) for name, figure in timed.items()},
         "listed": listed,
     }
     parts = [
         _table(rows),
         _balls(enclosures),
-        *(_pairs(name, each) for name, each in pairs.items()),
+        *(_pairs(name, pair) for name, pair in pairs.items()),
         _cost(timed),
-        *(_lines(name, part) for name, part in listed.items()),
+        *(_lines(name, table) for name, table in listed.items()),
     ]
     return SteepStates(
         data,
-        "\n\n".join(part for part in parts if part),
-        _is_wrong(rows, enclosures) or any(each.apart for each in pairs.values()),
+        "\n\n".join(table for table in parts if table),
+        _is_wrong(rows, enclosures) or any(pair.apart for pair in pairs.values()),
     )
 
 
@@ -201,7 +201,7 @@ def _cost(timed: dict[str, Cost]) -> str:
     return columns(["family", "first_hit, us a state", "ratio", "agree"], cells) + "\n" + note if cells else ""
 
 
-def _listed(found: dict[str, np.ndarray[Any, Any]], seed: int) -> dict[str, dict[str, Any]]:
+def _listed(columns_: dict[str, np.ndarray[Any, Any]], seed: int) -> dict[str, dict[str, Any]]:
     """States of each kind that needs a look: how many, and calls that repeat some of them, or all the undecided."""
     import numpy as np
 
@@ -210,23 +210,23 @@ def _listed(found: dict[str, np.ndarray[Any, Any]], seed: int) -> dict[str, dict
     from singimpact.status import Status
 
     kinds = {
-        "wrong": wrong(found),
-        "unresolved": found["status"] == Status.unresolved,
-        "truth undecided": found["true_status"] == UNDECIDED,
+        "wrong": wrong(columns_),
+        "unresolved": columns_["status"] == Status.unresolved,
+        "truth undecided": columns_["true_status"] == UNDECIDED,
     }
     listed: dict[str, dict[str, Any]] = {}
     for name, chosen in kinds.items():
         states = []
         places = chosen.nonzero()[0]
         if name != "truth undecided":
-            places = places[np.unique(found["family"][places], return_index=True)[1]][:LISTED]
+            places = places[np.unique(columns_["family"][places], return_index=True)[1]][:LISTED]
         for at in places.tolist():
-            case = drawn(seed, int(found["case"][at]))
+            case = drawn(seed, int(columns_["case"][at]))
             states.append(
                 {
-                    "call": case.text(int(found["launch"][at])),
-                    "flight_time": float(found["flight_time"][at]),
-                    "true_time": float(found["true_time"][at]),
+                    "call": case.text(int(columns_["launch"][at])),
+                    "flight_time": float(columns_["flight_time"][at]),
+                    "true_time": float(columns_["true_time"][at]),
                 }
             )
         listed[name] = {"states": int(chosen.sum()), "first": states}

@@ -52,17 +52,17 @@ def command(
 
     oscillator = take_model(options)
     if over not in {"clearance", "restitution", *oscillator.parameters}:
-        known = ", ".join(["clearance", "restitution", *oscillator.parameters])
-        raise InputError(f"--over {over} is not a number of the model: give one of {known}")
+        numbers = ", ".join(["clearance", "restitution", *oscillator.parameters])
+        raise InputError(f"--over {over} is not a number of the model: give one of {numbers}")
     first, last = as_float(constant("--from", low)), as_float(constant("--to", high))
     values = np.linspace(first, last, points).tolist()
     ask = partial(last_state, oscillator.to_dict(), over, tau, v, impacts)
     with WorkerPool(workers) as pool:
-        found = np.array(sweep(ask, values, pool, keep))
-    rows = [[value, *map(float, row[:2]), Status(int(row[2])).name] for value, row in zip(values, found, strict=True)]
+        ends = np.array(sweep(ask, values, pool, keep))
+    rows = [[value, *map(float, row[:2]), Status(int(row[2])).name] for value, row in zip(values, ends, strict=True)]
     if as_json:
-        told = [dict(zip((over, "tau", "v", "status"), row, strict=True)) for row in rows]
-        emit(as_json_text({"model": oscillator.to_dict(), "impacts": impacts, "cases": told}), output)
+        cases = [dict(zip((over, "tau", "v", "status"), row, strict=True)) for row in rows]
+        emit(as_json_text({"model": oscillator.to_dict(), "impacts": impacts, "cases": cases}), output)
     else:
         emit(columns([over, "tau", "v", "status"], [[str(cell) for cell in row] for row in rows]), output)
 

@@ -45,15 +45,15 @@ def command(
 
     with ProgressLine(delay=0.2) as line:
         done = iter(range(1, sys.maxsize))
-        found = verify(
+        verdicts = verify(
             ids or None,
             on_start=lambda claim, _, total: line.show(next(done), total, f"{claim.id}  {claim.title}"),
             beyond=beyond,
         )
     if certificates is not None:
-        found.save_certificates(certificates)
-    emit(as_json_text(found.as_dict()) if as_json else found.text(_width(output), _painter(output)), output)
-    ctx.exit(found.exit_code)
+        verdicts.save_certificates(certificates)
+    emit(as_json_text(verdicts.as_dict()) if as_json else verdicts.text(_width(output), _painter(output)), output)
+    ctx.exit(verdicts.exit_code)
 
 
 def _seen(output: str | None) -> bool:

@@ -182,8 +182,8 @@ def square_in(tree: Expression) -> Square | None:
     x - 1 3 2
     """
     parts = tree.terms if isinstance(tree, Sum) else (tree,)
-    moving = [part for part in parts if moves(part)]
-    steady = [part for part in parts if not moves(part)]
+    moving = [term for term in parts if moves(term)]
+    steady = [term for term in parts if not moves(term)]
     if len(moving) != 1 or len(steady) > 1:
         return None
     factors = moving[0].factors if isinstance(moving[0], Product) else (moving[0],)
@@ -261,7 +261,7 @@ def columns_source(writer: DiscWriter, push: list[Expression], by_x: Expression,
     ----------
     push : moving parts of g'. by_x, by_xdot : derivatives of f.
     """
-    pushed = _sum([writer.radius(part) for part in push])
+    pushed = _sum([writer.radius(term) for term in push])
     slopes = [(by_x, "{0}[0]", "r_{1}"), (by_xdot, "{0}[1]", "r_{1}dot")]
     parts = []
     for slope, centre, radius in slopes:
@@ -272,7 +272,7 @@ def columns_source(writer: DiscWriter, push: list[Expression], by_x: Expression,
             parts.append(f"abs({writer.constant(slope)}) * {radius}")
     lines = ["X, W, A, B, Z = work.X, work.W, columns.A, columns.B, columns.Z"]
     lines += [line.format(name, f"r_{name.lower()}") for name in "XABZ" for line in SUMS]
-    bounds = [_sum([part.format(name, name.lower()) for part in parts]) for name in "ABZ"]
+    bounds = [_sum([term.format(name, name.lower()) for term in parts]) for name in "ABZ"]
     lines += [*writer.lines, f"return {bounds[0]}, {bounds[1]}, {bounds[2]} + {pushed}"]
     return _function("disc_of_columns(work, columns, n, R, p)", lines)
 
@@ -284,10 +284,10 @@ def rounding_source(writer: DiscWriter, parts: list[Expression], steady: list[Ex
     ----------
     parts : moving parts of g and f. steady : their constant parts.
     """
-    radii = [writer.radius(part) for part in parts]
-    sizes = [writer.centre(part) for part in parts]
-    sizes += [writer.constant(part) for part in steady if part != number(0)]
-    time = f"unit * abs({writer.centre(Name('t'))})" if any("t" in names_in(part) for part in parts) else "0 * unit"
+    radii = [writer.radius(term) for term in parts]
+    sizes = [writer.centre(term) for term in parts]
+    sizes += [writer.constant(term) for term in steady if term != number(0)]
+    time = f"unit * abs({writer.centre(Name('t'))})" if any("t" in names_in(term) for term in parts) else "0 * unit"
     lines = [
         f"r_x, r_xdot, R = unit * abs(X[0]), unit * abs(X[1]), {time}",
         *writer.lines,

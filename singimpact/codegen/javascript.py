@@ -77,8 +77,8 @@ def translated(source: str, wanted: Collection[str] | None = None) -> dict[str, 
     }
     """
     tree = nested(ast.parse(source))
-    found = {part.name: part for part in tree.body if isinstance(part, ast.FunctionDef)}
-    return {name: _function(part) for name, part in found.items() if wanted is None or name in wanted}
+    functions = {function.name: function for function in tree.body if isinstance(function, ast.FunctionDef)}
+    return {name: _function(function) for name, function in functions.items() if wanted is None or name in wanted}
 
 
 def formula(tree: Expression, table: str) -> str:
@@ -127,8 +127,8 @@ def _block(body: list[ast.stmt]) -> list[str]:
     return [f"  {line}" for part in body for line in _statement(part)]
 
 
-def _statement(part: ast.stmt) -> Iterator[str]:
-    match part:
+def _statement(statement: ast.stmt) -> Iterator[str]:
+    match statement:
         case ast.Expr(ast.Constant(str())) | ast.Pass():
             return
         case ast.Expr(value):
@@ -156,11 +156,11 @@ def _statement(part: ast.stmt) -> Iterator[str]:
             yield from _block(body)
             yield "}"
         case ast.For(ast.Name(variable), ast.Call(ast.Name("range"), given), body, []):
-            yield _loop(_name(variable), [_text(each) for each in given], given)
+            yield _loop(_name(variable), [_text(argument) for argument in given], given)
             yield from _block(body)
             yield "}"
         case _:
-            raise TypeError(f"no JavaScript for {ast.unparse(part)!r}")
+            raise TypeError(f"no JavaScript for {ast.unparse(statement)!r}")
 
 
 def _loop(variable: str, ends: list[str], given: list[ast.expr]) -> str:

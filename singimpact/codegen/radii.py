@@ -59,8 +59,8 @@ def power_of_square_radius(y: Any, w: Any, r: Any, q: Any, shift: Any, factor: A
     rise, left = log1p(-r / distance), distance - r
     binomial = abs(y) * expm1(-2 * abs(q) * rise) if -2 * abs(q) * rise < 700 else inf
     # the modulus itself, at most or at least, instead of the difference
-    part = (1 + r / distance) ** 2 if q > 0 else left / distance * (max(left, 2 * root - left) / distance)
-    size = q * log(part) if part > 0 else inf
+    bound = (1 + r / distance) ** 2 if q > 0 else left / distance * (max(left, 2 * root - left) / distance)
+    size = q * log(bound) if bound > 0 else inf
     return min(binomial, abs(y) * (1 + exp(size)) if size < 700 else inf)
 
 

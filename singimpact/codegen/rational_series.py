@@ -74,14 +74,14 @@ def rational_series_source(name: str, series: RationalSeries, says: str) -> str:
         c_2 = q_1 * q_2 / 6
         return a_d1 * (sigma**2 * c_2)
     """
-    parts = [part for terms in series.coefficients.values() for part in terms.values()]
+    parts = [term for terms in series.coefficients.values() for term in terms.values()]
     keys = [key for terms in series.coefficients.values() for key in terms]
     used = [n for n in range(len(series.names)) if any(key[n] for key in keys)]
-    factors = sorted({poly for part in parts for poly in part.factors})
+    factors = sorted({poly for term in parts for poly in term.factors})
     unit, labels = series.unit, {poly: f"q_{n}" for n, poly in enumerate(factors, 1)}
     jets = [series.names[n] for n in used]
     arguments = [series.variable, *([LAMBDA] if factors else []), unit.leading, *jets]
-    lines = [f"def {name}({', '.join(f'{each}: Any' for each in arguments)}) -> Any:", f'    """{says}"""']
+    lines = [f"def {name}({', '.join(f'{argument}: Any' for argument in arguments)}) -> Any:", f'    """{says}"""']
     length = unit.leading if unit.divisor == 1 else "unit"
     lines += [] if unit.divisor == 1 else [f"    unit = {unit.leading} / {unit.divisor}"]
     lines += [f"    {label} = {_horner_of(poly)}" for poly, label in labels.items()]
@@ -120,15 +120,15 @@ def _sum(terms: Mapping[Exponents, Factored], names: Sequence[str], labels: Mapp
     return " + ".join(shown).replace("+ -", "- ")
 
 
-def _product(part: Factored, key: Exponents, names: Sequence[str], labels: Mapping[Poly, str]) -> str:
-    above = [power_text(labels[poly], e) for poly, e in part.factors.items() if e > 0]
-    below = [power_text(labels[poly], -e) for poly, e in part.factors.items() if e < 0]
+def _product(term: Factored, key: Exponents, names: Sequence[str], labels: Mapping[Poly, str]) -> str:
+    above = [power_text(labels[poly], e) for poly, e in term.factors.items() if e > 0]
+    below = [power_text(labels[poly], -e) for poly, e in term.factors.items() if e < 0]
     above += [power_text(name, e) for name, e in zip(names, key, strict=True) if e]
-    whole, under = abs(part.content.numerator), part.content.denominator
+    whole, under = abs(term.content.numerator), term.content.denominator
     above = above or [ONE]
     above = [str(whole), *above] if whole != 1 else above
     below = [str(under), *below] if under != 1 else below
     text = " * ".join(above)
     if below:
         text += f" / {below[0]}" if len(below) == 1 else f" / ({' * '.join(below)})"
-    return f"-{text}" if part.content < 0 else text
+    return f"-{text}" if term.content < 0 else text

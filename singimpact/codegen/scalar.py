@@ -41,7 +41,7 @@ def _source(tree: Expression, variable: str, constants: list[Expression]) -> str
         case Power(base, Number(Fraction(numerator=-1, denominator=1))):
             return f"1 / {_bracketed(base, variable, constants)}"
         case Power(base, exponent):
-            powers = (_bracketed(part, variable, constants) for part in (base, exponent))
+            powers = (_bracketed(operand, variable, constants) for operand in (base, exponent))
             return "**".join(powers)
         case Call("sqrt", argument):
             return f"({_source(argument, variable, constants)}) ** 0.5"

@@ -210,16 +210,16 @@ def _function(head: str, body: list[str], unpacked: str = "") -> str:
     return "\n".join([*lines, *(f"        {line}" for line in body)]) + "\n"
 
 
-def _linear_pull(writer: _Writer, slope: Expression, part: str) -> list[str]:
+def _linear_pull(writer: _Writer, slope: Expression, coefficient: str) -> list[str]:
     """Lines that take slope times a column, or times its derivative, from the sums."""
     if slope == number(0):
         return []
     names = (("by_x", "A"), ("by_v", "B"), ("by_tau", "Z"))
     if not names_in(slope) & MOVING:
         factor = writer.constant(slope)
-        return [f"{total} -= {factor} * {part.format(array, 'k')}" for total, array in names]
+        return [f"{total} -= {factor} * {coefficient.format(array, 'k')}" for total, array in names]
     series = _series(writer, slope)
-    steps = [f"    {total} -= {series('i')} * {part.format(array, '(k - i)')}" for total, array in names]
+    steps = [f"    {total} -= {series('i')} * {coefficient.format(array, '(k - i)')}" for total, array in names]
     return ["for i in range(0, k + 1):", *steps]
 
 

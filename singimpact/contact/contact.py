@@ -104,12 +104,12 @@ class Contact:
         with precision_of(ring):
             a = acceleration_jet(oscillator, tau, max(order - 1, j), ring)
             f = force_jet(oscillator, j, order, ring)
-        kept = {k: value for k, value in enumerate(a) if k >= j}
-        if order > j and all(value == 0 for value in kept.values()):
+        jets = {k: value for k, value in enumerate(a) if k >= j}
+        if order > j and all(value == 0 for value in jets.values()):
             raise InputError(
                 f"the contact order at tau = {tau} is above {max(order - 1, j)}: a_c vanishes to that order"
             )
-        return cls(j, ring, kept, f, tau)
+        return cls(j, ring, jets, f, tau)
 
 
 def _pairs(j: int, order: int) -> list[tuple[int, int]]:

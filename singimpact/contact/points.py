@@ -81,11 +81,11 @@ def enclosed(ball: Callable[[int], Any], digits: int) -> Certified:
     InputError : digits are not a whole number from 1 to MOST_DIGITS.
     """
     bits = ceil(_checked(digits) * 3.33) + 32
-    while (found := as_certified(ball(bits), digits)) is None:
+    while (number := as_certified(ball(bits), digits)) is None:
         bits *= 2
         if bits > 64 * (digits + 64):
             raise ArithmeticError(f"{digits} digits are not reached with {bits // 2} bits")
-    return found
+    return number
 
 
 def _checked(digits: Any) -> int:
@@ -135,9 +135,9 @@ def tangency_points(oscillator: Oscillator, digits: int = 30) -> TangencyPoints:
     >>> points.kind, points.tau.round(6).tolist()
     (('foliation', 'gamma'), [0.633052, 2.508541])
     """
-    found = TangencyPoints(_points(oscillator))
-    found.digits = _checked(digits)
-    return found
+    points = TangencyPoints(_points(oscillator))
+    points.digits = _checked(digits)
+    return points
 
 
 @lru_cache(maxsize=256)
@@ -172,11 +172,11 @@ def is_polynomial(tree: Expression) -> bool:
     >>> is_polynomial(parse("t**3 - t/2", ["t"])), is_polynomial(parse("t/(1 + t**2)", ["t"]))
     (True, False)
     """
-    for part in walk(tree):
-        if isinstance(part, Call) and names_in(part):
+    for node in walk(tree):
+        if isinstance(node, Call) and names_in(node):
             return False
-        if isinstance(part, Power) and names_in(part):
-            power = part.exponent
+        if isinstance(node, Power) and names_in(node):
+            power = node.exponent
             if not isinstance(power, Number) or power.value.denominator != 1 or power.value < 0:
                 return False
     return True
@@ -207,8 +207,8 @@ def _decided(function: Expression, zero: Zero) -> list[TangencyPoint]:
     """An undecided piece: a_c at the zero of a_c' on it tells whether it holds no zero, two, or a double one."""
     turns = [piece for piece in isolate(function, "t", zero.low, zero.high, order=1) if piece.slope]
     if not turns:
-        place = f"{float(zero.low):.6g}"
-        raise InputError(f"a_c has zeros near t = {place} of contact order 3 or more: they are not classified")
+        phase = f"{float(zero.low):.6g}"
+        raise InputError(f"a_c has zeros near t = {phase} of contact order 3 or more: they are not classified")
     turn = turns[0]
     for bits in (256, 2048):
         ball = refined(function, "t", turn, bits, order=1)

@@ -129,11 +129,11 @@ class SwanPoints(Results, tuple[SwanPoint, ...]):
             return not self
         push = subtract(model.forcing(), substitute(model.force(), {"x": Name(BOUND), "xdot": number(0)}))
         times = window(model, derivative(model.forcing(), "t"))
-        made = double_zeros(push, ("t", BOUND), (*times, *self.between))
-        known = [(swan.tau, swan.clearance) for swan in self]
-        inside = [(float(zero.at), float(zero.value)) for zero in made.found if _in_period(model, float(zero.at))]
-        near = [[max(abs(a - p), abs(b - q)) < SAME for p, q in known] for a, b in inside]
-        return made.complete and len(inside) == len(known) and all(map(any, near))
+        zeros = double_zeros(push, ("t", BOUND), (*times, *self.between))
+        swans = [(swan.tau, swan.clearance) for swan in self]
+        inside = [(float(zero.at), float(zero.value)) for zero in zeros.found if _in_period(model, float(zero.at))]
+        near = [[max(abs(a - p), abs(b - q)) < SAME for p, q in swans] for a, b in inside]
+        return zeros.complete and len(inside) == len(swans) and all(map(any, near))
 
 
 def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fraction] | None = None) -> SwanPoints:
@@ -155,7 +155,7 @@ def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fract
     slope = derivative(model.forcing(), "t")
     if "t" not in names_in(slope):
         return SwanPoints()
-    found: list[SwanPoint] = []
+    points: list[SwanPoint] = []
     ends: list[Fraction] = []
     for zero in isolate(slope, "t", *window(model, slope)):
         if not zero.slope:
@@ -166,12 +166,12 @@ def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fract
         if _in_period(model, as_float(time)):
             kind = "positive" if zero.slope > 0 else "negative"
             places, window_of_them = _clearances(model, time, between)
-            found += [SwanPoint(model, time, place, kind) for place in places]
+            points += [SwanPoint(model, time, clearance, kind) for clearance in places]
             ends += window_of_them
-    made = SwanPoints(sorted(found, key=lambda point: (point.tau, point.clearance)))
+    ordered = SwanPoints(sorted(points, key=lambda point: (point.tau, point.clearance)))
     if ends:
-        made.model, made.between = model, (min(ends), max(ends))
-    return made
+        ordered.model, ordered.between = model, (min(ends), max(ends))
+    return ordered
 
 
 def _in_period(model: Oscillator, tau: float) -> bool:
@@ -209,10 +209,10 @@ def _exact(tree: Expression, values: dict[str, Expression]) -> Fraction | None:
     except (ArithmeticError, TypeError, KeyError):
         pass  # sympy knows more angles; it takes 0.25 s to load
     try:
-        found = evaluate(tree, {name: evaluate(value, {}, SYMBOLIC) for name, value in values.items()}, SYMBOLIC)
+        value_ = evaluate(tree, {name: evaluate(value, {}, SYMBOLIC) for name, value in values.items()}, SYMBOLIC)
     except ArithmeticError:
         return None
-    return Fraction(int(found.p), int(found.q)) if found.is_Rational else None
+    return Fraction(int(value_.p), int(value_.q)) if value_.is_Rational else None
 
 
 def _clearances(
@@ -226,12 +226,12 @@ def _clearances(
     if "x" not in names_in(rest):
         raise InputError(f"f = {model.f} does not contain x: no clearance is a swan point rather than another")
     low, high = between if between is not None else _all_clearances(rest, level)
-    found: list[Expression] = []
+    roots: list[Expression] = []
     for piece in isolate(shifted, "x", low, high):
         if not piece.slope:
             raise InputError(f"f(c, 0) - g(tau_*) has a double zero near c = {float(piece.low):.6g}: give between=")
-        found.append(_named_place(shifted, piece))
-    return found, (low, high)
+        roots.append(_named_place(shifted, piece))
+    return roots, (low, high)
 
 
 def _named_place(shifted: Expression, piece: Zero) -> Expression:
@@ -251,10 +251,10 @@ def _all_clearances(rest: Expression, level: Expression) -> tuple[Fraction, Frac
     if not is_polynomial(rest):
         raise InputError(f"between is needed: f(x, 0) = {rest} is not a polynomial in x; give between=(low, high)")
     degree = sum(
-        int(abs(part.exponent.value))
-        for part in walk(rest)
-        if isinstance(part, Power) and isinstance(part.exponent, Number)
-    ) + sum(isinstance(part, Name) for part in walk(rest))
+        int(abs(node.exponent.value))
+        for node in walk(rest)
+        if isinstance(node, Power) and isinstance(node.exponent, Number)
+    ) + sum(isinstance(node, Name) for node in walk(rest))
     try:
         coefficients = derivatives(rest, "x", Fraction(0), degree, EXACT)
     except ArithmeticError:

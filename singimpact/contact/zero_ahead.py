@@ -142,9 +142,9 @@ def _far(osc: Oscillator, function: Expression, tau: Expression) -> NextZero:
         pieces = _decided(osc, function, low, low + width)
         if pieces is None:
             return UNDECIDED
-        found = _first(pieces, tau, None)
-        if found.zero is not None or not found.decided:
-            return found
+        zero = _first(pieces, tau, None)
+        if zero.zero is not None or not zero.decided:
+            return zero
         low, width = low + width, 2 * width
     return UNDECIDED
 
@@ -221,7 +221,7 @@ def _at_turn(osc: Oscillator, function: Expression, piece: Zero, turn: Zero, ord
             # next to a zero of higher order lie several of lower order; only those of order 1 are told apart
             sign = (values[0] > 0) - (values[0] < 0)
             return _beside(function, piece, as_rational(ball), turn.slope, sign) if order == 1 else [piece]
-    if any(_vanishes(function, place, order) for place in _named_places(osc, turn)):
+    if any(_vanishes(function, phase, order) for phase in _named_places(osc, turn)):
         return [ContactZero(function, turn, order + 1, turn.slope)]
     return [piece]
 
@@ -241,8 +241,8 @@ def _named_places(osc: Oscillator, turn: Zero) -> list[Expression]:
     middle = (turn.low + turn.high) / 2
     tried: list[Expression] = [number(0), Number(middle.limit_denominator(SETTINGS.short))]
     if osc.period is not None:
-        part = as_float(osc.period) / SETTINGS.eighths
-        tried.append(multiply(number(Fraction(round(float(middle) / part), SETTINGS.eighths)), osc.period))
+        eighth = as_float(osc.period) / SETTINGS.eighths
+        tried.append(multiply(number(Fraction(round(float(middle) / eighth), SETTINGS.eighths)), osc.period))
     tried += [tree for tree in walk(osc.clearance) if isinstance(tree, Root)]
     tried += [
         inner
@@ -254,16 +254,16 @@ def _named_places(osc: Oscillator, turn: Zero) -> list[Expression]:
     return [tree for tree in tried if turn.low <= rational_near(tree, 256) <= turn.high]
 
 
-def _vanishes(function: Expression, place: Expression, order: int) -> bool:
+def _vanishes(function: Expression, phase: Expression, order: int) -> bool:
     """Whether a_c and its first `order` derivatives are exactly 0 at a constant, by sympy's rules for special angles
     and the equations of the roots that occur."""
-    tree = substitute(function, {"t": place})
+    tree = substitute(function, {"t": phase})
     derived = function
     for _ in range(order + 1):
         if not _is_zero(tree):
             return False
         derived = derivative(derived, "t")
-        tree = substitute(derived, {"t": place})
+        tree = substitute(derived, {"t": phase})
     return True
 
 

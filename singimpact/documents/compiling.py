@@ -98,5 +98,5 @@ def _run(folder: str) -> None:
     except subprocess.TimeoutExpired:
         raise CompileError(f"latexmk did not end within {CompileSettings().seconds:.0f} s") from None
     if done.returncode:
-        found = re.search(r"^\S*document\.tex:\d+: .*$", done.stdout, re.MULTILINE)
-        raise CompileError(found.group() if found else f"latexmk ended with exit code {done.returncode}")
+        error = re.search(r"^\S*document\.tex:\d+: .*$", done.stdout, re.MULTILINE)
+        raise CompileError(error.group() if error else f"latexmk ended with exit code {done.returncode}")

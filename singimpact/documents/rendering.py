@@ -74,8 +74,8 @@ def display(step: Step, marks: Marks) -> str:
     body = lines[0] if len(lines) == 1 else _split(lines)
     if not step.label:
         return f"\\begin{{equation*}}\n{body}\n\\end{{equation*}}"
-    found = _stacked(marks[step.label].text) if step.label in step.claims else ""
-    tag = rf"\tag*{{\beside{{{escape.latex(step.label)}}}{{{found}}}}}\label{{{step.label}}}"
+    badge = _stacked(marks[step.label].text) if step.label in step.claims else ""
+    tag = rf"\tag*{{\beside{{{escape.latex(step.label)}}}{{{badge}}}}}\label{{{step.label}}}"
     return f"\\begin{{equation}}{tag}\n{body}\n\\end{{equation}}"
 
 

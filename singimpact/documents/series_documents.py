@@ -60,17 +60,17 @@ class Series:
     valid: float | None = None
 
 
-def _of_power_series(name: str, says: str, left: str, found: PowerSeries) -> Series:
-    terms: dict[Exponents, Any] = {(n,): value for n, value in found.coefficients.items() if value != 0}
+def _of_power_series(name: str, says: str, left: str, answer: PowerSeries) -> Series:
+    terms: dict[Exponents, Any] = {(n,): value for n, value in answer.coefficients.items() if value != 0}
     return Series(
         name,
         says,
         left,
-        (found.variable,),
-        found.order,
+        (answer.variable,),
+        answer.order,
         terms,
-        found.as_expr(),
-        found.valid_within(VALID) if found.further else None,
+        answer.as_expr(),
+        answer.valid_within(VALID) if answer.further else None,
     )
 
 
@@ -201,17 +201,17 @@ def series_text(request: SeriesRequest, form: str) -> str:
     if form == "numpy" and request.model is None:
         sheets, curves = sheet_functions(request.capped(LIMITS.sheet)), curve_functions(request.order)
         return module_source(f"Series to order {request.order} in jets.", COMMAND, [*sheets, *curves])
-    found = list(series(request))
+    answers = list(series(request))
     if form == "numpy":
-        head = [_points_source(request), _valid_source(found), RATIO_SOURCE]
-        return module_source(_title(request), "singimpact derive", [*head, *(_function(each) for each in found)])
+        head = [_points_source(request), _valid_source(answers), RATIO_SOURCE]
+        return module_source(_title(request), "singimpact derive", [*head, *(_function(item) for item in answers)])
     if form == "json":
-        data = {"order": request.order, "tau_star": _points(request), "series": [_as_data(each) for each in found]}
+        data = {"order": request.order, "tau_star": _points(request), "series": [_as_data(item) for item in answers]}
         return json.dumps(data, indent=2) + "\n"
     return sympy_source(
         f"Series to order {request.order}, in sympy.",
         "singimpact derive",
-        {each.name: each.expression for each in found},
+        {item.name: item.expression for item in answers},
     )
 
 
@@ -258,16 +258,16 @@ def _rounded(radius: float | None) -> str:
     return f"{radius * 0.995:.3g}"
 
 
-def _as_data(each: Series) -> dict[str, Any]:
-    valid = None if each.valid in (None, float("inf")) else each.valid
+def _as_data(item: Series) -> dict[str, Any]:
+    valid = None if item.valid in (None, float("inf")) else item.valid
     return {
-        "name": each.name,
-        "says": each.says,
-        "variables": list(each.variables),
-        "order": each.order,
+        "name": item.name,
+        "says": item.says,
+        "variables": list(item.variables),
+        "order": item.order,
         "valid_within": valid,
-        "sympy": str(each.expression),
-        "latex": f"{each.left} = {' '.join(_terms(each))}",
+        "sympy": str(item.expression),
+        "latex": f"{item.left} = {' '.join(_terms(item))}",
     }
 
 

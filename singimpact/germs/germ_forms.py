@@ -79,17 +79,17 @@ def normal_form(w: Jet, power: int) -> NormalForm:
     parts: list[dict[Exponents, Any]] = [{} for _ in range(power - 1)]
     for n in range(top + 1):
         missing = _row(shape - _form(space, source, parts), n)
-        for i, part in enumerate(parts):
+        for i, jet in enumerate(parts):
             if missing:
-                part[(n, 0)] = missing[0]
+                jet[(n, 0)] = missing[0]
                 missing = _less(missing, missing[0], powers[i])
         for k, value in enumerate(_quotient(missing, powers[power - 1], ring)):
             step = value * ring.rational(Fraction(1, power))
             source[(n, k)] = source[(n, k)] + step if (n, k) in source else step
     residual = w - _form(space, source, parts).scaled(lead)
     unfolding = {i: space.jet(parts[i]) for i in range(1, power - 1)}
-    known = space.to_order(top - power + 1)
-    return NormalForm(power, lead, known.jet(source), unfolding, space.jet(parts[0]).scaled(lead), residual)
+    truncated = space.to_order(top - power + 1)
+    return NormalForm(power, lead, truncated.jet(source), unfolding, space.jet(parts[0]).scaled(lead), residual)
 
 
 def _row(jet: Jet, n: int) -> list[Any]:

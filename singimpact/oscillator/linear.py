@@ -89,10 +89,10 @@ def _affine(tree: Expression) -> tuple[Expression, Expression, Expression] | Non
         return number(int(tree.name == "x")), number(int(tree.name == "xdot")), number(0)
     if isinstance(tree, Sum):
         parts = [_affine(term) for term in tree.terms]
-        found = [part for part in parts if part is not None]
-        if len(found) < len(parts):
+        forms = [form for form in parts if form is not None]
+        if len(forms) < len(parts):
             return None
-        return add(*(p[0] for p in found)), add(*(p[1] for p in found)), add(*(p[2] for p in found))
+        return add(*(p[0] for p in forms)), add(*(p[1] for p in forms)), add(*(p[2] for p in forms))
     if isinstance(tree, Product):
         moving = [factor for factor in tree.factors if names_in(factor) & MOVING]
         inner = _affine(moving[0]) if len(moving) == 1 else None

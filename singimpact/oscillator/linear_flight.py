@@ -69,7 +69,7 @@ def steady_motion(form: LinearForm, at: Expression) -> Expression | None:
     >>> print(steady_motion(linear_form(Oscillator("x", "cos(2*t)", 0, "1/2")), Name("t")))
     -3/9*cos(2*t)
     """
-    sizes = [part for part in (_response(form, wave) for wave in form.harmonics) if part is not None]
+    sizes = [response for response in (_response(form, wave) for wave in form.harmonics) if response is not None]
     if sign_of(form.stiffness) == 0 or len(sizes) < len(form.harmonics):
         return None
     return add(multiply(form.constant, Power(form.stiffness, number(-1))), waves(form, at, sizes))

@@ -68,8 +68,8 @@ class Oscillator:
             if name not in used:
                 raise unknown("parameter", name, sorted((used | {name}) - {*STATE, "t", "v", name}))
         self.clearance = constant("clearance", clearance)
-        found = period_of(self.forcing())
-        self._period = found if period is None else checked_period(self.forcing(), period, found)
+        period_ = period_of(self.forcing())
+        self._period = period_ if period is None else checked_period(self.forcing(), period, period_)
         self._texts = (
             str(self.f),
             str(self.g),

@@ -70,9 +70,9 @@ def _shifted(g: Any, letter: Name) -> Any:
 
     match g:
         case Sum(parts):
-            return add(*(_shifted(part, letter) for part in parts))
+            return add(*(_shifted(term, letter) for term in parts))
         case Product(parts):
-            return multiply(*(_shifted(part, letter) for part in parts))
+            return multiply(*(_shifted(term, letter) for term in parts))
         case Call(function, argument) if "t" in names_in(argument):
             return Call(function, add(argument, letter))
     return g

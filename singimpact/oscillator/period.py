@@ -35,9 +35,9 @@ def linear_in_t(tree: Expression) -> tuple[Expression, Expression] | None:
         return number(1), number(0)
     if isinstance(tree, Sum):
         parts = [linear_in_t(term) for term in tree.terms]
-        if any(part is None for part in parts):
+        if any(rate is None for rate in parts):
             return None
-        return add(*(part[0] for part in parts if part)), add(*(part[1] for part in parts if part))
+        return add(*(rate[0] for rate in parts if rate)), add(*(rate[1] for rate in parts if rate))
     if isinstance(tree, Product):
         moving = [factor for factor in tree.factors if "t" in names_in(factor)]
         inner = linear_in_t(moving[0]) if len(moving) == 1 else None
@@ -59,8 +59,8 @@ def _frequencies(tree: Expression) -> list[Expression] | None:
     if isinstance(tree, Name):
         return None
     found: list[Expression] = []
-    for part in children(tree):
-        rates = _frequencies(part)
+    for child in children(tree):
+        rates = _frequencies(child)
         if rates is None:
             return None
         found.extend(rates)

@@ -45,9 +45,9 @@ def rho_of(restitution: Expression) -> Expression:
 
 
 def _good(rho: Expression) -> bool:
-    found = expanded(rho)
-    if found is not None:
-        (power, slope) = found.terms[0]
+    series = expanded(rho)
+    if series is not None:
+        (power, slope) = series.terms[0]
         return power == 1 and compare(slope, 0) > 0 >= compare(slope, 1)
     rest = {"v": number(0)}
     try:
@@ -68,11 +68,11 @@ def expanded(rho: Expression) -> Puiseux | None:
     """
     for count in TERMS:
         try:
-            found = expansion(rho, "v", -1, count)
+            series = expansion(rho, "v", -1, count)
         except (ArithmeticError, ValueError):
             continue
-        if found.terms:
-            return found
+        if series.terms:
+            return series
     return None
 
 

@@ -57,8 +57,8 @@ class ShakenWall:
         >>> table.back(0.0, 1.0, 0.5)
         Place(x=np.float64(1.0), xdot=np.float64(6.5))
         """
-        place, speed = self._moving(t)
-        return Place((float_array("x", x) + place)[()], (float_array("xdot", xdot) + speed)[()])
+        height, speed = self._moving(t)
+        return Place((float_array("x", x) + height)[()], (float_array("xdot", xdot) + speed)[()])
 
     def relative(self, t: Any, x: Any, xdot: Any) -> Place:
         """Distance and velocity relative to the wall, as `oscillator.launch` takes them; the inverse of `back`."""
@@ -108,25 +108,27 @@ def shaken_wall(
         name: tree_of(value, (*letters, *names), name)
         for name, value, letters in (("f", f, STATE), ("g", g, ("t",)), ("wall", wall, ("t",)))
     }
-    place = trees["wall"]
-    require_smooth_text(place, "wall")
-    moving = "t" in names_in(place)
+    wall_tree = trees["wall"]
+    require_smooth_text(wall_tree, "wall")
+    moving = "t" in names_in(wall_tree)
     form = form_of(trees["f"], number(0))
     if moving and form is None:
         raise InputError(
             f"f = {shown(str(trees['f']))} with a wall that moves is not accepted: give f linear in x and xdot, as f of"
             " a model does not depend on t"
         )
-    speed = derivative(place, "t")
-    force, forcing = substitute(trees["f"], {"x": add(Name("x"), place)}), trees["g"]
+    speed = derivative(wall_tree, "t")
+    force, forcing = substitute(trees["f"], {"x": add(Name("x"), wall_tree)}), trees["g"]
     if moving and form is not None:
-        terms = derivative(speed, "t"), multiply(form.stiffness, place), multiply(form.damping, speed)
+        terms = derivative(speed, "t"), multiply(form.stiffness, wall_tree), multiply(form.damping, speed)
         force, forcing = trees["f"], minus(trees["g"], add(*terms))
     law = tree_of(restitution, ("v", *names), "restitution") if isinstance(restitution, str) else number(1)
     given, used = set().union(*map(names_in, trees.values()), names_in(law)), names_in(force) | names_in(forcing)
     for name in names:
         if name not in given:
             raise unknown("parameter", name, sorted(given - {*STATE, "t", "v"}))
-    kept = {name: value for name, value in (parameters or {}).items() if name in used | names_in(law)}
-    model = kind(force, forcing, 0, restitution, kept, period)
-    return ShakenWall(model, substitute(place, {name: tree_of(value) for name, value in (parameters or {}).items()}))
+    used_parameters = {name: value for name, value in (parameters or {}).items() if name in used | names_in(law)}
+    model = kind(force, forcing, 0, restitution, used_parameters, period)
+    return ShakenWall(
+        model, substitute(wall_tree, {name: tree_of(value) for name, value in (parameters or {}).items()})
+    )

@@ -41,7 +41,7 @@ def class_colors(several: Sequence[Basins]) -> list[list[str]]:
     >>> class_colors([])
     []
     """
-    used, known, found = dict.fromkeys(("orbit", "chatter"), 0), dict[Any, str](), []
+    used, shades, found = dict.fromkeys(("orbit", "chatter"), 0), dict[Any, str](), []
     for each in several:
         colors, names = [], list[Any]()
         for code, _, _ in each.classes:
@@ -49,12 +49,12 @@ def class_colors(several: Sequence[Basins]) -> list[list[str]]:
             kind, name = attractor.kind, (attractor.kind, attractor.n, attractor.k)
             names.append(name)
             key = (*name, names.count(name))  # the second of two equal (n, k)
-            if key not in known:
+            if key not in shades:
                 palette = ORBITS if kind == "orbit" else CHATTERED
-                known[key] = FIXED.get(kind) or palette[used[kind] % len(palette)]
+                shades[key] = FIXED.get(kind) or palette[used[kind] % len(palette)]
                 if kind in used:
                     used[kind] += 1
-            colors.append(known[key])
+            colors.append(shades[key])
         found.append(colors)
     return found
 
@@ -67,17 +67,17 @@ def draw_first_chatter(found: Basins, axes: Any = None) -> Any:
     return _painted(found, layers, [VERMILLION, "#F2F2F2"], axes)
 
 
-def _painted(found: Basins, layers: list[tuple[Any, str]], colors: list[str], axes: Any) -> Any:
+def _painted(basins: Basins, layers: list[tuple[Any, str]], colors: list[str], axes: Any) -> Any:
     from matplotlib.colors import to_rgb
     from matplotlib.patches import Patch
 
     axes = _new_axes(7.2, 5.2) if axes is None else axes
-    image, patches = np.empty((*found.codes.shape, 3)), []
+    image, patches = np.empty((*basins.codes.shape, 3)), []
     for (where, label), color in zip(layers, colors, strict=True):
         image[where] = to_rgb(color)
         patches.append(Patch(facecolor=color, edgecolor="0.4", label=label))
-    half_tau, half_v = np.diff(found.tau[:2])[0] / 2, np.diff(found.v[:2])[0] / 2
-    box = (found.tau[0] - half_tau, found.tau[-1] + half_tau, found.v[0] - half_v, found.v[-1] + half_v)
+    half_tau, half_v = np.diff(basins.tau[:2])[0] / 2, np.diff(basins.v[:2])[0] / 2
+    box = (basins.tau[0] - half_tau, basins.tau[-1] + half_tau, basins.v[0] - half_v, basins.v[-1] + half_v)
     axes.imshow(image, origin="lower", extent=box, aspect="auto", interpolation="nearest")
     axes.set_xlabel(r"launch phase $\tau$")
     axes.set_ylabel("launch velocity $v$")

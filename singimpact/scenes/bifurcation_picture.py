@@ -18,12 +18,12 @@ SPREAD = 60_000.0
 """Impacts per square inch of area of their dots: few get large dots, many small ones."""
 
 
-def bifurcation_sheet(found: Bifurcation, branches: Sequence[Branch] = ()) -> Any:
+def bifurcation_sheet(diagram: Bifurcation, branches: Sequence[Branch] = ()) -> Any:
     """The figure of a diagram: velocities above, phases below, and branches over both.
 
     Parameters
     ----------
-    found : of `bifurcation`. branches : over the same number.
+    diagram : of `bifurcation`. branches : over the same number.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def bifurcation_sheet(found: Bifurcation, branches: Sequence[Branch] = ()) -> An
     figure = Figure(figsize=SIZE, dpi=150, layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
     for axes, height in ((below, "phase"), (above, "v")):
-        draw_bifurcation(found, axes, height)
+        draw_bifurcation(diagram, axes, height)
         handles, labels = axes.get_legend_handles_labels()
         if branches:
             shown = draw_branches(branches, axes, height).get_legend()
@@ -50,21 +50,21 @@ def bifurcation_sheet(found: Bifurcation, branches: Sequence[Branch] = ()) -> An
     return figure
 
 
-def draw_bifurcation(found: Bifurcation, axes: Any, height: str = "v") -> Any:
+def draw_bifurcation(diagram: Bifurcation, axes: Any, height: str = "v") -> Any:
     """Velocities after the impacts of settled orbits, or their phases; ends of complete chatter in another colour."""
-    values = np.repeat(found.values, found.events.shape[1])
-    phase, v, ended = found.events.reshape(-1, 3).T
+    values = np.repeat(diagram.values, diagram.events.shape[1])
+    phase, v, ended = diagram.events.reshape(-1, 3).T
     places = (
         v
         if height == "v"
-        else phase / np.repeat(np.broadcast_to(found.periods, found.values.shape), found.events.shape[1])
+        else phase / np.repeat(np.broadcast_to(diagram.periods, diagram.values.shape), diagram.events.shape[1])
     )
     resting = ended == 1.0
     inches = float(np.prod(axes.figure.get_size_inches()))
     size = float(np.clip(np.sqrt(SPREAD * inches / max(values.size, 1)) / 20, 0.9, 3.0))
     dots = {"marker": "o", "linestyle": "none", "markersize": size, "markeredgewidth": 0, "rasterized": True}
     axes.plot(values[~resting], places[~resting], color=BLACK, label="impact", **dots)
-    if found.direction == "both":
+    if diagram.direction == "both":
         down = (np.arange(values.size) >= values.size // 2) & ~resting
         axes.plot(values[down], places[down], color=BLUE, label="impact, on the way down", **dots)
     if resting.any():
@@ -76,9 +76,9 @@ def draw_bifurcation(found: Bifurcation, axes: Any, height: str = "v") -> Any:
             clip_on=False,
             **(dots | {"markersize": 1.5 * size}),
         )
-    axes.set_xlabel(LETTERS.get(found.over, found.over))
+    axes.set_xlabel(LETTERS.get(diagram.over, diagram.over))
     axes.set_ylabel(HEIGHTS[height])
-    axes.set_xlim(found.values.min(), found.values.max())
+    axes.set_xlim(diagram.values.min(), diagram.values.max())
     if height == "v":
         axes.set_ylim(bottom=0)
     else:

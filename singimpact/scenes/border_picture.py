@@ -53,7 +53,7 @@ def draw_border(border: BorderOrbit, axes: Any, below: Any = None) -> Any:
     size = SETTINGS.size * min(1.0, SETTINGS.windows / len(cascade))
     _stairs(cascade, axes)
     for kind, (marker, color) in MARKS.items():
-        rows = [(each.distance, _height(each, border)) for each in samples if _kind(each, border) == kind]
+        rows = [(sample.distance, _height(sample, border)) for sample in samples if _kind(sample, border) == kind]
         if rows:
             axes.plot(
                 *np.array(rows).T,
@@ -126,9 +126,9 @@ def _multipliers(samples: tuple[CascadeWindow, ...], border: BorderOrbit, axes: 
     for kind in ("same", "more"):
         marker, color = MARKS[kind]
         rows = [
-            (each.distance, abs(complex(each.orbit.multipliers[0])))
-            for each in samples
-            if each.orbit is not None and _kind(each, border) == kind
+            (sample.distance, abs(complex(sample.orbit.multipliers[0])))
+            for sample in samples
+            if sample.orbit is not None and _kind(sample, border) == kind
         ]
         if rows:
             axes.plot(*np.array(rows).T, marker, color=color, markersize=size, linestyle="none", zorder=4)

@@ -38,8 +38,8 @@ def draw_both_sides(found: BothSides, axes: Any) -> Any:
         one.set_title(f"{found.over} = {value:.6g}")
     first = min(side.tau[0] for side in found.basins)
     for one in pair:
-        place = first + np.mod(found.transition.tau - first, np.ptp(found.basins[0].tau))
-        one.plot(place, 0.0, "^", color=BLACK, markerfacecolor="white", markersize=7, clip_on=False, zorder=8)
+        phase = first + np.mod(found.transition.tau - first, np.ptp(found.basins[0].tau))
+        one.plot(phase, 0.0, "^", color=BLACK, markerfacecolor="white", markersize=7, clip_on=False, zorder=8)
         one.set_xlabel(rf"launch phase $\tau$; {found.transition.kind} at the triangle")
     pair[1].set_ylabel("")
     return pair

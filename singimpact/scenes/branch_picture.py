@@ -53,16 +53,16 @@ def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> A
     fresh = not axes.has_data()
     shown = "x" if fresh and height == "v" and not any(branch.n for branch in branches) else height
     drawn = [_Drawn(branch, shown) for branch in branches]
-    kinds = {name for each in drawn for name in each.classes.tolist()}
-    for each in drawn:
-        each.lines(axes)
+    kinds = {name for line in drawn for name in line.classes.tolist()}
+    for line in drawn:
+        line.lines(axes)
     if fresh:
         _limits(axes, drawn, shown)
         axes.set_xlabel(LETTERS.get(names[0], names[0]))
         axes.set_ylabel(HEIGHTS[shown])
         if shown != "phase":
             axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1)
-    marks = [mark for each in drawn for mark in each.marks()]
+    marks = [mark for line in drawn for mark in line.marks()]
     named = sum(name is not None for _, name in marks) <= SETTINGS.named
     _draw_marks(axes, marks, named)
     _legend(axes, drawn, [name for name in LINES if name in kinds], [] if named else marks)
@@ -80,11 +80,11 @@ class _Drawn:
         self.events: list[tuple[Event, Array]] = []
         number, rows, kinds = branch.parameter.tolist(), list(heights), classes.tolist()
         for event in sorted(branch.events, key=lambda event: event.index, reverse=True):
-            place = self._matched(self._event_heights(event), rows[min(max(event.index, 0), len(rows) - 1)])
-            self.events.append((event, place))
+            heights_ = self._matched(self._event_heights(event), rows[min(max(event.index, 0), len(rows) - 1)])
+            self.events.append((event, heights_))
             at = min(max(event.index + 1, 0), len(number))
             number.insert(at, event.parameter)
-            rows.insert(at, place)
+            rows.insert(at, heights_)
             kinds.insert(at, "")
         self.number, self.heights = np.array(number), np.array(rows)
         self.classes = np.array(kinds)  # of an event none
@@ -135,10 +135,10 @@ class _Drawn:
                 continue
             style, width = LINES[steps[first]]
             width *= orbit_width(self.branch.n, self.branch.k)
-            part = slice(first, i + 1)
+            piece = slice(first, i + 1)
             for impact in range(self.heights.shape[1]):
-                heights = self.heights[part, impact].copy()
-                numbers = self.number[part]
+                heights = self.heights[piece, impact].copy()
+                numbers = self.number[piece]
                 if self.shown == "phase":
                     numbers, heights = _torn(numbers, heights)
                 axes.plot(
@@ -151,17 +151,17 @@ class _Drawn:
 
     def marks(self) -> list[tuple[tuple[float, float, str], str | None]]:
         """Places and kinds of events, and the name that is written beside the first impact of each."""
-        found: list[tuple[tuple[float, float, str], str | None]] = []
-        for event, place in self.events[::-1]:
+        marks_: list[tuple[tuple[float, float, str], str | None]] = []
+        for event, spot in self.events[::-1]:
             # a graze is one impact's; all impacts of the orbit are part of the other events
             alone = event.described.at_impact
-            at = int(np.argmin(np.abs(place))) if alone and self.shown == "v" else 0
-            order = [at] if alone else [at, *(i for i in range(len(place)) if i != at)]
+            at = int(np.argmin(np.abs(spot))) if alone and self.shown == "v" else 0
+            order = [at] if alone else [at, *(i for i in range(len(spot)) if i != at)]
             for rank, i in enumerate(order):
-                if np.isfinite(place[i]):
+                if np.isfinite(spot[i]):
                     name = event.described.label if rank == 0 else None
-                    found.append(((event.parameter, float(place[i]), event.kind), name))
-        return found
+                    marks_.append(((event.parameter, float(spot[i]), event.kind), name))
+        return marks_
 
 
 def _torn(numbers: Array, heights: Array) -> tuple[Array, Array]:
@@ -172,7 +172,7 @@ def _torn(numbers: Array, heights: Array) -> tuple[Array, Array]:
 
 def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
     """The picture is filled by the motions that occur; virtual parts are shown next to them."""
-    numbers = np.concatenate([each.number for each in drawn])
+    numbers = np.concatenate([line.number for line in drawn])
     pad = SETTINGS.space / 2 * (np.ptp(numbers) or 1.0)
     if axes.get_autoscalex_on():
         axes.set_xlim(numbers.min() - pad, numbers.max() + pad)
@@ -181,8 +181,8 @@ def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
     if shown == "phase":
         axes.set_ylim(-0.02, 1.02)
         return
-    every = np.concatenate([each.heights.ravel() for each in drawn])
-    seen = np.concatenate([each.heights[each.classes != "virtual"].ravel() for each in drawn])
+    every = np.concatenate([line.heights.ravel() for line in drawn])
+    seen = np.concatenate([line.heights[line.classes != "virtual"].ravel() for line in drawn])
     seen = np.append(seen, 0.0) if seen.size else every
     size = float(np.ptp(seen)) or float(np.abs(every).max()) or 1.0
     low = max(float(every.min()), float(seen.min()) - SETTINGS.beyond * size)
@@ -206,8 +206,8 @@ def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], marks: list[Any]) 
     if old is not None:
         handles, labels = list(old.legend_handles), [text.get_text() for text in old.get_texts()]
     entries = dict(zip(labels, handles, strict=True))
-    for each in drawn:
-        n, k = each.branch.n, each.branch.k
+    for line in drawn:
+        n, k = line.branch.n, line.branch.k
         name = f"({n}, {k}) orbits" if n else "without impact"
         entries.setdefault(name, Line2D([], [], color=orbit_color(n, k), linewidth=2.4 * orbit_width(n, k)))
     for kind in kinds:
@@ -264,7 +264,7 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:
         axes.set_xlabel(LETTERS.get(curves[0].over[0], curves[0].over[0]))
         axes.set_ylabel(LETTERS.get(curves[0].over[1], curves[0].over[1]))
         axes.margins(SETTINGS.space)
-    marked = _apart([(*each.parameters, each.kind) for curve in curves for each in curve.special], axes)
+    marked = _apart([(*point.parameters, point.kind) for curve in curves for point in curve.special], axes)
     for x, y, _ in marked:
         axes.plot(x, y, "D", color=BLACK, markerfacecolor="white", markersize=5, zorder=6)
     place_labels(axes, marked)

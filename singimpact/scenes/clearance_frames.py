@@ -129,7 +129,7 @@ def clearance_film(
     model: Oscillator,
     between: Any = None,
     steps: int = SETTINGS.steps,
-    told: Callable[[int, int, str], None] = lambda done, total, text: None,  # noqa: ARG005
+    progress: Callable[[int, int, str], None] = lambda done, total, text: None,  # noqa: ARG005
 ) -> ClearanceFilm:
     """Z, H, P and gamma as the clearance moves through the swan whose clearance is nearest to the model's.
 
@@ -138,7 +138,7 @@ def clearance_film(
     Parameters
     ----------
     between : two numbers, ends of the clearance; as much on both sides of the swan as opens it well when not given.
-    steps : how many clearances. told : is called with what is being done.
+    steps : how many clearances. progress : is called with what is being done.
 
     Examples
     --------
@@ -159,10 +159,10 @@ def clearance_film(
         surface = ImpactSurface(model.replace(clearance=at), view.tau, view.t, 1 / SETTINGS.pixels)
         surface.placed_tangencies  # noqa: B018 found before the threads start: balls have one precision in a process
         surfaces.append(surface)
-    told(0, len(views), "Z at all clearances")
+    progress(0, len(views), "Z at all clearances")
     in_step(model, [surface.trace for surface in surfaces])
     for n, ((clearance, view), surface) in enumerate(zip(views, surfaces, strict=True)):
-        told(n, len(views), f"c = {clearance:.6g}")
+        progress(n, len(views), f"c = {clearance:.6g}")
         frames.append(_frame(surface, clearance, view))
     flights = sum(surface.flights for surface in surfaces)
     widest = max((view for _, view in views), key=lambda view: view.size)
@@ -234,10 +234,10 @@ def _frame(surface: ImpactSurface, clearance: float, view: View) -> ClearanceFra
 
 def _gammas(surface: ImpactSurface, size: float) -> list[Curve]:
     """gamma at each point of the window that has one, cut to the picture."""
-    found: list[Curve] = []
+    curves: list[Curve] = []
     low, high = surface.window.x
     if compare(surface.model.slope_at_rest(), 1) == 0:  # no invariant curve attracts then
-        return found
+        return curves
     for point, tau in surface.placed_tangencies:
         turns = tau - point.tau  # whole periods
         swan = point.kind == "degenerate" and acceleration(surface.model, np.array([tau]), 2)[0] < 0
@@ -245,5 +245,5 @@ def _gammas(surface: ImpactSurface, size: float) -> list[Curve]:
             frame = Window((low - turns, high - turns), (0.0, size), surface.window.resolution)
             for curve in grown_gamma(surface.model, frame, point.tau, SETTINGS.trust):
                 moved = curve.points + np.array([turns, 0.0])
-                found.append(Curve("gamma", moved, curve.axes, curve.marks))
-    return found
+                curves.append(Curve("gamma", moved, curve.axes, curve.marks))
+    return curves

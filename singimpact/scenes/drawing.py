@@ -68,12 +68,12 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
         if isinstance(thing, kind):
             return draw(thing, _new_axes(size) if axes is None else axes)
     several = list(thing) if isinstance(thing, list | tuple) else [thing]
-    if several and all(isinstance(each, Branch) for each in several):
+    if several and all(isinstance(item, Branch) for item in several):
         return draw_branches(several, _new_axes(BRANCHES) if axes is None else axes, height)
     if isinstance(thing, BorderOrbit):
         return draw_border(thing, *(_two_axes() if axes is None else (axes,)))
     for kind, size, draw in TOGETHER:
-        if several and all(isinstance(each, kind) for each in several):
+        if several and all(isinstance(item, kind) for item in several):
             return draw(several, _new_axes(size) if axes is None else axes)
     raise refuse(
         "thing to plot",

@@ -16,20 +16,25 @@ Array = np.ndarray[Any, Any]
 SIDE = 60  # points of each side of a set
 
 
-def draw_horseshoe(found: Horseshoe, axes: Any) -> Any:
+def draw_horseshoe(horseshoe: Horseshoe, axes: Any) -> Any:
     """Draw N and B_1 with the image of N, which crosses both, and that of the last set, which crosses N.
 
     Parameters
     ----------
     axes : of matplotlib. Lengths are relative to N, along the directions in which the map stretches and contracts.
     """
-    home, first, last = found.sets[0], found.sets[1], found.sets[-1]
-    short = found.loops[0]
+    home, first, last = horseshoe.sets[0], horseshoe.sets[1], horseshoe.sets[-1]
+    short = horseshoe.loops[0]
     looks = [
-        (_seen(_image(found, home, short), home, found), ORANGE, "solid", "image of $N$"),
-        (_seen(_image(found, last, 1), home, found), BLUE, DASHES, f"image of $B_{{{len(found.sets) - 1}}}$"),
-        (_seen(_outline(first), home, found), GREEN, "solid", "$B_1$, the first set of the long loop"),
-        (_seen(_outline(home), home, found), BLACK, "solid", "$N$, round the saddle"),
+        (_seen(_image(horseshoe, home, short), home, horseshoe), ORANGE, "solid", "image of $N$"),
+        (
+            _seen(_image(horseshoe, last, 1), home, horseshoe),
+            BLUE,
+            DASHES,
+            f"image of $B_{{{len(horseshoe.sets) - 1}}}$",
+        ),
+        (_seen(_outline(first), home, horseshoe), GREEN, "solid", "$B_1$, the first set of the long loop"),
+        (_seen(_outline(home), home, horseshoe), BLACK, "solid", "$N$, round the saddle"),
     ]
     for points, color, style, words in looks:
         axes.fill(*points.T, color=color, alpha=0.12, linewidth=0)

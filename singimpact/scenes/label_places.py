@@ -58,9 +58,9 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
     pixel = axes.figure.dpi / 72
     inside: list[tuple[float, float, str]] = []
     for x, y, name in labels:
-        place = axes.transData.transform((x, y))
-        gaps = [axes.transData.transform(each[:2]) - place for each in inside if each[2] == name]
-        if _within(place, box) and not any(np.hypot(*gap) < SETTINGS.together * pixel for gap in gaps):
+        spot = axes.transData.transform((x, y))
+        gaps = [axes.transData.transform(each[:2]) - spot for each in inside if each[2] == name]
+        if _within(spot, box) and not any(np.hypot(*gap) < SETTINGS.together * pixel for gap in gaps):
             inside.append((x, y, name))
     obstacles = [_curve_points(axes, SETTINGS.sample * pixel)]
     points = np.array([axes.transData.transform((x, y)) for x, y, _ in inside]).reshape(-1, 2)
@@ -161,15 +161,15 @@ def _between(point: Array, direction: Array, ends: tuple[float, float], obstacle
 
 def _curve_points(axes: Any, step: float) -> Array:
     """Points of all curves and markers of axes in pixels, about `step` apart."""
-    found = [np.empty((0, 2))]
+    points = [np.empty((0, 2))]
     for line in axes.lines:
         data = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
         if line.get_linestyle() in ("None", "none", ""):
-            found.append(data[np.isfinite(data).all(axis=1)])
+            points.append(data[np.isfinite(data).all(axis=1)])
             continue
         for begin, end in pairwise(data):
             length = np.hypot(*(end - begin))
             if np.isfinite(length) and length < 1e5:
                 shares = np.linspace(0, 1, 2 + int(length / step))[:, None]
-                found.append(begin + shares * (end - begin))
-    return np.concatenate(found)
+                points.append(begin + shares * (end - begin))
+    return np.concatenate(points)

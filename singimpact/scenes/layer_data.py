@@ -68,9 +68,9 @@ class Results:
         """The curves of a need."""
         if need not in self.found:
             key = key_of(need, *self.scene.depends(need))
-            kept = recall(key) if need in STORED else None
-            if kept is not None:
-                self.found[need] = kept
+            stored = recall(key) if need in STORED else None
+            if stored is not None:
+                self.found[need] = stored
                 self.cached.append(need)
             else:
                 self.found[need] = self._computed(need)

@@ -37,28 +37,28 @@ class ManifoldPictureSettings:
 SETTINGS = ManifoldPictureSettings()
 
 
-def draw_manifolds(found: Sequence[Manifold], axes: Any) -> Any:
+def draw_manifolds(manifolds: Sequence[Manifold], axes: Any) -> Any:
     """Draw manifolds of one model with their saddles and their cuts.
 
     Parameters
     ----------
-    found : manifolds. axes : of matplotlib; limits of a picture that is there are kept.
+    manifolds : manifolds. axes : of matplotlib; limits of a picture that is there are kept.
     """
-    if len({each.saddle.oscillator for each in found}) > 1:
+    if len({manifold.saddle.oscillator for manifold in manifolds}) > 1:
         raise refuse("manifolds to plot", "those of several models", "manifolds of one model")
     fresh, entries = not axes.has_data(), _entries(axes)
-    periods, highest = found[0].window.x, max(each.window.y[1] for each in found)
+    periods, highest = manifolds[0].window.x, max(manifold.window.y[1] for manifold in manifolds)
     limits = (axes.get_xlim(), axes.get_ylim())
-    for each in found:
-        line = PENS[each.name].line()
+    for manifold in manifolds:
+        line = PENS[manifold.name].line()
         if not fresh:  # over basins, whose colours are strong
-            line |= {"color": BLACK, "linewidth": 0.8, "linestyle": "solid" if each.stable else DASHES}
-        entries.setdefault(f"${each.name}$ of the {_orbit(each)} saddle", _line(line))
+            line |= {"color": BLACK, "linewidth": 0.8, "linestyle": "solid" if manifold.stable else DASHES}
+        entries.setdefault(f"${manifold.name}$ of the {_orbit(manifold)} saddle", _line(line))
         for turn in _turns(limits[0], periods[1], fresh):
-            for piece in each.pieces:
+            for piece in manifold.pieces:
                 axes.plot(piece.points[:, 0] + turn, piece.points[:, 1], **line, zorder=4)
-            _saddle(each, turn, axes)
-            _cuts(each, turn, axes, entries)
+            _saddle(manifold, turn, axes)
+            _cuts(manifold, turn, axes, entries)
     entries["saddle"] = _mark("s", SETTINGS.saddle, BLACK)
     if fresh:
         axes.set_xlim(*periods)
@@ -80,20 +80,22 @@ def draw_manifolds(found: Sequence[Manifold], axes: Any) -> Any:
     return axes
 
 
-def draw_crossings(found: Crossings, axes: Any) -> Any:
+def draw_crossings(crossings: Crossings, axes: Any) -> Any:
     """Draw both manifolds, a point of each orbit in which they cross, and all impacts of the first one."""
-    draw_manifolds(found.manifolds, axes)
+    draw_manifolds(crossings.manifolds, axes)
     entries, limits = _entries(axes), (axes.get_xlim(), axes.get_ylim())
     pen = PENS["crossing"]
-    kind = found[0].kind if found else "homoclinic"
-    for each in found:
-        axes.plot(each.tau, each.v, "o", color=pen.color, markersize=SETTINGS.crossing, markeredgewidth=0, zorder=6)
-    for each in found[: SETTINGS.orbits]:
+    kind = crossings[0].kind if crossings else "homoclinic"
+    for crossing in crossings:
         axes.plot(
-            *each.states.T, "o", color=BLACK, markerfacecolor="none", markersize=1.8 * SETTINGS.crossing, zorder=7
+            crossing.tau, crossing.v, "o", color=pen.color, markersize=SETTINGS.crossing, markeredgewidth=0, zorder=6
+        )
+    for crossing in crossings[: SETTINGS.orbits]:
+        axes.plot(
+            *crossing.states.T, "o", color=BLACK, markerfacecolor="none", markersize=1.8 * SETTINGS.crossing, zorder=7
         )
         entries[f"impacts of the first {kind} orbit"] = _mark("o", 1.8 * SETTINGS.crossing, "none")
-    if found:
+    if crossings:
         entries[f"{kind} points, one of each orbit"] = _mark("o", SETTINGS.crossing, pen.color, pen.color)
     axes.set_xlim(*limits[0])
     axes.set_ylim(*limits[1])
@@ -109,7 +111,7 @@ def draw_crossings(found: Crossings, axes: Any) -> Any:
     return axes
 
 
-def draw_certified_crossing(found: EnclosedCrossing, axes: Any) -> Any:
+def draw_certified_crossing(crossing: EnclosedCrossing, axes: Any) -> Any:
     """Draw the impacts of a certified orbit; those away from the saddles are numbered in their order.
 
     Parameters
@@ -120,14 +122,14 @@ def draw_certified_crossing(found: EnclosedCrossing, axes: Any) -> Any:
 
     fresh, entries = not axes.has_data(), _entries(axes)
     limits, pen = (axes.get_xlim(), axes.get_ylim()), PENS["certified"]
-    assert found.oscillator.period is not None
-    period = as_float(found.oscillator.period)
-    states = np.array([[float(tau.value) % period, float(v.value)] for tau, v in found.states])
+    assert crossing.oscillator.period is not None
+    period = as_float(crossing.oscillator.period)
+    states = np.array([[float(tau.value) % period, float(v.value)] for tau, v in crossing.states])
     saddles = np.array(
         [
             [float(tau.value) % period, float(v.value)]
-            for each in (found.unstable, found.stable)
-            for tau, v in zip(each.tau, each.v, strict=True)
+            for saddle in (crossing.unstable, crossing.stable)
+            for tau, v in zip(saddle.tau, saddle.v, strict=True)
         ]
     )
     top = 1.2 * float(max(states[:, 1].max(), saddles[:, 1].max()))
@@ -135,10 +137,10 @@ def draw_certified_crossing(found: EnclosedCrossing, axes: Any) -> Any:
     gaps[..., 0] -= np.rint(gaps[..., 0])
     away = np.hypot(*gaps.transpose(2, 0, 1)).min(axis=1) > SETTINGS.away
     axes.plot(*states.T, "o", color=pen.color, markersize=SETTINGS.impact, zorder=8)
-    for number, place in enumerate(states[away], start=1):
+    for number, spot in enumerate(states[away], start=1):
         axes.annotate(
             str(number),
-            place,
+            spot,
             (6, 5),
             textcoords="offset points",
             zorder=9,
@@ -147,8 +149,8 @@ def draw_certified_crossing(found: EnclosedCrossing, axes: Any) -> Any:
             path_effects=[withStroke(linewidth=3, foreground="white")],
         )
     axes.plot(*saddles.T, "s", color=BLACK, markerfacecolor="white", markersize=SETTINGS.saddle, zorder=8)
-    at = int(away[: found.index + 1].sum())
-    words = f"impacts of a certified {found.kind} orbit, angle {float(found.angle.value):.4f} at {at}"
+    at = int(away[: crossing.index + 1].sum())
+    words = f"impacts of a certified {crossing.kind} orbit, angle {float(crossing.angle.value):.4f} at {at}"
     entries[words] = _mark("o", SETTINGS.impact, pen.color, pen.color)
     entries["saddle"] = _mark("s", SETTINGS.saddle, BLACK)
     axes.set_xlim(*((0.0, period) if fresh else limits[0]))

@@ -97,9 +97,9 @@ class Scene:
 
     def _check_second(self) -> None:
         for name in ("t", "v"):
-            given = getattr(self, name)
-            if given is not None:
-                self._set(name, window_ends(name, given))
+            value = getattr(self, name)
+            if value is not None:
+                self._set(name, window_ends(name, value))
         if self.plane == SURFACE and self.t is None:
             raise InputError("window of t is missing: layers of (tau, t) need it")
         if self.plane == STATES and self.v is None:
@@ -119,7 +119,7 @@ class Scene:
             if not isinstance(mark, tuple | list) or len(mark) != 3:
                 raise refuse("marks", mark, "a letter and two numbers")
         places = (
-            (checked_text("marks", mark[0]), *(as_float(constant("marks", each)) for each in mark[1:]))
+            (checked_text("marks", mark[0]), *(as_float(constant("marks", entry)) for entry in mark[1:]))
             for mark in self.marks
         )
         self._set("marks", tuple(places))
@@ -138,7 +138,7 @@ class Scene:
             if not isinstance(fields.get(key, []), list):
                 raise refuse(key, fields[key], "a list")
             if key in fields:
-                fields[key] = tuple(tuple(each) if isinstance(each, list) else each for each in fields[key])
+                fields[key] = tuple(tuple(entry) if isinstance(entry, list) else entry for entry in fields[key])
         return cls(**fields)
 
     @property
@@ -216,9 +216,9 @@ class Scene:
         for letter, x, y in self.marks:
             axes.plot([x], [y], "o", color="black", markersize=4, zorder=6, clip_on=False)
             axes.annotate(letter, (x, y), (5, 5), textcoords="offset points", path_effects=halo, zorder=7)
-        if told := self._absent(missing):
+        if refusal := self._absent(missing):
             look = {"ha": "center", "va": "center", "color": "0.35", "wrap": True, "path_effects": halo, "zorder": 8}
-            axes.text(0.5, 0.5, told, transform=axes.transAxes, **look)
+            axes.text(0.5, 0.5, refusal, transform=axes.transAxes, **look)
         if axes.get_legend_handles_labels()[0]:
             # a small picture keeps its axes: the legend lies inside them, however wide its words are
             axes.legend(loc="best", fontsize="small", framealpha=0.9).set_in_layout(False)
@@ -252,18 +252,18 @@ def checked_text(name: str, text: Any) -> str:
     >>> checked_text("title", "a swan")
     'a swan'
     """
-    found = str(text)
-    if len(found) > LONGEST_TEXT or not found.replace("\n", "").isprintable():
-        raise refuse(name, found, f"at most {LONGEST_TEXT} printable characters")
-    if "$" in found:
+    content = str(text)
+    if len(content) > LONGEST_TEXT or not content.replace("\n", "").isprintable():
+        raise refuse(name, content, f"at most {LONGEST_TEXT} printable characters")
+    if "$" in content:
         from matplotlib.mathtext import MathTextParser
 
         try:
-            MathTextParser("path").parse(found)
+            MathTextParser("path").parse(content)
         except ValueError as error:
             reason = str(error).strip().splitlines()[-1]
-            raise refuse(name, found, f"formulas between dollars that can be typeset ({reason})") from None
-    return found
+            raise refuse(name, content, f"formulas between dollars that can be typeset ({reason})") from None
+    return content
 
 
 FILE_KEYS = ("model", "layers", "tau", "t", "v", "pixels", "title", "feet", "leaves", "orbits", "impacts", "marks")
@@ -284,16 +284,16 @@ def _toml(path: str | Path) -> dict[str, Any]:
         raise InputError(f"scene file {shown(str(path))} is not TOML: {' '.join(str(error).split())}") from None
 
 
-def _model(given: Any, path: Path) -> Oscillator:
+def _model(fields: Any, path: Path) -> Oscillator:
     """A table as in a model file, or the name of one, beside the scene."""
-    if isinstance(given, str):
-        return Oscillator(**read_fields(path.parent / given))
-    if not isinstance(given, dict):
-        raise refuse("model", given, "a table [model] or the name of a model file")
-    for key in given:
+    if isinstance(fields, str):
+        return Oscillator(**read_fields(path.parent / fields))
+    if not isinstance(fields, dict):
+        raise refuse("model", fields, "a table [model] or the name of a model file")
+    for key in fields:
         if key not in FIELDS:
             raise unknown("key in [model]:", key, FIELDS)
     for key in FIELDS[:4]:
-        if key not in given:
+        if key not in fields:
             raise InputError(f"[model] has no {key}: a model needs {', '.join(FIELDS[:4])}")
-    return Oscillator(**given)
+    return Oscillator(**fields)

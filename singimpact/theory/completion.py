@@ -42,21 +42,21 @@ def foliation(
     >>> print(foliation(bouncing, Fraction(1, 2), lambda n: 1 / (1 - Fraction(1, 2)**n), 3, {}))
     sigma + (2)*v
     """
-    found = leaves(sheet(contact, order), restitution, inverse_gap, rho)
-    return JetSpace(("sigma", "v"), order, contact.ring).jet(found)
+    series = leaves(sheet(contact, order), restitution, inverse_gap, rho)
+    return JetSpace(("sigma", "v"), order, contact.ring).jet(series)
 
 
 def leaves(
-    made: Sheet, restitution: Any, inverse_gap: Callable[[int], Any], rho: Mapping[int, Any]
+    sheet_: Sheet, restitution: Any, inverse_gap: Callable[[int], Any], rho: Mapping[int, Any]
 ) -> dict[Exponents, Any]:
     """The coefficients of K from the sheet: (i, n) -> that of sigma^i v^n."""
-    contact, order, space = made.contact, made.order, made.v.space
+    contact, order, space = sheet_.contact, sheet_.order, sheet_.v.space
     one = space.rational(Fraction(1))
     sigma, t = space.generators()
-    launch, rebound = _powers(made.v, order), _powers(_rebound(made, restitution, rho), order)
+    launch, rebound = _powers(sheet_.v, order), _powers(_rebound(sheet_, restitution, rho), order)
     before, after = _powers(sigma, order), _powers(sigma + t, order)
     step = contact.ring.power(contact.a[0], Fraction(-1)) * contact.ring.rational(Fraction(-2))
-    found: dict[Exponents, Any] = {(1, 0): contact.ring.rational(Fraction(1))}
+    coefficients: dict[Exponents, Any] = {(1, 0): contact.ring.rational(Fraction(1))}
     gap = t * one  # K after the impact less K before, for the K found so far
     for degree in range(1, order + 1):
         missed = dict(gap.part(degree).terms)
@@ -65,14 +65,14 @@ def leaves(
             if (i, n) not in missed:
                 continue
             lead = missed[(i, n)] * inverse_gap(n)  # the value times (-a_0/2)^n
-            found[(i, n)] = value = lead * step**n
+            coefficients[(i, n)] = value = lead * step**n
             for q in range(1, i + 1):  # what it adds beside later unknowns of this degree: r^n (sigma + t)^i t^n
                 key, more = (i - q, n + q), lead * restitution**n * contact.ring.rational(Fraction(comb(i, q)))
                 missed[key] = missed[key] + more if key in missed else more
             if degree < order:
                 gap = gap + (after[i] * rebound[n] - before[i] * launch[n]).scaled(value)
     zero = contact.ring.rational(Fraction(0))
-    return {(0, n): zero for n in range(1, order + 1)} | found
+    return {(0, n): zero for n in range(1, order + 1)} | coefficients
 
 
 def _powers(jet: Jet, order: int) -> list[Jet]:
@@ -123,14 +123,14 @@ def symbolic_completion(order: int) -> SymbolicCompletion:
     2/(a*(lambda - 1))
     """
     jets = _LaunchJets(order)
-    found: list[_Numerator] = []
+    numerators: list[_Numerator] = []
     for power in range(1, order + 1):
         total = jets.one if power == 1 else jets.zero
-        for n, known in enumerate(found, 1):  # Horner: what stands for c_n is divided by the gaps up to n alone
+        for n, known in enumerate(numerators, 1):  # Horner: what stands for c_n is divided by the gaps up to n alone
             total = total * jets.gap(n) if n > 1 else total
             total = total + known.later(power) - known.value * jets.launch[n][power]
-        found.append(_Numerator(jets, power, total * (-2) ** power))  # v_c(0, t) = -t/2 + ... in units of a
-    coefficients = {n: jets.over_gaps(numerator.value, n) for n, numerator in enumerate(found, 1)}
+        numerators.append(_Numerator(jets, power, total * (-2) ** power))  # v_c(0, t) = -t/2 + ... in units of a
+    coefficients = {n: jets.over_gaps(numerator.value, n) for n, numerator in enumerate(numerators, 1)}
     return SymbolicCompletion(order, jets.names, coefficients)
 
 
@@ -149,8 +149,8 @@ class _LaunchJets:
         self.names = self.ring.names[:-1]
         self.zero, self.one = (self.ring.rational(Fraction(n)) for n in (0, 1))
         self.lambda_ = self.ring.symbol("lambda")
-        made = sheet(contact, order)
-        launch, impact = (self._in_t(jet) for jet in (made.v, made.xdot))
+        sheet_ = sheet(contact, order)
+        launch, impact = (self._in_t(jet) for jet in (sheet_.v, sheet_.xdot))
         rebound, power = [-self.lambda_ * value for value in impact], impact
         for name in rho:
             power = self._product(power, impact)
@@ -220,12 +220,12 @@ class _Numerator:
 
     def later(self, power: int) -> Any:
         """The coefficient of t^power in c(tau + t) times the power of the rebound velocity."""
-        known = self.derivatives
-        if not known:
-            known.append(self.value)
+        derivatives = self.derivatives
+        if not derivatives:
+            derivatives.append(self.value)
         total = self.jets.zero
         for k in range(power - self.power + 1):
-            if k == len(known):
-                known.append(self.jets.derivative(known[-1], self.power) / k)
-            total = total + known[k] * self.jets.rebound[self.power][power - k]
+            if k == len(derivatives):
+                derivatives.append(self.jets.derivative(derivatives[-1], self.power) / k)
+            total = total + derivatives[k] * self.jets.rebound[self.power][power - k]
         return total

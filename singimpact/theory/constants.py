@@ -66,13 +66,13 @@ def contact_in_sympy(
     values: dict[Any, Any] = {("a", k): sympy.expand(value) for k, value in a.items() if k >= j}
     values |= {pair: sympy.expand(value) for pair, value in f.items()}
     ring, convert = _ring_of(list(values.values()))
-    kept = {key: convert(value) for key, value in values.items() if value != 0}
+    jets = {key: convert(value) for key, value in values.items() if value != 0}
     zero = ring.rational(Fraction(0))
     return Contact(
         j,
         ring,
-        {k: kept.get(("a", k), zero) for k in a if k >= j},
-        {(i, k): value for (i, k), value in kept.items() if i != "a"},
+        {k: jets.get(("a", k), zero) for k in a if k >= j},
+        {(i, k): value for (i, k), value in jets.items() if i != "a"},
         tau,
     )
 

@@ -125,9 +125,9 @@ def ending_gamma(where: Place) -> Place:
     if lead.contains(0):
         raise InputError(f"tau = {at}: {name} = 0 too, so that the contact order is above {j}: give a higher at=")
     kind = {1: "a tangency of the kind foliation", 2: "a positive swan"}.get(j, f"a point of contact order {j}")
-    told = f"{kind} with {name} {'<' if wanted > 0 else '>'} 0, and a_c > 0 on its left"
+    wording = f"{kind} with {name} {'<' if wanted > 0 else '>'} 0, and a_c > 0 on its left"
     needed = f"{name} {'>' if wanted > 0 else '<'} 0, where a_c < 0 on the left"
-    raise InputError(f"tau = {at} is {told}: no gamma ends there; give a point with {needed}")
+    raise InputError(f"tau = {at} is {wording}: no gamma ends there; give a point with {needed}")
 
 
 def points_of(model: Oscillator, tau: Any) -> list[int]:
@@ -155,14 +155,14 @@ def _told(values: list[Any]) -> str:
 def _first(model: Oscillator, j: int) -> TangencyPoint:
     if j not in KINDS:
         raise InputError(f"tau is needed at contact order {j}: give tau=")
-    kind, told = KINDS[j]
-    found = [point for point in tangency_points(model) if point.kind == kind]
+    kind, wording = KINDS[j]
+    points = [point for point in tangency_points(model) if point.kind == kind]
     if j == 2:
-        found = [point for point in found if acceleration_jet(model, point.tau, 2, DOUBLES)[2] < 0]
-    if not found:
+        points = [point for point in points if acceleration_jet(model, point.tau, 2, DOUBLES)[2] < 0]
+    if not points:
         name = next(name for name, order in NAMED_ORDERS.items() if order == j)
-        raise InputError(f"a_c of this model has no {name} point with {told}: give tau= or another clearance")
-    return found[0]
+        raise InputError(f"a_c of this model has no {name} point with {wording}: give tau= or another clearance")
+    return points[0]
 
 
 def _vanishes(model: Oscillator, tau: Expression, j: int) -> bool:
@@ -230,7 +230,7 @@ def _multiplier_ball(j: int, r: Any, bits: int) -> Any:
     """Halving to a short interval, then Newton's method on balls, which proves the root."""
     import flint
 
-    above, below = (flint.arb_poly(part) for part in _equation(j))
+    above, below = (flint.arb_poly(coefficients) for coefficients in _equation(j))
     poly = above - below * r
     slope = poly.derivative()
     low, high = Fraction(0), Fraction(1)

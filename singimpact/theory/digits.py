@@ -30,7 +30,7 @@ def with_digits(
     compute: Callable[[Balls], Any],
     digits: int,
     show: Callable[[Any, int], Any],
-    balls_in: Callable[[Any], Iterable[Any]] = lambda found: found.values(),
+    balls_in: Callable[[Any], Iterable[Any]] = lambda enclosure: enclosure.values(),
 ) -> Any:
     """The numbers of `compute(ring)` in balls, at growing precision until each number has its digits.
 
@@ -43,9 +43,9 @@ def with_digits(
     bits = ceil(digits * 3.33) + 128
     while bits <= LIMITS.bits:
         with precision_of(Balls(bits)):
-            found = compute(Balls(bits))
-        if all(as_certified(ball, digits) is not None for ball in balls_in(found)):
-            return show(found, digits)
+            enclosure = compute(Balls(bits))
+        if all(as_certified(ball, digits) is not None for ball in balls_in(enclosure)):
+            return show(enclosure, digits)
         bits *= 2
     raise InputError(f"{digits} digits are not reached with {LIMITS.bits} bits: ask for fewer, or a lower order")
 

@@ -102,7 +102,7 @@ def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:
     >>> print(tangency("1/2", digits=20).m3)
     1.1604422497237431884
     """
-    rate, asked = _restitution(r), _digits(digits)
+    rate, precision = _restitution(r), _digits(digits)
 
     def enclosures(balls: Balls) -> dict[str, Any]:
         half = Fraction(1, 2)
@@ -112,7 +112,7 @@ def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:
         found |= {"m1": low, "m2": middle, "m3": found["lambda_"] + balls.rational(half)}
         return found | {"m_minus": minus, "m_plus": plus}
 
-    return TangencyFixedPoints(**_certified(enclosures, asked))
+    return TangencyFixedPoints(**_certified(enclosures, precision))
 
 
 def swan(r: Any, digits: int = 50) -> SwanFixedPoints:
@@ -125,13 +125,13 @@ def swan(r: Any, digits: int = 50) -> SwanFixedPoints:
     >>> print(swan("0.5", digits=20).m_star)
     -0.25629759628453099805
     """
-    rate, asked = _restitution(r), _digits(digits)
+    rate, precision = _restitution(r), _digits(digits)
 
     def enclosures(balls: Balls) -> dict[str, Any]:
         found = _multipliers(2, rate, balls)
         return found | {"m_star": -found["one_minus_lambda"]}
 
-    return SwanFixedPoints(**_certified(enclosures, asked))
+    return SwanFixedPoints(**_certified(enclosures, precision))
 
 
 def multipliers(at: str | int, r: Any, digits: int = 50) -> Multipliers:
@@ -146,10 +146,10 @@ def multipliers(at: str | int, r: Any, digits: int = 50) -> Multipliers:
     >>> print(multipliers(3, "1/2", digits=20).lambda_)
     0.79433819166467074201
     """
-    j, rate, asked = contact_order(at), _restitution(r), _digits(digits)
+    j, rate, precision = contact_order(at), _restitution(r), _digits(digits)
     if not j:
         raise refuse("at", at, "a contact order 1..12: at a regular point lambda is r")
-    return Multipliers(**_certified(lambda balls: _multipliers(j, rate, balls), asked))
+    return Multipliers(**_certified(lambda balls: _multipliers(j, rate, balls), precision))
 
 
 def __getattr__(name: str) -> Any:

@@ -94,21 +94,21 @@ def fold_form(order: int) -> FoldForm:
     >>> fold_form(4).normal, fold_form(4).residual_vanishes, fold_form(4).identity_order
     ((sigma, -eta**2*k), True, 1)
     """
-    made = _sheet(order)
-    found = normal_form(made.v, 2)
-    source = _in_eta(found.source)
+    sheet_ = _sheet(order)
+    form = normal_form(sheet_.v, 2)
+    source = _in_eta(form.source)
     bent = source - source.space.generators()[1]
-    lead = made.contact.ring.to_sympy(found.lead)
-    shown, outline = _shown(source, made), made.to_sympy(found.offset)
+    lead = sheet_.contact.ring.to_sympy(form.lead)
+    shown, outline = _shown(source, sheet_), sheet_.to_sympy(form.offset)
     if gathering():  # p in the old coordinates is the fold in the new ones
-        in_old = At(made.to_sympy(made.v), {t: eta - 3 * sigma / 2})
+        in_old = At(sheet_.to_sympy(sheet_.v), {t: eta - 3 * sigma / 2})
         substitution(At(lead * T**2 + outline, {T: shown}), in_old, order=order, small=[sigma, eta])
     return FoldForm(
         order=order,
         source=shown,
         outline=outline,
-        normal=(sigma, sympy.expand(k * (made.to_sympy(found.residual) + lead * eta**2))),
-        residual_vanishes=found.reached,
-        invertible=found.invertible and found.offset.coefficient((1, 0)) == 0,
+        normal=(sigma, sympy.expand(k * (sheet_.to_sympy(form.residual) + lead * eta**2))),
+        residual_vanishes=form.reached,
+        invertible=form.invertible and form.offset.coefficient((1, 0)) == 0,
         identity_order=min(bent.parts) - 1,
     )

@@ -106,8 +106,8 @@ def v_c(
     where = place(model, j, tau)
     exact = exact_contact(where, order)
     if exact is not None:
-        found = sheet(exact, order)
-        return found.v.to_sympy()
+        sheet_ = sheet(exact, order)
+        return sheet_.v.to_sympy()
     return with_digits(
         lambda ring: sheet(where.contact(order, ring), order).v,
         digits,
@@ -305,26 +305,26 @@ def _with_letters(
     return PowerSeries(variable, order, {n: put_in(value) for n, value in coefficients.items()})
 
 
-def _curve_series(part: str, order: int, j: int, model: Any, tau: Any, digits: int, keep: Sequence[str]) -> PowerSeries:
-    least = j + 1 if part == "graph" else 1
+def _curve_series(name: str, order: int, j: int, model: Any, tau: Any, digits: int, keep: Sequence[str]) -> PowerSeries:
+    least = j + 1 if name == "graph" else 1
     _checked("order", order, least, LIMITS.curve_numbers)
-    top = order if part == "graph" else order + j
+    top = order if name == "graph" else order + j
     lettered = _lettered(model, tau, keep, j)
     if lettered is not None or model is None:
-        _checked("order", order, least, LIMITS.curve - (part == "motion") * j)
-        return _with_letters("sigma", order, _symbolic_part(part, j, top), lettered)
+        _checked("order", order, least, LIMITS.curve - (name == "motion") * j)
+        return _with_letters("sigma", order, _symbolic_part(name, j, top), lettered)
     _checked("order", order, least, LIMITS.curve_numbers)
     where = ending_gamma(place(model, j, tau)) if j else place(model, j, tau)
-    rough = getattr(curve_at(where, top + TRUST.further, DOUBLES), part)
+    rough = getattr(curve_at(where, top + TRUST.further, DOUBLES), name)
     further = {n: abs(float(value)) for n, value in rough.items() if n > order}
 
     def numbers() -> Any:
-        return with_digits(lambda ring: getattr(curve_at(where, top, ring), part), digits, all_digits)
+        return with_digits(lambda ring: getattr(curve_at(where, top, ring), name), digits, all_digits)
 
     def enclosures(wanted: int) -> Any:
-        return with_digits(lambda ring: getattr(curve_at(where, top, ring), part), wanted, all_certified)
+        return with_digits(lambda ring: getattr(curve_at(where, top, ring), name), wanted, all_certified)
 
-    exact = _exact_curve(where, top, part)
+    exact = _exact_curve(where, top, name)
     if exact is not None:
         return PowerSeries("sigma", order, exact, digits, further, numbers, enclosures)
     return PowerSeries("sigma", order, numbers(), digits, further, enclosures=enclosures)
@@ -391,7 +391,7 @@ def curve_at(where: Place, order: int, ring: Any) -> InvariantCurve:
         return invariant_curve(where.contact(order, ring), lambda_, order, where.rho(order, ring), r)
 
 
-def _exact_curve(where: Place, order: int, part: str) -> dict[int, Any] | None:
+def _exact_curve(where: Place, order: int, name: str) -> dict[int, Any] | None:
     """The coefficients as sympy numbers, when tau_* and lambda are exact."""
     require_smooth_rho(where.model, TASK)
     lambda_ = multiplier(where.j, where.model.slope_at_rest())
@@ -404,8 +404,8 @@ def _exact_curve(where: Place, order: int, part: str) -> dict[int, Any] | None:
         return None
     if contact.ring is EXACT:
         curve = invariant_curve(contact, lambda_, order, rho)
-        return {n: _shown(value) for n, value in getattr(curve, part).items()}
-    return _through_symbols(contact, lambda_, order, part, rho) if order <= LIMITS.constants else None
+        return {n: _shown(value) for n, value in getattr(curve, name).items()}
+    return _through_symbols(contact, lambda_, order, name, rho) if order <= LIMITS.constants else None
 
 
 def _through_symbols(
@@ -417,7 +417,7 @@ def _through_symbols(
     j, show = contact.order, contact.ring.to_sympy
     unit = Contact.generic(j, order, unit=True, more=rho_names(j, order))
     ring = unit.ring
-    found = invariant_curve(unit, lambda_, order, {int(n[4:]): ring.symbol(n) for n in rho_names(j, order)})
+    curve = invariant_curve(unit, lambda_, order, {int(n[4:]): ring.symbol(n) for n in rho_names(j, order)})
     length = show(contact.a[j])
     values = {sympy.Symbol(derivative_name(k)): show(c) * factorial(k) / length for k, c in contact.a.items() if k > j}
     for i, k in unit.f:
@@ -427,7 +427,7 @@ def _through_symbols(
     for name in rho_names(j, order):
         values[sympy.Symbol(name)] = _shown(rho.get(int(name[4:]), Fraction(0))) * length ** (int(name[4:]) - 1)
     scale = length if part == "graph" else 1
-    return {n: sympy.expand(ring.to_sympy(value).subs(values) * scale) for n, value in getattr(found, part).items()}
+    return {n: sympy.expand(ring.to_sympy(value).subs(values) * scale) for n, value in getattr(curve, part).items()}
 
 
 def _shown(value: Any) -> Any:

@@ -100,15 +100,15 @@ def _curve(name: str, j: int, top: int, part: str) -> str:
 
 
 def _completion(top: int, apart: bool = False, linear: bool = False) -> str:
-    found = symbolic_completion(top)
-    coefficients = {n: _factored(value.terms) for n, value in found.coefficients.items()}
+    numerators = symbolic_completion(top)
+    coefficients = {n: _factored(value.terms) for n, value in numerators.coefficients.items()}
     if linear:
-        absent = [n for n, name in enumerate(found.names) if not name.startswith("a_") and name not in LINEAR]
+        absent = [n for n, name in enumerate(numerators.names) if not name.startswith("a_") and name not in LINEAR]
         coefficients = {
             n: {key: value for key, value in terms.items() if not any(key[i] for i in absent)}
             for n, terms in coefficients.items()
         }
-    series = RationalSeries("v", found.names, coefficients, _unit(0, found.names), argument=1, apart=apart)
+    series = RationalSeries("v", numerators.names, coefficients, _unit(0, numerators.names), argument=1, apart=apart)
     name, what = ("chatter_terms", "The terms of") if apart else ("chatter_limit", "")
     name, kind = (f"linear_{name}", " of a linear model") if linear else (name, "")
     says = f"{what} tau_inf - tau{kind} to v^{top}; lambda is the restitution r.".strip()
@@ -140,8 +140,8 @@ def _factored(terms: Mapping[Exponents, tuple[Any, Any]]) -> dict[Exponents, Fac
         for poly, sign in ((above, 1), (below, -1)):
             constant, parts = poly.factor()
             content *= Fraction(int(constant.p), int(constant.q)) ** sign
-            for part, power in parts:
-                whole = tuple(int(c.p) for c in part.coeffs())
+            for factor, power in parts:
+                whole = tuple(int(c.p) for c in factor.coeffs())
                 if whole[0] < 0:
                     whole, content = tuple(-c for c in whole), content * (-1) ** power
                 factors[whole] = sign * int(power)

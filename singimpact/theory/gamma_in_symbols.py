@@ -76,16 +76,16 @@ def in_length(coefficient: RationalCoefficients, names: tuple[str, ...], j: int,
 
     products, unit = Products(), sympy.Symbol(derivative_name(j))
     symbols, weights = [sympy.Symbol(name) for name in names], [length_weight(name) for name in names]
-    total, known = [], dict[tuple[int, int], tuple[Any, Any]]()
+    total, lengths = [], dict[tuple[int, int], tuple[Any, Any]]()
     for key, (above, below) in coefficient.terms.items():
         content, factors = factored(above)
         mark = below.degree(), int(below(2))  # the same few denominators come again and again; they are whole
-        if mark not in known or known[mark][0] != below:
-            known[mark] = below, factored(below, below.degree())
-        under, divisors = known[mark][1]
-        present = [(place, int(e)) for place, e in enumerate(key) if e]  # most exponents are 0
-        power = of_length + sum(weights[place] * e for place, e in present)
-        jets = [(symbols[place], e) for place, e in present] + ([(unit, power)] if power else [])
+        if mark not in lengths or lengths[mark][0] != below:
+            lengths[mark] = below, factored(below, below.degree())
+        under, divisors = lengths[mark][1]
+        present = [(index, int(e)) for index, e in enumerate(key) if e]  # most exponents are 0
+        power = of_length + sum(weights[index] * e for index, e in present)
+        jets = [(symbols[index], e) for index, e in present] + ([(unit, power)] if power else [])
         bases = [*factors, *((base, -e) for base, e in divisors), *jets]
         total.append(products.term(content / under / sympy.Integer(factorial(j)) ** power, bases))
     return products.summed(total)
@@ -111,7 +111,7 @@ def factored(poly: Any, wholly: int = WHOLLY_FACTORED) -> tuple[Any, list[tuple[
     single = len(factors) == 1 and factors[0][1] == 1
     if single and any(factors[0][0].coeffs()[:-1]):  # as in sympy, a rational goes into a sum
         return sympy.S.One, [(_in_lambda(tuple((int(c.p), int(c.q)) for c in poly.coeffs())), 1)]
-    shown = [(_in_lambda(tuple((int(c.p), 1) for c in each.coeffs())), int(e)) for each, e in factors]
+    shown = [(_in_lambda(tuple((int(c.p), 1) for c in factor.coeffs())), int(e)) for factor, e in factors]
     return sympy_rational(int(constant.p), int(constant.q)), shown
 
 
@@ -158,11 +158,11 @@ def divisor(j: int, level: int) -> Any:
     impact_tangent = sum((time**k * (_over(j, k, k + 2) * (k + 1)) for k in range(j + 1)), x * 0)
     P = sum((x**i * (j + 1 - i) for i in range(j + 1)), x * 0)
     Q = sum((x**i * (i + 1) for i in range(j + 1)), x * 0)
-    found = x ** (j + 1) * P * impact_tangent + Q * (launch * x**j * (j + 1) + launch_tangent * x ** (j + level + 1))
+    product = x ** (j + 1) * P * impact_tangent + Q * (launch * x**j * (j + 1) + launch_tangent * x ** (j + level + 1))
     for factor in (x, x - 1):
-        while (found % factor).is_zero():
-            found = found // factor
-    return found / found.leading_coefficient()
+        while (product % factor).is_zero():
+            product = product // factor
+    return product / product.leading_coefficient()
 
 
 def _over(j: int, k: int, below: int) -> Any:

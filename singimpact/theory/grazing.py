@@ -121,17 +121,17 @@ class GrazingMap:
         lines = [f"def {name}({', '.join(['distance', *letters])}):", f'    """{says}"""']
         lead = derivative_name(self.j) if self.names else repr(self._number(self.leading))
         lines.append(f"    h = ({factorial(self.j + 2)} * distance / {lead}) ** (1 / {self.j + 2})")
-        given = ["h"]
+        arguments = ["h"]
         if self.names:
             lines.append(f"    unit = {lead} / {factorial(self.j)}")
-            given += [each if not (w := _weight(each)) else f"{each} * unit**{w}" for each in self.names]
+            arguments += [each if not (w := _weight(each)) else f"{each} * unit**{w}" for each in self.names]
         unit = "unit * " if self.names else ""
-        lines.append(f"    return {unit}_x({', '.join(given)}), {unit}_xdot({', '.join(given)})\n")
+        lines.append(f"    return {unit}_x({', '.join(arguments)}), {unit}_xdot({', '.join(arguments)})\n")
         nothing: Any = {(0,): {(0,) * len(self.names): Fraction(0)}}  # x begins with h^2
         parts = []
-        for part in ("x", "xdot"):
-            terms = self.source_terms[part] or nothing
-            parts.append(function_source(f"_{part}", ("h",), self.names, terms, f"The series of {part}."))
+        for coordinate in ("x", "xdot"):
+            terms = self.source_terms[coordinate] or nothing
+            parts.append(function_source(f"_{coordinate}", ("h",), self.names, terms, f"The series of {coordinate}."))
         return "from typing import Any\n\n\n" + "\n\n".join([*parts, "\n".join(lines)])
 
 
@@ -213,17 +213,17 @@ def _generic(j: int, order: int) -> GrazingMap:
     names = ring.names[:-1]
     r, lambda_ = sympy.Symbol("r"), sympy.Symbol("lambda")
 
-    def shown(part: str, value: Any) -> Any:
+    def shown(name: str, value: Any) -> Any:
         import flint
 
         terms: dict[Any, list[Any]] = {}
-        for *jets, power in (known := value.to_dict()):
+        for *jets, power in (coefficients := value.to_dict()):
             row = terms.setdefault(tuple(jets), [])
             row += [0] * (power + 1 - len(row))
-            row[power] = known[(*jets, power)]
+            row[power] = coefficients[(*jets, power)]
         one = flint.fmpq_poly([1])
         polynomials = RationalCoefficients({key: (flint.fmpq_poly(row), one) for key, row in sorted(terms.items())})
-        return in_length(polynomials, names, j, LENGTHS[part]).xreplace({lambda_: r})
+        return in_length(polynomials, names, j, LENGTHS[name]).xreplace({lambda_: r})
 
     series = {part: {n: shown(part, value) for n, value in values.items()} for part, values in found.items()}
     written = {
@@ -244,7 +244,7 @@ def _of_model(where: Place, order: int, digits: int) -> GrazingMap:
         with precision_of(ring):
             contact = where.contact(order, ring)
             found = _expanded(contact, order, where.restitution_in(ring), where.rho(order, ring))
-            values = {(part, n): value for part, each in found.items() for n, value in each.items()}
+            values = {(name, n): value for name, each in found.items() for n, value in each.items()}
             return values | {("leading", 0): contact.a[where.j] * ring.rational(Fraction(factorial(where.j)))}
 
     try:
@@ -253,14 +253,14 @@ def _of_model(where: Place, order: int, digits: int) -> GrazingMap:
         values = with_digits(compute, digits, all_digits)
     leading = values.pop(("leading", 0))
     series: dict[str, dict[int, Any]] = {}
-    for (part, n), value in values.items():
-        series.setdefault(part, {})[n] = value
+    for (name, n), value in values.items():
+        series.setdefault(name, {})[n] = value
     written = {
-        part: {
+        name: {
             (n,): {(): Fraction(str(value)) if hasattr(value, "p") else Fraction(float(value))}
-            for n, value in series.get(part, {}).items()
+            for n, value in series.get(name, {}).items()
         }
-        for part in PARTS
+        for name in PARTS
     }
     return _made(where.j, order, series, leading, written, (), digits)
 
@@ -274,7 +274,7 @@ def _made(
     names: tuple[str, ...],
     digits: int = 30,
 ) -> GrazingMap:
-    x, xdot, depth, time = (PowerSeries("h", order, series.get(part, {}), digits) for part in PARTS)
+    x, xdot, depth, time = (PowerSeries("h", order, series.get(name, {}), digits) for name in PARTS)
     return GrazingMap(j, order, x, xdot, None if j else depth, None if j else time, leading, written, names)
 
 
@@ -311,15 +311,15 @@ def _expanded(contact: Contact, order: int, restitution: Any, rho: Mapping[int, 
     for _ in range(order + 1):
         inner = (-s, x, xdot)
         x, xdot = x - place_.compose(inner), xdot - (speed.compose(inner) - after)
-    found = {"x": x, "xdot": xdot}
+    jets = {"x": x, "xdot": xdot}
     if not j:
         time, inverse = nothing, ring.power(contact.a[0], Fraction(-1))
         for _ in range(order + 1):
             time = time - speed.compose((time, x, xdot)).scaled(inverse)
-        found |= {"depth": -place_.compose((time, x, xdot)), "time": time}
+        jets |= {"depth": -place_.compose((time, x, xdot)), "time": time}
     return {
-        part: {n: value for n in range(1, order + 1) if (value := jet.coefficient((n,))) != 0}
-        for part, jet in found.items()
+        name: {n: value for n in range(1, order + 1) if (value := jet.coefficient((n,))) != 0}
+        for name, jet in jets.items()
     }
 
 

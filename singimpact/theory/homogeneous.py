@@ -72,11 +72,11 @@ def r_of_lambda(j: int) -> Any:
     >>> r_of_lambda(1)
     lambda**2*(lambda + 2)/(2*lambda + 1)
     """
-    found = lambda_ ** (j + 1) * sympy.factor(P(j)) / sympy.factor(Q(j))
+    ratio = lambda_ ** (j + 1) * sympy.factor(P(j)) / sympy.factor(Q(j))
     again = At(lambda_ ** (j + 1) * _launched(j), {_s: sympy.Integer(1), _e: lambda_})
     landed = _launched(j).subs({_s: _e, _e: _s}, simultaneous=True)  # the involution
-    substitution(At(-_X * landed, {_X: found, _s: sympy.Integer(1), _e: lambda_}), again)
-    return found
+    substitution(At(-_X * landed, {_X: ratio, _s: sympy.Integer(1), _e: lambda_}), again)
+    return ratio
 
 
 @remembered
@@ -88,14 +88,14 @@ def mu_of_lambda(j: int) -> Any:
     >>> mu_of_lambda(1)
     (lambda + 2)**2/(lambda*(2*lambda + 1)**2)
     """
-    found = sympy.factor((P(j) / Q(j)) ** 2 / lambda_)
+    ratio = sympy.factor((P(j) / Q(j)) ** 2 / lambda_)
     y = sympy.Symbol("y")  # a flight from 1 to lambda + y is followed by one to (lambda + y)(lambda + mu y)
     landing = lambda_ + y
     landed = _launched(j).subs({_s: _e, _e: _s}, simultaneous=True)
-    again = At(_launched(j), {_s: landing, _e: landing * (lambda_ + found * y)})
+    again = At(_launched(j), {_s: landing, _e: landing * (lambda_ + ratio * y)})
     reset = At(-_X * landed, {_X: r_of_lambda(j), _s: sympy.Integer(1), _e: landing})
     substitution(again, reset, order=1, small=[y])
-    return found
+    return ratio
 
 
 @remembered
@@ -123,16 +123,16 @@ def DG_on_ray(j: int) -> Any:
     before = sympy.Matrix([s, launch]).jacobian([s, e])
     after = sympy.Matrix([e, impact]).jacobian([s, e])
     ratio = (after * before.inv()).subs({s: 1, e: lambda_})
-    found = ratio.applyfunc(sympy.cancel)
+    matrix = ratio.applyfunc(sympy.cancel)
     x, y = sympy.symbols("x y")  # G takes (s, nu(s, e)) to (e, -r nu(e, s)): so it does to first order at (1, lambda)
     moved = {_s: 1 + x, _e: lambda_ + y}
     before = [_s - 1, _launched(j) - leading_coefficient(j)]
     landed = _launched(j).subs({_s: _e, _e: _s}, simultaneous=True)
     after = [_e - lambda_, -r_of_lambda(j) * (landed - landed.subs({_s: 1, _e: lambda_}))]
-    for row, part in zip(found.tolist(), after, strict=True):
+    for row, entry in zip(matrix.tolist(), after, strict=True):
         linear = At(row[0] * before[0] + row[1] * before[1], moved)
-        substitution(linear, At(part, moved), order=1, small=[x, y])
-    return found
+        substitution(linear, At(entry, moved), order=1, small=[x, y])
+    return matrix
 
 
 @remembered

@@ -82,12 +82,12 @@ def sheet(contact: Contact, order: int) -> Sheet:
         parts[degree + 1] = flight.engine.without(launch, 0, space.polynomials)
         if degree + 1 < order:
             flight.extend(degree, twice, launch)
-    made = Sheet(contact, order, space.of_parts(parts))
+    result = Sheet(contact, order, space.of_parts(parts))
     if certified:
         from singimpact.algebra import derivations  # loads sympy
 
-        derivations.flight(contact, order, rise, made.v.terms, made.xdot.terms)
-    return made
+        derivations.flight(contact, order, rise, result.v.terms, result.xdot.terms)
+    return result
 
 
 class _Flight:
@@ -147,8 +147,10 @@ class _Flight:
         key = (i, k, degree)
         if key not in self._products:
             parts, rest = (self.x, (i - 1, k)) if i else (self.xdot, (i, k - 1))
-            found = ((part, self._product(*rest, degree - size)) for size, part in parts.items() if size < degree)
-            pairs = [pair for pair in found if pair[1] is not None]
+            products = (
+                (factor, self._product(*rest, degree - size)) for size, factor in parts.items() if size < degree
+            )
+            pairs = [pair for pair in products if pair[1] is not None]
             self._products[key] = self.engine.dot(pairs) if pairs else None
         return self._products[key]
 

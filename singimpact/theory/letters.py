@@ -65,11 +65,13 @@ class LetteredModel:
 
         if self._tau is None:
             return {k: sympy.Symbol(derivative_name(k)) / factorial(k) for k in range(self.j, order + 1)}
-        found = [sympy.expand(c) for c in acceleration_jet(self.model, self._tau, order, SYMBOLIC, self.keep)]
-        if any(value != 0 for value in found[: self.j]):
-            told = ", ".join(str(value) for value in found[: self.j])
-            raise InputError(f"tau = {self.tau} is not of contact order {self.j} for all values of the letters: {told}")
-        return {k: value for k, value in enumerate(found) if k >= self.j}
+        derivatives = [sympy.expand(c) for c in acceleration_jet(self.model, self._tau, order, SYMBOLIC, self.keep)]
+        if any(value != 0 for value in derivatives[: self.j]):
+            listed = ", ".join(str(value) for value in derivatives[: self.j])
+            raise InputError(
+                f"tau = {self.tau} is not of contact order {self.j} for all values of the letters: {listed}"
+            )
+        return {k: value for k, value in enumerate(derivatives) if k >= self.j}
 
     def contact(self, order: int) -> Contact:
         """The jets as polynomials, for a sheet to this order."""
@@ -92,15 +94,15 @@ class LetteredModel:
         """Generic symbol (a_dk, f_ik, rho_n) -> what this model has there."""
         import sympy
 
-        found = {}
+        jets_ = {}
         if self._tau is not None:
             jets = self.acceleration(order)
-            found = {sympy.Symbol(derivative_name(k)): value * factorial(k) for k, value in jets.items()}
+            jets_ = {sympy.Symbol(derivative_name(k)): value * factorial(k) for k, value in jets.items()}
         f = force_jet(self.model, self.j, order, SYMBOLIC, self.keep)
         for i in range(order + 1):
             for k in range(order + 1 - i):
-                found[sympy.Symbol(f"f_{i}{k}")] = f.get((i, k), 0) * factorial(i) * factorial(k)
-        return found | self._rho(order)
+                jets_[sympy.Symbol(f"f_{i}{k}")] = f.get((i, k), 0) * factorial(i) * factorial(k)
+        return jets_ | self._rho(order)
 
     def _rho(self, order: int) -> dict[Any, Any]:
         import sympy

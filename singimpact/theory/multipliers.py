@@ -51,8 +51,8 @@ def minimal_polynomial(quantity: str, at: str | int = "tangency") -> Any:
     if quantity != "mu":
         raise refuse("quantity", quantity, "'lambda' or 'mu'")
     numerator, denominator = sympy.fraction(mu_of_lambda(j))
-    found = sympy.resultant(above, sympy.expand(x * denominator - numerator), lambda_)
-    factors = [factor for factor, _ in sympy.factor_list(found, x, r)[1] if factor.has(x) and factor.has(r)]
+    resultant = sympy.resultant(above, sympy.expand(x * denominator - numerator), lambda_)
+    factors = [factor for factor, _ in sympy.factor_list(resultant, x, r)[1] if factor.has(x) and factor.has(r)]
     half = sympy.Rational(1, 2)
     root = next(z for z in sympy.Poly(above.subs(r, half), lambda_).nroots(n=30) if z.is_real and 0 < z < 1)
     value = mu_of_lambda(j).subs(lambda_, root)

@@ -29,10 +29,10 @@ def latex(value: Any) -> str:
     -\\tfrac{1}{6} a' t (3 \\sigma + t)
     """
     if isinstance(value, tuple):
-        return r"\bigl(" + r",\ ".join(latex(part) for part in value) + r"\bigr)"
+        return r"\bigl(" + r",\ ".join(latex(entry) for entry in value) + r"\bigr)"
     if isinstance(value, sympy.MatrixBase):
         rows = [
-            " & ".join(latex(part).replace(r"\frac", r"\dfrac") for part in value.row(n)) for n in range(value.rows)
+            " & ".join(latex(entry).replace(r"\frac", r"\dfrac") for entry in value.row(n)) for n in range(value.rows)
         ]
         between = r"\\[0.6em] " if any(r"\dfrac" in row for row in rows) else r"\\ "
         return r"\begin{pmatrix}" + between.join(rows) + r"\end{pmatrix}"
@@ -165,12 +165,12 @@ def _factors(pairs: list[tuple[Any, Any]]) -> list[str]:
 
 def _factor_key(base: Any, power: Any) -> tuple[Any, ...]:
     name = str(base)
-    place = _FIRST.index(name) if name in _FIRST else len(_FIRST)
+    rank = _FIRST.index(name) if name in _FIRST else len(_FIRST)
     return (
         not power.is_Integer,
         not base.is_Symbol,
         _LAST.index(name) + 1 if name in _LAST else 0,
-        place,
+        rank,
         -power if base.is_Add else 0,
         len(name) if base.is_Add else 0,
         name,

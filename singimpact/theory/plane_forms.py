@@ -121,7 +121,7 @@ def _numbers(found: NormalForm) -> list[Any]:
     return [found.lead, *found.source.terms.values(), *found.offset.terms.values()]
 
 
-def shown_form(found: NormalForm, number: Callable[[Any], Any] | None = None) -> ShownForm:
+def shown_form(form: NormalForm, number: Callable[[Any], Any] | None = None) -> ShownForm:
     """A normal form of `germs` in sympy.
 
     Parameters
@@ -135,19 +135,19 @@ def shown_form(found: NormalForm, number: Callable[[Any], Any] | None = None) ->
     >>> shown_form(reduced(t * t + u * t, 2)).offset
     -u**2/4
     """
-    jets = [found.source, found.offset, *found.unfolding.values(), found.residual]
+    jets = [form.source, form.offset, *form.unfolding.values(), form.residual]
     source, offset, *unfolding, residual = (jet.to_sympy(number) for jet in jets)
-    lead = found.source.space.constant(found.lead).to_sympy(number)
-    T, U, u = sympy.Symbol("T"), sympy.Symbol("U"), sympy.Symbol(found.source.space.variables[0])
-    left = 0 if found.reached else residual / lead
+    lead = form.source.space.constant(form.lead).to_sympy(number)
+    T, U, u = sympy.Symbol("T"), sympy.Symbol("U"), sympy.Symbol(form.source.space.variables[0])
+    left = 0 if form.reached else residual / lead
     return ShownForm(
-        kind={2: "fold", 3: "cusp"}[found.power],
-        order=found.residual.space.order,
+        kind={2: "fold", 3: "cusp"}[form.power],
+        order=form.residual.space.order,
         source=source,
         unfolding=unfolding[0] if unfolding else None,
         offset=offset,
         lead=lead,
         normal=(U, T**3 + U * T + left) if unfolding else (u, T**2 + left),
-        residual_vanishes=found.reached,
-        invertible=found.invertible,
+        residual_vanishes=form.reached,
+        invertible=form.invertible,
     )
