@@ -80,8 +80,8 @@ WEAKENED = {
         "and data[\"all\"] == (len(gaps) == degree)", "",
         chain(poly(-1, 0, 1), [place("0", -1), place("2", 1, expansion=[[[], 3]])], [["0", "2"]], True)),
     "a sign unproved": (
-        "if place[\"sign\"] not in (-1, 1) or not _expands(signed, place | {\"box\": data[\"box\"]}):",
-        "if place[\"sign\"] not in (-1, 1):",
+        "if point[\"sign\"] not in (-1, 1) or not _expands(signed, point | {\"box\": data[\"box\"]}):",
+        "if point[\"sign\"] not in (-1, 1):",
         chain(poly(1, 0, 1), [place("0", -1), place("1", 1)], [["0", "1"]], False)),
     "a derivative turned round": (
         "rational(data[\"first\"]) <= 0 or ", "",
@@ -121,7 +121,7 @@ WEAKENED = {
     "nothing by nothing is no pole": (
         "return bool(above) and (more", "return (more", value(poly(0, 1), poly(0, 1), "0", "infinite")),
     "a value with the variable in it": (
-        "free = not any(key[index] for part in stated for key in part) and", "free =",
+        "free = not any(key[index] for side in stated for key in side) and", "free =",
         value(const(2), const(1), "0", [poly(0, 2), poly(0, 1)])),
     "zero by zero": (
         "bool(below and stated[1]) and", "bool(stated[1]) and",
@@ -172,13 +172,13 @@ IN_IDENTITIES = {
         "max(key[-1] for key in zero) == 2 and", "",
         identity([OF_DEGREE_3, poly(1, 1)], [[], const(1)], [const(1), const(1), OF_DEGREE_3])),
     "a left denominator that the relation makes zero": (
-        "_invertible(left[1], relation, kept) and", "",
+        "_invertible(left[1], relation, truncation) and", "",
         identity([ROOT_OF_TWO, ROOT_OF_TWO], [const(5), const(1)], [const(1), const(-4), ROOT_OF_TWO])),
     "a right denominator that the relation makes zero": (
-        "and _invertible(right[1], relation, kept)", "",
+        "and _invertible(right[1], relation, truncation)", "",
         identity([const(5), const(1)], [ROOT_OF_TWO, ROOT_OF_TWO], [const(1), const(4), ROOT_OF_TWO])),
     "a cofactor that is another": (
-        "and kept.of(times(multiplier, difference)) == kept.of(times(cofactor, zero))", "",
+        "and truncation.of(times(multiplier, difference)) == truncation.of(times(cofactor, zero))", "",
         identity([const(1), const(1)], [const(2), const(1)], [const(1), [], ROOT_OF_TWO])),
     "a statement that is equal to itself": (
         "return left != right and _equal(left", "return _equal(left",
@@ -195,16 +195,16 @@ IN_IDENTITIES = {
         "return poly if self.order is None else cut(poly, self.weights, 0)", "return poly",
         composed(side([[[0, 2], 1]], below=E), side([]), order=1, weights=(0, 1))),
     "negative weights": (
-        "type(each) is int and each >= 0 for", "type(each) is int for",
+        "type(weight_) is int and weight_ >= 0 for", "type(weight_) is int for",
         composed(side(LINE, (0, ([*LINE, *ONE_TWO], ONE_TWO))), side([*LINE, *ONE_TWO]), order=0, weights=(0, -1))),
     "an order that is none": (
-        "type(kept.order) is not int or kept.order < 0", "False",
+        "type(truncation.order) is not int or truncation.order < 0", "False",
         composed(side(LINE, (0, ([*LINE, *ONE_TWO], ONE_TWO))), side([*LINE, *ONE_TWO]), order=True)),
     "weights without an order": (
-        "if kept.order is None and any(kept.weights):", "if False:",
+        "if truncation.order is None and any(truncation.weights):", "if False:",
         composed(side(LINE, (0, ([*LINE, *ONE_TWO], ONE_TWO))), side([*LINE, *ONE_TWO]), weights=(0, 1))),
     "a small multiplier": (
-        " and kept.spared(multiplier, zero)", "",
+        " and truncation.spared(multiplier, zero)", "",
         composed(side(ONE_TWO), side(TWO_TWO), [LINE, [], E_SQUARED_IS_2], 0, (1, 0))),
 }  # fmt: skip
 
@@ -263,7 +263,7 @@ IN_MOTIONS = {
     "an order of a motion that is none": (
         "type(order) is not int or order < 1", "False", motion(VT, PUSH, order=0)),
     "a jet that is a function of time": (
-        "if any(any(key[:3]) for part", "if False and any(any(key[:3]) for part",
+        "if any(any(key[:3]) for jet", "if False and any(any(key[:3]) for jet",
         motion([*VT, [[0, 0, 3], 1]], [[[[0, 0, 1], 6]]])),
     "a jet twice": ("len(set(pairs)) < len(pairs) or", "", motion(FALL, PUSH, ANY_SLOPE)),
     "a power that is no number": (
@@ -275,12 +275,12 @@ IN_MOTIONS = {
 }  # fmt: skip
 
 IN_PLAIN = {
-    "exponents twice": ("or key in found", "", positive([[[0], -1], [[0], 1]], expansion=[[[0], 1]])),
+    "exponents twice": ("or key in sums", "", positive([[[0], -1], [[0], 1]], expansion=[[[0], 1]])),
     "negative exponents": (
         "type(power) is not int or power < 0", "type(power) is not int",
         value([[[-1], 1]], const(1), "1", [const(1), const(1)])),
     "a coefficient of zero": (
-        "if not all(found.values()):", "if False:", identity([[], const(1)], [[[[3], 0]], const(1)])),
+        "if not all(sums.values()):", "if False:", identity([[], const(1)], [[[[3], 0]], const(1)])),
     "exponents that are not whole": (
         "type(power) is not int or power < 0", "power < 0", value([[[True], 1]], const(1), "1", [const(1), const(1)])),
     "coefficients in floating point": (

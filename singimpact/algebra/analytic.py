@@ -92,8 +92,8 @@ class Recorder:
             self.slopes[key] = self._slope(place, name).at
         return Place(self, self.slopes[key])
 
-    def _slope(self, place: Place, name: str) -> Place:
-        kind, parts = self.operations[place.at]
+    def _slope(self, index: Place, name: str) -> Place:
+        kind, parts = self.operations[index.at]
         if kind in ("number", "pi", "root", "sign"):
             return self.rational(ZERO)
         if kind == "name":
@@ -104,7 +104,7 @@ class Recorder:
             one, two = self.derivative(first, name), self.derivative(second, name)
             return one + two if kind == "+" else one * second + first * two
         inner = self.derivative(first, name)
-        return inner if self.value_of(inner.at) == 0 else self._outer(kind, place, first) * inner
+        return inner if self.value_of(inner.at) == 0 else self._outer(kind, index, first) * inner
 
     def _outer(self, function: str, y: Place, u: Place) -> Place:
         """The derivative of y = function(u) by u."""
@@ -133,7 +133,7 @@ class Recorder:
     def program(self, places: Sequence[Place]) -> Program:
         """The operations that some places need."""
         needed: set[int] = set()
-        stack = [place.at for place in places]
+        stack = [index.at for index in places]
         while stack:
             at = stack.pop()
             if at not in needed:
@@ -144,7 +144,7 @@ class Recorder:
         for old in sorted(needed):
             kind, parts = self.operations[old]
             operations.append((kind, tuple(order[at] for at in parts) if self._arguments(old) else parts))
-        return Program(tuple(operations), tuple(order[place.at] for place in places))
+        return Program(tuple(operations), tuple(order[index.at] for index in places))
 
     def _arguments(self, at: int) -> tuple[int, ...]:
         kind, parts = self.operations[at]
@@ -201,24 +201,24 @@ class Program:
 
     def prepared(self, fixed: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], list[Any]]:
         """The program with what depends on `fixed` names and constants alone computed at the working precision."""
-        known: list[Any] = [None] * len(self.operations)
+        constants: list[Any] = [None] * len(self.operations)
         left: list[tuple[int, str, tuple[Any, ...]]] = []
         open_places: set[int] = set()
         for at, (kind, parts) in enumerate(self.operations):
             waits = (
                 parts[0] not in fixed
                 if kind == "name"
-                else any(part in open_places for part in parts if kind not in ("number", "root"))
+                else any(argument in open_places for argument in parts if kind not in ("number", "root"))
             )
             if waits:
                 open_places.add(at)
                 left.append((at, kind, parts))
             else:
-                known[at] = _done(kind, parts, known, fixed)
+                constants[at] = _done(kind, parts, constants, fixed)
         results = self.results
 
         def run(values: Mapping[str, Any]) -> list[Any]:
-            done = known.copy()
+            done = constants.copy()
             for at, kind, parts in left:
                 if kind == "*":
                     done[at] = done[parts[0]] * done[parts[1]]

@@ -80,7 +80,7 @@ def positive_in(expression: Any, box: Box) -> bool:
     proof = expansion(poly, list(box.values()))
     if proof is None:
         raise ArithmeticError(f"no certificate was found that {expression} > 0")
-    scale = lcm(*(int(sympy.Poly(part, *box).clear_denoms()[0]) for part in (above, below)))
+    scale = lcm(*(int(sympy.Poly(polynomial, *box).clear_denoms()[0]) for polynomial in (above, below)))
     data = {
         "kind": "positive",
         "variables": [str(name) for name in box],
@@ -100,10 +100,10 @@ def expansion(poly: Any, box: Sequence[tuple[Any, Any]]) -> Certificate | None:
         for key, value in poly.terms():
             for powers in product(*(line[exponent].items() for line, exponent in zip(lines, key, strict=True))):
                 at = tuple(power for power, _ in powers)
-                part = Fraction(int(value.p), int(value.q))
+                term = Fraction(int(value.p), int(value.q))
                 for _, factor in powers:
-                    part *= factor
-                total[at] = total.get(at, Fraction(0)) + part
+                    term *= factor
+                total[at] = total.get(at, Fraction(0)) + term
         if all(value >= 0 for value in total.values()):
             return {
                 "box": [[str(low), str(high)] for low, high in box],
@@ -127,10 +127,10 @@ def _line(low: Any, high: Any, degree: int, more: int) -> list[dict[int, Fractio
             (low + high * t) ** n * (1 + t) ** (degree + more - n) / width ** (degree + more) for n in range(degree + 1)
         ]
     else:
-        place = low + t if sympy.sympify(low).is_finite else high - t
-        if not sympy.sympify(place).is_polynomial(t) or place.has(sympy.oo):
+        line = low + t if sympy.sympify(low).is_finite else high - t
+        if not sympy.sympify(line).is_polynomial(t) or line.has(sympy.oo):
             raise ArithmeticError(f"the interval ({low}, {high}) has no finite end")
-        forms = [place**n * (1 + t) ** more for n in range(degree + 1)]
+        forms = [line**n * (1 + t) ** more for n in range(degree + 1)]
     return [
         {int(k): Fraction(int(v.p), int(v.q)) for (k,), v in sympy.Poly(form, t, domain="QQ").terms()} for form in forms
     ]
@@ -190,7 +190,7 @@ def roots_inside(expression: Any, variable: Any, low: Any, high: Any) -> int:
     data = {
         "kind": "count",
         "variables": [str(variable)],
-        "chain": [[str(value) for value in reversed(part.all_coeffs())] for part in chain],
+        "chain": [[str(value) for value in reversed(member.all_coeffs())] for member in chain],
         "first": str(poly.diff().primitive()[0]),
         "steps": steps,
         "low": str(low),
@@ -251,7 +251,7 @@ def value_at(expression: Any, variable: Any, point: Any) -> Any:
     (2, zoo, 0)
     """
     above, below = _quotient(expression)
-    found = _limit(above, below, variable, point)
+    limit = _limit(above, below, variable, point)
     variables = sorted(expression.free_symbols | {variable}, key=str)
     data = {
         "kind": "value",
@@ -260,11 +260,11 @@ def value_at(expression: Any, variable: Any, point: Any) -> Any:
         "denominator": _data(below, variables),
         "index": variables.index(variable),
         "at": str(point),
-        "value": "infinite" if found == sympy.zoo else [_data(part, variables) for part in _quotient(found)],
+        "value": "infinite" if limit == sympy.zoo else [_data(side, variables) for side in _quotient(limit)],
     }
     if not established(data):
         raise ArithmeticError(f"the value of {expression} at {variable} = {point} is not certified")
-    return found
+    return limit
 
 
 def _limit(above: Any, below: Any, variable: Any, point: Any) -> Any:
@@ -290,7 +290,7 @@ def definite(form: Any, x: Any, y: Any) -> int:
     poly = sympy.Poly(form, x, y, domain="QQ")
     if set(map(sum, poly.monoms())) - {2}:
         return 0
-    values = [poly.coeff_monomial(part) for part in (x**2, x * y, y**2)]
+    values = [poly.coeff_monomial(square) for square in (x**2, x * y, y**2)]
     sign = int(sympy.sign(values[0]))
     data = {"kind": "definite", "variables": [str(x), str(y)], "form": [str(value) for value in values], "sign": sign}
     return sign if established(data) else 0
@@ -305,30 +305,31 @@ def identical(left: Any, right: Any) -> bool:
     """  # noqa: E501
     left, right = sympy.sympify(left), sympy.sympify(right)
     root = sorted(
-        (p for part in (left, right) for p in part.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2), key=str
+        (p for polynomial in (left, right) for p in polynomial.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2),
+        key=str,
     )[:1]
     w, relation = sympy.Symbol("w"), sympy.Integer(0)
     if root:
         above, below = _quotient(root[0].base)
         relation = below * w**2 - above
         left, right = (
-            part.subs({p: w ** (2 * p.exp) for p in part.atoms(sympy.Pow) if p.base == root[0].base})
-            for part in (left, right)
+            polynomial.subs({p: w ** (2 * p.exp) for p in polynomial.atoms(sympy.Pow) if p.base == root[0].base})
+            for polynomial in (left, right)
         )
     sides = [_quotient(side) for side in (left, right)]
-    parts = [relation, *(part for side in sides for part in side)]
-    names = sorted({name for part in parts for name in part.free_symbols} - {w}, key=str)
-    if not all(part.is_polynomial(*names, w) for side in sides for part in side):
+    parts = [relation, *(polynomial for side in sides for polynomial in side)]
+    names = sorted({name for polynomial in parts for name in polynomial.free_symbols} - {w}, key=str)
+    if not all(polynomial.is_polynomial(*names, w) for side in sides for polynomial in side):
         return False
-    if [sympy.expand(part) for part in sides[0]] == [sympy.expand(part) for part in sides[1]]:
+    if [sympy.expand(polynomial) for polynomial in sides[0]] == [sympy.expand(polynomial) for polynomial in sides[1]]:
         return False
     variables = [*names, w]
     data = {
         "kind": "identity",
         "variables": [str(name) for name in variables],
-        "left": [_data(part, variables) for part in sides[0]],
-        "right": [_data(part, variables) for part in sides[1]],
-        "relation": [_data(part, variables) for part in _related(sides, relation, w)] if root else None,
+        "left": [_data(polynomial, variables) for polynomial in sides[0]],
+        "right": [_data(polynomial, variables) for polynomial in sides[1]],
+        "relation": [_data(polynomial, variables) for polynomial in _related(sides, relation, w)] if root else None,
     }
     return established(data)
 

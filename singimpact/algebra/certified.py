@@ -45,9 +45,9 @@ class Certified:
         {'value': '0.0', 'radius': '1.01e-21'}
         """
         with bits_at(64) as mp:
-            value, radius, part = mp.convert(self.value), mp.convert(self.radius), mp.mpf(10) ** (-self.digits - 1)
+            value, radius, unit = mp.convert(self.value), mp.convert(self.radius), mp.mpf(10) ** (-self.digits - 1)
             # a ball of one point would be no ball for another enclosure to lie in
-            radius = 1.01 * (radius + abs(value) * part or part)
+            radius = 1.01 * (radius + abs(value) * unit or unit)
             return {"value": text_of(self.value, self.digits + 2), "radius": text_of(radius, 3)}
 
     def contains(self, number: Any) -> bool:
@@ -79,12 +79,12 @@ def as_certified(ball: Any, digits: int) -> Certified | None:
     """
     if not ball.is_finite():
         return None
-    found = from_ball(ball, digits)
+    number = from_ball(ball, digits)
     with bits_at(64) as mp:
-        value, radius = mp.convert(found.value), mp.convert(found.radius)
+        value, radius = mp.convert(number.value), mp.convert(number.radius)
         small = mp.mpf(10) ** -digits
         narrow = 2 * radius <= small * abs(value) or abs(value) + radius <= small**2
-    return found if narrow else None
+    return number if narrow else None
 
 
 def from_ball(ball: Any, digits: int) -> Certified:

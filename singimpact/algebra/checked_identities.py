@@ -41,36 +41,40 @@ def identity(data: Mapping[str, Any]) -> bool:
 
 def composed(data: Mapping[str, Any]) -> bool:
     """outer(images) of the left side is that of the right side, which has another outer function or other images."""
-    kept = Cut(tuple(data["weights"]), data["order"])
-    if len(kept.weights) != len(data["variables"]) or not all(type(each) is int and each >= 0 for each in kept.weights):
+    truncation = Cut(tuple(data["weights"]), data["order"])
+    if len(truncation.weights) != len(data["variables"]) or not all(
+        type(weight_) is int and weight_ >= 0 for weight_ in truncation.weights
+    ):
         raise ValueError("weights are whole numbers >= 0, one a variable")
-    if kept.order is not None and (type(kept.order) is not int or kept.order < 0):
+    if truncation.order is not None and (type(truncation.order) is not int or truncation.order < 0):
         raise ValueError("an order is a whole number >= 0, or null")
-    if kept.order is None and any(kept.weights):
+    if truncation.order is None and any(truncation.weights):
         raise ValueError("weights without an order")
     sides = []
     for side in ("left", "right"):
         images = {index: (terms(pair[0]), terms(pair[1])) for index, pair in data[side]["images"]}
-        if len(images) != len(data[side]["images"]) or not all(0 <= index < len(kept.weights) for index in images):
+        if len(images) != len(data[side]["images"]) or not all(
+            0 <= index < len(truncation.weights) for index in images
+        ):
             raise ValueError("a variable with two images, or none of the variables")
-        if not all(_invertible(below, data["relation"], kept) for _, below in images.values()):
+        if not all(_invertible(below, data["relation"], truncation) for _, below in images.values()):
             return False
-        above, below = (substituted(terms(part), images, *kept) for part in data[side]["outer"])
+        above, below = (substituted(terms(coefficient), images, *truncation) for coefficient in data[side]["outer"])
         sides.append((times(above[0], below[1]), times(below[0], above[1])))
-    return data["left"] != data["right"] and _equal(sides[0], sides[1], data["relation"], kept)
+    return data["left"] != data["right"] and _equal(sides[0], sides[1], data["relation"], truncation)
 
 
-def _equal(left: tuple[Terms, Terms], right: tuple[Terms, Terms], relation: Any, kept: Cut) -> bool:
+def _equal(left: tuple[Terms, Terms], right: tuple[Terms, Terms], relation: Any, truncation: Cut) -> bool:
     """multiplier times the difference over the common denominator is cofactor times relation, to the order."""
-    difference = kept.of(plus(times(left[0], right[1]), times(right[0], left[1]), -ONE))
-    if not (_invertible(left[1], relation, kept) and _invertible(right[1], relation, kept)):
+    difference = truncation.of(plus(times(left[0], right[1]), times(right[0], left[1]), -ONE))
+    if not (_invertible(left[1], relation, truncation) and _invertible(right[1], relation, truncation)):
         return False
     if relation is None:
         return not difference
-    multiplier, cofactor, zero = (terms(part) for part in relation)
+    multiplier, cofactor, zero = (terms(factor) for factor in relation)
     of_a_root = max(key[-1] for key in zero) == 2 and not any(key[-1] for key in multiplier)
-    sound = bool(multiplier) and of_a_root and kept.spared(multiplier, zero)
-    return sound and kept.of(times(multiplier, difference)) == kept.of(times(cofactor, zero))
+    sound = bool(multiplier) and of_a_root and truncation.spared(multiplier, zero)
+    return sound and truncation.of(times(multiplier, difference)) == truncation.of(times(cofactor, zero))
 
 
 def _invertible(below: Terms, relation: Any, kept: Cut) -> bool:
@@ -87,7 +91,7 @@ def _norm(poly: Terms, relation: Terms) -> Terms:
     parts = [_coefficient(poly, n) for n in range(max([key[-1] for key in poly] + [1]) + 1)]
     while len(parts) > 2:  # c2 poly = (c2 w^2 + c1 w + c0)(top w^n) + a poly of a lower degree
         top = parts.pop()
-        parts = [times(c2, part) for part in parts]
+        parts = [times(c2, conjugate) for conjugate in parts]
         parts[-1], parts[-2] = plus(parts[-1], times(top, c1), -ONE), plus(parts[-2], times(top, c0), -ONE)
     b0, b1 = parts
     return plus(plus(times(c2, times(b0, b0)), times(c1, times(b0, b1)), -ONE), times(c0, times(b1, b1)))

@@ -66,7 +66,7 @@ def flight(data: Mapping[str, Any]) -> bool:
     pushed = times(t, _pushed(data, times(t, rise), speed, clock, weights, order))
     if cut(plus(slope(speed, 0), pushed, -ONE), weights, order):
         return False
-    ends = [cut(at(part, 0, end), weights, order) for part in (rise, speed) for end in (ZERO, ONE)]
+    ends = [cut(at(series, 0, end), weights, order) for series in (rise, speed) for end in (ZERO, ONE)]
     stated = [{}, {}, *(cut(terms(data[name]), weights, order) for name in ("launch", "landing"))]
     return ends == stated
 
@@ -74,10 +74,12 @@ def flight(data: Mapping[str, Any]) -> bool:
 def _layout(data: Mapping[str, Any], first: Sequence[int | None]) -> tuple[int, tuple[int, ...], int | None]:
     """(variables, weights, order); the first three variables have weights, the letters of the equation have none."""
     size, weights, order = len(data["variables"]), tuple(data["weights"]), data["order"]
-    right = all(each >= 1 if wanted is None else each == wanted for each, wanted in zip(weights, first, strict=False))
+    right = all(
+        weight >= 1 if wanted is None else weight == wanted for weight, wanted in zip(weights, first, strict=False)
+    )
     if order is None and weights[:3] != (1, 1, 1):
         raise ValueError("weights without an order")
-    if len(weights) != size or any(type(each) is not int for each in weights) or any(weights[3:]) or not right:
+    if len(weights) != size or any(type(weight) is not int for weight in weights) or any(weights[3:]) or not right:
         raise ValueError(f"weights {weights} are not those of a motion")
     if order is not None and (type(order) is not int or order < 1):
         raise ValueError("an order is a whole number >= 1, or null")
@@ -88,9 +90,9 @@ def _pushed(
     data: Mapping[str, Any], x: Terms, speed: Terms, clock: Terms, weights: Sequence[int], order: int | None
 ) -> Terms:
     """a - (f - f(c, 0)) on a motion, at the time `clock` after tau_*, cut; the state may not occur in the jets."""
-    acceleration, force = [terms(part) for part in data["acceleration"]], data["force"]
-    pairs, jets = [tuple(pair) for pair, _ in force], [terms(part) for _, part in force]
-    if any(any(key[:3]) for part in (*acceleration, *jets) for key in part):
+    acceleration, force = [terms(jet) for jet in data["acceleration"]], data["force"]
+    pairs, jets = [tuple(pair) for pair, _ in force], [terms(jet) for _, jet in force]
+    if any(any(key[:3]) for jet in (*acceleration, *jets) for key in jet):
         raise ValueError("a jet that depends on the state")
     if len(set(pairs)) < len(pairs) or not all(type(n) is int and n >= 0 for pair in pairs for n in pair):
         raise ValueError("powers of x and x' that are not whole, negative, or occur twice")
@@ -99,8 +101,8 @@ def _pushed(
     tops = [max((pair[n] for pair in pairs), default=0) for n in (0, 1)]
     xs, speeds = (powers(base, top, weights, order) for base, top in zip((x, speed), tops, strict=True))
     total: Terms = {}
-    for part, power in zip(acceleration, powers(clock, len(acceleration), weights, order), strict=False):
-        total = plus(total, times(part, power))
-    for (i, k), part in zip(pairs, jets, strict=True):
-        total = plus(total, times(part, short_times(xs[i], speeds[k], weights, order)), -ONE)
+    for jet, power in zip(acceleration, powers(clock, len(acceleration), weights, order), strict=False):
+        total = plus(total, times(jet, power))
+    for (i, k), jet in zip(pairs, jets, strict=True):
+        total = plus(total, times(jet, short_times(xs[i], speeds[k], weights, order)), -ONE)
     return total

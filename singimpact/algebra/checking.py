@@ -65,10 +65,10 @@ def _expands(poly: Terms, proof: Mapping[str, Any]) -> bool:
         one = _distance(low, 1, index, size) if high == "oo" else _distance(high, -1, index, size)
         left = times(left, raised(plus(one, line(ONE, 0, index, size)), more, size))
     for key, value in expansion.items():
-        part = {(0,) * size: value}
+        term = {(0,) * size: value}
         for index, (low, high) in enumerate(proof["box"]):
-            part = times(part, _basis(low, high, key[index], proof["degree"][index], index, size))
-        total = plus(total, part)
+            term = times(term, _basis(low, high, key[index], proof["degree"][index], index, size))
+        total = plus(total, term)
     return bool(expansion) and all(value > 0 for value in expansion.values()) and left == total
 
 
@@ -102,11 +102,11 @@ def _order(place: str) -> tuple[int, Fraction]:
 def _chain(data: Mapping[str, Any]) -> bool:
     """At each place one sign for all parameters in the box; so a root in every gap where it changes, and no others."""
     poly, places = terms(data["polynomial"]), data["places"]
-    order = [_order(place["at"]) for place in places]
-    for place in places:
-        value = _at(poly, 0, place["at"])
-        signed = {key[1:]: number * place["sign"] for key, number in value.items()}
-        if place["sign"] not in (-1, 1) or not _expands(signed, place | {"box": data["box"]}):
+    order = [_order(point["at"]) for point in places]
+    for point in places:
+        value = _at(poly, 0, point["at"])
+        signed = {key[1:]: number * point["sign"] for key, number in value.items()}
+        if point["sign"] not in (-1, 1) or not _expands(signed, point | {"box": data["box"]}):
             return False
     gaps = [[a["at"], b["at"]] for a, b in pairwise(places) if a["sign"] != b["sign"]]
     degree = max(key[0] for key in poly)
@@ -115,7 +115,7 @@ def _chain(data: Mapping[str, Any]) -> bool:
 
 def _count(data: Mapping[str, Any]) -> bool:
     """Sturm: the polynomial without multiple roots has so many roots in the open interval."""
-    chain = [row(part) for part in data["chain"]]
+    chain = [row(member) for member in data["chain"]]
     ends = [_order(data["low"]), _order(data["high"])]
     slope = {(key[0] - 1,): value * key[0] for key, value in chain[0].items() if key[0]}
     if rational(data["first"]) <= 0 or slope != times(chain[1], {(0,): rational(data["first"])}):
@@ -148,8 +148,8 @@ def _value(data: Mapping[str, Any]) -> bool:
         above = {}
     if data["value"] == "infinite":
         return bool(above) and (more > 0 if at in INFINITE else not below)
-    stated = [terms(part) for part in data["value"]]
-    free = not any(key[index] for part in stated for key in part) and not (at in INFINITE and more > 0)
+    stated = [terms(side) for side in data["value"]]
+    free = not any(key[index] for side in stated for key in side) and not (at in INFINITE and more > 0)
     return free and bool(below and stated[1]) and times(above, stated[1]) == times(below, stated[0])
 
 

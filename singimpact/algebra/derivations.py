@@ -54,8 +54,8 @@ def substitution(
     sides = [_used(side if isinstance(side, At) else At(side)) for side in (left, right)]
     relation, last = where if where is not None else (None, None)
     parts = [relation or sympy.Integer(0), *small]
-    parts += [part for side in sides for part in (side.outer, *side.images, *side.images.values())]
-    names = sorted({name for part in parts for name in sympy.sympify(part).free_symbols} - {last}, key=str)
+    parts += [expression for side in sides for expression in (side.outer, *side.images, *side.images.values())]
+    names = sorted({name for expression in parts for name in sympy.sympify(expression).free_symbols} - {last}, key=str)
     variables = [*names, *([last] if last is not None else [])]
     data = {
         "kind": "composed",
@@ -106,27 +106,27 @@ def _related(
     difference = sympy.Poly(sympy.expand(above * under - other * below), last)
     if order is not None:
         short = sympy.Poly(difference.as_expr(), *small)
-        kept = {key: value for key, value in short.terms() if sum(key) <= order}
-        difference = sympy.Poly(sympy.Poly.from_dict(kept or {(0,) * len(small): 0}, *small).as_expr(), last)
+        truncated = {key: value for key, value in short.terms() if sum(key) <= order}
+        difference = sympy.Poly(sympy.Poly.from_dict(truncated or {(0,) * len(small): 0}, *small).as_expr(), last)
     zero = sympy.Poly(relation, last)
     if difference.degree() < 2:
         multiplier, cofactor = sympy.Integer(1), sympy.Integer(0)
     else:
         multiplier, cofactor = zero.LC() ** (difference.degree() - 1), sympy.pdiv(difference, zero)[0].as_expr()
-    return [terms_of(part, variables) for part in (multiplier, cofactor, relation)]
+    return [terms_of(polynomial, variables) for polynomial in (multiplier, cofactor, relation)]
 
 
 def _fraction(side: At) -> tuple[Any, Any]:
     """Numerator and denominator of a composition as the checker forms them, without cancelling."""
     pairs = {name: _split(image) for name, image in side.images.items()}
-    found = []
-    for part in _split(side.outer):
-        poly = sympy.Poly(part, *pairs) if pairs else None
+    sides = []
+    for side_ in _split(side.outer):
+        poly = sympy.Poly(side_, *pairs) if pairs else None
         tops = dict(zip(pairs, poly.degree_list(), strict=True)) if poly is not None else {}
         below = sympy.Mul(*(pairs[name][1] ** tops[name] for name in pairs))
-        above = part.subs({name: pair[0] / pair[1] for name, pair in pairs.items()}, simultaneous=True) * below
-        found.append((sympy.expand(sympy.cancel(above)), sympy.expand(below)))
-    (one, two), (three, four) = found
+        above = side_.subs({name: pair[0] / pair[1] for name, pair in pairs.items()}, simultaneous=True) * below
+        sides.append((sympy.expand(sympy.cancel(above)), sympy.expand(below)))
+    (one, two), (three, four) = sides
     return sympy.expand(one * four), sympy.expand(three * two)
 
 
@@ -165,8 +165,8 @@ def motion(
     """
     if not gathering():
         return
-    parts = [height, *acceleration, *force.values(), *(part for part in (launch, landing) if part is not None)]
-    names = {name for part in parts for name in sympy.sympify(part).free_symbols} - set(variables)
+    parts = [height, *acceleration, *force.values(), *(series for series in (launch, landing) if series is not None)]
+    names = {name for series in parts for name in sympy.sympify(series).free_symbols} - set(variables)
     every = [*variables, *sorted(names, key=str)]
     data = {
         "kind": "motion",

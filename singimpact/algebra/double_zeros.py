@@ -60,13 +60,13 @@ def double_zeros(tree: Expression, names: tuple[str, str], window: Box) -> Doubl
     """
     slope = derivative(tree, names[0])
     bend = derivative(slope, names[0])
-    made = isolated_zeros((tree, slope), names, (window[:2], window[2:]))
-    found = []
-    for at, value in made.found:
+    isolated = isolated_zeros((tree, slope), names, (window[:2], window[2:]))
+    zeros = []
+    for at, value in isolated.found:
         with balls_at(SETTINGS.bits):
             bent: Any = Balls(SETTINGS.bits).evaluate(bend, {names[0]: at, names[1]: value})
         zero = DoubleZero(as_rational(at), as_rational(value), 1 if bent > 0 else -1 if bent < 0 else 0)
         if window[0] <= zero.at <= window[1] and window[2] <= zero.value <= window[3]:
-            found.append(zero)
-    found.sort(key=lambda each: (each.value, each.at))
-    return DoubleZeros(tuple(found), tuple((*a, *b) for a, b in made.undecided))
+            zeros.append(zero)
+    zeros.sort(key=lambda each: (each.value, each.at))
+    return DoubleZeros(tuple(zeros), tuple((*a, *b) for a, b in isolated.undecided))

@@ -204,13 +204,13 @@ def number(value: int | Fraction) -> Number:
 
 def add(*terms: Expression) -> Expression:
     """The sum, with sums flattened and rationals collected, unless their sum is huge."""
-    flat = [part for term in terms for part in (term.terms if isinstance(term, Sum) else (term,))]
+    flat = [summand for term in terms for summand in (term.terms if isinstance(term, Sum) else (term,))]
     constant, others = Fraction(0), list[Expression]()
-    for part in flat:
-        if isinstance(part, Number) and _is_short(constant, part.value):
-            constant += part.value
+    for summand in flat:
+        if isinstance(summand, Number) and _is_short(constant, summand.value):
+            constant += summand.value
         else:
-            others.append(part)
+            others.append(summand)
     if constant or not others:
         others.append(Number(constant))
     return others[0] if len(others) == 1 else Sum(tuple(others))
@@ -218,13 +218,13 @@ def add(*terms: Expression) -> Expression:
 
 def multiply(*factors: Expression) -> Expression:
     """The product, with products flattened and rationals collected in front, unless their product is huge."""
-    flat = [part for factor in factors for part in (factor.factors if isinstance(factor, Product) else (factor,))]
+    flat = [operand for factor in factors for operand in (factor.factors if isinstance(factor, Product) else (factor,))]
     constant, others = Fraction(1), list[Expression]()
-    for part in flat:
-        if isinstance(part, Number) and (not part.value or _is_short(constant, part.value)):
-            constant *= part.value
+    for operand in flat:
+        if isinstance(operand, Number) and (not operand.value or _is_short(constant, operand.value)):
+            constant *= operand.value
         else:
-            others.append(part)
+            others.append(operand)
     if not constant:
         return ZERO
     if constant != 1 or not others:
@@ -371,8 +371,8 @@ def function_of(tree: Expression, names: Sequence[str], ring: Ring) -> Callable[
         return lambda *_: value
     match tree:
         case Name(name):
-            place = names.index(name)
-            return lambda *given: given[place]
+            index = names.index(name)
+            return lambda *given: given[index]
         case Sum(terms):
             first, *others = (function_of(term, names, ring) for term in terms)
 
@@ -411,9 +411,9 @@ def substitute(tree: Expression, values: Mapping[str, Expression]) -> Expression
         case Name(name):
             return values.get(name, tree)
         case Sum(parts):
-            return add(*(substitute(part, values) for part in parts))
+            return add(*(substitute(child, values) for child in parts))
         case Product(parts):
-            return multiply(*(substitute(part, values) for part in parts))
+            return multiply(*(substitute(child, values) for child in parts))
         case Power(base, exponent):
             return power(substitute(base, values), substitute(exponent, values))
         case Call(function, argument):

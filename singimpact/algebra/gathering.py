@@ -87,17 +87,17 @@ class Remembered:
 
     def result(self, key: Hashable, derive: Callable[[], R]) -> R:
         """The result for a key, derived when it is not known; its certificates join the open collection."""
-        known = self._results.get(key)
-        if known is None or (gathering() and known[1] is None):
+        stored = self._results.get(key)
+        if stored is None or (gathering() and stored[1] is None):
             if gathering():
-                with collected() as found:
+                with collected() as proofs:
                     value = derive()
-                known = value, tuple(found)
+                stored = value, tuple(proofs)
             else:
-                known = derive(), None
-            self._results[key] = known
-        _handed_on(known[1] or ())
-        return known[0]
+                stored = derive(), None
+            self._results[key] = stored
+        _handed_on(stored[1] or ())
+        return stored[0]
 
 
 def remembered(function: Callable[P, R]) -> Callable[P, R]:

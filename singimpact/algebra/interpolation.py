@@ -86,11 +86,11 @@ def interpolated(
             {key: value * below(flint.fmpq(base)) for key, value in values.items()}
             for values, below in zip(values_at(base), denominators, strict=True)
         ]
-        found: list[RationalCoefficients] | None = _read(rows, denominators, base)
-        if found is not None:
+        coefficients: list[RationalCoefficients] | None = _read(rows, denominators, base)
+        if coefficients is not None:
             checked = checked or values_at(READING.node)
-            if all(_agrees(one, READING.node, values) for one, values in zip(found, checked, strict=True)):
-                return found
+            if all(_agrees(one, READING.node, values) for one, values in zip(coefficients, checked, strict=True)):
+                return coefficients
     raise ArithmeticError("the denominators given are not those of the values")
 
 
@@ -100,7 +100,7 @@ def _read(
     """The coefficients from the values of their numerators; None when the base is too small for one."""
     import flint
 
-    below, found = 1, []
+    below, coefficients = 1, []
     for row, denominator in zip(rows, denominators, strict=True):
         terms = {}
         for key in sorted(row):
@@ -111,8 +111,8 @@ def _read(
             below = factor * int(row[key].q)
             if digits:
                 terms[key] = in_lowest_terms(flint.fmpq_poly(digits, below), denominator)
-        found.append(RationalCoefficients(terms))
-    return found
+        coefficients.append(RationalCoefficients(terms))
+    return coefficients
 
 
 def _fractions(value: int, factor: int, base: int) -> tuple[list[Any], int] | None:
@@ -157,13 +157,13 @@ def _denominator(residue: int, base: int) -> int:
     >>> _denominator(pow(35, -1, 2**127 - 1) * 22, 2**127 - 1)
     35
     """
-    above, below, longest, found = (base, residue % base), (0, 1), 0, 1
+    above, below, longest, denominator = (base, residue % base), (0, 1), 0, 1
     while above[1]:
         step = above[0] // above[1]
         if step > longest:
-            longest, found = step, abs(below[1])
+            longest, denominator = step, abs(below[1])
         above, below = (above[1], above[0] - step * above[1]), (below[1], below[0] - step * below[1])
-    return found
+    return denominator
 
 
 def in_lowest_terms(above: Any, below: Any) -> tuple[Any, Any]:

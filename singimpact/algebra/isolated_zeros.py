@@ -164,7 +164,7 @@ class _Search:
 
     def run(self, shown: Callable[[int], None]) -> IsolatedZeros:
         """Cut boxes until each is decided or too small."""
-        stack, found, undecided, count = [self.window], list[Place](), list[Box](), 0
+        stack, zeros, undecided, count = [self.window], list[Place](), list[Box](), 0
         while stack and count < self.settings.most and len(undecided) < self.settings.lost:
             shown(count)
             count += 1
@@ -174,14 +174,14 @@ class _Search:
                 smaller = self._cut(box)
                 stack += smaller
                 undecided += [] if smaller else [box]
-            elif decided and not any(self._overlap(decided, other) for other in found):
-                found.append(decided)
-        return IsolatedZeros(tuple(found), tuple(undecided + stack), count)
+            elif decided and not any(self._overlap(decided, other) for other in zeros):
+                zeros.append(decided)
+        return IsolatedZeros(tuple(zeros), tuple(undecided + stack), count)
 
     def _looked_at(self, box: Box) -> Place | None:
         """() when a box has no zero, the enclosure of one when it has, None when it is too large to tell."""
-        place = tuple(self.balls.interval(*ends) for ends in box)
-        if self.system.without_zeros(place):
+        balls = tuple(self.balls.interval(*ends) for ends in box)
+        if self.system.without_zeros(balls):
             return ()
         # a zero on an edge lies inside the wider box of one of the two neighbours
         spare = [(high - low) * self.settings.wider for low, high in box]
@@ -189,28 +189,28 @@ class _Search:
         moved = self._krawczyk(wider)
         if moved is None:
             return None
-        if moved == () or not self._overlap(moved, place):
+        if moved == () or not self._overlap(moved, balls):
             return ()
         return self._polished(moved) if self._inside(moved, wider) else None
 
-    def _polished(self, place: Place) -> Place:
+    def _polished(self, zero: Place) -> Place:
         """The enclosure of a zero that is known to be there, until it shrinks no more."""
         for _ in range(self.settings.rounds):
-            moved = self._krawczyk(place)
+            moved = self._krawczyk(zero)
             if not moved:
-                return place
-            smaller = tuple(new.intersection(old) for new, old in zip(moved, place, strict=True))
-            stuck = all(new.rad() > 0.7 * old.rad() for new, old in zip(smaller, place, strict=True))
-            place = smaller
+                return zero
+            smaller = tuple(new.intersection(old) for new, old in zip(moved, zero, strict=True))
+            stuck = all(new.rad() > 0.7 * old.rad() for new, old in zip(smaller, zero, strict=True))
+            zero = smaller
             if stuck:
                 break
-        return place
+        return zero
 
-    def _krawczyk(self, place: Place) -> Place | None:
+    def _krawczyk(self, balls_: Place) -> Place | None:
         """m - Y f(m) + (1 - Y J)(place - m); () where the centred form leaves out 0, None where no Y is found."""
-        middle = tuple(part.mid() for part in place)
-        away = [part - m for part, m in zip(place, middle, strict=True)]
-        linear = self.system.linearised(place, middle)
+        middle = tuple(side.mid() for side in balls_)
+        away = [side - m for side, m in zip(balls_, middle, strict=True)]
+        linear = self.system.linearised(balls_, middle)
         if linear is None:
             return None
         at_middle, J = linear
@@ -220,14 +220,14 @@ class _Search:
         matrix = np.array([[float(slope.mid()) for slope in row] for row in J])
         try:
             # Y need not be exact: any regular matrix makes the operator right, a good one makes it contract
-            Y = [[self.balls.rational(Fraction(float(part))) for part in row] for row in np.linalg.inv(matrix)]
+            Y = [[self.balls.rational(Fraction(float(side))) for side in row] for row in np.linalg.inv(matrix)]
         except (np.linalg.LinAlgError, ValueError, OverflowError):
             return None
         moved = []
         for i, row in enumerate(Y):
             rest = [int(i == k) - _dot(row, [J[n][k] for n in range(self.size)]) for k in range(self.size)]
             moved.append(middle[i] - _dot(row, at_middle) + _dot(rest, away))
-        return tuple(moved) if all(part.is_finite() for part in moved) else None
+        return tuple(moved) if all(side.is_finite() for side in moved) else None
 
     def _cut(self, box: Box) -> list[Box]:
         """Two boxes, cut across the largest side."""

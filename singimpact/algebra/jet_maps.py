@@ -26,11 +26,11 @@ def inverse_map(images: Sequence[Jet]) -> tuple[Jet, ...]:
     space = images[0].space
     linear = _inverse([[image.coefficient(key) for key in _units(space)] for image in images], space.ring)
     target = space.generators()
-    found = _applied(linear, target)
+    inverse = _applied(linear, target)
     for degree in range(2, space.order + 1):
-        missed = [image.compose(found).part(degree) for image in images]
-        found = [jet - step for jet, step in zip(found, _applied(linear, missed), strict=True)]
-    return tuple(found)
+        missed = [image.compose(inverse).part(degree) for image in images]
+        inverse = [jet - step for jet, step in zip(inverse, _applied(linear, missed), strict=True)]
+    return tuple(inverse)
 
 
 def _units(space: JetSpace) -> list[tuple[int, ...]]:

@@ -66,7 +66,7 @@ class JetSpace:
             degree = self.degree(key)
             if degree <= self.order:
                 graded.setdefault(degree, {})[key] = self.ring.element(value)
-        return self.of_parts({degree: self.polynomials.from_terms(part) for degree, part in graded.items()})
+        return self.of_parts({degree: self.polynomials.from_terms(terms_) for degree, terms_ in graded.items()})
 
     def of_parts(self, parts: Mapping[int, Any]) -> Jet:
         """The jet with these homogeneous parts: degree -> polynomial."""

@@ -105,14 +105,14 @@ def order_key(expression: Any) -> Key:
     >>> tuple(sorted(parts, key=order_key)) == sympy.Mul(*parts).args
     True
     """
-    place = CLASSES[type(expression).__name__]
-    if place < CLASSES["Symbol"]:
-        return place, expression.p, expression.q
-    if place == CLASSES["Symbol"]:
-        return place, expression.name
-    if place == CLASSES["Add"]:
-        return place, len(expression.args), _Terms(expression)
-    return place, len(expression.args), *(order_key(part) for part in expression.args)
+    rank = CLASSES[type(expression).__name__]
+    if rank < CLASSES["Symbol"]:
+        return rank, expression.p, expression.q
+    if rank == CLASSES["Symbol"]:
+        return rank, expression.name
+    if rank == CLASSES["Add"]:
+        return rank, len(expression.args), _Terms(expression)
+    return rank, len(expression.args), *(order_key(argument) for argument in expression.args)
 
 
 class _Terms:
@@ -149,14 +149,16 @@ def polynomial(symbol: Any, coefficients: Sequence[tuple[int, int]]) -> Any:
     True
     """
     powers = _powers(symbol, len(coefficients))
-    made = []
+    monomials = []
     for n, (p, q) in enumerate(coefficients[1:], 1):
         power = (int(n > 1), n)
         if p:
-            made.append(((0, *power), n, p, q) if p == q == 1 else ((MULTIPLE, _rational_key(p, q), *power), n, p, q))
-    made.sort()
+            monomials.append(
+                ((0, *power), n, p, q) if p == q == 1 else ((MULTIPLE, _rational_key(p, q), *power), n, p, q)
+            )
+    monomials.sort()
     parts = [sympy.Rational(*coefficients[0])] if coefficients[0][0] else []
-    for _, n, p, q in made:
+    for _, n, p, q in monomials:
         power = powers[n]
         value = sympy.Integer(p) if q == 1 else sympy.Rational.from_coprime_ints(p, q)
         parts.append(power if p == q == 1 else sympy.Mul._from_args([value, power], is_commutative=True))
@@ -191,8 +193,8 @@ class Products:
         if len(parts) == 1:
             return parts[0]
         if len(parts) == 2 and coefficient is not sympy.S.One and parts[1][1].is_Add:
-            found = coefficient * parts[1][1]  # a rational goes into a sum
-            return order_key(found), found
+            coefficient_ = coefficient * parts[1][1]  # a rational goes into a sum
+            return order_key(coefficient_), coefficient_
         keys, args = zip(*parts, strict=True) if parts else ((), ())
         return (CLASSES["Mul"], len(args), *keys), sympy.Mul._from_args(args, is_commutative=True)
 
@@ -288,7 +290,7 @@ def _written(total: Any) -> str | None:
     if len(seen) < len(total.args):  # sympy would order these terms by their sums
         return None
     frame = sympy.sstr(sympy.Add(*shown)).split(MARK)
-    return "".join(f"({texts[int(part)]})" if n % 2 else part for n, part in enumerate(frame))
+    return "".join(f"({texts[int(piece)]})" if n % 2 else piece for n, piece in enumerate(frame))
 
 
 def _polynomial_written(total: Any) -> str | None:
@@ -307,7 +309,7 @@ def _polynomial_written(total: Any) -> str | None:
     return (
         ("-" if parts[0][0] < 0 else "")
         + first
-        + "".join(f" {'-' if part[0] < 0 else '+'} {_term_written(*part)}" for part in parts[1:])
+        + "".join(f" {'-' if piece[0] < 0 else '+'} {_term_written(*piece)}" for piece in parts[1:])
     )
 
 

@@ -196,14 +196,14 @@ def sign_of(tree: Expression) -> int:
     """
     if isinstance(tree, Number):
         return (tree.value > 0) - (tree.value < 0)
-    if known := _sign_of_parts(tree):
-        return known
+    if sign := _sign_of_parts(tree):
+        return sign
     for bits in (64, 256, 1024, 4096):
         ball = _ball(tree, bits)
         if ball > 0 or ball < 0:
             return 1 if ball > 0 else -1
-    told = "is not decided with 4096 bits: write the number as a rational if it is zero"
-    raise InputError(f"the sign of {shown(str(tree), 200)} {told}")
+    advice = "is not decided with 4096 bits: write the number as a rational if it is zero"
+    raise InputError(f"the sign of {shown(str(tree), 200)} {advice}")
 
 
 def _sign_of_parts(tree: Expression) -> int:

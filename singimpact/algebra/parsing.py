@@ -105,16 +105,16 @@ class _Parser:
         if self.at == len(self.text):
             self.token, self.kind = "", "end"
             return
-        found = _TOKEN.match(self.text, self.at)
-        if found is None:
+        token = _TOKEN.match(self.text, self.at)
+        if token is None:
             bad = self.text[self.at :].lstrip()[0]
             if bad in "'\N{RIGHT SINGLE QUOTATION MARK}\N{PRIME}" and "xdot" in self.names:
                 raise self.refusal("the velocity x' is written xdot")
             raise self.refusal(f"the character {bad!r} has no meaning here; accepted are {_LANGUAGE}")
         self.before = self.kind, self.token
-        self.at = found.end()
-        self.kind = str(found.lastgroup)
-        self.token = found.group(self.kind)
+        self.at = token.end()
+        self.kind = str(token.lastgroup)
+        self.token = token.group(self.kind)
 
     def take(self, sign: str) -> bool:
         if self.kind == "sign" and self.token == sign:
@@ -222,16 +222,16 @@ class _Parser:
         if not self.take(")") or len(ends) != 2 or not all(isinstance(end, Number) for end in ends):
             raise self.refusal("root takes a function of u and two rationals, root(u**2 - 2, 1, 2)")
         low, high = (end.value for end in ends if isinstance(end, Number))
-        found = Root(function, low, high)
+        root_ = Root(function, low, high)
         self.roots += 1
         if self.roots > LIMITS.roots:
             raise self.refusal(f"it has more than {LIMITS.roots} roots")
         pieces = LIMITS.zeros // (self.roots**2 * sum(1 for _ in walk(function)))
-        if not low < high or not is_one_root(found, pieces):
+        if not low < high or not is_one_root(root_, pieces):
             raise self.refusal(
-                f"{shown(str(found))} is not one zero: the function must change sign once between the two numbers"
+                f"{shown(str(root_))} is not one zero: the function must change sign once between the two numbers"
             )
-        return found
+        return root_
 
     def named(self, token: str) -> Expression:
         if token == "root" and self.take("("):
@@ -316,7 +316,7 @@ def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
         return Name(tree.name)
     if kind == "Exp1":
         return Call("exp", Number(Fraction(1)))
-    parts = [_convert(part, names, depth + 1) for part in tree.args]
+    parts = [_convert(argument, names, depth + 1) for argument in tree.args]
     if tree.is_Add:
         return add(*parts)
     if tree.is_Mul:

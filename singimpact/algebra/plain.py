@@ -24,17 +24,17 @@ def terms(data: Iterable[Any]) -> Terms:
     >>> terms([[[1, 0], 2], [[0, 0], "1/2"]])
     {(1, 0): Fraction(2, 1), (0, 0): Fraction(1, 2)}
     """
-    found: Terms = {}
+    sums: Terms = {}
     for exponents, value in data:
         key = tuple(exponents)
-        if any(type(power) is not int or power < 0 for power in key) or key in found:
+        if any(type(power) is not int or power < 0 for power in key) or key in sums:
             raise ValueError(f"exponents {key} are negative, not whole, or occur twice")
-        if found and len(key) != len(next(iter(found))):
+        if sums and len(key) != len(next(iter(sums))):
             raise ValueError("exponents of several lengths")
-        found[key] = rational(value)
-    if not all(found.values()):
+        sums[key] = rational(value)
+    if not all(sums.values()):
         raise ValueError("a coefficient of 0 is not written")
-    return found
+    return sums
 
 
 def row(data: Iterable[Any]) -> Terms:
@@ -110,9 +110,9 @@ def short_times(left: Terms, right: Terms, weights: Sequence[int], order: int | 
     total: Terms = {}
     for one, value in left.items():
         room = order - weight(one, weights)
-        for degree, part in by_degree.items():
+        for degree, group in by_degree.items():
             if degree <= room:
-                for two, other in part.items():
+                for two, other in group.items():
                     key = tuple(map(int.__add__, one, two))
                     total[key] = total.get(key, 0) + value * other
     return {key: value for key, value in total.items() if value}
@@ -131,7 +131,7 @@ def substituted(
     """
     size = len(weights)
     top = {index: max((key[index] for key in poly), default=0) for index in images}
-    raises = {(i, part): powers(images[i][part], top[i], weights, order) for i in images for part in (0, 1)}
+    raises = {(i, side_): powers(images[i][side_], top[i], weights, order) for i in images for side_ in (0, 1)}
     above: Terms = {}
     for key, value in poly.items():
         rest = key

@@ -130,17 +130,17 @@ class _Expander:
 
     def kept(self, terms: dict[Fraction, Expression], bound: Fraction | None) -> Puiseux:
         """The terms below the bound that are not 0, the first of them."""
-        found: list[tuple[Fraction, Expression]] = []
+        powers: list[tuple[Fraction, Expression]] = []
         for exponent in sorted(terms):
             if bound is not None and exponent >= bound:
                 break
             value = _plain(terms[exponent])
             if value == ZERO:
                 continue
-            if len(found) == self.count:
-                return Puiseux(tuple(found), exponent)
-            found.append((exponent, value))
-        return Puiseux(tuple(found), bound)
+            if len(powers) == self.count:
+                return Puiseux(tuple(powers), exponent)
+            powers.append((exponent, value))
+        return Puiseux(tuple(powers), bound)
 
     def sum(self, left: Puiseux, right: Puiseux) -> Puiseux:
         total = dict(left.terms)
@@ -199,8 +199,8 @@ class _Expander:
             raise NoExpansion("no term is known")
         parts = dict(argument.terms)
         start = parts.pop(Fraction(0), ZERO)
-        known = _taylor(function, start, self.count + 2)
-        return self.composed(Puiseux(tuple(sorted(parts.items())), argument.bound), lambda k: known[k])
+        coefficients = _taylor(function, start, self.count + 2)
+        return self.composed(Puiseux(tuple(sorted(parts.items())), argument.bound), lambda k: coefficients[k])
 
 
 EXPONENTS = 1000  # above this a power of an irrational coefficient costs more digits than a model needs
@@ -284,7 +284,7 @@ def _taylor(function: str, start: Expression, count: int) -> tuple[Expression, .
         turned = multiply(number(1 if function == "sin" else -1), other)
         cycle = value, turned, multiply(MINUS_ONE, value), multiply(MINUS_ONE, turned)
         return tuple(multiply(cycle[k % 4], number(Fraction(1, factorial(k)))) for k in range(count + 1))
-    found = [value]
+    coefficients = [value]
     if function == "atan":  # (1 + z^2) f' = 1
         below = power(add(ONE, multiply(start, start)), MINUS_ONE)
         slopes = [below]
@@ -294,10 +294,10 @@ def _taylor(function: str, start: Expression, count: int) -> tuple[Expression, .
         return (value, *(multiply(slope, number(Fraction(1, k))) for k, slope in enumerate(slopes, 1)))
     sign = number(1 if function == "tan" else -1)  # f' = 1 + f^2 for tan, 1 - f^2 for tanh
     for k in range(count):
-        square = add(*(multiply(found[i], found[k - i]) for i in range(k + 1)))
+        square = add(*(multiply(coefficients[i], coefficients[k - i]) for i in range(k + 1)))
         slope = add(ONE if k == 0 else ZERO, multiply(sign, square))
-        found.append(multiply(slope, number(Fraction(1, k + 1))))
-    return tuple(found)
+        coefficients.append(multiply(slope, number(Fraction(1, k + 1))))
+    return tuple(coefficients)
 
 
 def _bracketed(text: str) -> str:

@@ -36,7 +36,7 @@ def isolate(
     """
     balls = Balls(BITS)
     least = (high - low) * LEAST_WIDTH
-    found: list[Zero] = []
+    zeros: list[Zero] = []
     with balls_at(BITS):
         stack = [(low, high)]
         while stack:
@@ -58,14 +58,14 @@ def isolate(
             if slope > 0 or slope < 0:
                 rising = 1 if slope > 0 else -1
                 if sign_at(tree, variable, left, order) * rising <= 0 < sign_at(tree, variable, right, order) * rising:
-                    found.append(Zero(left, right, rising))
+                    zeros.append(Zero(left, right, rising))
                 continue
             if right - left < least:
-                found.append(Zero(left, right, 0))
+                zeros.append(Zero(left, right, 0))
                 continue
             middle = left + (right - left) * Fraction(127, 256)  # off the middle: symmetric zeros do not fall on an end
             stack += [(middle, right), (left, middle)]
-    return _merged(found)
+    return _merged(zeros)
 
 
 def _merged(found: list[Zero]) -> list[Zero]:

@@ -67,7 +67,7 @@ class First(NamedTuple):
         return not self.ratio <= MOST * self.stored
 
 
-def cpu_of(command: list[str], place: str) -> float:
+def cpu_of(command: list[str], directory: str) -> float:
     """CPU seconds of a command and all its descendants, run in a folder with a new cache.
 
     Raises
@@ -82,13 +82,13 @@ def cpu_of(command: list[str], place: str) -> float:
     paths = [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
     around = {
         **os.environ,
-        "SINGIMPACT_CACHE": str(Path(place) / "cache"),
+        "SINGIMPACT_CACHE": str(Path(directory) / "cache"),
         "PYTHONPATH": os.pathsep.join(paths),
         "OPENBLAS_NUM_THREADS": "1",
     }
     done = subprocess.run(
         [sys.executable, "-c", SUPERVISOR, *command],
-        cwd=place,
+        cwd=directory,
         env=around,
         stdout=subprocess.PIPE,
         text=True,

@@ -79,9 +79,9 @@ def cost(timed: str, before: str = "", after: str = "answer = None", around: dic
     4
     """
     paths = [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
-    given = {**NO_SPINNING, **os.environ, "PYTHONPATH": os.pathsep.join(paths), **(around or {})}
-    if given.pop("PYTHONDONTWRITEBYTECODE", None):  # an installed package has its bytecode
-        given["PYTHONPYCACHEPREFIX"] = _bytecode()
+    environment = {**NO_SPINNING, **os.environ, "PYTHONPATH": os.pathsep.join(paths), **(around or {})}
+    if environment.pop("PYTHONDONTWRITEBYTECODE", None):  # an installed package has its bytecode
+        environment["PYTHONPYCACHEPREFIX"] = _bytecode()
     text = AROUND.format(before=before, timed=timed, after=after)
-    done = subprocess.run([sys.executable, "-c", text], env=given, capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", text], env=environment, capture_output=True, text=True, check=True)
     return Cost(*json.loads(done.stdout))

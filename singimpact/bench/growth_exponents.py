@@ -51,7 +51,7 @@ def fitted(sizes: Sequence[float], times: Sequence[float]) -> tuple[float, float
 
 def exponents(rows: Sequence[Row]) -> list[Exponent]:
     """An exponent for each method of each case that was measured at three sizes or more."""
-    found = []
+    rows_ = []
     for case, method in dict.fromkeys((row.case, row.method) for row in rows if row.size is not None):
         line = [
             (row.size, row.microseconds, row.work or row.size)
@@ -62,5 +62,5 @@ def exponents(rows: Sequence[Row]) -> list[Exponent]:
         if len(set(sizes)) >= 3:
             slope, error = fitted(sizes, [spent for _, spent, _ in line])
             work, _ = fitted(sizes, [work for _, _, work in line])
-            found.append(Exponent(case, method, slope, error, min(sizes), max(sizes), len(line), work))
-    return found
+            rows_.append(Exponent(case, method, slope, error, min(sizes), max(sizes), len(line), work))
+    return rows_

@@ -280,18 +280,20 @@ def cpu_seconds() -> float:
 
 def _turn(method: Method, calls: int = 1) -> _Turn:
     """A method timed: the mean of some calls, on the same problems, or on others each time where they are drawn."""
-    given = [() if method.draw is None else (method.draw(),) for _ in range(calls)]
+    draws = [() if method.draw is None else (method.draw(),) for _ in range(calls)]
     start = cpu_seconds()
-    found = [method.run(*each) for each in given]
+    answers = [method.run(*arguments) for arguments in draws]
     spent = (cpu_seconds() - start) / calls
     problems = (
         sum(
-            each.problems if isinstance(each, Counted) else method.problems or max(len(_answers(each)), 1)
-            for each in found
+            arguments.problems
+            if isinstance(arguments, Counted)
+            else method.problems or max(len(_answers(arguments)), 1)
+            for arguments in answers
         )
         / calls
     )
-    last = found[-1]
+    last = answers[-1]
     if isinstance(last, Timed):
         return _Turn(last.seconds, problems, last.answers, True)
     return _Turn(spent, problems, _answers(last), False)
@@ -306,7 +308,7 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
     error = wrong = missed = None
     of = min(len(answers), len(case.truth)) if case.truth else method.problems or len(answers)
     if case.truth:
-        errors = [relative_error(found, truth) for found, truth in zip(answers, case.truth, strict=False)]
+        errors = [relative_error(answer, truth) for answer, truth in zip(answers, case.truth, strict=False)]
         conditions = case.conditions or [1.0] * len(errors)
         allowed = [max(_least(method), 10 * kappa * method.epsilon) for kappa in conditions]
         wrong = sum(not off <= most for off, most in zip(errors, allowed, strict=False))
@@ -339,7 +341,7 @@ def _least(method: Method) -> float:
     return JUDGED.least if method.epsilon == EPSILON else 0.0
 
 
-def relative_error(found: Any, truth: Any) -> float:
+def relative_error(answer: Any, truth: Any) -> float:
     """|found/truth - 1|; inf without an answer.
 
     Examples
@@ -349,10 +351,10 @@ def relative_error(found: Any, truth: Any) -> float:
     """
     import mpmath
 
-    if found is None:
+    if answer is None:
         return float("inf")
     with mpmath.workdps(JUDGED.digits):
-        off = abs(mpmath.mpf(found) / mpmath.mpf(truth) - 1)
+        off = abs(mpmath.mpf(answer) / mpmath.mpf(truth) - 1)
         return float("inf") if mpmath.isnan(off) else float(off)
 
 

@@ -40,12 +40,13 @@ class Sheet:
 SHEET = Sheet()
 
 
-def plotted(found: Measured) -> Any:
+def plotted(measured: Measured) -> Any:
     """The matplotlib figure of a group."""
     from matplotlib.figure import Figure
 
     panels = {
-        case: [row for row in found.rows if row.case == case] for case in dict.fromkeys(r.case for r in found.rows)
+        case: [row for row in measured.rows if row.case == case]
+        for case in dict.fromkeys(r.case for r in measured.rows)
     }
     drawn = {case: rows for case, rows in panels.items() if _axis(rows) != "none"}
     bars = [row for rows in panels.values() if _axis(rows) == "none" for row in rows]
@@ -123,10 +124,10 @@ def _bars(axes: Any, rows: Sequence[Row]) -> None:
     axes.set_xscale("log")
     least = min(seconds) / 2
     axes.set_xlim(least, 3 * max(seconds))  # room for the time beside the longest
-    for place, row in zip(places, rows, strict=True):
+    for height, row in zip(places, rows, strict=True):
         parts = ([row.case] if several else []) + [row.method, row.setting]
-        axes.text(1.02 * least, place - 0.25, ", ".join(filter(None, parts)), fontsize=7, va="bottom")
-        axes.text(1.05 * row.microseconds / 1e6, place, in_words(row.microseconds), fontsize=7, va="center")
+        axes.text(1.02 * least, height - 0.25, ", ".join(filter(None, parts)), fontsize=7, va="bottom")
+        axes.text(1.05 * row.microseconds / 1e6, height, in_words(row.microseconds), fontsize=7, va="center")
     axes.set_ylim(len(rows) - 0.4, -0.8)
     axes.set_yticks([])
     axes.set_xlabel("seconds of CPU, or of wall time where it says so", fontsize=9)

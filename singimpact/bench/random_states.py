@@ -59,9 +59,9 @@ def check(count: int, seed: int, executor: Any = None, output: Any = None) -> li
     executor, output : as in `singimpact.cases.sweep`; an interrupted check goes on.
     """
     numbers = range(-(-count // DRAW.each))
-    found = sweep(partial(case, seed), numbers, executor, output)
+    table = sweep(partial(case, seed), numbers, executor, output)
     kinds = [kind_of(number) for number in numbers]
-    return [_row(kind, found, kinds) for kind in dict.fromkeys(kinds)]
+    return [_row(kind, table, kinds) for kind in dict.fromkeys(kinds)]
 
 
 def kind_of(number: int) -> str:
@@ -84,7 +84,9 @@ def case(seed: int, number: int) -> Array:
     step = osc.impact_map(tau, v, horizon=_horizon(family, omega))
     rows = []
     for index, (start, speed) in enumerate(states):
-        one = [float(np.ravel(part)[index]) for part in (step.status, step.flight_time, step.v, step.depth, step.bound)]
+        one = [
+            float(np.ravel(field)[index]) for field in (step.status, step.flight_time, step.v, step.depth, step.bound)
+        ]
         rows.append([one[0], *_errors(family, omega, clearance, start, speed, one), start, speed, *one[3:]])
     return np.array(rows)
 
@@ -129,12 +131,12 @@ def _grazing(rng: Any, family: str, omega: float, clearance: float, tau: float) 
 
 
 def _errors(
-    family: str, omega: float, clearance: float, tau: float, v: float, found: list[float]
+    family: str, omega: float, clearance: float, tau: float, v: float, errors: list[float]
 ) -> tuple[float, float, float]:
     """Errors of flight time and velocity in units of max(1e-14, 10 kappa eps), max(1e-13, 10 kappa eps); 1 if wrong."""
     import flint
 
-    status, time, next_v = found[:3]
+    status, time, next_v = errors[:3]
     period = 2 * pi / omega
     with balls_at(DRAW.bits + int(4 * max(-log2(v), 0))):
         motion = _motion(family, omega, clearance, tau, v)
@@ -174,13 +176,13 @@ class Row:
     open: list[tuple[float, ...]]
 
 
-def _row(kind: str, found: Array, kinds: list[str]) -> Row:
-    part = found[[index for index, name in enumerate(kinds) if name == kind]].reshape(-1, len(COLUMNS))
-    status, time_error, velocity_error, wrong = part.T[:4]
-    undecided = part[status == Status.unresolved, 4:]
+def _row(kind: str, table: Array, kinds: list[str]) -> Row:
+    rows = table[[index for index, name in enumerate(kinds) if name == kind]].reshape(-1, len(COLUMNS))
+    status, time_error, velocity_error, wrong = rows.T[:4]
+    undecided = rows[status == Status.unresolved, 4:]
     return Row(
         kind,
-        len(part),
+        len(rows),
         int(wrong.sum()),
         len(undecided),
         float(time_error.max()),

@@ -22,10 +22,10 @@ AIMED = (
 )
 
 
-def tables(found: Measured) -> list[Table]:
+def tables(measured: Measured) -> list[Table]:
     """Header and cells: the rows, then the exponents where there are such."""
-    made: list[Table] = [(HEADER, [_cells(row) for row in found.rows])]
-    fits = exponents(found.rows)
+    result: list[Table] = [(HEADER, [_cells(row) for row in measured.rows])]
+    fits = exponents(measured.rows)
     if fits:
         cells = [
             [
@@ -39,8 +39,8 @@ def tables(found: Measured) -> list[Table]:
             ]
             for fit in fits
         ]
-        made.append((GROWTH, cells))
-    return made
+        result.append((GROWTH, cells))
+    return result
 
 
 def in_words(microseconds: float) -> str:

@@ -53,7 +53,7 @@ class Flown(NamedTuple):
 
 
 def check(
-    found: dict[str, Array],
+    columns_: dict[str, Array],
     sizes: tuple[int, int],
     seed: int,
     executor: Executor | None = None,
@@ -66,23 +66,25 @@ def check(
     sizes : how many states are enclosed, and how many of these are also flown with `digits=20`.
     executor, output : as in `singimpact.cases.sweep`.
     """
-    total = len(found["status"])
+    total = len(columns_["status"])
     picked = np.random.default_rng([seed, total]).permutation(total)[: sizes[0]]
-    part = {name: column[picked].tolist() for name, column in found.items()}
+    chosen = {name: column[picked].tolist() for name, column in columns_.items()}
     states = [
         Flown(
-            int(part["case"][place]),
-            int(part["launch"][place]),
-            part["flight_time"][place],
-            part["velocity"][place],
-            part["true_time"][place],
-            part["true_velocity"][place],
-            place < sizes[1],
+            int(chosen["case"][index]),
+            int(chosen["launch"][index]),
+            chosen["flight_time"][index],
+            chosen["velocity"][index],
+            chosen["true_time"][index],
+            chosen["true_velocity"][index],
+            index < sizes[1],
         )
-        for place in range(len(picked))
+        for index in range(len(picked))
     ]
     table = sweep(partial(enclosed, seed), states, executor, output).reshape(-1, len(COLUMNS))
-    return summary({name: column[picked] for name, column in found.items()}, dict(zip(COLUMNS, table.T, strict=True)))
+    return summary(
+        {name: column[picked] for name, column in columns_.items()}, dict(zip(COLUMNS, table.T, strict=True))
+    )
 
 
 def enclosed(seed: int, state: Flown) -> Array:
@@ -167,13 +169,13 @@ class Enclosures:
     digits_seconds: float
 
 
-def summary(found: dict[str, Array], balls: dict[str, Array]) -> Enclosures:
+def summary(columns_: dict[str, Array], balls: dict[str, Array]) -> Enclosures:
     """The counts, from columns of the same states."""
-    decided = (balls["true_status"] != UNDECIDED) & (found["true_status"] != UNDECIDED)
+    decided = (balls["true_status"] != UNDECIDED) & (columns_["true_status"] != UNDECIDED)
     near = (balls["true_status"] == MISS) | (balls["step_time_error"] <= FINENESS.most)
-    alike = decided & (balls["true_status"] == found["true_status"]) & near
-    allowed = np.maximum(DRAW.wrong, 100 * found["condition"] * EPSILON)
-    right = (found["status"] == Status.hit) & (balls["time_error"] <= allowed)
+    alike = decided & (balls["true_status"] == columns_["true_status"]) & near
+    allowed = np.maximum(DRAW.wrong, 100 * columns_["condition"] * EPSILON)
+    right = (columns_["status"] == Status.hit) & (balls["time_error"] <= allowed)
     tried = np.isfinite(balls["digits_status"])
     hit = balls["digits_status"] == Status.hit
     open_ = balls["digits_status"] == Status.unresolved
@@ -184,10 +186,10 @@ def summary(found: dict[str, Array], balls: dict[str, Array]) -> Enclosures:
         agree=int(alike.sum()),
         disagree=int((decided & ~alike).sum()),
         worst_step=_most(balls["step_time_error"]),
-        worst=_most((balls["time_error"] / (10 * found["condition"] * EPSILON))[right]),
-        worst_velocity=_most((balls["velocity_error"] / (10 * found["velocity_condition"] * EPSILON))[right]),
-        time=estimate(found["error"], balls["time_error"], found["status"] == Status.hit),
-        velocity=estimate(found["velocity_error"], balls["velocity_error"], found["status"] == Status.hit),
+        worst=_most((balls["time_error"] / (10 * columns_["condition"] * EPSILON))[right]),
+        worst_velocity=_most((balls["velocity_error"] / (10 * columns_["velocity_condition"] * EPSILON))[right]),
+        time=estimate(columns_["error"], balls["time_error"], columns_["status"] == Status.hit),
+        velocity=estimate(columns_["velocity_error"], balls["velocity_error"], columns_["status"] == Status.hit),
         digits=int(tried.sum()),
         digits_wrong=int(bad.sum()),
         digits_unresolved=int(open_.sum()),
@@ -196,7 +198,7 @@ def summary(found: dict[str, Array], balls: dict[str, Array]) -> Enclosures:
     )
 
 
-def estimate(given: Array, true: Array, hit: Array) -> Estimate | None:
+def estimate(estimates: Array, true: Array, hit: Array) -> Estimate | None:
     """An estimate of the package beside the true error; None where no flight has one.
 
     Examples
@@ -205,12 +207,12 @@ def estimate(given: Array, true: Array, hit: Array) -> Estimate | None:
     >>> estimate(np.array([2e-16, 3e-16]), np.array([1e-16, 6e-16]), np.array([True, True]))
     Estimate(states=2, below=1, median=1.25)
     """
-    if not np.isfinite(given).any():
+    if not np.isfinite(estimates).any():
         return None
     used = hit & np.isfinite(true)
     # a hit without an estimate counts as below
-    below = used & ~(given >= true)
-    ratio = given[used] / np.maximum(true[used], LEAST_ERROR)
+    below = used & ~(estimates >= true)
+    ratio = estimates[used] / np.maximum(true[used], LEAST_ERROR)
     return Estimate(int(used.sum()), int(below.sum()), float(np.median(ratio)) if len(ratio) else np.nan)
 
 

@@ -71,8 +71,10 @@ def cost(family: Family) -> Cost:
         agree.append(float(same.mean()))
         figures.append(min(_timed(osc, every, False, DRAW.horizon)[0] for _ in range(2)) * 1e6 / COST.each)
         if same.any():
-            part = case.tau[same], case.v[same]
-            pairs = [[_timed(osc, part, rule, DRAW.horizon)[0] for rule in (False, True)] for _ in range(COST.rounds)]
+            states_ = case.tau[same], case.v[same]
+            pairs = [
+                [_timed(osc, states_, rule, DRAW.horizon)[0] for rule in (False, True)] for _ in range(COST.rounds)
+            ]
             ratios.append(float(np.median([one / other for one, other in pairs])))
     return Cost(float(np.median(figures)), float(np.median(ratios)) if ratios else np.nan, float(np.mean(agree)))
 

@@ -70,18 +70,18 @@ def flown(seed: int, number: int) -> Array:
     """The first launch of a case, in the order of COLUMNS."""
     case = drawn(seed, number, 1)
     osc, at = case.oscillator(), (float(case.tau[0]), float(case.v[0]))
-    found, spent = [], []
+    impacts_, spent = [], []
     for digits in (FEWER, MORE):
         begin = process_time()
-        found.append(osc.first_hit(*at, digits=digits, horizon=DRAW.horizon))
+        impacts_.append(osc.first_hit(*at, digits=digits, horizon=DRAW.horizon))
         spent.append(process_time() - begin)
-    impacts = [each.certified for each in found]
-    shown = sum(each is not None for each in impacts)
-    apart = found[0].status != found[1].status
+    impacts = [impact.certified for impact in impacts_]
+    shown = sum(impact is not None for impact in impacts)
+    apart = impacts_[0].status != impacts_[1].status
     if shown == BOTH:
         apart |= any(disjoint(getattr(impacts[0], name), getattr(impacts[1], name)) for name in impacts[0].NUMBERS)
-    time = float(found[1].flight_time)
-    return np.array([float(found[1].status), shown, apart, time, *spent])
+    time = float(impacts_[1].flight_time)
+    return np.array([float(impacts_[1].status), shown, apart, time, *spent])
 
 
 def disjoint(one: Certified, other: Certified) -> bool:
@@ -94,23 +94,23 @@ def disjoint(one: Certified, other: Certified) -> bool:
     >>> disjoint(near, near), disjoint(near, far)
     (False, True)
     """
-    value = [exact("value", each.value) for each in (one, other)]
-    radii: Fraction = sum((exact("radius", each.radius) for each in (one, other)), Fraction(0))
+    value = [exact("value", interval.value) for interval in (one, other)]
+    radii: Fraction = sum((exact("radius", interval.radius) for interval in (one, other)), Fraction(0))
     return abs(value[0] - value[1]) > radii
 
 
-def summary(found: dict[str, Array], cases: Sequence[int]) -> Pairs:
+def summary(columns_: dict[str, Array], cases: Sequence[int]) -> Pairs:
     """The counts, from columns, and the cases that are not decided."""
-    miss = found["status"] == Status.no_return
-    both = found["enclosed"] == BOTH
-    rates = [found[name][both] / np.maximum(found["time"][both], 1.0) for name in ("seconds", "more_seconds")]
+    miss = columns_["status"] == Status.no_return
+    both = columns_["enclosed"] == BOTH
+    rates = [columns_[name][both] / np.maximum(columns_["time"][both], 1.0) for name in ("seconds", "more_seconds")]
     costs = [(float(np.median(rate)), float(rate.max())) if len(rate) else (np.nan, np.nan) for rate in rates]
     return Pairs(
         states=len(miss),
         misses=int(miss.sum()),
         enclosed=int(both.sum()),
         refused=tuple(int(cases[int(at)]) for at in np.flatnonzero(~miss & ~both)),
-        apart=int(found["apart"].sum()),
+        apart=int(columns_["apart"].sum()),
         seconds=costs[0],
         more_seconds=costs[1],
     )

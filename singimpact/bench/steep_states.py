@@ -117,8 +117,8 @@ def drawn(seed: int, number: int, each: int = DRAW.each) -> Case:
     return drawn_of(family_of(number), rng, each)
 
 
-def drawn_of(family: Family, rng: Generator, each: int) -> Case:
-    """A random model of a family and `each` launches whose velocities differ by a factor of four at most."""
+def drawn_of(family: Family, rng: Generator, count: int) -> Case:
+    """A random model of a family and `count` launches whose velocities differ by a factor of four at most."""
     fast = 10.0 if "friction" in family.name else 6.0
     speed = _log_uniform(rng, 0.05, fast)
     clearance = float(rng.uniform(-0.4, 0.6))
@@ -136,12 +136,12 @@ def drawn_of(family: Family, rng: Generator, each: int) -> Case:
         "omega": float(rng.uniform(0.5, 3.0)),
         "damping": float(rng.uniform(0.0, 0.3)),
     }
-    v = np.clip(speed * 2.0 ** rng.uniform(-1, 1, each), 0.05, fast)
-    tau = rng.uniform(0, 6 * pi / numbers["omega"], each)
+    v = np.clip(speed * 2.0 ** rng.uniform(-1, 1, count), 0.05, fast)
+    tau = rng.uniform(0, 6 * pi / numbers["omega"], count)
     for kind, centre, _, _, spacing in family.layers(numbers):
         if kind == PHASE:  # launched ahead of the layer by less than a flight takes, about pi v/(1 + v)
-            turns = rng.integers(1, 4, each)
-            tau = centre + turns * spacing - rng.uniform(0, 0.8, each) * pi * v / (1 + v)
+            turns = rng.integers(1, 4, count)
+            tau = centre + turns * spacing - rng.uniform(0, 0.8, count) * pi * v / (1 + v)
     return Case(family, numbers, clearance, tau, v)
 
 
@@ -159,9 +159,9 @@ def flown(seed: int, number: int) -> Array:
     table = np.full((len(case.v), len(COLUMNS)), np.nan)
     put = {name: table[:, index] for index, name in enumerate(COLUMNS)}
     for name in ("status", "flight_time", "velocity", "condition", "velocity_condition", "error", "velocity_error"):
-        given = getattr(hit, name, None)
-        if given is not None:
-            put[name][:] = given
+        values = getattr(hit, name, None)
+        if values is not None:
+            put[name][:] = values
     put["family"][:], put["steepness"][:] = FAMILIES.index(case.family), case.numbers["K"]
     put["tau"][:], put["v"][:], put["seconds"][:] = case.tau, case.v, spent
     put["case"][:], put["launch"][:] = number, np.arange(len(case.v))
@@ -196,7 +196,7 @@ def relative_error(found: dict[str, Array]) -> Array:
         return np.where(both, np.abs(found["flight_time"] / found["true_time"] - 1), np.nan)
 
 
-def wrong(found: dict[str, Array]) -> Array:
+def wrong(columns_: dict[str, Array]) -> Array:
     """True where the package's flight is wrong.
 
     Notes
@@ -204,12 +204,12 @@ def wrong(found: dict[str, Array]) -> Array:
     Wrong: a hit whose relative error exceeds max(1e-9, 100 kappa epsilon), or whose error or kappa is no number; a hit
     where the truth has none; any status but `hit` and `unresolved` where the truth hits before the horizon.
     """
-    allowed = np.maximum(DRAW.wrong, 100 * found["condition"] * EPSILON)
-    hit, true = found["status"] == Status.hit, found["true_status"]
-    exact = relative_error(found) <= allowed
-    ended = (found["status"] == Status.no_return) | (found["status"] == Status.escaped)
+    allowed = np.maximum(DRAW.wrong, 100 * columns_["condition"] * EPSILON)
+    hit, true = columns_["status"] == Status.hit, columns_["true_status"]
+    exact = relative_error(columns_) <= allowed
+    ended = (columns_["status"] == Status.no_return) | (columns_["status"] == Status.escaped)
     right = np.where(true == HIT, hit & exact, ended)
-    return np.asarray(~right & (found["status"] != Status.unresolved) & ((true == HIT) | (true == MISS)))
+    return np.asarray(~right & (columns_["status"] != Status.unresolved) & ((true == HIT) | (true == MISS)))
 
 
 @dataclass(frozen=True)
@@ -229,29 +229,29 @@ class Row:
     true_seconds: float
 
 
-def rows(found: dict[str, Array]) -> list[Row]:
+def rows(columns_: dict[str, Array]) -> list[Row]:
     """A row a family that was flown."""
-    bad, error = wrong(found), relative_error(found)
-    open_ = found["status"] == Status.unresolved
-    mild = found["steepness"] <= DRAW.mild
-    undecided = found["true_status"] == graded_steps.UNDECIDED
+    bad, error = wrong(columns_), relative_error(columns_)
+    open_ = columns_["status"] == Status.unresolved
+    mild = columns_["steepness"] <= DRAW.mild
+    undecided = columns_["true_status"] == graded_steps.UNDECIDED
     table = []
-    for index in np.unique(found["family"]).astype(int):
-        here = found["family"] == index
+    for index in np.unique(columns_["family"]).astype(int):
+        here = columns_["family"] == index
         fine = error[here & ~bad & np.isfinite(error)]
         table.append(
             Row(
                 FAMILIES[index].name,
                 FAMILIES[index].steep,
                 int(here.sum()),
-                int(found["crossed"][here].sum()),
+                int(columns_["crossed"][here].sum()),
                 int(bad[here].sum()),
                 int((open_ & mild)[here].sum()),
                 int((open_ & ~mild)[here].sum()),
                 int(undecided[here].sum()),
                 float(fine.max(initial=0.0)),
-                float(found["seconds"][here].mean()),
-                float(found["true_seconds"][here].mean()),
+                float(columns_["seconds"][here].mean()),
+                float(columns_["true_seconds"][here].mean()),
             )
         )
     return table

@@ -103,7 +103,7 @@ def certify(result: Any) -> Certificate:
     >>> from singimpact.impact_oscillator import linear
     >>> found = certify(linear("2.8", 0, "0.8").impact_map("0.9", "0.3", digits=5))
     >>> found
-    <certificate of the first impact from (0.9, 0.3): tau = 1.533940 +- 1.55e-6, v = 0.2033385 +- 2.05e-7>
+    <certificate of the first impact from (0.9, 0.3): tau = 1.533940 +- 1.55e-6, v = 0.2033385 +- 2.10e-7>
     >>> found.check()
     >>> certify(linear(4, 0, "0.5").periodic(1, 2)[0].certified(15)).content["states"][0]["tau"]
     {'value': '1.1780972450961725', 'radius': '1.19e-16'}

@@ -120,8 +120,8 @@ class FlightFromRest(CarriedMotion):
         (by_tau, rate_by_tau), (by_number, rate_by_number) = self.by[2:]
         value = added(value, _combined(by_tau, by_number, along), size)
         slope = added(slope, _combined(rate_by_tau, rate_by_number, along), size)
-        for (psi, rate), part in zip(self.by[2:], rest, strict=True):
-            value, slope = added(value, psi, part), added(slope, rate, part)
+        for (psi, rate), term in zip(self.by[2:], rest, strict=True):
+            value, slope = added(value, psi, term), added(slope, rate, term)
         return value, slope
 
     def bend(self, s: Any, height: Any, speed: Any) -> Any:
@@ -140,7 +140,7 @@ class FlightFromRest(CarriedMotion):
         ----------
         window : times above 0.
         """
-        found: list[Any] = []
+        zeros_: list[Any] = []
         near = _NearLaunch()
         while not self.time >= window[1]:
             value, slope, length = self.tubes()
@@ -148,19 +148,19 @@ class FlightFromRest(CarriedMotion):
                 time = self.time + piece
                 if time < window[0] or time > window[1]:
                     continue
-                if found and found[-1].overlaps(time):
-                    found[-1] = found[-1].union(time)
+                if zeros_ and zeros_[-1].overlaps(time):
+                    zeros_[-1] = zeros_[-1].union(time)
                 else:
-                    found.append(time)
+                    zeros_.append(time)
             self.advance(centre(length))
-        return found
+        return zeros_
 
     def crossings(self, window: tuple[Any, Any]) -> tuple[list[Any], list[Any]]:
         """Times at which x = c on the flight from a swan: balls with one such time each, and balls that are undecided.
 
         At a swan a_c' = 0 too: the fourth derivative of x has a zero between the launch and the first crossing.
         """
-        found: list[Any] = []
+        zeros_: list[Any] = []
         undecided: list[Any] = []
         near = _NearLaunch([False, True])
         while not self.time >= window[1]:
@@ -168,9 +168,9 @@ class FlightFromRest(CarriedMotion):
             for piece, alone in self._crossed(value, slope, length, near):
                 time = self.time + piece
                 if not (time < window[0] or time > window[1]):
-                    (found if alone else undecided).append(time)
+                    (zeros_ if alone else undecided).append(time)
             self.advance(centre(length))
-        return found, undecided
+        return zeros_, undecided
 
     def _crossed(self, value: Tube, slope: Tube, length: Any, near: _NearLaunch) -> Iterator[tuple[Any, bool]]:
         """Pieces of a step on which x - c may vanish, and whether it is shown to do so once."""

@@ -177,16 +177,16 @@ def _of_the_surface(surface: ImpactSurface) -> list[SingularPoint]:
     The launch is at rest too, for the derivatives by place and velocity do not vanish together.  Z crosses itself
     there or shrinks to the point: what was traced of it ends beside the point, or has it as a vertex.
     """
-    flights, found = RestFlights(surface.model), list[SingularPoint]()
-    places = [tuple(place) for curve in surface.zero_set for name in ("rest", "end") for place in curve.marked(name)]
+    flights, singular = RestFlights(surface.model), list[SingularPoint]()
+    places = [tuple(vertex) for curve in surface.zero_set for name in ("rest", "end") for vertex in curve.marked(name)]
     for tau, t in places:
         at, end = np.array([tau]), np.array([t])
         _, velocity = flights.ends(at, end)
         by_speed = flights.by_speed(at, end)[0]
-        known = any(abs(point.tau - tau) + abs(point.t - t) < SINGULAR for point in found)
-        if abs(by_speed[0]) + abs(velocity[0]) < SINGULAR * abs(by_speed[1]) and t and not known:
-            found.append(SingularPoint("singular", "p, phi", float(tau), float(t), (float(tau), 0.0)))
-    return found
+        listed = any(abs(point.tau - tau) + abs(point.t - t) < SINGULAR for point in singular)
+        if abs(by_speed[0]) + abs(velocity[0]) < SINGULAR * abs(by_speed[1]) and t and not listed:
+            singular.append(SingularPoint("singular", "p, phi", float(tau), float(t), (float(tau), 0.0)))
+    return singular
 
 
 def _folds(maps: str, curves: list[Curve]) -> Iterator[FoldLine]:

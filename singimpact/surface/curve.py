@@ -17,12 +17,12 @@ SURFACE, STATES = ("tau", "t"), ("tau", "v")
 """The axes of the two planes: launches with flight times, and launches."""
 
 
-def window_ends(name: str, given: Any) -> tuple[float, float]:
+def window_ends(name: str, window: Any) -> tuple[float, float]:
     """The two ends (low, high) of a window, as numbers.
 
     Parameters
     ----------
-    name : of the quantity, for the error message. given : two numbers in any form that the package takes.
+    name : of the quantity, for the error message. window : two numbers in any form that the package takes.
 
     Raises
     ------
@@ -33,11 +33,11 @@ def window_ends(name: str, given: Any) -> tuple[float, float]:
     >>> window_ends("v", (0, "1/2"))
     (0.0, 0.5)
     """
-    if not isinstance(given, tuple | list) or len(given) != 2:
-        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
-    low, high = (as_float(constant(f"window of {name}", end)) for end in given)
+    if not isinstance(window, tuple | list) or len(window) != 2:
+        raise refuse(f"window of {name}", window, "two numbers, the lower end first")
+    low, high = (as_float(constant(f"window of {name}", end)) for end in window)
     if not low < high:
-        raise refuse(f"window of {name}", given, "two numbers, the lower end first")
+        raise refuse(f"window of {name}", window, "two numbers, the lower end first")
     return low, high
 
 
@@ -171,5 +171,5 @@ def distances(points: Array, line: Array) -> Array:
     away = points[:, None] - start
     along = np.sum(away * step, axis=2) / np.maximum(np.sum(step**2, axis=1), 1e-300)
     off = away - np.clip(along, 0.0, 1.0)[..., None] * step
-    found: Array = np.sqrt(np.sum(off**2, axis=2)).min(axis=1)
-    return found
+    nearest: Array = np.sqrt(np.sum(off**2, axis=2)).min(axis=1)
+    return nearest

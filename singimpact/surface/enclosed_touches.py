@@ -68,20 +68,20 @@ class EnclosedTouches:
 
     def touches(self, period: float, ends: tuple[float, float], times: tuple[float, float]) -> IsolatedZeros:
         """(tau, t, value) of all lips and beaks in a period of tau."""
-        longest, found, undecided, count = Fraction(period), list[Place](), list[Box](), 0
+        longest, zeros, undecided, count = Fraction(period), list[Place](), list[Box](), 0
         between = Fraction(ends[0]), Fraction(ends[1])
         for sign, window in _sides(times):
             tau = (-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN))
             search = _Search(self._turned(sign), self.over, window, longest)
-            made = search.run((tau if sign > 0 else (-tau[1], -tau[0]), between))
-            found += [(sign * tau, sign * t, value) for tau, t, value in made.found]
-            undecided += [(*(_mirrored(part, sign) for part in box[:2]), box[2]) for box in made.undecided]
-            count += made.looked_at
-        return IsolatedZeros(tuple(found), tuple(undecided), count)
+            searched = search.run((tau if sign > 0 else (-tau[1], -tau[0]), between))
+            zeros += [(sign * tau, sign * t, value) for tau, t, value in searched.found]
+            undecided += [(*(_mirrored(side, sign) for side in box[:2]), box[2]) for box in searched.undecided]
+            count += searched.looked_at
+        return IsolatedZeros(tuple(zeros), tuple(undecided), count)
 
     def swallowtails(self, tau: Any, value: Any, times: tuple[float, float]) -> IsolatedZeros:
         """All t != 0 at which the flight from a swan, given by balls, crosses x = c again."""
-        found, undecided, count = list[Place](), list[Box](), 0
+        zeros, undecided, count = list[Place](), list[Box](), 0
         for sign, window in _sides(times):
             count += 1
             of = Tangencies(self._turned(sign), self.over)
@@ -93,9 +93,9 @@ class EnclosedTouches:
             except (Refused, ValueError, ZeroDivisionError):
                 undecided.append((_mirrored(window, sign),))
                 continue
-            found += [(sign * time,) for time in crossed]
+            zeros += [(sign * time,) for time in crossed]
             undecided += [(_mirrored(_ends(time), sign),) for time in left]
-        return IsolatedZeros(tuple(found), tuple(undecided), count)
+        return IsolatedZeros(tuple(zeros), tuple(undecided), count)
 
     def _turned(self, sign: int) -> Oscillator:
         """The model, or the one whose flights are its own run backwards."""
@@ -123,7 +123,7 @@ class _Search:
     def run(self, window: Box) -> IsolatedZeros:
         """Cut boxes until each is decided."""
         sizes = self.period, max(window[1][1] - window[1][0], self._size(window))
-        stack, found, undecided, count = [window], list[Place](), list[Box](), 0
+        stack, zeros_, undecided, count = [window], list[Place](), list[Box](), 0
         times = self.balls.rational(self.times[0]), self.balls.rational(self.times[1])
         with ProgressLine() as line, series_of_any_length():
             while stack and count < SETTINGS.most and len(undecided) < SETTINGS.lost:
@@ -137,14 +137,14 @@ class _Search:
                 if max(shares) <= SETTINGS.widest:
                     zeros = self._decided(smaller, times, max(shares))
                     if zeros is not None:
-                        found += [zero for zero in zeros if not any(_overlap(zero, other) for other in found)]
+                        zeros_ += [zero for zero in zeros if not any(_overlap(zero, other) for other in zeros_)]
                         continue
                 if max(shares) < SETTINGS.least:
                     undecided.append((smaller[0], self.times, smaller[1]))
                     continue
                 stack += _cut(smaller, shares.index(max(shares)))
         undecided += [(tau, self.times, value) for tau, value in stack]
-        return IsolatedZeros(tuple(found), tuple(undecided), count)
+        return IsolatedZeros(tuple(zeros_), tuple(undecided), count)
 
     def _size(self, window: Box) -> Fraction:
         """The change of the number that weighs as much as a period: boxes along a_c = 0 are about as long both ways."""
@@ -157,13 +157,13 @@ class _Search:
         """The part of a box in which a_c may vanish."""
         with balls_at(self.balls.bits):
             for _ in range(3):
-                place = tuple(self.balls.interval(*ends) for ends in box)
-                lean = self.of.lean(*place)
+                balls = tuple(self.balls.interval(*ends) for ends in box)
+                lean = self.of.lean(*balls)
                 if lean is None:
                     return None
                 (one, two), size, rest = lean
                 parts = []
-                for ball, along, left, ends in zip(place, (one, two), rest, box, strict=True):
+                for ball, along, left, ends in zip(balls, (one, two), rest, box, strict=True):
                     middle = type(ball)(ball.mid())
                     inner = middle + along * size + left
                     if not inner.overlaps(ball):
@@ -192,14 +192,14 @@ class _Search:
             return ()
         if share > SETTINGS.isolated:
             return None
-        found: list[Place] = []
+        zeros: list[Place] = []
         for piece in pieces:
             with balls_at(ONE_BOX.bits):
-                made = zeros_of(_Touch(self.of), (box[0], _ends(piece), box[1]), ONE_BOX)
-            if not made.complete:
+                isolated = zeros_of(_Touch(self.of), (box[0], _ends(piece), box[1]), ONE_BOX)
+            if not isolated.complete:
                 return None
-            found += made.found
-        return found
+            zeros += isolated.found
+        return zeros
 
 
 class _Touch:
@@ -211,8 +211,8 @@ class _Touch:
     def without_zeros(self, place: Place) -> bool:
         return not self.of.push(place[0], place[2])[0].contains(0)
 
-    def linearised(self, place: Place, middle: Place) -> tuple[Sequence[Any], Sequence[Sequence[Any]]] | None:
-        tau, t, value = place
+    def linearised(self, balls: Place, middle: Place) -> tuple[Sequence[Any], Sequence[Sequence[Any]]] | None:
+        tau, t, value = balls
         try:
             over, bend = at_time(self.of, tau, value, t, SETTINGS.fine)
             at, _ = at_time(self.of, middle[0], middle[2], middle[1], SETTINGS.fine)

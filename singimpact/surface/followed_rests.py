@@ -79,25 +79,25 @@ class FollowedRests:
 
     def met(self, wanted: Collection[str]) -> list[Rests]:
         """Events of the kinds "tacnode", "triple point" and "periodic graze" that are wanted."""
-        found = list[Rests]()
+        events = list[Rests]()
         if len(self.values) < 2:
-            return found
+            return events
         if "periodic graze" in wanted and self.longest <= self.gaps[1] * (1 + GRID.whole):
-            found += self._grazes()
+            events += self._grazes()
         if "tacnode" in wanted and self.gaps[1] > self.gaps[0]:
-            found += self._tacnodes()
+            events += self._tacnodes()
         if "triple point" in wanted and self.gaps[1] > 2 * GRID.least:
             levels = [self._level(value) for value in self.values[:: GRID_OF.rows // GRID_OF.levels].tolist()]
             for before, after in pairwise(levels):
-                found += self._triples(before, after)
-        return found
+                events += self._triples(before, after)
+        return events
 
     def both_ends(self, value: float, first: float, gap: float) -> Rests | None:
         """The flight from tangency to tangency there; the equations of one tangency have a double zero at it."""
         near = np.array([first, gap, value])
         if np.abs(self._pushed(near)[:2]).max() > GRID_OF.flat:
             return None
-        met = newton(lambda z: np.array([self._pushed(place) for place in z]), near[None])
+        met = newton(lambda z: np.array([self._pushed(point) for point in z]), near[None])
         if not len(met) or np.abs(met[0] - near).max() > GRID_OF.flat:
             return None
         s, d, there = met[0]
@@ -132,7 +132,7 @@ class FollowedRests:
             for i, at in _crossings(height, speed):
                 turn, gap = self._turn(self.values[i]), float(np.interp(at, np.arange(d.shape[1]), d[i]))
                 starts.append([np.interp(at, np.arange(len(self.share)), self.share) * turn, gap, self.values[i]])
-            met = newton(lambda z: np.array([self._touching(place) for place in z]), np.array(starts).reshape(-1, 3))
+            met = newton(lambda z: np.array([self._touching(point) for point in z]), np.array(starts).reshape(-1, 3))
             for s, gap, value in distinct(met):
                 if self._inside(value, gap) and not is_whole(gap / self._turn(value)):
                     yield Rests("tacnode", float(value), float(s), (float(gap),))
@@ -214,14 +214,14 @@ class FollowedRests:
 def _at_conjugates(d: Array, rows: Array, faster: Array) -> Array:
     """d, x - c and x' at the n-th time at which dx/dv vanishes, shape (3, n, s); those that every flight reaches."""
     by_speed = (faster[..., 0] - rows[..., 0]) / GRID_OF.push
-    found = []
+    crossings = []
     for one, path in zip(by_speed, rows, strict=True):
         at = np.flatnonzero(one[:-1] * one[1:] < 0)
         share = one[at] / (one[at] - one[at + 1])
         values = [part[at] + share * (part[at + 1] - part[at]) for part in (d, path[:, 0], path[:, 1])]
-        found.append(np.stack(values))
-    least = min(each.shape[1] for each in found)
-    return np.stack([each[:, :least] for each in found], axis=2)
+        crossings.append(np.stack(values))
+    least = min(crossing.shape[1] for crossing in crossings)
+    return np.stack([crossing[:, :least] for crossing in crossings], axis=2)
 
 
 def _crossings(height: Array, speed: Array) -> list[tuple[int, float]]:
@@ -231,26 +231,26 @@ def _crossings(height: Array, speed: Array) -> list[tuple[int, float]]:
     rows may be as near as one likes; on the outermost ones a small value is enough.
     """
     zeros = [_heights_at_zeros(*pair) for pair in zip(height, speed, strict=True)]
-    found = [(i, at) for i in (0, len(zeros) - 1) for at, value in zeros[i] if abs(value) < GRID_OF.small]
+    crossings = [(i, at) for i in (0, len(zeros) - 1) for at, value in zeros[i] if abs(value) < GRID_OF.small]
     for i, (before, after) in enumerate(pairwise(zeros)):
         for at, value in before:
             following = min(after, key=lambda each, at=at: abs(each[0] - at), default=None)  # type: ignore[misc]
             if following is not None and abs(following[0] - at) < GRID_OF.moved and value * following[1] <= 0:
-                found.append((i, at if abs(value) < abs(following[1]) else following[0]))
-    return found
+                crossings.append((i, at if abs(value) < abs(following[1]) else following[0]))
+    return crossings
 
 
 def _heights_at_zeros(height: Array, speed: Array) -> list[tuple[float, float]]:
     """The zeros of the second function on a row, in columns, and the first one there; cubics through four columns."""
-    found = []
+    heights = []
     for j in np.flatnonzero(speed[:-1] * speed[1:] <= 0).tolist():
         first = min(max(j - 1, 0), len(speed) - 4)
         nodes = np.arange(first, first + 4) - j
         rise, slip = (np.polyfit(nodes, row[first : first + 4], 3) for row in (height, speed))
         roots = np.roots(slip)
         inside = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > -0.1) & (roots.real < 1.1)]
-        found += [(j + float(at), float(np.polyval(rise, at))) for at in inside[:1]]
-    return found
+        heights += [(j + float(at), float(np.polyval(rise, at))) for at in inside[:1]]
+    return heights
 
 
 def _may_vanish(height: Array, speed: Array) -> Array:

@@ -52,33 +52,38 @@ def named(line: Polyline, zeros: Sequence[float], flights: RestFlights) -> Named
     points, column = line.points[clear], line.column[clear]
     if line.closed and not clear[0]:
         points, column = np.vstack([points, points[:1]]), np.append(column, column[:1])
-    found = [*_tangencies(points, zeros), *_cusps(points, zeros, flights), *_rests(points, column, flights)]
-    points, column, found = _without_crowds(points, column, found, line.closed)
-    found.sort(key=lambda each: (each.after, np.hypot(*(np.array(each.point) - points[each.after]))))
-    at = np.array([each.after + 1 for each in found], dtype=int)
-    marks = [Mark(int(index) + shift, each.name) for shift, (index, each) in enumerate(zip(at, found, strict=True))]
-    if found:
-        points = np.insert(points, at, np.array([each.point for each in found]), axis=0)
-        column = np.insert(column, at, [each.velocity for each in found])
+    vertices = [*_tangencies(points, zeros), *_cusps(points, zeros, flights), *_rests(points, column, flights)]
+    points, column, vertices = _without_crowds(points, column, vertices, line.closed)
+    vertices.sort(key=lambda vertex: (vertex.after, np.hypot(*(np.array(vertex.point) - points[vertex.after]))))
+    at = np.array([vertex.after + 1 for vertex in vertices], dtype=int)
+    marks = [
+        Mark(int(index) + shift, vertex.name) for shift, (index, vertex) in enumerate(zip(at, vertices, strict=True))
+    ]
+    if vertices:
+        points = np.insert(points, at, np.array([vertex.point for vertex in vertices]), axis=0)
+        column = np.insert(column, at, [vertex.velocity for vertex in vertices])
     if not line.closed:
         marks += [Mark(0, "end"), Mark(len(points) - 1, "end")]
     return NamedLine(points, column, line.closed, line.tolerance, tuple(marks))
 
 
 def _without_crowds(
-    points: Array, column: Array, found: list[_Named], closed: bool
+    points: Array, column: Array, vertices: list[_Named], closed: bool
 ) -> tuple[Array, Array, list[_Named]]:
     """The line without vertices that nearly coincide with a named one."""
-    kept = np.ones(len(points), dtype=bool)
-    for each in found:
-        pair = np.array([each.after, each.after + 1])
-        near = pair[np.abs(points[pair] - each.point).max(axis=1) < CLOSE]
-        kept[near] = False
+    stays = np.ones(len(points), dtype=bool)
+    for vertex in vertices:
+        pair = np.array([vertex.after, vertex.after + 1])
+        near = pair[np.abs(points[pair] - vertex.point).max(axis=1) < CLOSE]
+        stays[near] = False
     if not closed:
-        kept[[0, -1]] = True
-    shift = np.cumsum(~kept)
-    moved = [_Named(each.after - int(shift[each.after]), each.point, each.velocity, each.name) for each in found]
-    points, column = points[kept], column[kept]
+        stays[[0, -1]] = True
+    shift = np.cumsum(~stays)
+    moved = [
+        _Named(vertex.after - int(shift[vertex.after]), vertex.point, vertex.velocity, vertex.name)
+        for vertex in vertices
+    ]
+    points, column = points[stays], column[stays]
     if closed and len(points) and not np.array_equal(points[0], points[-1]):
         points, column = np.vstack([points, points[:1]]), np.append(column, column[:1])
     return points, column, [_Named(max(e.after, 0), e.point, e.velocity, e.name) for e in moved]
@@ -86,15 +91,15 @@ def _without_crowds(
 
 def _tangencies(points: Array, zeros: Sequence[float]) -> list[_Named]:
     """The crossing of the line with the axis that is nearest to each zero of a_c."""
-    made = []
+    vertices = []
     sides = np.flatnonzero(points[:-1, 1] * points[1:, 1] < 0)
     for tau in zeros:
         gaps = [
             abs(points[i : i + 2, 0].mean() - tau) - 2 * np.abs(np.diff(points[i : i + 2], axis=0)).sum() for i in sides
         ]
         if gaps and min(gaps) <= CLOSE:
-            made.append(_Named(int(sides[int(np.argmin(gaps))]), (tau, 0.0), 0.0, "tangency"))
-    return made
+            vertices.append(_Named(int(sides[int(np.argmin(gaps))]), (tau, 0.0), 0.0, "tangency"))
+    return vertices
 
 
 def _cusps(points: Array, zeros: Sequence[float], flights: RestFlights) -> list[_Named]:
@@ -131,9 +136,9 @@ def _rests(points: Array, column: Array, flights: RestFlights) -> list[_Named]:
     return made
 
 
-def _rest(flights: RestFlights, place: Array) -> tuple[float, float] | None:
+def _rest(flights: RestFlights, vertex: Array) -> tuple[float, float] | None:
     """x = c and x' = 0 together: Newton's method in (tau, t)."""
-    tau, t = map(float, place)
+    tau, t = map(float, vertex)
     for _ in range(20):
         one, at = np.array([tau]), np.array([t])
         height, velocity = flights.ends(one, at)

@@ -145,15 +145,15 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6), ki
     values = np.linspace(*ends, STEPS + 1)
     family = Family(model, over)
     swans, notes = swans_met(family, values)
-    found = [*swans, *(_swallowtails(family, swans, times) if "swallowtail" in wanted else ())]
+    events = [*swans, *(_swallowtails(family, swans, times) if "swallowtail" in wanted else ())]
     if "tangency" in wanted:
-        found += _tangencies(family, values, times)
-    found += _with_more_rests(family, times, ends, wanted)
-    kept = [told(each, family.at(each.value)) for each in found if _kind_of(each) in wanted]
-    made = Transitions(sorted(kept, key=lambda each: (each.value, each.tau, each.t)))
-    made.notes = notes if {"swan", "swallowtail"} & wanted else ()
-    made._proof = partial(_doubts, family, ends, times, wanted, tuple(swans))
-    return made
+        events += _tangencies(family, values, times)
+    events += _with_more_rests(family, times, ends, wanted)
+    visible_events = [told(event, family.at(event.value)) for event in events if _kind_of(event) in wanted]
+    result = Transitions(sorted(visible_events, key=lambda event: (event.value, event.tau, event.t)))
+    result.notes = notes if {"swan", "swallowtail"} & wanted else ()
+    result._proof = partial(_doubts, family, ends, times, wanted, tuple(swans))
+    return result
 
 
 def _kinds(given: Any) -> frozenset[str]:
@@ -190,9 +190,9 @@ def _with_more_rests(
     family: Family, times: tuple[float, float], ends: tuple[float, float], wanted: frozenset[str]
 ) -> list[Transition]:
     """Tacnodes, triple points and periodic grazes."""
-    found = [each for each in met_rests(family, ends, times, wanted) if ends[0] <= each.value <= ends[1]]
-    made = []
-    for each in found:
+    met = [each for each in met_rests(family, ends, times, wanted) if ends[0] <= each.value <= ends[1]]
+    events = []
+    for each in met:
         gap, kind = each.gaps[-1], each.kind
         if kind == "tacnode":
             flights = RestFlights(family.at(each.value))
@@ -201,8 +201,8 @@ def _with_more_rests(
         first = _reduced(each.first, family.at(each.value))
         rests = (first, *(first + part for part in each.gaps))
         if any(low <= sign * gap <= high for sign in (1, -1) for low, high in [_widened(times)]):
-            made.append(Transition(kind, each.value, first, gap, rests))
-    return _each_once(made, ends)
+            events.append(Transition(kind, each.value, first, gap, rests))
+    return _each_once(events, ends)
 
 
 def _widened(times: tuple[float, float]) -> tuple[float, float]:
@@ -212,31 +212,35 @@ def _widened(times: tuple[float, float]) -> tuple[float, float]:
 
 def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> list[Transition]:
     """Two rests with a tangency point among them: from the flights of tangency points, and by elimination of c."""
-    ends, linear, found = (float(values[0]), float(values[-1])), linear_rests(family), list[Transition]()
+    ends, linear, events = (float(values[0]), float(values[-1])), linear_rests(family), list[Transition]()
     if linear is not None:
-        met = [each for each in linear.tangencies(*gaps_of(times)) if ends[0] <= each.value <= ends[1]]
-        both = [each for each in met if each.kind == "tangency to tangency"]
-        for each in met:
-            s, d = each.first, each.gaps[0]
-            tau, t = (s + d, -d) if each.kind == "tangency last" else (s, d)
-            if each not in both and times[0] <= t <= times[1]:
-                place = np.array([_reduced(tau, family.model), t, each.value])
-                kind = _lips_or_beaks(RestFlights(family.at(each.value)), place)
-                found.append(Transition(kind, each.value, float(place[0]), t, _two(tau, t)))
+        met = [rests for rests in linear.tangencies(*gaps_of(times)) if ends[0] <= rests.value <= ends[1]]
+        both = [rests for rests in met if rests.kind == "tangency to tangency"]
+        for rests in met:
+            s, d = rests.first, rests.gaps[0]
+            tau, t = (s + d, -d) if rests.kind == "tangency last" else (s, d)
+            if rests not in both and times[0] <= t <= times[1]:
+                point = np.array([_reduced(tau, family.model), t, rests.value])
+                kind = _lips_or_beaks(RestFlights(family.at(rests.value)), point)
+                events.append(Transition(kind, rests.value, float(point[0]), t, _two(tau, t)))
     else:
-        found += _touches(family, values, times)
+        events += _touches(family, values, times)
         followed = FollowedRests(family, ends, gaps_of(times))
-        near = [(each.value, *_first_and_gap(each)) for each in found if each.kind == "undecided"]
-        both = [made for made in (followed.both_ends(*place) for place in near) if made is not None]
-    kept = [each for each in found if not any(_is_that(each, other) for other in both)]
-    kept += [
+        near = [(rests.value, *_first_and_gap(rests)) for rests in events if rests.kind == "undecided"]
+        both = [pair for pair in (followed.both_ends(*point) for point in near) if pair is not None]
+    changes = [rests for rests in events if not any(_is_that(rests, other) for other in both)]
+    changes += [
         Transition(
-            each.kind, each.value, s := _reduced(each.first, family.at(each.value)), each.gaps[0], (s, s + each.gaps[0])
+            rests.kind,
+            rests.value,
+            s := _reduced(rests.first, family.at(rests.value)),
+            rests.gaps[0],
+            (s, s + rests.gaps[0]),
         )
-        for each in both
-        if any(times[0] <= sign * each.gaps[0] <= times[1] for sign in (1, -1))
+        for rests in both
+        if any(times[0] <= sign * rests.gaps[0] <= times[1] for sign in (1, -1))
     ]
-    return _each_once(kept, ends)
+    return _each_once(changes, ends)
 
 
 def _two(tau: float, t: float) -> tuple[float, float]:
@@ -320,9 +324,9 @@ def _touches(family: Family, values: Array, times: tuple[float, float]) -> Itera
                 share = height / (height - near[2])
                 step = values[1] - values[0]
                 start = np.array([tau + share * (near[0] - tau), t + share * (near[1] - t), value - share * step])
-                place = _touch(family, start)
-                if place is not None:
-                    yield place
+                point = _touch(family, start)
+                if point is not None:
+                    yield point
         before = now
 
 
@@ -342,27 +346,27 @@ def _touch(family: Family, start: Array) -> Transition | None:
     """a = 0, x = c, x' = 0 by Newton's method in (tau, t, value), the matrix by central differences."""
     tree = family.acceleration()
 
-    def missed(place: Array) -> Array:
-        flights = RestFlights(family.at(float(place[2])))
-        height, velocity = flights.ends(place[:1], place[1:2])
-        a = evaluate(tree, {"t": float(place[0]), family.over: float(place[2])}, DOUBLES)
+    def missed(point: Array) -> Array:
+        flights = RestFlights(family.at(float(point[2])))
+        height, velocity = flights.ends(point[:1], point[1:2])
+        a = evaluate(tree, {"t": float(point[0]), family.over: float(point[2])}, DOUBLES)
         return np.array([float(a), float(height[0]), float(velocity[0])])
 
-    place = start.copy()
+    point = start.copy()
     for _ in range(40):
-        matrix = np.stack([(missed(place + h) - missed(place - h)) / 2e-6 for h in 1e-6 * np.eye(3)], axis=1)
-        move = np.linalg.solve(matrix, -missed(place))
-        place = place + np.clip(move, -0.2, 0.2)
-        if np.abs(move).max() < SETTINGS.settled * (1 + np.abs(place).max()):
-            flights = RestFlights(family.at(float(place[2])))
-            tau, t, value = place.tolist()
-            return Transition(_lips_or_beaks(flights, place), value, tau, t, _two(tau, t))
+        matrix = np.stack([(missed(point + h) - missed(point - h)) / 2e-6 for h in 1e-6 * np.eye(3)], axis=1)
+        move = np.linalg.solve(matrix, -missed(point))
+        point = point + np.clip(move, -0.2, 0.2)
+        if np.abs(move).max() < SETTINGS.settled * (1 + np.abs(point).max()):
+            flights = RestFlights(family.at(float(point[2])))
+            tau, t, value = point.tolist()
+            return Transition(_lips_or_beaks(flights, point), value, tau, t, _two(tau, t))
     return None
 
 
-def _lips_or_beaks(flights: RestFlights, place: Array) -> str:
+def _lips_or_beaks(flights: RestFlights, point: Array) -> str:
     """By the Hessian of y, from differences of its exact gradient."""
-    h, at = 1e-4, place[:2]
+    h, at = 1e-4, point[:2]
     points = at + h * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
     gradient = flights.y_and_gradient(points)[1]
     (tt, tm), (mt, mm) = (gradient[0] - gradient[1]) / (2 * h), (gradient[2] - gradient[3]) / (2 * h)

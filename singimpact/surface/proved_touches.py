@@ -84,20 +84,22 @@ def doubts_left(
             "with a period alone",
         )
     flight: RestFlight | EnclosedTouches = rest_flight(family) or EnclosedTouches(family.model, family.over)
-    found, length = list(listed), max(periods.values())
-    made = flight.touches(length, ends, times)
-    doubts = _undecided(made, 2, f"lips and beaks for {family.over}")
-    known = [(each.tau, each.t, each.value) for each in found if each.kind in ("lips", "beaks", "undecided")]
-    for zero in made.found:
-        tau, t, value = (float(part.mid()) for part in zero)
+    events, length = list(listed), max(periods.values())
+    proof = flight.touches(length, ends, times)
+    doubts = _undecided(proof, 2, f"lips and beaks for {family.over}")
+    listed_places = [
+        (event.tau, event.t, event.value) for event in events if event.kind in ("lips", "beaks", "undecided")
+    ]
+    for zero in proof.found:
+        tau, t, value = (float(number.mid()) for number in zero)
         turn = next(iter(family.periods(np.array([value])).values()), length)
         inside = -NEAR * turn <= tau < turn * (1 - NEAR) and _within(t, times) and _within(value, ends)
-        if inside and not any(_near((tau, t, value), other) for other in known):
+        if inside and not any(_near((tau, t, value), other) for other in listed_places):
             doubts.append(f"the list lacks lips or beaks at {family.over} = {value:.12g}, tau = {tau:.6g}, t = {t:.6g}")
-    for swan in (each for each in found if each.kind.startswith("swan")):
+    for swan in (event for event in events if event.kind.startswith("swan")):
         crossings = flight.swallowtails(_rounded(swan.tau), _rounded(swan.value), times)
         doubts += _undecided(crossings, 0, "swallowtails at t")
-        listed_there = [(each.t,) for each in found if each.kind == "swallowtail" and each.value == swan.value]
+        listed_there = [(event.t,) for event in events if event.kind == "swallowtail" and event.value == swan.value]
         for (zero,) in crossings.found:
             t = float(zero.mid())
             if _within(t, times) and not any(_near((t,), other) for other in listed_there):

@@ -34,9 +34,9 @@ def met_rests(
     gaps, linear = gaps_of(times), linear_rests(family)
     if linear is None:
         return FollowedRests(family, ends, gaps).met(wanted)
-    found = linear.grazes() if "periodic graze" in wanted and gaps[1] >= linear.turn * (1 - GRID.whole) else []
-    found += linear.tacnodes(gaps[1]) if "tacnode" in wanted else []
-    return found + (linear.triples(gaps[1]) if "triple point" in wanted and not no_triples(linear) else [])
+    events = linear.grazes() if "periodic graze" in wanted and gaps[1] >= linear.turn * (1 - GRID.whole) else []
+    events += linear.tacnodes(gaps[1]) if "tacnode" in wanted else []
+    return events + (linear.triples(gaps[1]) if "triple point" in wanted and not no_triples(linear) else [])
 
 
 def no_triples(rests: LinearRests) -> bool:

@@ -53,19 +53,19 @@ class RestFlights:
 
     def grid(self, tau: Array, t: Array) -> Array:
         """y at all pairs, shape (len(t), len(tau)); t increasing, 0 may be among them."""
-        found = np.empty((len(t), len(tau)))
-        found[t == 0] = self.acceleration(tau) / 2
+        heights = np.empty((len(t), len(tau)))
+        heights[t == 0] = self.acceleration(tau) / 2
         for side in (np.flatnonzero(t > 0), np.flatnonzero(t < 0)[::-1]):
             if side.size and self.meeting is not None:
                 self.flown += len(tau)
                 lane, times = np.repeat(np.arange(len(tau)), side.size), np.tile(t[side], len(tau))
                 rows = self.meeting.rest_flights(as_float(self.model.clearance), tau, lane, times)
-                found[side] = rows[:, 0].reshape(len(tau), side.size).T / (t[side] ** 2)[:, None]
+                heights[side] = rows[:, 0].reshape(len(tau), side.size).T / (t[side] ** 2)[:, None]
             elif side.size:
                 self.flown += len(tau)
                 paths = many_paths(self.model, tau, np.zeros(len(tau)), [t[side]] * len(tau))
-                found[side] = np.array([path[:, 0] for path in paths]).T / (t[side] ** 2)[:, None]
-        return found
+                heights[side] = np.array([path[:, 0] for path in paths]).T / (t[side] ** 2)[:, None]
+        return heights
 
     def ends(self, tau: Array, t: Array) -> tuple[Array, Array]:
         """x - c and x' at time t of the flight from tau, one pair each."""
@@ -81,13 +81,13 @@ class RestFlights:
         """Derivatives of x and x' at time t by the launch velocity, shape (n, 2)."""
         if self.meeting is not None:
             return self._met(tau, t)[:, 2:]
-        found = np.empty((len(tau), 2))
+        slopes = np.empty((len(tau), 2))
         for side, model, turn in ((t >= 0, self.model, 1), (t < 0, backwards(self.model), -1)):
             if side.any():
                 at = np.abs(t[side])
                 answer = variations(model, turn * tau[side], np.zeros(at.size), at)
-                found[side] = answer[:, :2] * [turn, 1]
-        return found
+                slopes[side] = answer[:, :2] * [turn, 1]
+        return slopes
 
     def _met(self, tau: Array, t: Array) -> Array:
         """x - c, x' and their derivatives; asked for twice in a row, they are flown once."""

@@ -83,17 +83,17 @@ HIDDEN = "no first hit changes: the flight meets the wall from below, or passes 
 UNDECIDED = "the flight touches the wall once more, so that it is not decided whether first hits change"
 
 
-def told(found: Transition, model: Oscillator) -> Transition:
+def told(event: Transition, model: Oscillator) -> Transition:
     """A transition with its rests moved to one period, whether it is visible, its launch, and its effect.
 
     Parameters
     ----------
-    found : with its rests. model : at the value of the transition.
+    event : with its rests. model : at the value of the transition.
     """
-    rests = _in_first_period(found.rests, model)
-    visible, launch = _seen(found, rests, model)
-    words = UNDECIDED if visible is None else WORDS[_key(found)] if visible else HIDDEN
-    return replace(found, rests=rests, visible=visible, launch=launch, effect=words)
+    rests = _in_first_period(event.rests, model)
+    visible, launch = _seen(event, rests, model)
+    words = UNDECIDED if visible is None else WORDS[_key(event)] if visible else HIDDEN
+    return replace(event, rests=rests, visible=visible, launch=launch, effect=words)
 
 
 def _key(found: Transition) -> str:
@@ -109,10 +109,10 @@ def _in_first_period(rests: tuple[float, ...], model: Oscillator) -> tuple[float
 
 
 def _seen(
-    found: Transition, rests: tuple[float, ...], model: Oscillator
+    event: Transition, rests: tuple[float, ...], model: Oscillator
 ) -> tuple[bool | None, tuple[float, float] | None]:
     """Whether first hits change there, and the launch with v > 0."""
-    if found.kind == "swan, negative":
+    if event.kind == "swan, negative":
         return True, None
     size = (largest_push(model) if model.period is not None else 0.0) or 1.0
     jets = np.array([acceleration(model, np.array(rests), order) for order in range(3)]) / size
@@ -123,11 +123,11 @@ def _seen(
         return False, None
     if None in clear:
         return None, None
-    if found.kind == "periodic graze":
+    if event.kind == "periodic graze":
         return True, None
     launch = _launch(model, rests[0], jets[:, 0], size, len(rests))
-    if found.kind == "swallowtail":
-        there = launch is not None and abs(launch[0] - rests[0] - found.t) < SIGHT.aside
+    if event.kind == "swallowtail":
+        there = launch is not None and abs(launch[0] - rests[0] - event.t) < SIGHT.aside
         return there, launch if there else None
     return True, launch
 

@@ -98,17 +98,17 @@ def swans_met(family: Family, values: Array) -> tuple[list[Transition], tuple[st
     """Double zeros of a_c, isolated with proof, and the reasons why one may be missing."""
     between = Fraction(float(values[0])), Fraction(float(values[-1]))
     if family.over == "clearance":
-        known = swan_points_over_clearance(family.model, between)
-        inside = [swan for swan in known if between[0] <= Fraction(swan.clearance) <= between[1]]
+        swans = swan_points_over_clearance(family.model, between)
+        inside = [swan for swan in swans if between[0] <= Fraction(swan.clearance) <= between[1]]
         return [Transition(f"swan, {swan.kind}", swan.clearance, swan.tau, 0.0, (swan.tau,)) for swan in inside], ()
     periods = set(family.periods(values).values())
     if not periods:
         raise InputError(f"g = {family.model.g} is not seen to be periodic: give period=")
     longest = Fraction(max(periods))
     window = (-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN), *between)
-    made = double_zeros(family.acceleration(), ("t", family.over), window)
-    inside_period = [zero for zero in made.found if _in_period(family, zero, float(longest))]
-    return [_as_transition(zero) for zero in inside_period], _doubts(made, family.over, len(periods))
+    zeros = double_zeros(family.acceleration(), ("t", family.over), window)
+    inside_period = [zero for zero in zeros.found if _in_period(family, zero, float(longest))]
+    return [_as_transition(zero) for zero in inside_period], _doubts(zeros, family.over, len(periods))
 
 
 def _in_period(family: Family, zero: DoubleZero, longest: float) -> bool:
@@ -123,12 +123,12 @@ def _as_transition(zero: DoubleZero) -> Transition:
     return Transition(f"swan, {sign}", float(zero.value), at, 0.0, (at,))
 
 
-def _doubts(made: DoubleZeros, over: str, periods: int) -> tuple[str, ...]:
+def _doubts(zeros: DoubleZeros, over: str, periods: int) -> tuple[str, ...]:
     notes = []
     if periods > 1:
         notes.append(f"the period moves with {over}: swans are listed in a window that is the longest one sampled")
-    if made.undecided:
-        low, high = (float(f(box[k] for box in made.undecided)) for f, k in ((min, 2), (max, 3)))
+    if zeros.undecided:
+        low, high = (float(f(box[k] for box in zeros.undecided)) for f, k in ((min, 2), (max, 3)))
         notes.append(
             f"a_c may have zeros of order 3, or double ones that stay, for {over} from {low:.9g} to {high:.9g}: "
             "swans there are not decided"
@@ -162,8 +162,8 @@ def swan_curves(model: Oscillator, over: tuple[str, str], between: tuple[Any, An
     rows: list[list[tuple[float, float, Transition]]] = []
     for value in np.linspace(*across, STEPS + 1).tolist():
         family = Family(Family(model, second).at(value), first)
-        found, _ = swans_met(family, np.linspace(*along, STEPS + 1))
-        rows.append([(swan.value, value, swan) for swan in found])
+        swans, _ = swans_met(family, np.linspace(*along, STEPS + 1))
+        rows.append([(swan.value, value, swan) for swan in swans])
     return [Curve("swan", np.array(line), over) for line in _linked(rows) if len(line) > 1]
 
 

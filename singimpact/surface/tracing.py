@@ -72,15 +72,15 @@ def traced(grid: Grid, gradient: Gradient, window: Window, cell: float, scale: f
     """
     axes = _axes(window, cell)
     values = grid(*axes)
-    found = _small_ones(grid, axes, values, window)
-    small = (_followed(seed, gradient, window, size) for seed, size in found)
+    loops = _small_ones(grid, axes, values, window)
+    small = (_followed(seed, gradient, window, size) for seed, size in loops)
     sketched = (*(_thinned(line, window.least) for line in _sketched(axes, values)), *small)
-    made = [one for line in sketched if (one := _on_curve(line, gradient, window, scale, cell)) is not None]
-    kept: list[Polyline] = []
-    for line in sorted(made, key=lambda one: -float(np.ptp(one.points, axis=0).sum())):
-        if not any(_repeats(line, longer) for longer in kept):
-            kept.append(line)
-    return kept
+    refined = [one for line in sketched if (one := _on_curve(line, gradient, window, scale, cell)) is not None]
+    lines_: list[Polyline] = []
+    for line in sorted(refined, key=lambda one: -float(np.ptp(one.points, axis=0).sum())):
+        if not any(_repeats(line, longer) for longer in lines_):
+            lines_.append(line)
+    return lines_
 
 
 def _repeats(new: Polyline, old: Polyline) -> bool:
@@ -114,8 +114,8 @@ def _thinned(line: Array, least: float) -> Array:
     """The contour line without vertices that deviate by less than half the resolution; every vertex costs flights."""
     if len(line) < 8:
         return line
-    limit, kept = 0.5 * least, {0, len(line) // 3, 2 * len(line) // 3, len(line) - 1}
-    waiting = list(pairwise(sorted(kept)))
+    limit, indices = 0.5 * least, {0, len(line) // 3, 2 * len(line) // 3, len(line) - 1}
+    waiting = list(pairwise(sorted(indices)))
     while waiting:
         first, last = waiting.pop()
         if last - first < 2:
@@ -125,9 +125,9 @@ def _thinned(line: Array, least: float) -> Array:
         away = np.abs(inner[:, 0] * chord[1] - inner[:, 1] * chord[0]) / max(np.hypot(*chord), 1e-300)
         if away.max() > limit or np.hypot(*chord) > SETTINGS.longest * least:
             middle = (first + last) // 2
-            kept.add(middle)
+            indices.add(middle)
             waiting += [(first, middle), (middle, last)]
-    return line[sorted(kept)]
+    return line[sorted(indices)]
 
 
 def _small_ones(
@@ -135,7 +135,7 @@ def _small_ones(
 ) -> list[tuple[Array, float]]:
     """For each extremum a point beside a component that the contour lines may have missed, and a first step length."""
     tau, t = axes
-    found: list[tuple[Array, float]] = []
+    loops: list[tuple[Array, float]] = []
     for i, j in _extrema(values):
         small = Window(
             (tau[max(j - 1, 0)], tau[min(j + 1, len(tau) - 1)]),
@@ -146,12 +146,12 @@ def _small_ones(
         inner = grid(*finer)
         if inner.min() < 0 < inner.max():
             rising = inner if values[i, j] < 0 else -inner
-            place = np.unravel_index(np.argmax(rising), inner.shape)
-            found.append((np.array([finer[0][place[1]], finer[1][place[0]]]), float(np.ptp(finer[0])) / 16))
+            index = np.unravel_index(np.argmax(rising), inner.shape)
+            loops.append((np.array([finer[0][index[1]], finer[1][index[0]]]), float(np.ptp(finer[0])) / 16))
         elif depth < SETTINGS.finest and np.abs(inner).min() < 0.5 * np.abs(values[i, j]):
             fine = _axes(small, (small.x[1] - small.x[0]) / 16)
-            found += _small_ones(grid, fine, grid(*fine), small, depth + 1)
-    return found
+            loops += _small_ones(grid, fine, grid(*fine), small, depth + 1)
+    return loops
 
 
 def _followed(seed: Array, gradient: Gradient, window: Window, size: float) -> Array:
@@ -168,16 +168,16 @@ def _followed(seed: Array, gradient: Gradient, window: Window, size: float) -> A
 def _walked(start: Array, along: Array, side: int, gradient: Gradient, window: Window, size: float) -> Array:
     line, h, ahead = [start], size / 4, side * along
     for _ in range(SETTINGS.most_steps):
-        found, _, step, slope = newton((line[-1] + h * ahead)[None], gradient)
+        point, _, step, slope = newton((line[-1] + h * ahead)[None], gradient)
         turned = side * _along(slope[0])
-        if step[0] > SETTINGS.close or ahead @ turned < SETTINGS.turn or np.hypot(*(found[0] - line[-1])) > 2 * h:
+        if step[0] > SETTINGS.close or ahead @ turned < SETTINGS.turn or np.hypot(*(point[0] - line[-1])) > 2 * h:
             h /= 2
             continue
-        line.append(found[0])
+        line.append(point[0])
         ahead, h = turned, min(h * 1.4, size)
         if len(line) > 4 and np.hypot(*(line[-1] - line[0])) < h:
             return np.array([*line, line[0]])
-        if not (window.x[0] <= found[0, 0] <= window.x[1] and window.y[0] <= found[0, 1] <= window.y[1]):
+        if not (window.x[0] <= point[0, 0] <= window.x[1] and window.y[0] <= point[0, 1] <= window.y[1]):
             break
     return np.array(line)
 
@@ -287,13 +287,13 @@ def _spaced(points: Array, column: Array, gradient: Gradient, window: Window, sc
         near = np.hypot(*move.T) < chord
         added = ~near | shows(np.hypot(*move.T), value - half) | long
         start = np.where(near[:, None], middle + move, middle)  # a step longer than the chord is no estimate
-        place, value, step, _ = newton(start[added], gradient)
-        away = np.hypot(*(place - middle[added]).T)
+        points_, value, step, _ = newton(start[added], gradient)
+        away = np.hypot(*(points_ - middle[added]).T)
         sound = (step < SETTINGS.close) & (away < chord[added]) & (shows(away, value - half[added]) | long[added])
         added[added] = sound
         checked[open_[~added]] = True
         at = open_[added] + 1
-        points, column = np.insert(points, at, place[sound], axis=0), np.insert(column, at, value[sound])
+        points, column = np.insert(points, at, points_[sound], axis=0), np.insert(column, at, value[sound])
         split = np.insert(checked, at, False)
         split[at + np.arange(at.size) - 1] = False
         checked = split

@@ -147,7 +147,7 @@ class LinearRests:
         """Two rests with S(d) = 0, d = n pi/w, w^2 = k - half^2: zeros of q'(s + d) - C q'(s), isolated with proof."""
         if self.square <= 0:
             return []
-        half, found = multiply(number(Fraction(1, 2)), self.form.damping), []
+        half, events = multiply(number(Fraction(1, 2)), self.form.damping), []
         rate = Power(subtract(self.form.stiffness, multiply(half, half)), number(Fraction(1, 2)))
         for n in range(1, int(longest * np.sqrt(self.square) / np.pi + GRID.whole) + 1):
             d = multiply(number(n), Pi(), Power(rate, number(-1)))
@@ -158,16 +158,16 @@ class LinearRests:
             later = substitute(self.steady[1], {"t": add(Name("t"), d)})
             for s in self._zeros(subtract(later, multiply(C, self.steady[1]))):
                 c = (self.q(s + gap) - self.q(s) * ratio) / (1 - ratio)
-                found.append(Rests("tacnode", float(c), float(s), (gap,)))
-        return found
+                events.append(Rests("tacnode", float(c), float(s), (gap,)))
+        return events
 
     def _zeros(self, tree: Expression) -> Iterator[Array]:
         """The simple zeros of a tree over one period, to the last bit."""
         turn = Fraction(self.turn)
         for zero in isolate(tree, "t", -turn / 97, turn * Fraction(98, 97)):
             if not zero.slope:
-                told = "are not told apart: tacnodes or periodic grazes may be missing"
-                self.undecided.append(f"rests near s = {float(zero.low):.6g} {told}")
+                refusal = "are not told apart: tacnodes or periodic grazes may be missing"
+                self.undecided.append(f"rests near s = {float(zero.low):.6g} {refusal}")
                 continue
             at = float(refined(tree, "t", zero, 128).mid())
             if -1e-12 * self.turn <= at < self.turn * (1 - 1e-12):
@@ -182,12 +182,12 @@ class LinearRests:
         first, last = self.a(s[:, None], c), self.a(s[:, None] + d[None, :], c)
         met = self._in_cells((first, last), s, d, lambda z: np.stack(self._pushes(z), axis=1))
         both = met[np.abs(self.eliminated(*met.T)[0]) < GRID.wide]
-        found = [self._as_rests("tangency to tangency", z) for z in both]
+        events = [self._as_rests("tangency to tangency", z) for z in both]
         for kind, end in (("tangency first", 0), ("tangency last", 1)):
             met = self._in_cells((F, (first, last)[end]), s, d, partial(self._one_pushed, end=end))
             apart = np.hypot(*(met[:, None, :] - both[None, :, :]).T).min(axis=0, initial=np.inf)
-            found += [self._as_rests(kind, z) for z in met[apart > GRID.degenerate]]
-        return found
+            events += [self._as_rests(kind, z) for z in met[apart > GRID.degenerate]]
+        return events
 
     def _as_rests(self, kind: str, z: Array) -> Rests:
         return Rests(kind, float(self.eliminated(z[0], z[1])[1]), float(z[0]), tuple(z[1:].tolist()))
@@ -224,8 +224,8 @@ class LinearRests:
         ]
         met = newton(self._three, np.array(starts).reshape(-1, 3))
         gaps = np.stack([met[:, 1], met[:, 2], met[:, 2] - met[:, 1]], axis=1)
-        kept = (gaps > GRID.least).all(axis=1) & ~is_whole(gaps / self.turn).any(axis=1)
-        return [self._as_rests("triple point", z) for z in distinct(met[kept])]
+        apart_ = (gaps > GRID.least).all(axis=1) & ~is_whole(gaps / self.turn).any(axis=1)
+        return [self._as_rests("triple point", z) for z in distinct(met[apart_])]
 
     def _three(self, z: Array) -> Array:
         s, *gaps = z.T

@@ -138,7 +138,7 @@ def test_series_named_for_the_package_call_public_names_only():
         assert (len(public), private) == (1, [])
     kernel = series_rows._symbols(4)
     _, private = _executed(f"made = {kernel.made}", kernel.before + series_rows.AT)
-    assert private == ["/contact/contact.py:generic", "/theory/sheet.py:sheet"]
+    assert private == ["/contact/contact.py:generic", "/theory/impact_sheet.py:sheet"]
 
 
 @pytest.mark.parametrize("family", MODELS)

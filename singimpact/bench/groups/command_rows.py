@@ -85,11 +85,11 @@ def cases(effort: Effort) -> Iterator[Case]:
     yield Case("series in symbols, new process", rows)
     if effort.quick:  # most commands take longer than two seconds in a new folder
         return
-    with tempfile.TemporaryDirectory() as place:
-        (Path(place) / "duffing.toml").write_text(MODEL, encoding="utf-8")
-        _compile(place)
+    with tempfile.TemporaryDirectory() as directory:
+        (Path(directory) / "duffing.toml").write_text(MODEL, encoding="utf-8")
+        _compile(directory)
         for command in COMMANDS:
-            yield Case(f"singimpact {command.line}", _turns(command, place))
+            yield Case(f"singimpact {command.line}", _turns(command, directory))
 
 
 def _compile(place: str) -> None:

@@ -19,16 +19,16 @@ SPARE = 20  # digits of the truth beyond the most asked for; its radius is prove
 
 def cases(effort: Effort) -> Iterator[Case]:
     """Two cases; next to r = 1 the difference 1 - lambda cancels, and its condition with respect to r is 1e9."""
-    asked = DIGITS[:3] if effort.quick else DIGITS
-    for name, (r, part) in ASKED.items():
+    digits = DIGITS[:3] if effort.quick else DIGITS
+    for name, (r, columns) in ASKED.items():
         ways = (("singimpact, certified", "digits", _own), ("mpmath findroot", "dps", _findroot))
         methods = [
-            Method(way, f"{word} {d}", partial(_part, function, r, part, d), epsilon=10.0**-d)
+            Method(way, f"{word} {d}", partial(_part, function, r, columns, d), epsilon=10.0**-d)
             for way, word, function in ways
-            for d in asked
+            for d in digits
         ]
-        methods.append(Method("numpy roots", "doubles", lambda r=r, part=part: _numpy(r)[part]))
-        yield Case(name, methods, _own(r, DIGITS[-1] + SPARE)[part], _conditions(r)[part])
+        methods.append(Method("numpy roots", "doubles", lambda r=r, columns=columns: _numpy(r)[columns]))
+        yield Case(name, methods, _own(r, DIGITS[-1] + SPARE)[columns], _conditions(r)[columns])
 
 
 def _part(function: Callable[[str, int], list[Any]], r: str, part: slice, digits: int) -> list[Any]:

@@ -64,13 +64,14 @@ def _flown(models: list[Any], problems: list[Problem]) -> list[float]:
 def _many_digits(effort: Effort) -> Case:
     """The 40 digits of the table bound what can be judged."""
     problems = of_regime("linear", "generic", 1 if effort.quick else 4)
-    asked = (15, 35) if effort.quick else (15, 25, 35)
-    own = [Method("singimpact", f"digits {d}", partial(_digits, problems, d), epsilon=10.0**-d) for d in asked]
+    digits = (15, 35) if effort.quick else (15, 25, 35)
+    own = [Method("singimpact", f"digits {d}", partial(_digits, problems, d), epsilon=10.0**-d) for d in digits]
     peers = [
-        Method("mpmath findroot", f"dps {d}", partial(_at_digits, problems, d, closed), epsilon=10.0**-d) for d in asked
+        Method("mpmath findroot", f"dps {d}", partial(_at_digits, problems, d, closed), epsilon=10.0**-d)
+        for d in digits
     ] + [
         Method("mpmath odefun", f"dps {d}", partial(_at_digits, problems, d, integrated), epsilon=10.0**-d)
-        for d in asked[: 1 if effort.quick else 2]
+        for d in digits[: 1 if effort.quick else 2]
     ]
     truth = [problem.flight_time for problem in problems]
     return Case("linear generic, many digits", own + peers, truth, _conditions(problems))

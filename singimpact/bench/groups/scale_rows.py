@@ -96,10 +96,10 @@ def _notes(count: int, effort: Effort) -> list[str]:
     """Sentences, each with what is to be reached and whether it was."""
     notes = list(compiled(("map", "iterate"), effort.wait))
     measured = _cost(count)
-    each, all_of_them = measured.answer
+    states_, all_of_them = measured.answer
     beside = measured.megabytes - all_of_them
     notes.append(
-        f"memory: {each:.0f} bytes a state of results (at most {BYTES}: {_word(each <= BYTES)}), at most "
+        f"memory: {states_:.0f} bytes a state of results (at most {BYTES}: {_word(states_ <= BYTES)}), at most "
         f"{max(beside, 0):.0f} MB beside them (at most {BESIDE}: {_word(beside <= BESIDE)})"
     )
     ratios = cost(PAIRED.format(count=1_000_000), BEFORE.format(count=1_000_000), "answer = ratios").answer

@@ -81,12 +81,12 @@ def cases(effort: Effort) -> Iterator[Case]:
 
     A first process of each kind is not counted: it leaves bytecode, and the files in memory.
     """
-    with tempfile.TemporaryDirectory() as place:
+    with tempfile.TemporaryDirectory() as directory:
         for family in MODELS:
-            Script(partial(script, family, 10), SHORT_CHILDREN).in_folder(str(Path(place) / "unused"), CHILDREN)
+            Script(partial(script, family, 10), SHORT_CHILDREN).in_folder(str(Path(directory) / "unused"), CHILDREN)
         for family in MODELS:
-            yield _new_folder(family, place)
-        yield _warm(effort, str(Path(place) / "kept"))
+            yield _new_folder(family, directory)
+        yield _warm(effort, str(Path(directory) / "kept"))
     if not effort.quick:
         yield _first_commands()
 
@@ -100,15 +100,15 @@ def _first_commands() -> Case:
     return Case("first commands", [*own, peer], notes=notes)
 
 
-def _new_folder(family: str, place: str) -> Case:
-    """The script leaves its object code in `place`; the first answer has a folder of its own."""
+def _new_folder(family: str, directory: str) -> Case:
+    """The script leaves its object code in `directory`; the first answer has a folder of its own."""
     with tempfile.TemporaryDirectory() as alone:
         answer = Script(partial(first_answer, family), SHORT_CHILDREN).in_folder(alone, CHILDREN)
-    place = str(Path(place) / "kept")
-    before = _files(place)
+    directory = str(Path(directory) / "kept")
+    before = _files(directory)
     many = Script(partial(script, family, MANY))
-    first, second = many.in_folder(place, CHILDREN), many.in_folder(place, CHILDREN)
-    made = {path: size for path, size in _files(place).items() if path not in before}
+    first, second = many.in_folder(directory, CHILDREN), many.in_folder(directory, CHILDREN)
+    sizes = {path: size for path, size in _files(directory).items() if path not in before}
     own = [
         _known("singimpact, first answer", "CPU", answer.seconds, Aim(0.3e6)),
         _known("singimpact, first answer", "wall", answer.wall),
@@ -121,7 +121,7 @@ def _new_folder(family: str, place: str) -> Case:
         spent, until = first.answer
         name = "singimpact, child that compiles"
         own += [_known(name, "CPU", spent), _known(name, "wall, from the script's first line", until)]
-    return Case(f"new cache folder, {family}", own, notes=[_place(family, made)])
+    return Case(f"new cache folder, {family}", own, notes=[_place(family, sizes)])
 
 
 def _known(name: str, setting: str, seconds: float, aim: Aim = Aim()) -> Method:  # noqa: B008
@@ -146,9 +146,9 @@ def _place(family: str, made: dict[str, int]) -> str:
     return f"{family}: compiling keeps {sum(made.values()) / 1e6:.2f} MB in {', '.join(names)} of {where}."
 
 
-def _warm(effort: Effort, place: str) -> Case:
+def _warm(effort: Effort, directory: str) -> Case:
     def row(name: str, setting: str, script: Script, aim: Aim = Aim()) -> Method:  # noqa: B008
-        return Method(name, setting, partial(_timed, script, place), aim=aim)
+        return Method(name, setting, partial(_timed, script, directory), aim=aim)
 
     own = [
         row("singimpact, import", "", Script(lambda: IMPORT)),

@@ -36,10 +36,10 @@ def stepper(family: str, tolerance: float = 1e-9) -> Any:
         event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
         span = (problem.tau, problem.tau + LONGEST)
         start = [problem.clearance, problem.v]
-        found = solve_ivp(field, span, start, method="DOP853", rtol=tolerance, atol=tolerance, events=event)
-        if found.status != 1:
+        solution = solve_ivp(field, span, start, method="DOP853", rtol=tolerance, atol=tolerance, events=event)
+        if solution.status != 1:
             return float("nan"), float("nan")
-        return float(found.t[-1]) - problem.tau, float(found.y[1, -1])
+        return float(solution.t[-1]) - problem.tau, float(solution.y[1, -1])
 
     return fly
 

@@ -133,7 +133,7 @@ def _explained(follower: Follower, state: tuple[float, float], answer: basins_of
             return "settles slowly beside a period doubling"
     if last.kind == "unsettled":
         return "settles slowly"
-    fates = [follower.first(state[0] + part, state[1] * (1 + part)) for part in PIXELS.moved]
+    fates = [follower.first(state[0] + change, state[1] * (1 + change)) for change in PIXELS.moved]
     if any(follower.last(beside).name != last.name or beside.kind != fate.kind for beside in fates):
         return "rounding moves it to another class"
     return ""

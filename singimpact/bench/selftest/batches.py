@@ -74,8 +74,8 @@ def lanes(flown: Flown, plain: PlainOrbits) -> Row:
     return tally.row()
 
 
-def _lane(plain: PlainOrbits, state: tuple[float, float], ends: Any, place: tuple[int, int], tally: Tally) -> None:
-    at, impacts = place
+def _lane(plain: PlainOrbits, state: tuple[float, float], ends: Any, lane: tuple[int, int], tally: Tally) -> None:
+    at, impacts = lane
     status, true = Status(int(ends.status[at])), plain.impacts(*state, impacts)
     call = f"osc.iterate({state[0]!r}, {state[1]!r}, {impacts}), state {at} of the array: "
     call += f"{float(ends.tau[at])!r}, {float(ends.v[at])!r}, {status.name}"
@@ -145,7 +145,7 @@ def _graze(plain: PlainOrbits, state: tuple[float, float], answers: tuple[Any, A
 
 def grazing_states(flown: Flown, plain: PlainOrbits) -> tuple[Array, Array]:
     """Launches beside those that graze: where the flight time jumps with v, on both sides, at falling distances."""
-    units, found = flown.scales, list[tuple[float, float]]()
+    units, states_ = flown.scales, list[tuple[float, float]]()
     speeds = units.fast * (np.arange(BATCHES.speeds) + 0.5) / BATCHES.speeds
     for tau in (units.low + (units.high - units.low) * (np.arange(BATCHES.phases) + 0.5) / BATCHES.phases).tolist():
         times = [plain.quick_impact(tau, v).time for v in speeds.tolist()]
@@ -154,8 +154,8 @@ def grazing_states(flown: Flown, plain: PlainOrbits) -> tuple[Array, Array]:
         for at in np.flatnonzero(~smooth).tolist():
             graze = _graze_between(plain, tau, (float(speeds[at]), float(speeds[at + 1])), (times[at], times[at + 1]))
             if graze:
-                found += [(tau, graze * (1 + side * away)) for away in BATCHES.decades for side in (-1, 1)]
-    return np.array([tau for tau, _ in found]), np.array([v for _, v in found])
+                states_ += [(tau, graze * (1 + side * away)) for away in BATCHES.decades for side in (-1, 1)]
+    return np.array([tau for tau, _ in states_]), np.array([v for _, v in states_])
 
 
 def _graze_between(

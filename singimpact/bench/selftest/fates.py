@@ -142,20 +142,20 @@ class Follower:
         """The motion for ever: after a chatter that completes the mass rests and lifts off, again and again."""
         if fate.kind != "chatter":
             return fate
-        place = self.plain.next_lift_off(fate.tau)
-        if place < 0:
+        phase = self.plain.next_lift_off(fate.tau)
+        if phase < 0:
             return Fate("rest", impacts=fate.impacts)
-        path, times = [place], list[float]()
+        path, times = [phase], list[float]()
         while True:
             after, time = _after_lift_off(self, path[-1])
             if after.kind != "chatter":
                 return after
             times.append(time)
-            place = self.plain.next_lift_off(after.tau)
-            if place in path:
-                at = path.index(place)
+            phase = self.plain.next_lift_off(after.tau)
+            if phase in path:
+                at = path.index(phase)
                 return Fate("chatter for ever", 0, round(sum(times[at:]) / self.period), impacts=fate.impacts)
-            path.append(place)
+            path.append(phase)
 
     def separates(self, state: tuple[float, float], distance: float, impacts: int) -> bool:
         """Whether an orbit and a neighbour part within so many impacts."""

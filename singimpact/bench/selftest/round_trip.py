@@ -47,8 +47,8 @@ def row(flown: Flown) -> Row:
             tally.leave("CPU time used up", hit.size - begin)
             break
         _judge(flown, hit[begin : begin + DRAW.together], tally)
-    found = tally.row()
-    return found if hit.size else Row(NAME, note="no flight that was drawn returns")
+    result = tally.row()
+    return result if hit.size else Row(NAME, note="no flight that was drawn returns")
 
 
 def _judge(flown: Flown, places: Array, tally: Tally) -> None:

@@ -67,8 +67,8 @@ def row(flown: Flown) -> Row:
             tally.leave("a_c is a rounding")
         else:
             ends = f"{float(grid[at])!r} and {float(grid[at + 1])!r}"
-            told = f"a_c changes its sign between {ends}, with {inside} tangency points"
-            tally.judge(0.0 if inside % 2 else np.inf, told)
+            finding = f"a_c changes its sign between {ends}, with {inside} tangency points"
+            tally.judge(0.0 if inside % 2 else np.inf, finding)
     if not (changed.size or tau.size):
         tally.judge(0.0, "")  # no point and no change of sign: one agreement
     return tally.row()

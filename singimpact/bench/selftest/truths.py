@@ -102,11 +102,11 @@ def _off(flown: Flown, at: int, time: float | None, velocity: float) -> float:
     step = flown.step
     if step.status[at] != Status.hit or time is None:
         return 0.0 if step.status[at] in ENDED and time is None else np.inf
-    found = (
+    compared = (
         (step.flight_time[at], time, step.condition[at]),
         (step.velocity[at], velocity, step.velocity_condition[at]),
     )
-    parts = [abs(one / other - 1) / max(TRUTHS.wrong, 100 * kappa * EPSILON) for one, other, kappa in found]
+    parts = [abs(one / other - 1) / max(TRUTHS.wrong, 100 * kappa * EPSILON) for one, other, kappa in compared]
     return float(np.max(parts))
 
 
@@ -168,7 +168,7 @@ def _compared(flown: Flown, at: int, truth: tuple[Any, Any], tally: Tally) -> No
         tally.judge(0.0 if same else np.inf, _told(flown, at, "none" if truth[0] is None else float(truth[0])))
     else:
         pairs = ((step.flight_time, truth[0], step.time_error), (step.velocity, truth[1], step.velocity_error))
-        ratio = np.max([_relative(found[at], true) / error[at] for found, true, error in pairs])
+        ratio = np.max([_relative(values[at], true) / error[at] for values, true, error in pairs])
         tally.judge(float(ratio), _told(flown, at, float(truth[0])))
 
 

@@ -78,22 +78,22 @@ def _threshold(place: str, points: int) -> Iterator[Trial]:
 RATES = {"r -> 0": 1e-3, "r -> 1": 0.9}  # of curves, which cost many flights
 
 
-def _gamma_grown(place: str, points: int) -> Iterator[Trial]:
+def _gamma_grown(name: str, points: int) -> Iterator[Trial]:
     """Vertices beside the threshold over the same phase."""
-    rate = RATES.get(place, 0.5)
+    rate = RATES.get(name, 0.5)
     osc = linear("2.8", 0, rate)
     points_of = np.vstack([curve.points for curve in grown_gamma(osc, Window((0.6, 2.0), (0.0, 1.0)))])
     far = END - points_of[:, 0]
-    for off in powers(min(points, 2), 3 if place == "a -> 0" else 1, 0.3):
+    for off in powers(min(points, 2), 3 if name == "a -> 0" else 1, 0.3):
         tau, v = points_of[int(np.argmin(np.abs(far - off) + (far < off / 2)))].tolist()
         true = threshold(osc, tau, digits=20)
         kappa = condition(lambda at, _: float(threshold(osc, at).v), tau, 1.0, 1e-7)
         yield Trial(f"r = {rate}, tau = {tau!r}", [v], [true.v], [(kappa - 1) * true.v])
 
 
-def _stable_manifold(place: str, points: int) -> Iterator[Trial]:
+def _stable_manifold(name: str, points: int) -> Iterator[Trial]:
     """Chatter from a vertex ends at the foot, within the error that the condition number allows."""
-    rate, foot = RATES.get(place, 0.5), END - 1e-3 if place == "a -> 0" else 1.0
+    rate, foot = RATES.get(name, 0.5), END - 1e-3 if name == "a -> 0" else 1.0
     osc = linear("2.8", 0, rate)
     vertices = np.vstack([curve.points for curve in stable_manifold(osc, Window((0.2, 1.5), (0.0, 1.0)), foot)])
     for index in np.linspace(2, len(vertices) - 2, min(points, 6)).astype(int).tolist():

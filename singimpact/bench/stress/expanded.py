@@ -90,16 +90,19 @@ def _emitted() -> dict[str, Any]:
     return plain("\n\n".join(sheet_functions(ORDER)), {"Any": Any})
 
 
-def _emitted_numpy(place: str, points: int) -> Iterator[Trial]:
+def _emitted_numpy(name_: str, points: int) -> Iterator[Trial]:
     """The emitted code on doubles against the same code on numbers of 60 digits; the jets are inputs too."""
-    impact, states = PLACES[place]
+    impact, states = PLACES[name_]
     function = _emitted()["xdot_c_tangency" if impact else "v_c_tangency"]
     names = function.__code__.co_varnames[2 : function.__code__.co_argcount]
     for bend, sigma, t in states(points):
-        given = [{**JETS, "a_d1": float(3 * bend)}.get(name, 0.0) for name in names]
-        values, rounding = moved(lambda *all_of: [function(*all_of)], [sigma, t, *given])
+        arguments = [{**JETS, "a_d1": float(3 * bend)}.get(name, 0.0) for name in names]
+        values, rounding = moved(lambda *all_of: [function(*all_of)], [sigma, t, *arguments])
         yield Trial(
-            f"a' = {float(3 * bend):.3g}, sigma = {sigma!r}, t = {t!r}", [function(sigma, t, *given)], values, rounding
+            f"a' = {float(3 * bend):.3g}, sigma = {sigma!r}, t = {t!r}",
+            [function(sigma, t, *arguments)],
+            values,
+            rounding,
         )
 
 
@@ -120,32 +123,32 @@ def _rates(towards: int, points: int) -> list[str]:
     return [f"{off:.20f}" if not towards else f"{1 - Fraction(repr(off))}" for off in powers(min(points, 5), 6)]
 
 
-def _gamma(place: str, points: int) -> Iterator[Trial]:
-    if place == "a -> 0":
+def _gamma(name: str, points: int) -> Iterator[Trial]:
+    if name == "a -> 0":
         yield from _series(theory.gamma(ORDER, model=model(), tau="0"), "r = 1/2", [-s for s in powers(points, 12)])
         return
-    if place == "a' -> 0":
+    if name == "a' -> 0":
         for bend in powers(min(points, 5), 6):
-            made = theory.gamma(ORDER, model=model(Fraction(repr(bend))), tau="0")
-            yield from _series(made, f"a' = {3 * bend:.3g}", [-bend / 10])
+            series = theory.gamma(ORDER, model=model(Fraction(repr(bend))), tau="0")
+            yield from _series(series, f"a' = {3 * bend:.3g}", [-bend / 10])
         return
-    for r in _rates(place == "r -> 1", points):
+    for r in _rates(name == "r -> 1", points):
         yield from _series(theory.gamma(ORDER, model=model(r=r), tau="0"), f"r = {r}", [-0.1, -1e-3])
 
 
-def _completion(place: str, points: int) -> Iterator[Trial]:
+def _completion(name: str, points: int) -> Iterator[Trial]:
     osc, near = linear("2.8", "0.3", "0.5"), 0.45229894  # the zero of a
-    if place == "v -> 0":
-        made = theory.chatter_limit(ORDER, model=osc, tau="0.9")
-        yield from _series(made, "tau = 0.9", powers(points, 14))
-    elif place == "a -> 0":
+    if name == "v -> 0":
+        series = theory.chatter_limit(ORDER, model=osc, tau="0.9")
+        yield from _series(series, "tau = 0.9", powers(points, 14))
+    elif name == "a -> 0":
         for off in powers(min(points, 6), 5):
             tau = repr(near + off)
             yield from _series(theory.chatter_limit(ORDER, model=osc, tau=tau), f"tau = {tau}", [off**2 / 100])
     else:
-        for r in _rates(place == "r -> 1", points):
-            made = theory.chatter_limit(ORDER, model=linear("2.8", 0, r), tau="0.9")
-            yield from _series(made, f"r = {r}", [1e-3 * (1 - float(Fraction(r))), 1e-9])
+        for r in _rates(name == "r -> 1", points):
+            series = theory.chatter_limit(ORDER, model=linear("2.8", 0, r), tau="0.9")
+            yield from _series(series, f"r = {r}", [1e-3 * (1 - float(Fraction(r))), 1e-9])
 
 
 def _function(name: str, judge: Callable[..., Iterator[Trial]], places: Any, route: str, left_out: str) -> Function:

@@ -44,12 +44,12 @@ def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
     if v == 0 and not motion.at(0)[2] > 0:
         return int(Status.sticks)
     try:
-        found = first_hit(motion, float(v), launch.horizon)
+        hit = first_hit(motion, float(v), launch.horizon)
     except ArithmeticError:
         return int(Status.graze)
-    if found is None:
+    if hit is None:
         return int(Status.no_return)
-    (time, u), e = found, motion.at(found[0])[2]
+    (time, u), e = hit, motion.at(hit[0])[2]
     by_tau, by_v = motion.variations(time) if float(v) else (motion.variations(time)[0], (0 * u, 0 * u))
     rows = [(-by[0] / u, by[1] - e * by[0] / u) for by in (by_tau, by_v)]
     return Landing(time, u, ((rows[0][0], rows[1][0]), (rows[0][1], rows[1][1])))
@@ -125,16 +125,16 @@ def _flight(launch: Launch) -> Trial | None:
     true = landing(launch, launch.tau, launch.v)
     if isinstance(true, int) or launch.v < SQUARED:
         return None
-    times = [float(true.time) * part for part in (1e-6, 0.5, 0.999)]
-    place, motion = launch.model.flight(launch.tau, launch.v, times), launch.motion(launch.tau, launch.v)
+    times = [float(true.time) * share for share in (1e-6, 0.5, 0.999)]
+    path_, motion = launch.model.flight(launch.tau, launch.v, times), launch.motion(launch.tau, launch.v)
     truth, slack = [], []
     for t in times:
         (z, u, e), (by_tau, by_v) = motion.at(flint.arb(t)), motion.variations(flint.arb(t))
         size = sizes(launch, t)
         truth += [z + launch.clearance, u]
         slack += [abs(by_tau[n]) * size[0] + abs(by_v[n]) * size[1] + abs(rate) * t for n, rate in ((0, u), (1, e))]
-    found = np.stack([place.x, place.xdot], axis=1).ravel().tolist()
-    return Trial(str(launch), found, truth, slack)
+    samples = np.stack([path_.x, path_.xdot], axis=1).ravel().tolist()
+    return Trial(str(launch), samples, truth, slack)
 
 
 def _derivative(launch: Launch) -> Trial | None:
@@ -146,11 +146,11 @@ def _derivative(launch: Launch) -> Trial | None:
 
     if launch.v < SQUARED:
         return None
-    found, true = launch.model.derivative(launch.tau, launch.v, horizon=launch.horizon), _matrix(launch, 0, 0)
+    computed, true = launch.model.derivative(launch.tau, launch.v, horizon=launch.horizon), _matrix(launch, 0, 0)
     if isinstance(true, int):
-        return Trial(str(launch), status=_status(found.status, true))
-    if found.status != Status.hit:
-        return Trial(str(launch), status=(int(found.status), int(Status.hit)))
+        return Trial(str(launch), status=_status(computed.status, true))
+    if computed.status != Status.hit:
+        return Trial(str(launch), status=(int(computed.status), int(Status.hit)))
     values, time = true
     small, size = flint.arb(10) ** -STEP, sizes(launch, time)
     slack = [0 * value for value in values]
@@ -164,7 +164,7 @@ def _derivative(launch: Launch) -> Trial | None:
     if isinstance(launch, SteepLaunch):
         # a rounding of x inside the layer changes f' there by the steepness times as much
         slack = [so_far + launch.steepness * abs(value) for so_far, value in zip(slack, values, strict=True)]
-    return Trial(str(launch), found.matrix.ravel().tolist(), values, slack)
+    return Trial(str(launch), computed.matrix.ravel().tolist(), values, slack)
 
 
 def _matrix(launch: Launch, by_tau: Any, by_v: Any) -> tuple[list[Any], Any] | int:

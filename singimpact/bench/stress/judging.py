@@ -61,7 +61,7 @@ class Trial:
         if self.status[0] != self.status[1]:
             return inf
         parts = zip(self.found, self.truth, self.moved, strict=True)
-        return max((_units(*part) for part in parts), default=0.0)
+        return max((_units(*number) for number in parts), default=0.0)
 
 
 def _units(found: Any, truth: Any, moved: Any) -> float:
@@ -153,7 +153,7 @@ class Cell:
         return not (self.trials and self.units <= LIMITS.failure)
 
 
-def worst(function: str, place: str, sweep: Sweep, points: int) -> Cell:
+def worst(function: str, name: str, sweep: Sweep, points: int) -> Cell:
     """The cell of a sweep.
 
     Examples
@@ -164,7 +164,7 @@ def worst(function: str, place: str, sweep: Sweep, points: int) -> Cell:
     trials = list(sweep(points))
     judged = [(trial.units, trial.state) for trial in trials]
     units, state = max(judged, key=lambda pair: pair[0], default=(inf, "no trial"))
-    return Cell(function, place, len(trials), units, state)
+    return Cell(function, name, len(trials), units, state)
 
 
 def powers(points: int, last: float, first: float = 1.0) -> list[float]:

@@ -143,13 +143,13 @@ def _grazing(family: str, points: int) -> Iterator[Launch]:
         at = Launch(family, clearance=-0.4, tau=touch)
         with balls_at(BITS):
             motion = at.motion(-touch, 0.0, -1)
-            found = first_hit(motion, 0.0, 60.0) if motion.at(0)[2] > 1e-3 else None
-        if found is None:
+            hit = first_hit(motion, 0.0, 60.0) if motion.at(0)[2] > 1e-3 else None
+        if hit is None:
             continue
         for off in powers(points, 13):
             for side in (1, -1):
-                v = -float(found[1]) * (1 + side * off)
-                yield Launch(family, clearance=-0.4, tau=touch - float(found[0]), v=v)
+                v = -float(hit[1]) * (1 + side * off)
+                yield Launch(family, clearance=-0.4, tau=touch - float(hit[0]), v=v)
 
 
 def _resting(family: str, points: int) -> Iterator[Launch]:

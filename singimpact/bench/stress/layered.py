@@ -26,7 +26,7 @@ def landed(launch: SteepLaunch, tau: Any, v: Any, sign: int) -> tuple[Any, Any, 
     """
     import flint
 
-    start = [flint.arb(flint.arb(part).mid()) for part in (tau, v)]
+    start = [flint.arb(flint.arb(number).mid()) for number in (tau, v)]
     time, velocity = _flown(launch, *map(_key, start), sign)
     if time is None:
         return None
@@ -34,8 +34,8 @@ def landed(launch: SteepLaunch, tau: Any, v: Any, sign: int) -> tuple[Any, Any, 
     for moved in (0, 1):
         size = max(abs(float(start[moved])), 1.0) if moved == 0 else float(start[1])
         change = flint.arb((small * size).mid())
-        there = [part + change if place == moved else part for place, part in enumerate(start)]
-        late, fast = _flown(launch, *(_key(flint.arb(part.mid())) for part in there), sign)
+        there = [number + change if index == moved else number for index, number in enumerate(start)]
+        late, fast = _flown(launch, *(_key(flint.arb(number.mid())) for number in there), sign)
         if late is None:
             return None
         rows.append(((late - time) / change, (fast - velocity) / change))

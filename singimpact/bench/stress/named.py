@@ -36,13 +36,13 @@ def _derivatives(launch: Launch, tau: Any) -> list[Any]:
     return [cosine - pull, -w * sine, -w * w * cosine]
 
 
-def _tangency_points(place: str, points: int) -> Iterator[Trial]:
+def _tangency_points(name: str, points: int) -> Iterator[Trial]:
     import mpmath
 
     for off in powers(points, 13):
         for family, clearance in (("linear", 1 - off), ("linear", off - 1), ("cubic", 0.8 - off)):
             launch = Launch(
-                family, 1 + off if place == "omega -> 1" else 2.8, off if place == "omega -> 1" else clearance
+                family, 1 + off if name == "omega -> 1" else 2.8, off if name == "omega -> 1" else clearance
             )
 
             def zeros(omega: Any, c: Any, family: str = family) -> list[Any]:
@@ -59,15 +59,15 @@ def _swan_points(_: str, points: int) -> Iterator[Trial]:
 
     for off in powers(points, 13):
         for omega in (1 + off, 1 - off):
-            found = swan_points("x + k*x**3", "cos(omega*t)", {"k": off, "omega": omega})
+            swans = swan_points("x + k*x**3", "cos(omega*t)", {"k": off, "omega": omega})
 
             def true(k: Any, w: Any) -> list[Any]:
                 c = mpmath.findroot(lambda x: x + k * x**3 - 1, 1)
                 return [mpmath.mpf(0), mpmath.pi / w, c, -c]
 
             values, rounding = moved(true, [off, omega])
-            given = [swan.tau for swan in found] + [swan.clearance for swan in found]
-            yield Trial(f"k = {off!r}, omega = {omega!r}", given, values, rounding)
+            computed = [swan.tau for swan in swans] + [swan.clearance for swan in swans]
+            yield Trial(f"k = {off!r}, omega = {omega!r}", computed, values, rounding)
 
 
 def _fixed_points(at: str, place: str, points: int) -> Iterator[Trial]:

@@ -43,7 +43,7 @@ def _closed_form(near: list[float], omega: Any, c: Any, r: Any) -> list[Any]:
     return [phase + turn * mpmath.nint((near[0] - phase) / turn), v]
 
 
-def _grazes(place: str, curve: bool, points: int) -> Iterator[Trial]:
+def _grazes(name: str, curve: bool, points: int) -> Iterator[Trial]:
     """The graze on the branch of (1, 1) orbits of x'' + x'/10 + x = A cos(omega t): A = |1 - omega^2 + i omega/10|."""
     for off in powers(max(points // 3, 2), 6):
         omega, r, near = {
@@ -51,21 +51,21 @@ def _grazes(place: str, curve: bool, points: int) -> Iterator[Trial]:
             "omega -> 1": (1 + off / 8, 0.8, 1e-3),
             "r -> 1": (0.8, 1 - off, 1e-3),
             "r -> 0": (0.8, off, 1e-3),
-        }[place]
+        }[name]
         touching = -math.hypot(1 - omega**2, 0.1 * omega)
         orbits = linear(omega, -1, r, damping=0.1, amplitude=touching * (1 + near)).periodic(1, 1)
         for orbit in orbits:
-            found = branch(orbit, "amplitude", (1.2 * touching, 0.8 * touching))
-            for event in found.events:
+            grazes = branch(orbit, "amplitude", (1.2 * touching, 0.8 * touching))
+            for event in grazes.events:
                 if event.kind != GRAZE.name:
                     continue
                 place_of = f"omega = {omega!r}, restitution = {r!r}"
-                given, value = omega, event.parameter
+                number, value = omega, event.parameter
                 if curve:
                     spread = ((1.2 * touching, 0.8 * touching), (omega - 0.02, omega + 0.02))
                     at = event_curve(event, ("amplitude", "omega"), spread).parameters[-1]
-                    given, value = float(at[1]), float(at[0])
-                values, rounding = moved(_touching, [given, 0.1])
+                    number, value = float(at[1]), float(at[0])
+                values, rounding = moved(_touching, [number, 0.1])
                 yield Trial(place_of, [value], values, rounding)
 
 

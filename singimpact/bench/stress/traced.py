@@ -47,7 +47,7 @@ def _turns(launch: Launch, vertex: list[float]) -> bool:
 
 def _on_zero_set(launch: Launch, vertex: list[float]) -> Trial:
     steep = abs(_slope(launch, vertex, 0)) > abs(_slope(launch, vertex, 1))
-    known, sought = (1, 0) if steep else (0, 1)
+    fixed, sought = (1, 0) if steep else (0, 1)
 
     def solved(omega: Any, c: Any, given: Any) -> list[Any]:
         def place(value: Any) -> tuple[Any, Any]:
@@ -56,7 +56,7 @@ def _on_zero_set(launch: Launch, vertex: list[float]) -> Trial:
         return [_solved(omega, c, place, vertex[sought])]
 
     return Trial(
-        _told(launch, vertex), [vertex[sought]], *moved(solved, [launch.omega, launch.clearance, vertex[known]])
+        _told(launch, vertex), [vertex[sought]], *moved(solved, [launch.omega, launch.clearance, vertex[fixed]])
     )
 
 
@@ -93,13 +93,13 @@ def _slope(launch: Launch, vertex: list[float], which: int) -> float:
 
     with mpmath.workdps(60):
         c, omega = mpmath.mpf(launch.clearance), mpmath.mpf(launch.omega)
-        place = [mpmath.mpf(value) for value in vertex]
+        point = [mpmath.mpf(value) for value in vertex]
 
         def height(value: Any) -> Any:
-            tau, t = (value, place[1]) if which == 0 else (place[0], value)
+            tau, t = (value, point[1]) if which == 0 else (point[0], value)
             return _flight(omega, c, tau, t)[0] / t**2
 
-        return float(mpmath.diff(height, place[which]))
+        return float(mpmath.diff(height, point[which]))
 
 
 def _flight(omega: Any, c: Any, tau: Any, t: Any) -> tuple[Any, Any]:

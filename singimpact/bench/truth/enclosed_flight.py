@@ -96,7 +96,7 @@ def first_hit(osc: Oscillator, tau: Any, v: Any, horizon: float, settings: Enclo
                 hit = _flown(_equation(osc), (tau, v), horizon, bits)
                 if hit.flight_time is None:
                     return hit
-                worst = max(part.rad() / abs(part.mid()) for part in hit[:2])
+                worst = max(ball.rad() / abs(ball.mid()) for ball in hit[:2])
                 if worst < settings.accuracy:
                     return hit
                 why, more = f"relative radius {float(worst):.1e}", 12 + _bits_over(worst, settings)
@@ -202,8 +202,8 @@ def taylor(equation: Equation, t: Any, x: Any, u: Any, degree: int) -> list[Any]
         m, count = len(X) - 1, min(2 * len(X) - 2, degree - 1)  # X_0..X_m are known; count: residuals that are right
         slopes = [(k + 1) * X[k + 1] for k in range(m)]
         values = {"x": arb_series(X, prec=count), "xdot": arb_series(slopes, prec=count)}
-        f, by_x, by_u = (_listed(part, count) for part in equation.force.run(values))
-        damped = not all(part.is_zero() for part in by_u[1:])  # a ball round 0 is not 0
+        f, by_x, by_u = (_listed(series_, count) for series_ in equation.force.run(values))
+        damped = not all(series_.is_zero() for series_ in by_u[1:])  # a ball round 0 is not 0
         for k in range(m - 1, count):
             rest = g[k] - f[k] - sum(map(arb.__mul__, by_x, X[k:m:-1]), arb(0))
             if damped:
@@ -280,8 +280,8 @@ def _bounded(equation: Equation, X: list[Any], start: tuple[Any, Any], M: Any, R
         sums = _sums(X)
         for _ in range(60):
             values = {
-                name: centre + arb(0, _upper(part(length) + slack))
-                for name, centre, part in zip(("x", "xdot"), X, sums, strict=False)
+                name: centre + arb(0, _upper(total_(length) + slack))
+                for name, centre, total_ in zip(("x", "xdot"), X, sums, strict=False)
             }
             _, by_x, by_u = equation.force.run(values)
             if by_x.is_finite() and by_u.is_finite():

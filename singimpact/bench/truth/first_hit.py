@@ -33,7 +33,7 @@ def first_hit(motion: Any, v: float, horizon: float) -> tuple[Any, Any] | None:
     while begin < horizon:
         width = min(width, 0.5)
         half = width / 2
-        z, u, e = (float(part) for part in motion.at(begin + half))
+        z, u, e = (float(ball) for ball in motion.at(begin + half))
         third = motion.third(z, u, width) * (1 + 1e-9)
         if _lowest(z, u, e, half) - third * half**3 / 6 > 1e-12 * abs(z):
             begin, width = begin + width, 1.5 * width

@@ -118,9 +118,9 @@ def compiled_kernel() -> dict[str, Any]:
     space.update(A=np.ascontiguousarray(table.A[:count, :count]), B=table.B.copy(), C=table.C[:count].copy())
     for name in KERNEL:
         # with its type given, `flown` is compiled once and calls any acceleration
-        given = (_signature(),) if name == "flown" else ()
+        signature = (_signature(),) if name == "flown" else ()
         plain = types.FunctionType(globals()[name].__code__, space, name)
-        space[name] = numba.njit(*given, error_model="numpy")(plain)
+        space[name] = numba.njit(*signature, error_model="numpy")(plain)
     return space
 
 

@@ -181,8 +181,8 @@ class PlainOrbits:
         columns, errors = [], []
         for by_tau in (1.0, 0.0):
             quotients = []
-            for part in (1.0, 0.5):
-                h = SETTINGS.step * part * (1 / self.rate if by_tau else v)
+            for factor in (1.0, 0.5):
+                h = SETTINGS.step * factor * (1 / self.rate if by_tau else v)
                 ends = [self.impact(tau + s * h * by_tau, v + s * h * (1 - by_tau)) for s in (-1, 1)]
                 if any(end.status != HIT or not isfinite(end.v) for end in ends):
                     return None

@@ -72,9 +72,9 @@ def rebound(osc: Oscillator) -> Callable[[float], float]:
     >>> rebound(Oscillator("x", "cos(t)", 0, "-v/2"))(-0.75)
     0.375
     """
-    lines, (place,) = _written([osc.rho()])
+    lines, (result,) = _written([osc.rho()])
     space: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
-    source = "\n".join(["def rho(v):", *lines, f"    return s{place}", ""])
+    source = "\n".join(["def rho(v):", *lines, f"    return s{result}", ""])
     exec(compile(source, "<rebound>", "exec"), space)
     return space["rho"]  # type: ignore[no-any-return]
 

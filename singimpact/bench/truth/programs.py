@@ -53,7 +53,7 @@ class Program:
                 done.append(power(done[parts[0]], parts[1]))
             else:
                 done.append(call(kind, done[parts[0]]))
-        return [done[place] for place in self.results]
+        return [done[index] for index in self.results]
 
 
 def call(function: str, z: Any) -> Any:
