@@ -9,7 +9,7 @@ from functools import lru_cache, partial
 from typing import Any
 
 from singimpact.algebra.expressions import BOUND, Expression, Root, evaluate
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra.precision import Ladder, balls_at
 from singimpact.algebra.solving import newton_in_balls
 
 BITS_A_DIGIT = 3.3219281  # log2 10, rounded up
@@ -127,11 +127,9 @@ def _coefficient(taylor: Callable[..., list[Any]], order: int, times: int, at: A
 
 def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int = 0) -> Any:
     """A ball of about this many bits around the simple zero in a piece, by interval Newton steps."""
-    low, high, work = _monotone(tree, variable, zero, order)
-    most = max(bits + 64, work)
-    work //= 2
-    while True:
-        work = min(2 * work, most)
+    low, high, first = _monotone(tree, variable, zero, order)
+    most = max(bits + 64, first)
+    for work in Ladder(first, most, lambda before: min(2 * before, most)):
         balls = Balls(work)
         with balls_at(work):
             taylor = partial(derivatives, tree, variable, ring=balls)
@@ -140,9 +138,9 @@ def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int =
                 partial(_coefficient, taylor, order + 1, order + 1),
                 balls.interval(low, high),
             )
-        if work == most:
-            return enclosure
-        low, high = _ends(enclosure)
+        if work < most:
+            low, high = _ends(enclosure)
+    return enclosure
 
 
 @lru_cache(maxsize=256)

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from threading import RLock
 from types import TracebackType
 from typing import Any, TypeVar
@@ -109,6 +110,36 @@ class series_of_any_length:
 
         flint.ctx.cap = self.before
         _LOCK.release()
+
+
+@dataclass
+class Ladder:
+    """Bits or digits of one attempt after the other, raised until an attempt decides.
+
+    Parameters
+    ----------
+    first : of the first attempt. most : none above is tried. higher : the next from the one before; one that is not
+        higher is the end.
+    lack : what the last attempt says to lack; the next one then has so much more, and at most `most`.
+
+    Examples
+    --------
+    >>> list(Ladder(100, 500)), list(Ladder(100, 250, lambda bits: min(2 * bits, 250)))
+    ([100, 200, 400], [100, 200, 250])
+    """
+
+    first: int
+    most: int
+    higher: Callable[[int], int] = lambda bits: 2 * bits
+    lack: int | None = None
+
+    def __iter__(self) -> Iterator[int]:
+        before, bits = 0, self.first
+        while before < bits <= self.most:
+            yield bits
+            before = bits
+            bits = self.higher(bits) if self.lack is None else min(bits + self.lack, self.most)
+            self.lack = None
 
 
 def for_user(value: Any) -> Any:

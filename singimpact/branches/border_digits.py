@@ -19,7 +19,7 @@ from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
 from singimpact.algebra.certified import Certified, from_ends
 from singimpact.algebra.expressions import Number
 from singimpact.algebra.numbers import as_float, exact
-from singimpact.algebra.precision import balls_at, digits_at, for_user
+from singimpact.algebra.precision import Ladder, balls_at, digits_at, for_user
 from singimpact.algebra.solving import newton_in_balls
 from singimpact.branches.released import Return
 from singimpact.contact.zero_ahead import ContactZero, next_zero
@@ -189,21 +189,19 @@ def _proved(found: Return, near: Fraction, digits: int) -> tuple[Certified | Non
         return None, "not certified: balls fly orbits of models with a number below 1 for restitution"
     margin = abs(near) / (4 * 10**digits)
     low, high = near - margin, near + margin
-    bits = ceil(digits * BITS_A_DIGIT) + 64
     times = found.ends(model)
     sides: dict[Fraction, int | None] = {low: None, high: None}
     followed = False
-    while bits <= SETTINGS.bits * (digits + 32):
+    # the fates of both ends are open while rounding is wider than their distance from gamma
+    for bits in Ladder(ceil(digits * BITS_A_DIGIT) + 64, SETTINGS.bits * (digits + 32)):
         with balls_at(bits):
             followed = followed or _followed(_flow(found, (low, high), bits), times, found.entry) is not None
             for value, known in sides.items():
                 sides[value] = known or _fate(_flow(found, (value, value), bits), times, found.entry)
         if followed and None not in sides.values():
             break
-        # the fates of both ends are open while rounding is wider than their distance from gamma
-        bits *= 2
     else:
-        return None, f"not certified: balls of {bits // 2} bits do not decide what the orbits next to it do"
+        return None, f"not certified: balls of {bits} bits do not decide what the orbits next to it do"
     if (sides[low], sides[high]) != (found.side, -found.side):
         return None, "not certified: the orbits on both sides of it have one fate"
     return from_ends(low, high, digits), ""

@@ -15,7 +15,7 @@ from singimpact.algebra.balls import Balls, Zero, as_rational, derivatives, refi
 from singimpact.algebra.certified import Certified, as_certified
 from singimpact.algebra.expressions import Call, Expression, Number, Power, children, evaluate, names_in, walk
 from singimpact.algebra.numbers import as_float
-from singimpact.algebra.precision import balls_at, digits_at, for_user, kept_property
+from singimpact.algebra.precision import Ladder, balls_at, digits_at, for_user, kept_property
 from singimpact.algebra.zeros import isolate
 from singimpact.contact.contact import acceleration
 from singimpact.inputs import InputError, refuse
@@ -80,12 +80,10 @@ def enclosed(ball: Callable[[int], Any], digits: int) -> Certified:
     ------
     InputError : digits are not a whole number from 1 to MOST_DIGITS.
     """
-    bits = ceil(_checked(digits) * 3.33) + 32
-    while (number := as_certified(ball(bits), digits)) is None:
-        bits *= 2
-        if bits > 64 * (digits + 64):
-            raise ArithmeticError(f"{digits} digits are not reached with {bits // 2} bits")
-    return number
+    for bits in Ladder(ceil(_checked(digits) * 3.33) + 32, 64 * (digits + 64)):
+        if (number := as_certified(ball(bits), digits)) is not None:
+            return number
+    raise ArithmeticError(f"{digits} digits are not reached with {bits} bits")
 
 
 def _checked(digits: Any) -> int:

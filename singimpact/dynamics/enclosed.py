@@ -18,7 +18,7 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.certified import Certified, as_certified, from_ends
 from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.numbers import as_float, sign_of
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra.precision import Ladder, balls_at
 from singimpact.contact.zero_ahead import ContactZero
 from singimpact.dynamics.guide import guided, newton, spread
 from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
@@ -65,13 +65,12 @@ def with_more_bits(
     attempt: Callable[[AnalyticFlow], Found | None], osc: Oscillator, digits: int, expected: int = 0
 ) -> Found | None:
     """attempt(flow) at growing precision, from that which is expected to be enough, until it decides."""
-    bits = max(ceil(digits * 3.33), expected) + ORBITS.spare
-    while bits <= ORBITS.bits * (digits + 32):
+    first = max(ceil(digits * 3.33), expected) + ORBITS.spare
+    for bits in Ladder(first, ORBITS.bits * (digits + 32)):
         with balls_at(bits):
-            found = attempt(AnalyticFlow(osc, bits))
-        if found is not None:
-            return found
-        bits *= 2
+            answer = attempt(AnalyticFlow(osc, bits))
+        if answer is not None:
+            return answer
     return None
 
 

@@ -110,17 +110,27 @@ def settle(osc: Oscillator, states: States, index: int, limit: float) -> tuple[i
     steps = LIMITS.settling_steps
     if linear_form(osc) is None:
         steps = min(steps, int(LIMITS.settling_by_price / recurrence_of(osc).price))
-    for digits in LIMITS.settling_digits:
+
+    def fly(digits: int) -> Outcome:
         code, numbers = flown(osc, states, index, digits, limit, steps)
+        touch = _touching(osc, states, index, numbers, digits) if code == Status.unresolved else None
+        return touch or (code, numbers)
+
+    return settled(fly)
+
+
+def settled(fly: Callable[[int], Outcome]) -> tuple[int, list[float]] | None:
+    """Code and doubles of a flight that `fly` follows with more digits until they decide it; None where none do.
+
+    A touch that the most digits do not separate from a graze is a graze.
+    """
+    for digits in LIMITS.settling_digits:
+        code, numbers = fly(digits)
         if code > 20:
             return None
         if code != Status.unresolved:
             return code, [float(value) for value in numbers]
-        if (touch := _touching(osc, states, index, numbers, digits)) is not None:
-            return touch[0], [float(value) for value in touch[1]]
-    if _touches(numbers):
-        return int(Status.graze), [float(value) for value in numbers]
-    return None
+    return (int(Status.graze), [float(value) for value in numbers]) if _touches(numbers) else None
 
 
 def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:

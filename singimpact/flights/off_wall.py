@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -206,16 +206,12 @@ class _Flown:
 
     def _settle(self, fates: Fates, index: int, exact: list[Expression], limit: float) -> None:
         """A flight that doubles leave open near a graze, in many digits."""
-        for digits in LIMITS.settling_digits:
-            code, numbers = _in_digits(self.osc, exact, digits, limit)
-            if code in (Status.hit, Status.no_return):
-                break
-        else:
-            if code != Status.unresolved or not abs(numbers[2]) <= 10 * numbers[3]:
-                return
-            code = int(Status.graze)
-        fates.status[index], fates.cause[index] = code, Cause.decided
-        fates.rows[:4, index] = [float(value) for value in numbers]
+        from singimpact.flights.multiprecision import settled  # 8 ms that few calls need
+
+        outcome = settled(partial(_in_digits, self.osc, exact, limit))
+        if outcome is not None:
+            fates.status[index], fates.rows[:4, index] = outcome
+            fates.cause[index] = Cause.decided
 
     def at_wall(self, at: Array, times: Array, speeds: Array) -> None:
         """Starts on the wall are launches of the impact map."""
@@ -244,7 +240,7 @@ class _Flown:
         return Launched(tau, after, time, velocity, status_array(self.status.reshape(shape)), cause, self.notes)
 
 
-def _in_digits(osc: Oscillator, exact: list[Expression], digits: int, limit: float) -> tuple[int, list[Any]]:
+def _in_digits(osc: Oscillator, exact: list[Expression], limit: float, digits: int) -> tuple[int, Any]:
     """Code, and time, velocity, depth and bound, of a flight from t, x', x in many digits."""
     flow = recurrence_of(osc)
     with digits_at(digits) as mp:
@@ -255,5 +251,5 @@ def _in_digits(osc: Oscillator, exact: list[Expression], digits: int, limit: flo
         try:
             code, *numbers = space["taylor_flight"]([t], v, 0, mp.nan, p, rules, work, [])
         except (ArithmeticError, ValueError, TypeError):  # log or a root left its domain on the way
-            return 22, []
-        return int(code), numbers
+            return 22, ()
+        return int(code), tuple(numbers[:4])

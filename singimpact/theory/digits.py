@@ -10,7 +10,7 @@ from typing import Any
 
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.certified import Certified, as_certified
-from singimpact.algebra.precision import digits_at, for_user
+from singimpact.algebra.precision import Ladder, digits_at, for_user
 from singimpact.algebra.univariate import precision_of
 from singimpact.inputs import InputError, refuse
 
@@ -40,13 +40,11 @@ def with_digits(
     """
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= LIMITS.digits:
         raise refuse("digits", digits, f"an integer from 1 to {LIMITS.digits}")
-    bits = ceil(digits * 3.33) + 128
-    while bits <= LIMITS.bits:
+    for bits in Ladder(ceil(digits * 3.33) + 128, LIMITS.bits):
         with precision_of(Balls(bits)):
             enclosure = compute(Balls(bits))
         if all(as_certified(ball, digits) is not None for ball in balls_in(enclosure)):
             return show(enclosure, digits)
-        bits *= 2
     raise InputError(f"{digits} digits are not reached with {LIMITS.bits} bits: ask for fewer, or a lower order")
 
 

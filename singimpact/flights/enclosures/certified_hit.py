@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
 from singimpact.algebra.expressions import Expression, evaluate, names_in
-from singimpact.algebra.precision import balls_at, series_of_any_length
+from singimpact.algebra.precision import Ladder, balls_at, series_of_any_length
 from singimpact.flights.enclosures.ball_flight import BallHit, first_hit
 from singimpact.flights.enclosures.equation import (
     Equation,
@@ -118,17 +118,20 @@ def certified_hit(
     0.812373962444622784781243163410
     """
     wanted = ceil(digits * BITS_A_DIGIT)
-    bits, coarse = wanted + ENCLOSURE.spare, ENCLOSURE.coarse
-    most = ENCLOSURE.most * bits + ENCLOSURE.room
-    bits = min(bits + _spare(*expected), most)
+    least, coarse = wanted + ENCLOSURE.spare, ENCLOSURE.coarse
+    most = ENCLOSURE.most * least + ENCLOSURE.room
+    first = min(least + _spare(*expected), most)
     box = framed = any(launch.radii.values())
     if box:
         # digits beyond the width of a box are lost in it: derivatives over the box carry no more
-        coarse = bits_of_a_set(launch, bits)
-    elif expected[0] > ENCLOSURE.wrapped:
-        framed, coarse = True, bits if derivative else coarse
-    singular = 0
-    while True:
+        coarse = bits_of_a_set(launch, first)
+    framed = framed or expected[0] > ENCLOSURE.wrapped
+    singular, flown, ladder = 0, 0, Ladder(first, most)
+    for bits in ladder:
+        # a ball carried for so many steps has grown by the wrapping effect (Moore 1966), which a frame avoids
+        framed = framed or flown > ENCLOSURE.long
+        if derivative and not box:
+            coarse = bits
         begun = None
         try:
             with working_at(bits + ENCLOSURE.guard):
@@ -138,7 +141,7 @@ def certified_hit(
                 lack = 0 if box else _lack(found, wanted + 1)
                 if lack <= 0:
                     return found
-                why, more, flown = f"{lack} bits of the result are lacking", lack + 6, hit.steps
+                why, ladder.lack, flown = f"{lack} bits of the result are lacking", lack + 6, hit.steps
         except (NoHit, TooLong):
             raise
         except Refused as reason:
@@ -146,16 +149,10 @@ def certified_hit(
             singular += isinstance(reason, NotAnalytic)
             if (box and coarse >= bits) or singular > ENCLOSURE.singular:
                 raise
-            why, more = str(reason), int(bits * (ENCLOSURE.more - 1))
+            why, ladder.lack = str(reason), int(bits * (ENCLOSURE.more - 1))
             coarse = min(2 * coarse, bits)
             flown = 0 if begun is None else begun.flown
-        if bits >= most:
-            raise Refused(f"{why} (at {bits} bits)")
-        bits = min(bits + more, most)
-        # a ball carried for so many steps has grown by the wrapping effect (Moore 1966), which a frame avoids
-        framed = framed or flown > ENCLOSURE.long
-        if derivative and not box:
-            coarse = bits
+    raise Refused(f"{why} (at {bits} bits)")
 
 
 def bits_of_a_set(launch: Launch, bits: int) -> int:

@@ -11,6 +11,7 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import BITS_A_DIGIT
+from singimpact.algebra.precision import Ladder
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, bits_of_a_set, motion_from, working_at
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
@@ -68,10 +69,10 @@ def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, der
     >>> print(timed_flight(osc, launch, Balls(100).rational(Fraction(1)), 20).height.str(20, radius=False))
     0.84147098480789650665
     """
-    bits = ceil(digits * BITS_A_DIGIT) + ENCLOSURE.spare
-    most, box = ENCLOSURE.most * bits + ENCLOSURE.room, any(launch.radii.values())
+    first = ceil(digits * BITS_A_DIGIT) + ENCLOSURE.spare
+    most, box = ENCLOSURE.most * first + ENCLOSURE.room, any(launch.radii.values())
     small = Fraction(1, 10**digits)
-    while True:
+    for bits in Ladder(first, most, lambda before: min(int(before * ENCLOSURE.more), most)):
         why = "the digits are not reached"
         try:
             found = _flown(osc, launch, time, bits, derivative)
@@ -81,9 +82,7 @@ def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, der
             if box:
                 raise
             why = str(reason)
-        if bits >= most:
-            raise Refused(f"{why} (at {bits} bits)")
-        bits = min(int(bits * ENCLOSURE.more), most)
+    raise Refused(f"{why} (at {bits} bits)")
 
 
 def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int, *, crosses: bool = False) -> None:
