@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
-from singimpact.branches.branch_walk import SETTINGS, BranchWalk
+from singimpact.branches.branch_walk import BranchWalk
 from singimpact.branches.events import KINDS, Event, own_events
+from singimpact.branches.orbit_curve import SETTINGS, places
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import closing_of, orbit_of
 from singimpact.inputs import InputError, refuse, whole
@@ -159,8 +160,8 @@ def branch(
     own = own_events(events, [kind.name for kind in KINDS])
     walk = BranchWalk(closing, (low, high), step or SETTINGS.step, points, over, own)
     rows = walk.rows(np.append(state, value))
-    listed = np.cumsum([row.listed for row in rows]) - 1
-    events = [replace(row.event, index=int(i) - row.listed) for i, row in zip(listed, rows, strict=True)
+    listed = places([row.listed for row in rows])
+    events = [replace(row.event, index=i - row.listed) for i, row in zip(listed, rows, strict=True)
               if row.event is not None]  # fmt: skip
     rows = [row for row in rows if row.listed]
     n, at = max(closing.n, 1), np.array([row.point.at for row in rows])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -16,6 +15,7 @@ from singimpact.branches.event_tests import EventTests, Tests
 from singimpact.branches.events import KINDS, Event, EventKind
 from singimpact.branches.events.meeting_branches import PITCHFORK
 from singimpact.branches.kept import KeptSide
+from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, orbit_of
 from singimpact.branches.step_search import Crossing, StepSearch
@@ -23,29 +23,6 @@ from singimpact.flights.family import SteppedFamily
 from singimpact.inputs import InputError
 
 Array = np.ndarray[Any, Any]
-
-
-@dataclass(frozen=True)
-class BranchSettings:
-    """Step sizes and tolerances of a branch."""
-
-    # largest step, as a part of the width of the interval, of a period and of the largest velocity
-    step: float = 0.02
-    # half width of the default interval, as a part of the parameter, or of 1 if it is 0
-    around: float = 0.5
-    # flight time, in periods, below which two impacts have met
-    shortest: float = 1e-9
-    # height above the wall that is a rounding error
-    touching: float = 1e-12
-    # the same at a located event
-    located: float = 1e-9
-    # distance of a multiplier from the unit circle that may be a rounding error
-    neutral: float = 1e-9
-    # events of a step that are nearer to each other, of its length, have no point between them
-    together: float = 1e-7
-
-
-SETTINGS = BranchSettings()
 
 
 class Row(NamedTuple):
@@ -62,94 +39,57 @@ class Row(NamedTuple):
         return self.event is None or not self.event.described.touches
 
 
-@dataclass
-class BranchWalk:
+class BranchWalk(OrbitCurve):
     """A branch while it is followed.
 
     Parameters
     ----------
     closing : of its orbits. ends : of the interval. step : the largest one. most : points on either side. over : the
-        name of the parameter. own : kinds of events of a user. notes : where and why it ends, and what else was seen.
+        name of the parameter. own : kinds of events of a user.
     """
 
-    closing: AnyClosing
-    ends: tuple[float, float]
-    step: float
-    most: int
-    over: str
-    own: Sequence[EventKind] = ()
-    notes: list[str] = field(default_factory=list)
+    def __init__(
+        self, closing: AnyClosing, ends: tuple[float, float], step: float, most: int, over: str,
+        own: Sequence[EventKind] = (),
+    ) -> None:  # fmt: skip
+        super().__init__(closing, [ends], step, most)
+        self.over, self.own = over, own
 
-    def equations(self, point: Array) -> tuple[Array, Array]:
-        """The closing conditions; nan where a flight has collapsed."""
-        if isinstance(self.closing, Closing) and self._collapsed(point):
-            return np.full(2 * self.closing.n, np.nan), np.full((2 * self.closing.n, len(point)), np.nan)
+    def conditions(self, point: Array) -> tuple[Array, Array]:
+        """The closing conditions."""
         loop = self.tests.loop(point)
         return loop.miss, loop.slope
 
-    def _collapsed(self, point: Array) -> bool:
-        assert isinstance(self.closing, Closing)
-        period = self.closing.family.period(self.closing.values(point)).value
-        return any(flight[3] < SETTINGS.shortest * period for flight in self.closing.flights(point))
-
     def rows(self, guess: Array) -> list[Row]:
         """The points of the branch in both directions from a guess, in the order of the branch."""
-        scales = self.closing.scales(guess)
-        scales[-1] = self.ends[1] - self.ends[0]
-        self.tests = EventTests(self.closing, scales, (*KINDS, *self.own))
-        upwards = np.zeros(len(guess))
-        upwards[-1] = scales[-1]
-        n = self.closing.n
-        speeds = slice(n, 2 * n) if n else slice(0, 2)
-        start = Curve(self, scales, self.step, speeds).begin(guess, upwards)
+        self.scaled(guess)
+        self.tests = EventTests(self.closing, self.scales, (*KINDS, *self.own))
+        start = self.begin(guess)
         if start is None:
             raise InputError("the orbit does not solve its closing conditions: give one of osc.periodic(n, k)")
-        rows = [self._row(start)]
-        for sign in (-1.0, 1.0):
-            here = Point(start.at, sign * start.tangent)
-            # an event at the start itself belongs to the second side
-            tests = self.tests.at(here) if sign < 0 else self.tests.leaving(here)
-            side = self._side(Curve(self, scales, self.step, speeds), here, tests)
-            rows = side[::-1] + rows if sign < 0 else rows + side
-            if self.notes and self.notes[-1].startswith("closed"):
-                break
-        return rows
+        return self.both_sides(start)
 
     # ---- one side
 
-    def _side(self, curve: Curve, start: Point, before: Tests) -> list[Row]:
-        kept = KeptSide(self._key(start))
+    def side(self, curve: Curve, start: Point, sign: float) -> list[Row]:
+        # an event at the start itself belongs to the second side
+        tests = self.tests.at(start) if sign < 0 else self.tests.leaving(start)
+        self.kept = KeptSide(self._key(start))
         try:
-            return self._followed(curve, start, before, kept)
+            return self._followed(curve, start, tests)
         finally:
-            kept.write()
+            self.kept.write()
 
-    def _followed(self, curve: Curve, start: Point, before: Tests, kept: KeptSide) -> list[Row]:
+    def _followed(self, curve: Curve, start: Point, before: Tests) -> list[Row]:
         rows: list[Row] = []
-        last = start
-        low, high = self.ends
-        for index, (here, length, after) in enumerate(self._steps(curve, start, kept)):
-            stored = kept.points[index] if index < len(kept.points) else None
-            outside = not low <= after.at[-1] <= high
-            if outside:
-                end = self._end(curve, here, length, after)
-                if end is None:
-                    self.notes.append(f"ends at {self.over} = {here.at[-1]:.12g}, next to the end of the interval")
-                    return rows
-                length, after = end
+        for index, (here, length, after, is_last) in enumerate(self.steps(curve, start)):
+            stored = self.kept.points[index] if index < len(self.kept.points) else None
             tests = self.tests.at(after, None if stored is None else stored.named_tests())
             rows += self._events(StepSearch(self.tests, curve, here, length), before, after, tests)
-            rows.append(self._row(after) if stored is None else Row(after, stored.multipliers, stored.visible))
-            if stored is None and not outside:
-                kept.add((after.at, after.tangent, curve.following), rows[-1][:3], tests)
-            before, last = tests, after
-            if outside:
-                self.notes.append(f"ends at {self.over} = {after.at[-1]:.12g}, the end of the interval")
-                return rows
-            if index > 9 and self._again(curve, start, here, after):
-                self.notes.append("closed: the branch comes back to where it began")
-                return rows
-        self.notes.append(f"at {self.over} = {last.at[-1]:.12g}: {self._reason(last) or curve.note}")
+            rows.append(self.row(after) if stored is None else Row(after, stored.multipliers, stored.visible))
+            if stored is None and not is_last:
+                self.kept.add((after.at, after.tangent, curve.following), rows[-1][:3], tests)
+            before = tests
         return rows
 
     def _key(self, start: Point) -> tuple[Any, ...] | None:
@@ -157,18 +97,26 @@ class BranchWalk:
         family = self.closing.family
         if not isinstance(family, SteppedFamily):
             return None
-        numbers = (start.at.tolist(), start.tangent.tolist(), self.ends, self.step, self.most)
+        numbers = (start.at.tolist(), start.tangent.tolist(), self.ends[0], self.step, self.most)
         return family.osc, self.closing.n, self.closing.k, self.over, numbers
 
-    def _steps(self, curve: Curve, start: Point, kept: KeptSide) -> Iterator[tuple[Point, float, Point]]:
+    def walked(self, curve: Curve, start: Point) -> Iterator[tuple[Point, float, Point]]:
         """The stored steps, then new ones."""
         here = start
-        stored = list(kept.points)
-        for row in stored:
-            after = Point(row.at, row.tangent)
+        stored = list(self.kept.points)
+        for point in stored:
+            after = Point(point.at, point.tangent)
             yield here, float(here.tangent @ ((after.at - here.at) / curve.scales)), after
             here = after
         yield from curve.walk(here, self.most - len(stored), stored[-1].following if stored else None)
+
+    def end_note(self, which: int, goal: float, missed: Point | None) -> str:  # noqa: ARG002
+        if missed is not None:
+            return f"ends at {self.over} = {missed.at[-1]:.12g}, next to the end of the interval"
+        return f"ends at {self.over} = {goal:.12g}, the end of the interval"
+
+    def stop_note(self, last: Point, why: str) -> str:
+        return f"at {self.over} = {last.at[-1]:.12g}: {self._reason(last) or why}"
 
     def _reason(self, where: Point) -> str:
         """Why flights have no value just beyond a point."""
@@ -181,26 +129,9 @@ class BranchWalk:
             return "two impacts meet: a flight shrinks to nothing"
         return ""
 
-    def _end(self, curve: Curve, here: Point, length: float, after: Point) -> tuple[float, Point] | None:
-        """The point of the step at which the number is the end of the interval."""
-        goal = self.ends[0] if after.at[-1] < self.ends[0] else self.ends[1]
-        ends = float(here.at[-1] - goal), float(after.at[-1] - goal)
-        crossed = None if ends[0] == 0 else curve.located(here, length, lambda point: float(point.at[-1] - goal), ends)
-        if crossed is not None:
-            crossed[1].at[-1] = goal
-        return crossed
-
-    def _again(self, curve: Curve, start: Point, here: Point, after: Point) -> bool:
-        """Whether a step passes the start, perhaps some periods later."""
-        gap, n = (start.at - here.at) / curve.scales, self.closing.n
-        if n:
-            period = self.closing.family.period(self.closing.values(after.at)).value / curve.scales[0]
-            gap[:n] -= period * np.rint(gap[0] / period)
-        return curve.passes(start, here, after, gap)
-
     # ---- a point: visible or not
 
-    def _row(self, point: Point, rounding: float = SETTINGS.touching, event: Event | None = None) -> Row:
+    def row(self, point: Point, rounding: float = SETTINGS.touching, event: Event | None = None) -> Row:
         loop = self.tests.loop(point.at)
         with np.errstate(all="ignore"):
             product = partial(self.closing.product, point.at) if isinstance(self.closing, Closing) else None
@@ -263,7 +194,7 @@ class BranchWalk:
         for i, (along, row) in enumerate(located):
             if i and along - located[i - 1][0] > SETTINGS.together * search.length:
                 between = search.curve.beyond(search.here, (along + located[i - 1][0]) / 2)
-                rows += [] if between is None else [self._row(between[0])]
+                rows += [] if between is None else [self.row(between[0])]
             rows.append(row)
         return rows
 
@@ -307,4 +238,4 @@ class BranchWalk:
         remark = kind.remark(orbit, float(point.at[impact]), value)
         self.notes += [remark] if remark else []
         event = Event(kind.name, value, orbit, 0, impact, time, self.over, other)
-        return self._row(point, SETTINGS.located, event)
+        return self.row(point, SETTINGS.located, event)

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from singimpact.branches.branch import interval
-from singimpact.branches.branch_walk import SETTINGS
-from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
-from singimpact.branches.events import KINDS, Event, EventKind
+from singimpact.branches.events import KINDS, Event
 from singimpact.branches.events.orbit_state import OrbitState
+from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve, places
 from singimpact.branches.solutions import AnyClosing, closing_of
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
@@ -39,7 +38,7 @@ class Special(Result):
 
     kind: str
     parameters: tuple[float, float]
-    index: int
+    index: int = 0
 
     def as_dict(self) -> dict[str, Any]:
         """Kind, both numbers, and the point of the curve after which it lies."""
@@ -149,21 +148,18 @@ def event_curve(
     states = np.concatenate([np.asarray(part, dtype=float) for part in (orbit.tau, orbit.v)])
     if not n:
         raise refuse("event", event, "an event of an orbit with impacts: event.others()[0] has one that grazes alike")
-    walk = _Walk(closing, event.described, ends, event.described.touching(closing, orbit))
-    return walk.curve(np.concatenate([states, values]), osc, points, step or SETTINGS.step)
+    walk = _Walk(closing, event, ends, step or SETTINGS.step, points)
+    return walk.curve(np.concatenate([states, values]), osc)
 
 
-@dataclass
-class _Walk:
+class _Walk(OrbitCurve):
     """An event curve while it is followed."""
 
-    closing: AnyClosing
-    kind: EventKind
-    ends: list[tuple[float, float]]
-    impact: int
-
-    def __post_init__(self) -> None:
-        self.scales = np.zeros(0)
+    def __init__(
+        self, closing: AnyClosing, event: Event, ends: list[tuple[float, float]], step: float, most: int
+    ) -> None:
+        super().__init__(closing, ends, step, most)
+        self.kind, self.impact = event.described, event.described.touching(closing, event.orbit)
 
     # ---- equations
 
@@ -187,91 +183,54 @@ class _Walk:
             slopes[i] = (self.test(point + moved) - self.test(point - moved)) / (2 * moved[i])
         return slopes
 
-    def equations(self, point: Array) -> tuple[Array, Array]:
-        """The closing conditions and the test; nan where a flight has collapsed."""
-        if not self._sound(point):
-            return np.full(2 * self.closing.n + 1, np.nan), np.full((2 * self.closing.n + 1, len(point)), np.nan)
+    def conditions(self, point: Array) -> tuple[Array, Array]:
+        """The closing conditions and the test."""
         state = self.state(point)
         loop = state.loop
         return np.append(loop.miss, self.kind.equation(state)), np.vstack([loop.slope, self.gradient(state)])
 
-    def _sound(self, point: Array) -> bool:
-        assert isinstance(self.closing, Closing)
+    def is_sound(self, point: Array) -> bool:
+        """Whether no flight has shrunk to nothing, and both numbers are such as a model may have."""
         values = self.closing.values(point)
-        if not 0 < values.get(RESTITUTION, 0.5) < 1.05:
-            return False
-        period = self.closing.family.period(values).value
-        return bool(period > 0) and all(f[3] > SETTINGS.shortest * period for f in self.closing.flights(point))
+        allowed = 0 < values.get(RESTITUTION, 0.5) < 1.05 and self.closing.family.period(values).value > 0
+        return bool(allowed) and super().is_sound(point)
 
     # ---- the curve
 
-    def curve(self, guess: Array, osc: Oscillator, most: int, step: float) -> EventCurve:
+    def curve(self, guess: Array, osc: Oscillator) -> EventCurve:
         """Follow the curve in both directions from a guess."""
-        self.scales = self.closing.scales(guess)
-        self.scales[-2:] = [high - low for low, high in self.ends]
-        speeds = slice(self.closing.n, 2 * self.closing.n)
-        start = Curve(self, self.scales, step, speeds).begin(guess)
+        self.scaled(guess)
+        start = self.begin(guess)
         if start is None:
             raise refuse("event", self.kind.name, "an event that solves its equations with these two numbers")
-        if start.tangent[-2] < 0:
-            start = Point(start.at, -start.tangent)
-        notes: list[str] = []
-        rows, special = [start], []
-        for sign in (-1.0, 1.0):
-            curve = Curve(self, self.scales, step, speeds)
-            side, met = self._side(curve, Point(start.at, sign * start.tangent), most, notes)
-            if sign < 0:
-                rows = side[::-1] + rows
-                special = [Special(each.kind, each.parameters, len(side) - each.index - 1) for each in met[::-1]]
-            else:
-                special += [Special(each.kind, each.parameters, len(rows) + each.index - 1) for each in met]
-                rows += side
-            if notes[-1].startswith("closed"):
-                break
-        at, n, k = np.array([row.at for row in rows]), self.closing.n, self.closing.k
-        assert isinstance(self.closing, Closing)
-        names = self.closing.family.over
+        rows = self.both_sides(start)
+        indices = places([isinstance(row, Point) for row in rows])
+        special = [replace(row, index=i) for i, row in zip(indices, rows, strict=True) if isinstance(row, Special)]
+        points = [row for row in rows if isinstance(row, Point)]
+        at, n, k = np.array([point.at for point in points]), self.closing.n, self.closing.k
+        seen, names = np.array([self._visible(point.at) for point in points]), self.closing.over
         return EventCurve(osc, self.kind.name, (names[0], names[1]), n, k, at[:, 2 * n :], at[:, :n], at[:, n : 2 * n],
-                          np.array([self._visible(row.at) for row in rows]), tuple(special), tuple(notes))  # fmt: skip
+                          seen, tuple(special), tuple(self.notes))  # fmt: skip
 
-    def _side(self, curve: Curve, start: Point, most: int, notes: list[str]) -> tuple[list[Point], list[Special]]:
-        rows: list[Point] = []
-        special: list[Special] = []
+    def row(self, point: Point) -> Point:
+        return point
+
+    def side(self, curve: Curve, start: Point, sign: float) -> list[Point | Special]:  # noqa: ARG002
+        rows: list[Point | Special] = []
         before = self._tests(start)
-        for here, length, after in curve.walk(start, most):
-            crossed = self._crossed(after.at)
-            if crossed is not None:
-                end = self._end(curve, here, length, after)
-                if end is not None:
-                    rows.append(end)
-                which = self.closing.over[crossed[0]]
-                notes.append(f"ends at {which} = {crossed[1]:.12g}, the end of its interval")
-                return rows, special
-            tests = self._tests(after)
-            special += self._special(curve, here, length, (before, tests), len(rows))
+        for here, length, after, is_last in self.steps(curve, start):
+            if not is_last:  # points of codimension two in the piece before an end are not looked for
+                tests = self._tests(after)
+                rows += self._special(curve, here, length, (before, tests))
+                before = tests
             rows.append(after)
-            before = tests
-            if len(rows) > 10 and curve.passes(start, here, after):
-                notes.append("closed: the curve comes back to where it began")
-                return rows, special
-        where = (rows[-1] if rows else start).at[-2:]
-        notes.append(f"at ({where[0]:.12g}, {where[1]:.12g}): {curve.note}")
-        return rows, special
+        return rows
 
-    def _crossed(self, point: Array) -> tuple[int, float] | None:
-        for i, (low, high) in enumerate(self.ends):
-            value = float(point[len(point) - 2 + i])
-            if not low <= value <= high:
-                return i, low if value < low else high
-        return None
+    def end_note(self, which: int, goal: float, missed: Point | None) -> str:  # noqa: ARG002
+        return f"ends at {self.closing.over[which]} = {goal:.12g}, the end of its interval"
 
-    def _end(self, curve: Curve, here: Point, length: float, after: Point) -> Point | None:
-        """The point of a step at which a number is the end of its interval."""
-        which, goal = self._crossed(after.at) or (0, 0.0)
-        place = len(here.at) - 2 + which
-        ends = float(here.at[place] - goal), float(after.at[place] - goal)
-        found = curve.located(here, length, lambda point: float(point.at[place] - goal), ends)
-        return None if ends[0] == 0 or found is None else found[1]
+    def stop_note(self, last: Point, why: str) -> str:
+        return f"at ({last.at[-2]:.12g}, {last.at[-1]:.12g}): {why}"
 
     # ---- points of codimension two
 
@@ -284,7 +243,7 @@ class _Walk:
         return self._tests(point).get(name)
 
     def _special(
-        self, curve: Curve, here: Point, length: float, tests: tuple[dict[str, float], dict[str, float]], index: int
+        self, curve: Curve, here: Point, length: float, tests: tuple[dict[str, float], dict[str, float]]
     ) -> list[Special]:
         before, after = tests
         found: list[tuple[float, str, Point]] = []
@@ -298,7 +257,7 @@ class _Walk:
             part, point = located
             if not (name == "cusp" and abs(self._tests(point)[name]) > 0.1 * max(abs(value), abs(later))):
                 found.append((part, name.rstrip("0123456789 "), point))
-        return _merged(sorted(found, key=lambda each: each[0]), length, index)
+        return _merged(sorted(found, key=lambda each: each[0]), length)
 
     def _visible(self, at: Array) -> bool:
         n = self.closing.n
@@ -308,7 +267,7 @@ class _Walk:
         return low >= -1e-9 * float(self.scales[n])
 
 
-def _merged(found: list[tuple[float, str, Point]], length: float, index: int) -> list[Special]:
+def _merged(found: list[tuple[float, str, Point]], length: float) -> list[Special]:
     """Fold and doubling that meet a graze at one point are one resonant graze."""
     names = {name for _, name, _ in found}
     special: list[Special] = []
@@ -316,6 +275,6 @@ def _merged(found: list[tuple[float, str, Point]], length: float, index: int) ->
         parts = [part for part, name, _ in found if name in pair]
         if pair <= names and max(parts) - min(parts) < 1e-6 * length:
             point = next(point for _, name, point in found if name in pair)
-            special.append(Special("resonant graze", (float(point.at[-2]), float(point.at[-1])), index))
+            special.append(Special("resonant graze", (float(point.at[-2]), float(point.at[-1]))))
             found = [each for each in found if each[1] not in pair]
-    return special + [Special(name, (float(each.at[-2]), float(each.at[-1])), index) for _, name, each in found]
+    return special + [Special(name, (float(each.at[-2]), float(each.at[-1]))) for _, name, each in found]
