@@ -41,6 +41,7 @@ class Result:
     more than one axis name them in `array_axes`.
     """
 
+    __slots__ = ()
     array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = {}
     """Names of the axes of arrays; of an array that is not here, `row` alone, or `row`, `axis_1`, ..."""
 
@@ -127,6 +128,7 @@ class Result:
 class Results(Result):
     """A mixin of lists and tuples of results: `as_dict` has theirs under the name of what they are."""
 
+    __slots__ = ()
     called: ClassVar[str] = "items"
 
     def as_dict(self) -> dict[str, Any]:

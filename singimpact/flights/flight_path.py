@@ -37,6 +37,8 @@ class _Place(NamedTuple):
 class Path(_Place, Result):
     """x and x' at given times; nan at times that the solution does not reach."""
 
+    __slots__ = ()
+
     def as_dict(self) -> dict[str, Any]:
         """x and x'."""
         return {name: plain(value) for name, value in self._asdict().items()}
