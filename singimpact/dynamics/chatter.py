@@ -13,8 +13,8 @@ from singimpact.algebra.expressions import Expression, names_in
 from singimpact.algebra.numbers import as_float, as_mpf, compare
 from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
+from singimpact.contact.contact import Contact
 from singimpact.dynamics import enclosed
-from singimpact.dynamics.completion import completion
 from singimpact.dynamics.fractional_chatter import chatter_completes
 from singimpact.dynamics.gathered import gathered
 from singimpact.dynamics.remaining import remaining
@@ -27,9 +27,11 @@ from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
 from singimpact.inputs import whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
+from singimpact.oscillator.rho_series import series_of_rho
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result
 from singimpact.status import Cause, Status, status_array
+from singimpact.theory.completion import by_velocity
 from singimpact.words import in_words
 
 EPSILON = 2.0**-52
@@ -336,15 +338,16 @@ def _precise(osc: Oscillator, states: States, found: ChatterLimit, digits: int) 
         if not states.rest:
             tau, v = (as_mpf(tree, mp) for tree in (states.exact_tau(0), states.exact_v(0)))
         count, wanted, r = 0, int(found.impacts), as_mpf(osc.slope_at_rest(), mp)
+        ring = Multiprecision(mp)
         while True:
             while count < wanted:
                 step = impact_map(osc, tau, v, digits=precision)
                 tau, v, count = mp.convert(step.tau), mp.convert(step.v), count + 1
             if found.status == Status.lifts_off:
                 return _rounded(tau, count, small * abs(tau), Status.lifts_off, digits)
-            time = mp.convert(impact_map(osc, tau, v, digits=precision).flight_time)
-            series = completion(osc, tau, ENDING.many, Multiprecision(mp))
-            terms = [c * time ** (n + 1) for n, c in enumerate(series)]
+            rho = {k: value for k, value in series_of_rho(osc, ENDING.many, ring).items() if k > 1}
+            contact = Contact.of(osc, tau, 0, ENDING.many, ring)
+            terms = [c * v**n for n, c in by_velocity(contact, r, rho, ENDING.many).items()]
             error = _last(terms)
             end = tau + sum(reversed(terms))
             if ENDING.trust * error <= small * abs(end) or v == 0:

@@ -75,6 +75,25 @@ def leaves(
     return {(0, n): zero for n in range(1, order + 1)} | coefficients
 
 
+def by_velocity(contact: Contact, restitution: Any, rho: Mapping[int, Any], order: int) -> dict[int, Any]:
+    """n -> coefficient of v^n in tau_inf - tau, for n up to `order`, over the ring of a regular contact point.
+
+    Parameters
+    ----------
+    contact : the launch, at contact order 0. restitution : r < 1. rho : k -> coefficient of v^k in rho, k >= 2.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.rings import DOUBLES
+    >>> by_velocity(Contact(0, DOUBLES, {0: -2.0}, {}), 0.5, {}, 2)
+    {1: 2.0, 2: 0.0}
+    """
+    ring = contact.ring
+    one = ring.rational(Fraction(1))
+    K = leaves(sheet(contact, order), restitution, lambda n: ring.power(one - restitution**n, Fraction(-1)), rho)
+    return {n: K[(0, n)] for n in range(1, order + 1)}
+
+
 def _powers(jet: Jet, order: int) -> list[Jet]:
     found = [jet.space.rational(Fraction(1))]
     for _ in range(order):

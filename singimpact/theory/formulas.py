@@ -21,7 +21,7 @@ from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import require_smooth_rho
 from singimpact.oscillator.rho_series import TASK
-from singimpact.theory.completion import leaves, symbolic_completion
+from singimpact.theory.completion import by_velocity, symbolic_completion
 from singimpact.theory.contact_points import Place, ending_gamma, exact_contact, multiplier, place
 from singimpact.theory.digits import all_certified, all_digits, as_double, sympy_digits, with_digits
 from singimpact.theory.gamma_in_symbols import rho_names, symbolic_curve
@@ -279,11 +279,7 @@ def _symbolic_chatter(order: int) -> Mapping[int, Any]:
 def _completed(where: Place, order: int, ring: Any) -> dict[int, Any]:
     """n -> coefficient of v^n in tau_inf - tau."""
     with precision_of(ring):
-        r = where.restitution_in(ring)
-        contact = where.contact(order, ring)
-        one = ring.rational(Fraction(1))
-        found = leaves(sheet(contact, order), r, lambda n: ring.power(one - r**n, Fraction(-1)), where.rho(order, ring))
-        return {n: found[(0, n)] for n in range(1, order + 1)}
+        return by_velocity(where.contact(order, ring), where.restitution_in(ring), where.rho(order, ring), order)
 
 
 def _curved(at: str | int) -> int:

@@ -27,34 +27,35 @@ from singimpact.flights.enclosures.tube import ball, upper
 
 @dataclass(frozen=True)
 class ShortSettings:
-    """Which flights are short, and where their bound is made.
+    """Which flights are short, and where their bound is made."""
 
-    Parameters
-    ----------
-    reach : of a window, over the flight time that doubles expect.
-    expected, rounds : coefficients and steps of that expectation. least : degree of a polynomial.
-    share : of R that a flight time is at most. widest : R at first. shrink : factor of the next one.
-    discs : tried at most. box : of launch times, over R.
-    faster : V over the velocity of the first launch; the launches after it in an orbit may be a little faster.
-    room : factor of the bound that is tried over |g - f| at launches. bits : of the bound, which is rounded outwards.
-    finer : bits of a cut-off beyond those of v, whose radius grows from impact to impact; 2^-8 of it adds little.
-    guessed : bits of a root in doubles, where balls find it there. steps : of Newton's method in balls, at most.
-    """
-
+    # of a window, over the flight time that doubles expect: y is shown negative at its end
     reach: float = 1.125
+    # of R that a flight time is at most; beyond it a step of its own needs the lower degree
     share: float = 0.5
+    # coefficients and steps of the flight time in doubles
     expected: int = 8
     rounds: int = 10
+    # degree of a polynomial at least: a_c and its derivative are read off its forcing
     least: int = 4
+    # R at first and the factor of the next one, at most so many: under cos 2t the lowest degree has R = 8 to 11 where f
+    # is linear, and R = 0.45 for x + x^3
     widest: float = 16.0
     shrink: float = 0.7
     discs: int = 60
+    # of launch times, over R: chatter lies within it, and a wider box has a larger M
     box: float = 0.25
+    # V over the velocity of the first launch: the launches after it in an orbit may be a little faster
     faster: float = 4.0
+    # factor of the bound that is tried over |g - f| at launches
     room: float = 4.0
+    # of the bound, which is rounded outwards
     bits: int = 64
+    # bits of a cut-off beyond those of v, whose radius grows from impact to impact; 2^-8 of it adds little
     finer: int = 8
+    # bits of a root in doubles, where balls find it there
     guessed: int = 43
+    # of Newton's method in balls at most; 300 bits take three
     steps: int = 8
 
 
