@@ -59,7 +59,7 @@ class Spans:
 
 
 class Slopes(NamedTuple):
-    """What D F over a box is made from.
+    """The flights and slopes from which D F over a box is made.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ class BallClosing:
 
 
 class TouchingClosing(BallClosing):
-    """The same of an orbit that touches the wall at its first point, with v_1 = 0.
+    """Closing conditions of an orbit that touches the wall at its first point, with v_1 = 0.
 
     The unknowns are tau_1, then tau_2, v_2, ..., tau_n, v_n, and the number.
     """

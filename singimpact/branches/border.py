@@ -352,7 +352,7 @@ def _gap(found: Return, value: float) -> tuple[float, float, float, float]:
 
 
 def _with_digits(found: BorderOrbit, digits: int) -> BorderOrbit:
-    """The same border orbit in many digits."""
+    """A border orbit in many digits."""
     if found.status != Status.hit:
         return replace(found, digits=digits)
     precise = in_digits(found.returned, abs(found.v / found.slope), digits)

@@ -32,7 +32,7 @@ from singimpact.status import Status
 
 @dataclass(frozen=True)
 class DigitSettings:
-    """How many digits and bits are spent.
+    """Limits of digits and bits.
 
     Parameters
     ----------

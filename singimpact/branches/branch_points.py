@@ -28,7 +28,7 @@ TEST = Key(BRANCH_POINT, 0, 0)
 
 @dataclass(frozen=True)
 class BranchPointSettings:
-    """How branch points are located."""
+    """Settings of the location of branch points."""
 
     # of the step: distances of the points from which a branch point is interpolated; the equations are singular at it
     beside: tuple[float, ...] = (1e-1, 1e-2, 1e-3)

@@ -34,7 +34,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class CascadeSettings:
-    """How edges are found, and how many."""
+    """The number of edges, and the tolerances of their search."""
 
     # the largest distance searched, as a fraction of that at which v/gamma itself changes; never beyond the search for
     # border orbits
@@ -66,7 +66,7 @@ SETTINGS = CascadeSettings()
 
 @dataclass(frozen=True)
 class CascadeWindow(Result):
-    """What attracts the released orbit between two edges.
+    """The attractor of the orbit from lift-off between two edges.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Cascade(Result):
 
     @property
     def limit(self) -> tuple[float, float]:
-        """What the ratios tend to, and an estimate of its error: three ratios extrapolated by Aitken's method.
+        """The limit of the ratios, and an estimate of its error: three ratios extrapolated by Aitken's method.
 
         The error is made of the spread of three such numbers in a row and of the errors of the ratios in them; where it
         is least they are taken. mu(r) is not used. nan where there are fewer than five ratios.
@@ -168,7 +168,7 @@ class Cascade(Result):
         return self.sampled(1)
 
     def sampled(self, count: int) -> tuple[CascadeWindow, ...]:
-        """What attracts it at so many values in each window, whose distances divide the window evenly in logarithms.
+        """Attractors at so many values in each window, whose distances divide the window evenly in logarithms.
 
         Parameters
         ----------

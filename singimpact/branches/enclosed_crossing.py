@@ -37,7 +37,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class EnclosedCrossingSettings:
-    """How near to the saddles an orbit is cut off.
+    """Distances from the saddles at which an orbit is cut off.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ from singimpact.words import in_words
 
 @dataclass(frozen=True)
 class EventSettings:
-    """How a change of sign is found.
+    """Settings of the search for a change of sign.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ class _Curve:
         return Krawczyk(closing, near, Fraction(1, 10 ** (digits + 2)))
 
     def _test(self, slopes: Any) -> Any:
-        """What vanishes at the event, over a box."""
+        """The function that vanishes at the event, over a box."""
         return event_function(self.kind, return_slope(slopes))
 
     def _crossing(self, operator: Krawczyk, near: Point, close: Fraction) -> Point:

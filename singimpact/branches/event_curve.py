@@ -164,7 +164,7 @@ class _Walk(OrbitCurve):
     # ---- equations
 
     def state(self, point: Array) -> OrbitState:
-        """What the kind of the event computes its equation from."""
+        """The state from which the kind of the event computes its equation."""
         return OrbitState(self.closing, self.scales, point, impact=self.impact)
 
     def test(self, point: Array) -> float:

@@ -1,4 +1,4 @@
-"""What vanishes at an event of the return map, and its rate along a curve of orbits, over boxes.
+"""The function that vanishes at an event of the return map, and its rate along a curve of orbits, over boxes.
 
 With M the derivative of the return map, the product of the D G of all flights, t its trace and d its determinant, a
 kind of event (`events`) gives what vanishes, 1 - t + d at a fold, and its rate. The curve has the tangent u with
@@ -16,7 +16,7 @@ from singimpact.branches.krawczyk import Krawczyk, Point
 
 
 def event_function(kind: str, total: Any) -> Any:
-    """What vanishes at the event, of the derivative of the return map."""
+    """The function of the derivative of the return map that vanishes at the event."""
     return kind_of(kind).of_return_map(total)
 
 

@@ -58,7 +58,7 @@ class Equations(Protocol):
         """F at a point, as a column."""
 
     def slopes(self, point: Point, radius: Any) -> Any:
-        """What D F over a box round a point is made from; `Refused` where it is not bounded."""
+        """The data from which D F over a box round a point is made; `Refused` where it is not bounded."""
 
     def matrix(self, slopes: Any) -> Any:
         """D F, with a column for each unknown, the held one among them."""
@@ -66,7 +66,7 @@ class Equations(Protocol):
 
 @dataclass(frozen=True)
 class Image:
-    """What Krawczyk's operator gives of a box: its centre, the zero less the centre, and the slopes over the box."""
+    """Krawczyk's operator on a box: its centre, the zero less the centre, and the slopes over the box."""
 
     centre: Point
     offsets: list[Any]
@@ -173,7 +173,7 @@ class Krawczyk:
         return Image(point, off, slopes) if inside else None
 
     def tight(self, point: Point, step: list[Any], radius: Radius) -> Image:
-        """As `image`, with a reason where the box is refused."""
+        """The image of a box, with a reason where the box is refused."""
         found = self.image(point, step, radius)
         if found is None:
             raise Refused("Krawczyk's operator does not map the box into itself: the orbit may be double, or graze")

@@ -27,7 +27,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class ManifoldSettings:
-    """How far a manifold is grown."""
+    """Limits of the growth of a manifold."""
 
     # the highest v computed: in largest velocities of the orbit, and in largest a_c times a period
     highest: tuple[float, float] = (3.0, 0.25)
@@ -108,7 +108,7 @@ class Manifold(Result):
 
     @property
     def name(self) -> str:
-        """As in pictures."""
+        """The name in pictures."""
         return "W^s" if self.stable else "W^u"
 
     def distance(self, points: Any) -> Array:

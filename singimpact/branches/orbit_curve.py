@@ -79,7 +79,7 @@ class OrbitCurve(ABC):
 
     @abstractmethod
     def end_note(self, which: int, goal: float, missed: Point | None) -> str:
-        """That the interval of a number ends; `missed` is the last point where its end is not reached."""
+        """The note that the interval of a number ends; `missed` is the last point where its end is not reached."""
 
     @abstractmethod
     def stop_note(self, last: Point, why: str) -> str:

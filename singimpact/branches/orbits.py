@@ -177,7 +177,7 @@ class PeriodicOrbits(Results, list[PeriodicOrbit]):
 
     @property
     def notes(self) -> Sentences:
-        """How the orbits were found, and why there may be others."""
+        """Notes on how the orbits were found, and why there may be others."""
         return (*self._notes, *self.doubts)
 
 

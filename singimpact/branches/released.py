@@ -26,7 +26,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class ReleasedSettings:
-    """How a released orbit is flown."""
+    """Settings of an orbit from lift-off."""
 
     # impacts of the first block; each next one is twice as long, up to the longest
     block: int = 64
@@ -64,7 +64,7 @@ class Released:
     decided: bool
 
     def impacts_before(self, place: int) -> int:
-        """How many impacts come before a zero, given by its place."""
+        """The number of impacts before a zero, given by its place."""
         return int(np.searchsorted(self.times, self.zeros[place - 1]))
 
     def landing(self, number: int, place: int) -> float:

@@ -26,7 +26,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class LocalArcSettings:
-    """How far from a saddle its arcs are polynomials; lengths are relative to `LocalArc.scales`."""
+    """Reach of the polynomial arcs at a saddle; lengths are relative to `LocalArc.scales`."""
 
     # by how much G^n(K(s)) may miss K(mu s) at the end of the expansion
     trust: float = 1e-13
@@ -119,7 +119,7 @@ class LocalArc:
 
     @property
     def ratio(self) -> float:
-        """What divides |s| from one image of the fundamental piece to the piece: |mu|, or 1/|mu| of W^s."""
+        """The ratio of |s| on one image of the fundamental piece to the piece: |mu|, or 1/|mu| of W^s."""
         return 1 / abs(self.multiplier) if self.stable else abs(self.multiplier)
 
     @property

@@ -40,7 +40,7 @@ Pair = tuple[Fraction, Fraction]
 
 @dataclass(frozen=True)
 class Wedge:
-    """What is proved of the box |xi|, |eta| <= reach at a saddle.
+    """The cone conditions that are proved of the box |xi|, |eta| <= reach at a saddle.
 
     Attributes
     ----------

@@ -78,7 +78,7 @@ def settled_orbit(osc: Oscillator, tau: Any, v: Any = 0) -> PeriodicOrbit | None
 
 
 def _distances(flown: Orbit, period: float) -> Array:
-    """How far the last state is from the one so many impacts before, 1, 2, ..., phases apart from whole periods."""
+    """Distances of the last state from those 1, 2, ... impacts before, phases apart from whole periods."""
     times, speeds = flown.tau, flown.v
     before = slice(-2, -SETTINGS.most - 2, -1)
     apart = (times[-1] - times[before]) / period

@@ -58,7 +58,7 @@ SETTINGS = OrbitSettings()
 
 @dataclass(frozen=True, eq=False)
 class OrbitChange:
-    """What happens to periodic orbits at a value of the number.
+    """A change of periodic orbits at a value of the number.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class OrbitChange:
 
 @dataclass(frozen=True)
 class Interval:
-    """What there is between two neighbouring transitions.
+    """The orbits between two neighbouring transitions.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class OrbitTransitions(Transitions):
 
     @property
     def changes(self) -> tuple[OrbitChange, ...]:
-        """What happens to orbits, in order of the value."""
+        """The changes of orbits, in order of the value."""
         return tuple(change for interval in self.intervals for change in interval.changes)
 
     def __repr__(self) -> str:
@@ -362,7 +362,7 @@ def _alike(one: PeriodicOrbit, other: PeriodicOrbit) -> bool:
 
 
 def _sides(followed: Branch, event: Event) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """What the orbits of a branch are next to an event, for smaller and for larger values."""
+    """The orbits of a branch next to an event, for smaller and for larger values."""
     below: list[str] = []
     above: list[str] = []
     plain = np.flatnonzero(~followed.at_event)

@@ -99,7 +99,7 @@ def within(attractor: Attractor, model: Oscillator, tau: Array, v: Array, fast: 
 
 
 def apart(states: Any, others: Any, period: float, fast: float) -> Array:
-    """How far states (tau, v) are from others: phases in periods, velocities in units of `fast`; the larger counts.
+    """Distances of states (tau, v): phases in periods, velocities in units of `fast`; the larger counts.
 
     Examples
     --------

@@ -329,7 +329,7 @@ class _Flown:
 
 
 def _precise(osc: Oscillator, states: States, found: ChatterLimit, digits: int) -> ChatterLimit:
-    """The same sequence in many digits, continued until the last term is below them."""
+    """A sequence of chatter in many digits, continued until the last term is below them."""
     amplified = max(float(found.error) / (EPSILON * max(abs(float(found.tau)), 1e-300)), 1.0)
     precision = digits + 10 + ceil(log(amplified, 10))
     with digits_at(precision) as mp:

@@ -33,7 +33,7 @@ Found = TypeVar("Found")
 
 @dataclass(frozen=True)
 class BallOrbits:
-    """How much an enclosed orbit may cost.
+    """Limits of the cost of an enclosed orbit.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """How curves are grown; lengths are in units of the resolution of the window."""
+    """Settings of the growth of curves; lengths are in units of the resolution of the window."""
 
     start: int = 100  # distance of two points of the fundamental piece
     least: int = 4  # points of the fundamental piece at least

@@ -26,7 +26,7 @@ from singimpact.theory.formulas import curve_at
 
 @dataclass(frozen=True)
 class GuideSettings:
-    """How an orbit along gamma is followed.
+    """Settings of an orbit along gamma.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def _series(osc: Oscillator, end: ContactZero, terms: int, bits: int) -> tuple[A
 
 
 def guided(osc: Oscillator, tau: Expression, v: float, end: ContactZero, digits: int) -> Guide | None:
-    """How far to fly from (tau, v) next to gamma for so many digits; None where doubles do not get there.
+    """The guide from (tau, v) along gamma for so many digits; None where doubles do not get there.
 
     Examples
     --------

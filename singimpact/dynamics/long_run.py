@@ -1,4 +1,4 @@
-"""What orbits do for ever once a chatter has completed: the map from one lift-off to the next, and Lyapunov exponents.
+"""Orbits for ever, once a chatter has completed: the map from one lift-off to the next, and Lyapunov exponents.
 
 A mass at rest lifts off where a_c becomes positive: at one of finitely many phases.  So the future of a chatter that
 completes is that of its lift-off, and chatter that comes again and again is a cycle of these phases.
@@ -45,7 +45,7 @@ SETTINGS = LongRunSettings()
 
 @dataclass(frozen=True)
 class Future:
-    """What follows a lift-off: row, the class of the orbit; time, to the next lift-off when its chatter completes."""
+    """The future of a lift-off: row, the class of the orbit; time, to the next lift-off when its chatter completes."""
 
     row: tuple[float, ...]
     time: float
@@ -70,7 +70,7 @@ def next_lift_off(phases: tuple[float, ...], tau: Array) -> Array:
 
 
 def futures(model: Oscillator, phases: tuple[float, ...], classify: Callable[[Array, Array], Array]) -> list[Future]:
-    """What follows each lift-off, by the classes that `classify` gives to the state after the first impact."""
+    """The motion after each lift-off, by the classes that `classify` gives to the state after the first impact."""
     found = []
     for phase in phases:
         lifted = _lifted(model, phase)

@@ -36,7 +36,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class LyapunovSettings:
-    """How growth along an orbit is summed."""
+    """Settings of the sums of growth along an orbit."""
 
     # impacts of one call into compiled code; their slopes take 6 MB
     block: int = 65_536

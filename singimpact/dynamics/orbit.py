@@ -33,7 +33,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class OrbitSettings:
-    """How an orbit is flown."""
+    """Settings of an orbit."""
 
     # impacts of one call into compiled code
     block: int = 4096
@@ -150,7 +150,7 @@ class Orbit(Result):
 
     @property
     def _ending(self) -> str:
-        """What follows the last event."""
+        """The motion after the last event, in words."""
         if self._last_kind != "no_return":
             return ENDINGS[self._last_kind]
         proved = np.isinf(self.end)

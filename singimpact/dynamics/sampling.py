@@ -19,7 +19,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class SamplingSettings:
-    """How chatter that was summed up is flown for the times asked."""
+    """Settings of the flights through a chatter that was summed up."""
 
     # velocities below this part of the largest of the orbit are 0: heights are then below its square
     slow: float = 2.0**-52

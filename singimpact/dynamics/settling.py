@@ -76,7 +76,7 @@ SETTINGS = SettlingSettings()
 
 @dataclass(frozen=True)
 class Study:
-    """What a study of states fixes: the model, the phases at which the mass lifts off, the fastest launch, impacts."""
+    """The data of a study of states: the model, the phases at which the mass lifts off, the fastest launch, impacts."""
 
     model: Oscillator
     phases: tuple[float, ...]
@@ -156,7 +156,7 @@ class _Run:
         self._last_look()
 
     def _first_stage(self) -> None:
-        """As long as a plain chatter takes to become slow, with searches at doubling distances."""
+        """The number of impacts in which a plain chatter becomes slow, with searches at doubling distances."""
         r = as_float(self.study.model.slope_at_rest())
         slowest = ceil(log(SETTINGS.rest) / log(r)) if r < 1 else 0
         most = min(SETTINGS.transient + slowest, SETTINGS.limit, self.study.impacts)

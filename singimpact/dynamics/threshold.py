@@ -37,7 +37,7 @@ EPSILON = 2.0**-52
 
 @dataclass(frozen=True)
 class Search:
-    """How the side of gamma is decided, and how the bracket of v is refined."""
+    """Settings of the decision on which side of gamma an orbit is, and of the bracket of v."""
 
     narrow: float = 4 * EPSILON  # relative width of the last bracket; rounding errors decide in narrower ones
     # impacts of the first block; each block is twice as long as the one before, up to the longest: with blocks of 64

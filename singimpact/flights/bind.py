@@ -77,7 +77,7 @@ class Emitted:
 
     @property
     def texts(self) -> tuple[str, str, str]:
-        """What tells it from others, as texts."""
+        """The texts that tell it from others."""
         return self.flow, self.rho, "steps" if self.steps else ""
 
     @property
@@ -89,7 +89,7 @@ class Emitted:
 
     @property
     def entries(self) -> tuple[str, ...]:
-        """What is compiled, in this order."""
+        """The entries to compile, in this order."""
         if self.rho or self.flow:
             return (LAW,) if self.rho else (RECURRENCE,)
         return ("taylor_entry", "judge_entry") if self.steps else ("linear_entry", "batch_entry", "search_entry")

@@ -20,7 +20,7 @@ ALWAYS = ("status", "cause")
 
 @dataclass(frozen=True)
 class BlockSettings:
-    """How arrays are cut."""
+    """Sizes of the blocks of an array."""
 
     # states of a block: its scratch is 16 MB, and a linear model flies it in 0.03 s
     states: int = 65_536
@@ -87,7 +87,7 @@ def _size(value: Any) -> int:
 
 
 def _flat(value: Any, shape: tuple[int, ...]) -> Callable[[slice], Any]:
-    """What gives the blocks of a value; of a number the number."""
+    """A function that gives the blocks of a value; of a number the number."""
     if np.ndim(value) == 0:
         # with `out` a state of two numbers is an array of one
         return (lambda _chosen: value) if shape else (lambda _chosen: np.array([value], dtype=object))
@@ -183,7 +183,7 @@ class _Later:
 
 
 class _NotKept:
-    """What is read of a result whose arrays the caller gave."""
+    """The fields of a result whose arrays the caller gave."""
 
     def __call__(self, name: str) -> dict[str, Any]:
         raise AttributeError(f"{name} was not kept: name it in out=, or leave out= away")

@@ -74,7 +74,7 @@ def explained(osc: Oscillator, tau: float, numbers: Array, cause: Cause, path: A
 
 
 def _crossed(osc: Oscillator, part: Expression, tau: float, time: float, path: Any) -> str:
-    """How the argument of a root, power or logarithm meets 0: "touches" or "crosses"; "steep" for other functions."""
+    """The way in which the argument of a root, power or logarithm meets 0: "touches", "crosses"; else "steep"."""
     match part:
         case Power(base, _):
             argument: Expression = base

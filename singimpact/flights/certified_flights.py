@@ -32,7 +32,7 @@ class Proof(NamedTuple):
 def proof(
     osc: Oscillator, states: States, index: int, digits: int, horizon: float, rough: tuple[float, float] | None
 ) -> Proof:
-    """What balls prove of a flight.
+    """The proof of a flight in balls.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ EPSILON = UNIT
 
 @dataclass(frozen=True)
 class TableSettings:
-    """How the tables of a linear model are laid out."""
+    """The layout of the tables of a linear model."""
 
     # step times the fastest rate: longer steps are fewer, need more terms and leave a larger remainder
     reach: float = 0.6
@@ -174,7 +174,7 @@ class CompiledModel:
         return sizes, flat
 
     def _pace(self) -> float:
-        """How fast the model moves: the largest rate of a linear one, else the forcing's frequency, or 1."""
+        """The rate of the model: the largest rate of a linear one, else the forcing's frequency, or 1."""
         if self.linear:
             return float(numbers_of(self.osc)[0][4])
         return 1.0 if self.osc.period is None else 2 * np.pi / as_float(self.osc.period)
@@ -260,7 +260,7 @@ class CompiledModel:
         return None if missing else found
 
     def _for_orbits(self, name: str, seconds: float) -> Callable[..., int] | None:
-        """The same for work that calls rho; waited for after long interpreted flights, unless its compiler dies."""
+        """The entry for work that calls rho; waited for after long interpreted flights, unless its compiler dies."""
         if (self.recurrence.machine if self.recurrence else self.machine).spent > LIMITS.patience and compilable():
             self.machine.awaited(name)
             if not (self.machine.is_killed() or any(each.is_killed() for each in self._called(self.law))):

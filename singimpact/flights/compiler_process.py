@@ -27,7 +27,7 @@ SIGNALS = {number for name in ("SIGTERM", "SIGINT", "SIGHUP") if (number := geta
 
 
 def compile_asked(request: Path) -> None:
-    """What the other process does: compile the entries of a text and keep them, while it holds the lock."""
+    """The work of the other process: it compiles the entries of a text and stores them, while it holds the lock."""
     if hasattr(os, "nice"):
         os.nice(10)
     gc.disable()  # a tenth of the time: numba makes millions of objects, and the process ends when it is done

@@ -50,7 +50,7 @@ Values = Mapping[str, float]
 
 @dataclass(frozen=True)
 class FamilySettings:
-    """How a flight is sampled."""
+    """Settings of the samples of a flight."""
 
     # places a turn of its fastest motion
     samples: float = 24.0
@@ -148,7 +148,7 @@ class Family(ABC):
         """x - c and x' at evenly spaced times after the launch, the last of them `time`, shape (samples, 2)."""
 
     def samples(self, values: Values, time: float) -> int:
-        """How many places show the shape of a flight; a forcing that has become faster is followed."""
+        """The number of samples that show the shape of a flight; a forcing that has become faster is followed."""
         period = self.period(values).value
         rate = max(self.fastest, 4 * pi / period if period > 0 else 0.0)
         turns = min(abs(time) * rate / (2 * pi), SETTINGS.most)
@@ -355,7 +355,7 @@ def exponential(matrix: Array) -> Array:
 
 
 def push_by(osc: Oscillator, name: str) -> Expression:
-    """What drives the derivative of x - c by a number: g_p - f_p, for the clearance -f_x.
+    """The force on the derivative of x - c by a number: g_p - f_p, for the clearance -f_x.
 
     Examples
     --------

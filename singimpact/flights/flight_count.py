@@ -1,4 +1,4 @@
-"""How many flights a piece of work takes: what a picture reports, and what tests hold it to."""
+"""The number of flights of a piece of work, which a picture reports and tests hold."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from singimpact.oscillator.model import Oscillator
 
 @dataclass(frozen=True)
 class HorizonSettings:
-    """How many of each characteristic time a default horizon holds; a flight usually lasts less than one."""
+    """Multiples of the characteristic times in a default horizon; a flight usually lasts less than one."""
 
     # periods of a forcing that is slow beside the free motion: an adiabatic flight ends within one
     slow_periods: float = 2.0
@@ -130,7 +130,7 @@ def _of_linear(osc: Oscillator, form: LinearForm) -> tuple[list[float], float]:
 
 
 def _of_nonlinear(osc: Oscillator) -> tuple[list[float], float]:
-    """The same from the force at rest and the mean of the forcing, in doubles: estimates are enough."""
+    """Horizons from the force at rest and the mean of the forcing, in doubles: estimates are enough."""
     period = 2 * np.pi if osc.period is None else as_float(osc.period)
     phases = period * np.arange(SETTINGS.samples) / SETTINGS.samples
     clearance = as_float(osc.clearance)
@@ -150,7 +150,7 @@ def _of_nonlinear(osc: Oscillator) -> tuple[list[float], float]:
 
 
 def _turned_back(times: list[float], mean: float, force: float, speed: float) -> tuple[list[float], float]:
-    """With the return times of a mean force that presses the mass to the wall.
+    """Horizons with the return times of a mean force that presses the mass to the wall.
 
     Parameters
     ----------

@@ -115,7 +115,7 @@ def _proof(
     osc: Oscillator, states: States, index: int, digits: int, horizon: float,
     known: dict[int, tuple[int, Array, int]], roughs: tuple[Array, Array, Array],
 ) -> Proof:  # fmt: skip
-    """What balls prove of a flight; of one that is proved in doubles never to return, nothing is left to prove.
+    """The proof of a flight in balls; one that is proved in doubles never to return needs no other.
 
     Towards a point where f or g is not analytic the steps in balls shorten without end: such a flight is not tried.
     """

@@ -112,7 +112,7 @@ def _step(states: States, hit: Any, fields: dict[str, Any], dead: Array) -> Step
 
 
 def _in_digits(states: States, hit: Any, speeds: Any, digits: int) -> dict[str, Any]:
-    """The same in mpmath numbers."""
+    """The inverse map in mpmath numbers."""
     fields = {name: np.empty(speeds.size, dtype=object) for name in ("tau", "v", "velocity")}
     with digits_at(digits) as mp:
         for index, (time, speed) in enumerate(zip(np.ravel(hit.flight_time), np.ravel(hit.velocity), strict=True)):

@@ -297,7 +297,7 @@ class Called:
         return self.machine.awaited(name) is None and self.machine.is_killed()
 
     def compile_here(self) -> None:
-        """As `Machine.compile_here`."""
+        """Object code compiled in this process, see `Machine.compile_here`."""
         (name,) = self.machine.emitted.entries
         self._bind(self.machine.compile_here(name))
 

@@ -41,7 +41,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class OffWallSettings:
-    """How a hit of a linear model is placed."""
+    """Settings of the place of a hit of a linear model."""
 
     # a Newton step longer than this part of the flight time is not taken: Taylor steps lose 1e-13 in a long flight
     step: float = 1e-10
@@ -74,7 +74,7 @@ class Launched(Result):
 
     @property
     def sentence(self) -> Any:
-        """What became of each flight: a text, or an array of texts of the shape of `status`."""
+        """The outcome of each flight: a text, or an array of texts of the shape of `status`."""
         pairs = zip(np.ravel(self.status).tolist(), np.ravel(self.cause).tolist(), strict=True)
         causes = {cause: Cause(cause).sentence.partition(":")[0] for cause in np.unique(self.cause).tolist()}
         texts = [f"{self.notes[at]}; {causes[cause]}" if cause else Status(status).sentence

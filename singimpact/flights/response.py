@@ -1,4 +1,4 @@
-"""How a hit answers to its launch: derivatives, condition numbers, usual errors.
+"""Derivatives of a hit by its launch, condition numbers, usual errors.
 
     U = x'(T),  dT/dtau = -Z/U,  dT/dv = -Y/U,  dU = (Z', Y') + x''(T) dT
 

@@ -1,4 +1,4 @@
-"""What a flight ends in: frozen carriers of arrays, scalars when the state was scalar."""
+"""Results of flights: frozen dataclasses of arrays, or of scalars when the state was scalar."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ class Flight(Result):
 
     @property
     def sentence(self) -> Any:
-        """What became of each flight, and what to type next: a text, or an array of texts of the shape of `status`."""
+        """The outcome of each flight, and what to type next: a text, or an array of texts of the shape of `status`."""
         flat = zip(np.ravel(self.status).tolist(), np.ravel(self.cause).tolist(), strict=True)
         texts = np.array([_sentence(*each, self.notes.get(at)) for at, each in enumerate(flat)] + [None], dtype=object)
         return texts[:-1].reshape(np.shape(self.status))[()]

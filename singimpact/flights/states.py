@@ -98,7 +98,7 @@ class States:
         return States(times, speeds, shape, (written[0].ravel(), written[1].ravel()))
 
     def in_period(self, osc: Oscillator) -> States:
-        """The same launches; those beyond a period that no double holds, and late ones, start from their phase.
+        """These launches; those beyond a period that no double holds, and late ones, start from their phase.
 
         Examples
         --------
@@ -121,7 +121,7 @@ class States:
         return replace(self, tau=tau, turns=turns) if turns.any() else self
 
     def below_doubles(self) -> np.ndarray[Any, Any]:
-        """What the doubles leave out of each launch time."""
+        """The rounding error of each launch time as a double."""
         low = np.zeros(self.tau.size)
         for index in self._rough().tolist():
             low[index] = float(self._exactly(index) - Fraction(float(self.tau[index])))

@@ -29,7 +29,7 @@ TINY = 1e-100  # the imaginary part: its square is below every rounding
 
 @dataclass(frozen=True)
 class TogetherSettings:
-    """How flights on arrays are made."""
+    """Settings of the flights on arrays."""
 
     # part of the step on which the last two terms are at rounding: it is wished for, and no disc bounds the cut-off
     cautious: float = 0.8

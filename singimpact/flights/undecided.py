@@ -89,7 +89,7 @@ class Judge:
 
 
 class Shaped:
-    """What another gives, in a shape."""
+    """The values of another function, in a shape."""
 
     def __init__(self, later: Any, shape: tuple[int, ...]) -> None:
         self.later, self.shape = later, shape

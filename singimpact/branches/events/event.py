@@ -61,7 +61,7 @@ class Event(Result):
 
     @property
     def described(self) -> EventKind:
-        """What holds for all events of its kind."""
+        """The kind of the event, as an object."""
         return kind_of(self.kind)
 
     def others(self) -> list[PeriodicOrbit]:

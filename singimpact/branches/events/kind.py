@@ -28,7 +28,7 @@ class CurveLook(NamedTuple):
 
 
 class EventKind(Protocol):
-    """What differs between kinds of events; a method that a kind does not have does what most kinds do.
+    """The differences between kinds of events; a method that a kind does not have does what most kinds do.
 
     Attributes
     ----------
@@ -77,11 +77,11 @@ class EventKind(Protocol):
         return True
 
     def remark(self, orbit: PeriodicOrbit, time: float, parameter: float) -> str:  # noqa: ARG002
-        """What is special about an event, in a sentence; `time` is that of the impact."""
+        """A sentence about what is special at an event; `time` is that of the impact."""
         return ""
 
     def doubt(self, closing: AnyClosing, at: Array) -> str:  # noqa: ARG002
-        """What a test that touches 0, up to rounding, leaves open, in a sentence."""
+        """A sentence about what a test that touches 0, up to rounding, leaves open."""
         return f"the test of a {self.name} comes so near to 0 that two may lie there, or none: give a smaller step="
 
     # ---- at an event
@@ -101,7 +101,7 @@ class EventKind(Protocol):
     # ---- as a curve in two numbers
 
     def equation(self, state: OrbitState) -> float:
-        """What vanishes on the curve, beside the closing conditions."""
+        """The function that vanishes on the curve, beside the closing conditions."""
         return self.value(state, 0)
 
     def gradient(self, state: OrbitState) -> Array | None:  # noqa: ARG002
@@ -115,7 +115,7 @@ class EventKind(Protocol):
     # ---- in a proof
 
     def of_return_map(self, total: Any) -> Any:  # noqa: ARG002
-        """What vanishes at the event, of the derivative M of the return map, in balls."""
+        """The function of the derivative M of the return map that vanishes at the event, in balls."""
         raise ArithmeticError(f"no proof covers a {self.name}")
 
     def rate_of_return_map(self, total: Any, change: Any) -> Any:  # noqa: ARG002

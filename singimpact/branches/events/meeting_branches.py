@@ -63,7 +63,7 @@ BRANCH_POINT, PITCHFORK, TRANSCRITICAL = BranchPointKind(), Pitchfork(), Transcr
 
 
 def repeats(closing: AnyClosing, at: Array) -> int:
-    """How often an orbit with impacts repeats one of fewer impacts and periods, about."""
+    """The number of times that an orbit with impacts repeats one of fewer impacts and periods, about."""
     n, k = closing.n, closing.k
     if not n:
         return 1

@@ -1,4 +1,4 @@
-"""What grazes and interior grazes have in common: the orbit touches the wall with no velocity."""
+"""Grazes and interior grazes: the orbit touches the wall with no velocity."""
 
 from __future__ import annotations
 

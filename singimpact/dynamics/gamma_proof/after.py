@@ -1,4 +1,4 @@
-"""What comes after the contact point: contact is lost at an odd order; at a negative swan chatter completes.
+"""The motion after the contact point: contact is lost at an odd order; at a negative swan chatter completes.
 
 notation: s > 0 after tau_*, |A(s)| = s^j B(s), e = landing place, sigma = launch place, p = |A(-x)| before tau_*.
 
@@ -78,7 +78,7 @@ def _positive(function: Any, reach: Any) -> bool:
 
 
 def lost_contact(o: Gravity, numbers: LinearNumbers, near: Fraction, time: Fraction) -> Lost | None:
-    """That a_c > 0 up to a time after tau_*: up to s = near by the series, then by balls; None if not decided."""
+    """Proof that a_c > 0 up to a time after tau_*: to s = near by the series, then by balls; None if not decided."""
     if not _positive(lambda s: sum_after(o, s, _one), rational(near)):
         return None
     todo = [(arb(time_of(numbers.square, rational(near)).lower()), rational(time), 0)]

@@ -24,7 +24,7 @@ from singimpact.dynamics.gamma_proof.relation import Flights, residual
 
 @dataclass(frozen=True)
 class ProofSettings:
-    """How the lemmas are tried.
+    """Settings of the lemmas.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class BoxProof:
 
     @property
     def boxes(self) -> int:
-        """How many boxes lemma 1 took."""
+        """The number of boxes of lemma 1."""
         return self.tree.count(".")
 
 

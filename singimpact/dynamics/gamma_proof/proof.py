@@ -377,7 +377,7 @@ def _found(osc: Oscillator, zero: ContactZero, reaches: tuple[Fraction, Fraction
 
 
 def _lost(osc: Oscillator, zero: ContactZero, s0: Fraction) -> Lost | None:
-    """How long after tau_* at most one impact comes: nearly up to the next zero of a_c."""
+    """The time after tau_* in which at most one impact comes: nearly up to the next zero of a_c."""
     numbers = numbers_of(osc, zero, BITS)
     for near in (s0, s0 / 4, s0 / 16):
         o = gravity(osc, zero, near, BITS)

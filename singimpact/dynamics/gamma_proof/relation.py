@@ -31,7 +31,7 @@ class Hats(NamedTuple):
 
 
 class Flights(Protocol):
-    """What the lemmas ask of the flights before a contact point.
+    """The flights before a contact point, as the lemmas need them.
 
     Attributes
     ----------

@@ -13,7 +13,7 @@ SHORTEST = 0.05  # of a step: where its sign at the end is still open, the ball 
 
 
 class Motion(Protocol):
-    """What carries a set of states from step to step."""
+    """A set of states that is carried from step to step."""
 
     time: Any
     bits: int

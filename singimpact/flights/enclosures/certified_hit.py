@@ -29,7 +29,7 @@ from singimpact.oscillator.period import common_period
 
 @dataclass(frozen=True)
 class EnclosureSettings:
-    """How the precision grows.
+    """Settings of the growth of the precision.
 
     Parameters
     ----------

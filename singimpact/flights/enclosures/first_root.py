@@ -11,7 +11,7 @@ from singimpact.flights.enclosures.tube import Tube, centre
 
 @dataclass(frozen=True)
 class RootSettings:
-    """How pieces are cut.
+    """Settings of the subdivision of pieces.
 
     Parameters
     ----------

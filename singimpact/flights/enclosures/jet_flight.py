@@ -91,7 +91,7 @@ def _partials(recorder: Recorder, place: Place, names: tuple[str, ...], most: in
 
 
 class JetHit:
-    """What a flight over a box gives: the next tau and v as jets."""
+    """The result of a flight over a box: the next tau and v as jets."""
 
     def __init__(self, tau: Jet, v: Jet) -> None:
         self.jets = tau, v

@@ -135,7 +135,7 @@ class CarriedMotion:
         return *self.members, self.wide.length
 
     def _launches(self) -> list[Column]:
-        """What a step carries along: in a frame derivatives by its first state and by what drives it, else columns."""
+        """Derivatives that a step carries: in a frame by its first state and by what drives it, else columns."""
         from flint import arb
 
         if self.coarse is None:

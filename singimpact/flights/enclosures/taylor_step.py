@@ -25,7 +25,7 @@ from singimpact.flights.enclosures.tube import ball, upper
 
 @dataclass(frozen=True)
 class StepSettings:
-    """How a step is chosen.
+    """Settings of the choice of a step.
 
     Parameters
     ----------
@@ -352,7 +352,7 @@ def _second_derivatives(parts: list[Any]) -> tuple[Any, list[Any]]:
 def _bend(
     P: list[Any], sums: tuple[Any, Any, Any], second: Any, mixed: list[Any], drive: int, bound: Any, length: Any
 ) -> Any:
-    """What f_x, f_v and f_p along P leave out in the equation of a column, over s^(n-1)."""
+    """The rest that f_x, f_v and f_p along P leave in the equation of a column, over s^(n-1)."""
     along = upper(P[0]) + sums[0](length) + upper(P[1]) + sums[1](length)
     total = second * along + (mixed[drive - 1] if drive > 0 else 0)
     return upper(total * bound * (1 + length) * length)

@@ -22,7 +22,7 @@ from singimpact.oscillator.model import Oscillator
 
 @dataclass(frozen=True)
 class TimedSettings:
-    """How a flight is cut.
+    """Settings of the pieces of a flight.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int, *, cr
 
 
 def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any, crosses: bool) -> None:
-    """The same in the step of the touching point."""
+    """Show that z > 0 in the step of the touching point."""
     last = centre(left)
     for _ in range(TIMED.halvings):
         before = centre(left - last)
@@ -161,7 +161,7 @@ def _reaches(length: Any, left: Any) -> bool:
 
 
 def _piece(length: Any, left: Any) -> Any:
-    """As far as this step goes: not so near the time that the height there is rounding."""
+    """The length of this step: not so near the time that the height there is rounding."""
     return length if length < left * TIMED.near else centre(left / 2)
 
 

@@ -115,7 +115,7 @@ def launch_phases(b: int, tau: Any, lane: Any, wave: Any, model: Any, step: floa
 
 
 def late(t: float, since: float, lost: float) -> float:
-    """What the double t + since leaves out of t + since - lost."""
+    """The rounding error of t + since - lost as a double."""
     total = t + since
     part = total - t
     return (t - (total - part)) + (since - part) - lost

@@ -27,7 +27,7 @@ from singimpact.flights.kernels.state import (
 
 
 def isolate(lane: Any, wave: Any, p: Any, ulp: float, table: Any) -> int:
-    """How many states fly; then each stands before a root (mode 1) or is left to `tabulated_flight` (mode 2)."""
+    """The number of states that fly; each then stands before a root (mode 1) or is left to `tabulated_flight` (2)."""
     step, last = table.step, len(table.rows) - 1
     # 2.3: on the first stride the remainder is compared with a multiple of the distance from the launch
     sixth = 2.3 * step * step * step * step * step * step / 46080.0
@@ -81,7 +81,7 @@ def ahead(lane: Any, wave: Any, p: Any, table: Any, m: int) -> None:
 
 
 def doubtful(lane: Any, step: float, by_x: float, by_u: float, by_v: float, rest: float) -> int:
-    """How many states cannot go on by the Bernstein coefficients of p alone."""
+    """The number of states that cannot go on by the Bernstein coefficients of p alone."""
     fifth, twentieth = step * 0.2, step * step / 20.0
     count = 0
     for k in range(LANES):

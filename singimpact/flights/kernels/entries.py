@@ -1,4 +1,4 @@
-"""What Python calls: one function for linear models and one for Taylor flows, over addresses.
+"""Entries that Python calls: one function for linear models and one for Taylor flows, over addresses.
 
 `sizes[KIND]` is the kind of work. The entries that most sessions need are compiled first.
 """

@@ -20,7 +20,7 @@ COEFFICIENTS, DISC, ROUNDING, COLUMNS, DISC_OF_COLUMNS = range(5)
 
 
 def called(job: Any, numbers: Any, p: Any, launch: Any, X: Any, W: Any, A: Any) -> Any:  # noqa: ARG001
-    """What `recurrence_entry` makes of four numbers; `flights.bind` puts a call at the last of p in its place.
+    """The recurrence from four numbers; `flights.bind` puts a call at the last of p in its place.
 
     Parameters
     ----------

@@ -145,7 +145,7 @@ class Flying(NamedTuple):
 
 
 class Search(NamedTuple):
-    """What a search over orbits is given: its settings, see `gamma` and `chatter`, and the constants of rho."""
+    """The arguments of a search over orbits: its settings, see `gamma` and `chatter`, and the constants of rho."""
 
     settings: Any
     rho: Any

@@ -1,4 +1,4 @@
-"""How long a Taylor step of any smooth f and g may be: its cut-off is bounded on a complex disc.
+"""The length of a Taylor step of any smooth f and g: its cut-off is bounded on a complex disc.
 
 `disc` is emitted with the recurrence of f and g; `flights.bind` puts it in the place of the one here.
 """

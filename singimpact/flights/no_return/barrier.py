@@ -101,7 +101,7 @@ def fastest_kept(osc: Oscillator) -> float:
 
 
 class Operations:
-    """What a search may still evaluate."""
+    """The number of evaluations that a search has left."""
 
     def __init__(self, osc: Oscillator) -> None:
         self.price = sum(1 for _ in walk(osc.force()))

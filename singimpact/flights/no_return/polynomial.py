@@ -28,7 +28,7 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class ProofSettings:
-    """How the inequality is checked.
+    """Settings of the check of the inequality.
 
     Parameters
     ----------
