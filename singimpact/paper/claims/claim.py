@@ -32,7 +32,7 @@ def told(kind: str, modulo: Sequence[str]) -> str:
     """
     if not modulo or kind not in WITH_THEOREMS:
         return kind
-    names = " and ".join(part for part in (", ".join(modulo[:-1]), modulo[-1]) if part)
+    names = " and ".join(names_ for names_ in (", ".join(modulo[:-1]), modulo[-1]) if names_)
     return f"{kind} {names}" if kind == MODULO else f"{kind}, modulo {names}"
 
 
@@ -117,17 +117,17 @@ class Trial:
 
 
 def compared(
-    model: str, quantity: str, found: float, printed: float, corrected: float, tolerance: float = 1e-3
+    model: str, quantity: str, measured: float, printed: float, corrected: float, tolerance: float = 1e-3
 ) -> Trial:
     """A trial of two numbers against the one found, to a part `tolerance` of the largest of the three.
 
     Shown are the digits that are compared, and one more.
     """
-    near = tolerance * max(abs(found), abs(printed), abs(corrected))
+    near = tolerance * max(abs(measured), abs(printed), abs(corrected))
     digits = 1 - floor(log10(tolerance))
-    told = [f"{value:.{digits}g}" for value in (found, printed, corrected)]
-    holds = [abs(value - found) <= near for value in (printed, corrected)]
-    return Trial(model, quantity, told[0], told[1], told[2], holds[0], holds[1])
+    texts = [f"{value:.{digits}g}" for value in (measured, printed, corrected)]
+    holds = [abs(value - measured) <= near for value in (printed, corrected)]
+    return Trial(model, quantity, texts[0], texts[1], texts[2], holds[0], holds[1])
 
 
 Trials = Callable[[Any, Any], Sequence[Trial]]

@@ -32,25 +32,25 @@ class _Found:
     modulo: tuple[str, ...] = ()
 
 
-def decide(claim: Claim, known: Mapping[str, Verdict]) -> Verdict:
+def decide(claim: Claim, verdicts: Mapping[str, Verdict]) -> Verdict:
     """The verdict on one claim, given the verdicts on what it rests on."""
     started = time.process_time()
     try:
-        found = _found(claim)
+        finding = _found(claim)
     except Exception as error:  # a verifier that raises is a verdict, not a crash of the run
-        found = _Found("error", f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")
-    below = [known[name] for name in claim.rests_on if name in known]
-    own = effective(found.corrected_kind or found.kind, found.in_model, [verdict.effective for verdict in below])
+        finding = _Found("error", f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")
+    below = [verdicts[name] for name in claim.rests_on if name in verdicts]
+    own = effective(finding.corrected_kind or finding.kind, finding.in_model, [verdict.effective for verdict in below])
     return Verdict(
         id=claim.id,
         section=claim.section,
         title=claim.title,
         effective=own,
-        effective_modulo=united([found.modulo, *(verdict.effective_modulo for verdict in below)]),
+        effective_modulo=united([finding.modulo, *(verdict.effective_modulo for verdict in below)]),
         printed=claim.printed.latex,
         rests_on=claim.rests_on,
         seconds=time.process_time() - started,
-        **vars(found),
+        **vars(finding),
     )
 
 

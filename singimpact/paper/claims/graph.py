@@ -20,9 +20,9 @@ def dependants(claims: Mapping[str, Entry], name: str) -> list[str]:
     reached = {name}
     grown = True
     while grown:
-        found = {other for other, claim in claims.items() if reached & set(claim.rests_on)} - reached
-        reached |= found
-        grown = bool(found)
+        others = {other for other, claim in claims.items() if reached & set(claim.rests_on)} - reached
+        reached |= others
+        grown = bool(others)
     return [other for other in claims if other in reached and other != name]
 
 
@@ -47,15 +47,15 @@ def as_svg(claims: Mapping[str, Entry], kinds: Mapping[str, str] | None = None) 
     columns: dict[int, list[str]] = {}
     for name in claims:
         columns.setdefault(depth(claims, name), []).append(name)
-    place = {name: (30 + 210 * x, 30 + 24 * y) for x, names in columns.items() for y, name in enumerate(names)}
+    position = {name: (30 + 210 * x, 30 + 24 * y) for x, names in columns.items() for y, name in enumerate(names)}
     width, height = 210 * len(columns) + 40, 24 * max(len(names) for names in columns.values()) + 50
     lines = [
-        f'<path d="M{place[name][0]},{place[name][1] + 8} C{place[name][0] - 60},{place[name][1] + 8} '
-        f'{place[other][0] + 215},{place[other][1] + 8} {place[other][0] + 155},{place[other][1] + 8}"/>'
+        f'<path d="M{position[name][0]},{position[name][1] + 8} C{position[name][0] - 60},{position[name][1] + 8} '
+        f'{position[other][0] + 215},{position[other][1] + 8} {position[other][0] + 155},{position[other][1] + 8}"/>'
         for name, claim in claims.items()
         for other in claim.rests_on
     ]
-    boxes = [_box(claim, *place[name], (kinds or {}).get(name, "")) for name, claim in claims.items()]
+    boxes = [_box(claim, *position[name], (kinds or {}).get(name, "")) for name, claim in claims.items()]
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif" '
         f'font-size="11"><rect width="100%" height="100%" fill="white"/>'

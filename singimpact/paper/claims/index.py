@@ -80,9 +80,9 @@ def claims_in(file: str) -> dict[str, Claim]:
     ------
     RuntimeError : the index does not agree with the file.
     """
-    index, place, folder = (INDEX, PLACE, "sections") if file in SECTIONS else (BEYOND, BEYOND_PLACE, "beyond")
+    index, file_, folder = (INDEX, PLACE, "sections") if file in SECTIONS else (BEYOND, BEYOND_PLACE, "beyond")
     if entries_of(file) != tuple(entry for entry in index.values() if entry.file == file):
-        raise RuntimeError(f"{place.name} does not agree with {folder}/{file}.py: run python derivations/freeze.py")
+        raise RuntimeError(f"{file_.name} does not agree with {folder}/{file}.py: run python derivations/freeze.py")
     return {claim.id: claim for claim in FILES[file]()}
 
 

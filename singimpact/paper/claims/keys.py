@@ -60,15 +60,15 @@ def imported_by(file: str) -> list[str]:
     >>> imported_by("section4a_fold")
     ['section2_trials', 'section4_trials', 'section4a_fold']
     """
-    found: set[str] = set()
+    modules: set[str] = set()
     todo = [file]
     while todo:
         name = todo.pop()
-        if name not in found:
-            found.add(name)
-            named = [each for pair in IMPORTED.findall(source_of(name)) for each in "".join(pair).split(",")]
-            todo += [each.split()[0] for each in named]  # "file as other" is the file
-    return sorted(found)
+        if name not in modules:
+            modules.add(name)
+            named = [name_ for pair in IMPORTED.findall(source_of(name)) for name_ in "".join(pair).split(",")]
+            todo += [name_.split()[0] for name_ in named]  # "file as other" is the file
+    return sorted(modules)
 
 
 @lru_cache(maxsize=64)

@@ -23,8 +23,8 @@ def recall(name: str, key: str) -> Verdict | None:
     if content is None:
         return None
     try:
-        known, verdict = cache.unpacked(content, (Verdict, Trial))
-        return _checked(verdict) if known == key else None
+        digests, verdict = cache.unpacked(content, (Verdict, Trial))
+        return _checked(verdict) if digests == key else None
     except (ValueError, KeyError, TypeError) as error:
         cache.damaged(_place(name), str(error))
         return None

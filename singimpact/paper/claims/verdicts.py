@@ -132,9 +132,9 @@ class VerdictTable(Sequence["Verdict"]):
         ...     [file.name for file in si.verify("e:acc").save_certificates(place)]
         ['e_yeq.json', 'e_acc.json']
         """
-        made = folder(place)
+        directory = folder(place)
         contents = self._contents()
-        paths = [made / file_of(verdict.id) for verdict in self.verdicts]
+        paths = [directory / file_of(verdict.id) for verdict in self.verdicts]
         for path, verdict in zip(paths, self.verdicts, strict=True):
             write_text(path, json.dumps(contents[verdict.id], indent=1, ensure_ascii=False) + "\n")
         return paths
@@ -153,7 +153,7 @@ class VerdictTable(Sequence["Verdict"]):
             others = set[str]().union(*(certified[name] for name in below))
             texts = [json.dumps(certificate, sort_keys=True) for certificate in verdict.certificates]
             certified[verdict.id] = others.union(texts)
-            content = {"schema": SCHEMA} | {name: part for name, part in verdict.as_dict().items() if name in WRITTEN}
+            content = {"schema": SCHEMA} | {name: value for name, value in verdict.as_dict().items() if name in WRITTEN}
             content["rests_on"] = {name: contents[name]["digest"] for name in below}
             content["certificates"] = [json.loads(text) for text in dict.fromkeys(texts) if text not in others]
             contents[verdict.id] = {**content, "digest": digest_of(content)}

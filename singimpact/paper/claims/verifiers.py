@@ -28,7 +28,7 @@ def is_zero(expression: Any) -> bool:
     if not _cancels(sympy.together(expression)):
         return False
     if expression.is_Add:
-        identical(expression.args[0], sympy.Add(*(-part for part in expression.args[1:])))
+        identical(expression.args[0], sympy.Add(*(-term for term in expression.args[1:])))
     return True
 
 

@@ -136,10 +136,10 @@ def _actions(tau: float, edges: dict[str, tuple[Array, str, str]], boxes: list[t
     ]
     panels = []
     for n, (title, y, turn) in enumerate(maps):
-        made = {name: turn(points) - np.array([tau, 0.0]) for name, (points, _, _) in edges.items()}
+        images = {name: turn(points) - np.array([tau, 0.0]) for name, (points, _, _) in edges.items()}
         lines = [
             Line(
-                made[name],
+                images[name],
                 pen,
                 f"image of {name}",
                 label if pen != "hidden" else "",
@@ -148,7 +148,7 @@ def _actions(tau: float, edges: dict[str, tuple[Array, str, str]], boxes: list[t
             )
             for name, (_, pen, label) in edges.items()
         ]
-        region = Region(np.vstack(list(made.values())), words="part of $V'$ and its images")
+        region = Region(np.vstack(list(images.values())), words="part of $V'$ and its images")
         panels.append(
             Panel(
                 boxes[n],
@@ -291,13 +291,13 @@ def _orbit(model: Any, curve: Array, start: float, share: float) -> Array:
     """Impacts of an orbit that starts above gamma by a share of its height, while they come close together."""
     order = np.argsort(curve[:, 0])
     state = np.array([[start, (1 + share) * float(np.interp(start, *curve[order].T))]])
-    found = [state[0]]
+    states = [state[0]]
     for _ in range(12):
         state = model_step(model, state)
-        if not np.isfinite(state).all() or state[0, 0] - found[-1][0] > 0.6:
+        if not np.isfinite(state).all() or state[0, 0] - states[-1][0] > 0.6:
             break
-        found.append(state[0])
-    return np.array(found)
+        states.append(state[0])
+    return np.array(states)
 
 
 def figure_7() -> Picture:
@@ -320,8 +320,8 @@ def figure_7() -> Picture:
         ),
         Line(np.array([[start, 0.0], [tau, 0.0]]), "rest", "[w_1, w_*]", words="interval $[w_1, w_*]$ of $\\Pi_0$"),
     ]
-    part = epsilon[-30:-3]
-    facts = {"order": float(np.polyfit(np.log(part[:, 0] - tau), np.log(part[:, 1]), 1)[0])}
+    middle = epsilon[-30:-3]
+    facts = {"order": float(np.polyfit(np.log(middle[:, 0] - tau), np.log(middle[:, 1]), 1)[0])}
     panel = Panel(
         ((low, high), (-0.1 * v, v)),
         lines=lines,

@@ -125,15 +125,15 @@ def figure_B2() -> Picture:
     """X_H - X against H, as it is and without its term of first order."""
     left, right, facts = list[Array](), list[Array](), dict[str, float]()
     for model in first_order_feet.MODELS:
-        found = first_order_feet.measured(model, "1/2", SIZES)
-        term = -(found.limit**2 - 1) / 10 * found.chi
-        size, off = np.array(found.sizes), np.array(found.offsets)
+        feet = first_order_feet.measured(model, "1/2", SIZES)
+        term = -(feet.limit**2 - 1) / 10 * feet.chi
+        size, off = np.array(feet.sizes), np.array(feet.offsets)
         rest = off - term * size
         left.append(np.stack([np.log10(size), np.log10(np.abs(off))], axis=1))
         right.append(np.stack([np.log10(size), np.log10(np.abs(rest))], axis=1))
         facts |= {
-            f"order, {model.name}": found.order(off[-2:].tolist()),
-            f"without, {model.name}": found.order(rest[-2:].tolist()),
+            f"order, {model.name}": feet.order(off[-2:].tolist()),
+            f"without, {model.name}": feet.order(rest[-2:].tolist()),
         }
     box = ((-3.1, -0.8), (-6.0, -0.4))
 
@@ -183,10 +183,10 @@ def figure_B3() -> Picture:
         facts[f"alpha at r = 1, j = {order}"] = float(curve[-1, 1])
     for start in orbits_beside_gamma.STARTS:
         for rate in orbits_beside_gamma.RATES:
-            found = orbits_beside_gamma.beside(start, rate)
-            place = np.array([[_value(rate), found.slope]])
-            lines.append(Line(place, "crossing", "true orbit", beads=True, words="slopes of true orbits"))
-            facts[f"{start.name}, r = {rate}"] = found.slope - log(1 / found.lambda_) / log(found.mu)
+            orbits = orbits_beside_gamma.beside(start, rate)
+            mark = np.array([[_value(rate), orbits.slope]])
+            lines.append(Line(mark, "crossing", "true orbit", beads=True, words="slopes of true orbits"))
+            facts[f"{start.name}, r = {rate}"] = orbits.slope - log(1 / orbits.lambda_) / log(orbits.mu)
     caption = (
         r"Below $\gamma$, at the relative distance $\delta$, chatter ends a time proportional to "
         r"$\delta^\alpha$ before $\tau_*$, $\alpha = \ln(1/\lambda)/\ln\mu$. The exponent lies between its "

@@ -133,14 +133,14 @@ def _entries(picture: Picture, look: Look) -> list[tuple[Any, str]]:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    found: dict[str, Any] = {}
+    entries: dict[str, Any] = {}
     for panel in picture.panels:
         for line in panel.lines:
-            found.setdefault(line.words or PENS[line.pen].words, Line2D([], [], **_stroke(line, look)))
+            entries.setdefault(line.words or PENS[line.pen].words, Line2D([], [], **_stroke(line, look)))
         for region in panel.regions:
-            found.setdefault(region.words, Patch(facecolor=look.color(region.tone)))
-    found.pop("", None)
-    return [(handle, words) for words, handle in found.items()]
+            entries.setdefault(region.words, Patch(facecolor=look.color(region.tone)))
+    entries.pop("", None)
+    return [(handle, words) for words, handle in entries.items()]
 
 
 def _columns(entries: list[str], width: float) -> int:
@@ -190,8 +190,8 @@ def _letters(axes: Any, panel: Panel, look: Look) -> None:
     """Names of regions where they were put, those of points and curves clear of what is drawn."""
     for region in panel.regions:
         if region.label:
-            place = region.place if region.place is not None else tuple(region.points.mean(axis=0))
-            axes.text(*place, region.label, ha="center", va="center", path_effects=look.halo(), zorder=8)
+            position = region.place if region.place is not None else tuple(region.points.mean(axis=0))
+            axes.text(*position, region.label, ha="center", va="center", path_effects=look.halo(), zorder=8)
     if panel.note:
         axes.text(0.5, 0.62, panel.note, transform=axes.transAxes, ha="center", color=look.color(GREY))
     named = [(*dot.place, dot.letter) for dot in panel.dots if dot.letter]
@@ -218,8 +218,8 @@ def _solid(axes: Any, panel: Panel, look: Look) -> None:
     for line in panel.lines:
         axes.plot(*line.points.T, **_stroke(line, look), zorder=10)
         if line.label:
-            place = line.points[int(line.at * (len(line.points) - 1))]
-            axes.text(*place, f"  {line.label}", va="center", path_effects=look.halo(), zorder=20)
+            position = line.points[int(line.at * (len(line.points) - 1))]
+            axes.text(*position, f"  {line.label}", va="center", path_effects=look.halo(), zorder=20)
     (left, right), (low, high) = panel.box
     axes.set(xlim=(left, right), ylim=(low, high))
     axes.set_xlabel(panel.x)

@@ -30,19 +30,19 @@ def figure_B9() -> Picture:
     second.append(Line(guide, "before", "equal", words="equal"))
     for start in STARTS:
         for power in POWERS:
-            found = measured(start, power)
+            measurement = measured(start, power)
             values = {j: start.order, q: sympy.Rational(power.numerator, power.denominator)}
-            n, k, g = (float(part.subs(values)) for part in (EXPONENT, FACTOR, SECOND))
-            w = (k * found.loss) ** (1 / (1 - float(power)))
+            n, k, g = (float(formula.subs(values)) for formula in (EXPONENT, FACTOR, SECOND))
+            w = (k * measurement.loss) ** (1 / (1 - float(power)))
             rows = [
                 (np.log10(g * v / h ** (start.order + 1)), np.log10(v / (w * h**n) - 1))
-                for h, v in zip(found.distances, found.speeds, strict=True)
+                for h, v in zip(measurement.distances, measurement.speeds, strict=True)
             ]
-            place = np.array([[float(power), found.exponent]])
-            first.append(Line(place, "crossing", "true orbits", beads=True, words="true orbits"))
+            mark = np.array([[float(power), measurement.exponent]])
+            first.append(Line(mark, "crossing", "true orbits", beads=True, words="true orbits"))
             for row in rows:
                 second.append(Line(np.array([row]), "crossing", "true orbits", beads=True, words="true orbits"))
-            facts[f"{start.name}, q = {power}"] = found.exponent - n
+            facts[f"{start.name}, q = {power}"] = measurement.exponent - n
     caption = (
         r"Impacts that lose $Cv^q$ of a low speed $v$: $\rho(-v) = v(1 - Cv^q)$, $0 < q < 1$. (a) $\gamma$ is "
         r"$|\sigma|^{(j+1)/(1-q)}$ times a constant, so it is flatter at the contact point than $|\sigma|^{j+1}$; "

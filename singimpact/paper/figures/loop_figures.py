@@ -51,10 +51,10 @@ def figure_B4() -> Picture:
     for swan in loop_heights.SWANS:
         for rate in loop_heights.RATES:
             r = float(Fraction(rate))
-            found = loop_heights.heights(swan, rate).found[-1]
+            loops = loop_heights.heights(swan, rate).found[-1]
             limits = [w for name in ("outer", "inner") for w in loop_heights.generations(_start(name, r), r)]
-            worst = max(worst, float(np.abs(np.array(found) - limits).max()))
-            for w in found:
+            worst = max(worst, float(np.abs(np.array(loops) - limits).max()))
+            for w in loops:
                 plain.append(_point(r, w))
                 beside.append(_point(r, float(np.log10(w - gamma_height(r)))))
     panels = [
@@ -95,10 +95,10 @@ def figure_B5() -> Picture:
     bottoms = np.array([[float(edge), float(scaled(box.low, box.r[1], POWER))] for box in boxes for edge in box.r])
     band = np.array([[0.0, 2.94], [1.0, 2.94], [1.0, 3.06], [0.0, 3.06]])
     thin = [Fraction(n, 40) for n in range(40)] + [
-        Fraction(*each) for each in ((97, 100), (98, 100), (99, 100), (199, 200))
+        Fraction(*bound) for bound in ((97, 100), (98, 100), (99, 100), (199, 200))
     ]
     curve = np.array([[float(r), float(scaled(foot(r, 1e-3)[0], r, POWER))] for r in thin])
-    u = [float(each) for each in elastic().invariant]
+    u = [float(bound) for bound in elastic().invariant]
     limit = (14 * u[0] / (3 * 12 ** (2 / 3))) ** (3 / 7)
     level = np.array([[0.0, limit], [1.0, limit]])
     lines = [

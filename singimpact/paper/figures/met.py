@@ -90,15 +90,15 @@ def figure_B8() -> Picture:
 def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[str, float]]:
     panels, facts = list[Panel](), dict[str, float]()
     for row in rows:
-        found = _transition(model, row)
-        facts[row.title] = found.value
-        place = found.launch or (found.rests[0], 0.0)
-        tau = place[0] + row.tau[0], place[0] + row.tau[1]
+        transition = _transition(model, row)
+        facts[row.title] = transition.value
+        launch = transition.launch or (transition.rests[0], 0.0)
+        tau = launch[0] + row.tau[0], launch[0] + row.tau[1]
         shifts = (row.apart[0], ASIDE * row.apart[0], row.apart[1])
-        sides = [(found.value + shift, sign) for shift, sign in zip(shifts, ">=<", strict=True)]
-        made = [(_surface(model, c, tau, row), c, sign) for c, sign in sides]
-        facts |= {f"{row.title} {sign}": float(_ends(surface, tau)) for surface, _, sign in made}
-        panels += _drawn(row, place, tau, made)
+        sides = [(transition.value + shift, sign) for shift, sign in zip(shifts, ">=<", strict=True)]
+        surfaces = [(_surface(model, c, tau, row), c, sign) for c, sign in sides]
+        facts |= {f"{row.title} {sign}": float(_ends(surface, tau)) for surface, _, sign in surfaces}
+        panels += _drawn(row, launch, tau, surfaces)
     return panels, facts
 
 
@@ -121,18 +121,18 @@ def _ends(surface: ImpactSurface, tau: tuple[float, float]) -> int:
 
 
 def _drawn(
-    row: Row, place: Point, tau: tuple[float, float], made: list[tuple[ImpactSurface, float, str]]
+    row: Row, launch: Point, tau: tuple[float, float], surfaces: list[tuple[ImpactSurface, float, str]]
 ) -> list[Panel]:
-    shift = _shift(row, place, tau, made)
+    shift = _shift(row, launch, tau, surfaces)
     panels, box = [], (tau, row.v)
     if row.degree:
-        inner = np.vstack([shift(line) for surface, _, _ in made for line in _inside(surface.discontinuities, tau)])
+        inner = np.vstack([shift(line) for surface, _, _ in surfaces for line in _inside(surface.discontinuities, tau)])
         low, high = float(inner[:, 1].min()), float(inner[:, 1].max())
         box = tau, (low - 0.1 * (high - low), high + 0.1 * (high - low))
-    for surface, _, sign in made:
-        lines = [Line(shift(part), "P", "P") for part in _inside(surface.outline, tau)]
-        lines += [Line(shift(part), "jump", "visible P") for part in _inside(surface.discontinuities, tau)]
-        dots = [Dot("", _pair(shift(np.array([place]))))] if sign == "=" else []
+    for surface, _, sign in surfaces:
+        lines = [Line(shift(curve), "P", "P") for curve in _inside(surface.outline, tau)]
+        lines += [Line(shift(curve), "jump", "visible P") for curve in _inside(surface.discontinuities, tau)]
+        dots = [Dot("", _pair(shift(np.array([launch]))))] if sign == "=" else []
         label = r"$v - q(\tau)$" if row.degree else "$v$"
         panels.append(Panel(box, y=label, title=f"{row.title}: $c {sign} c_0$", lines=lines, dots=dots))
     return panels

@@ -30,13 +30,13 @@ def figure_1() -> Picture:
     fold = fold[np.argsort(fold[:, 0])]
     lines = [Line(fold, "H", "H", "$H$", 0.1), Line(fold * [1, 1, 0], "P", "P", "$P$", 0.04)]
     for n, share in enumerate((0.2, 0.5, 0.8)):
-        place = fold[int(share * (len(fold) - 1))]
-        over = np.array([place * [1, 1, 0], place + np.array([0, 0, 0.25])])
+        position = fold[int(share * (len(fold) - 1))]
+        over = np.array([position * [1, 1, 0], position + np.array([0, 0, 0.25])])
         words = "lines $w = $ const. that touch the surface on $H$"
         lines.append(Line(over, "hidden", f"line over w_{n + 1}", words=words))
         lines.append(
             Line(
-                place[None],
+                position[None],
                 "orbit",
                 f"touching point over w_{n + 1}",
                 f"$w_{n + 1}$",
@@ -120,10 +120,13 @@ def figure_2() -> Picture:
     """The three generic transitions of the outline, each before, at and after."""
     panels, facts = list[Panel](), dict[str, float]()
     for letter, change in zip("abc", CHANGES, strict=True):
-        rows = [(told, _outline(change, sign)) for sign, told in ((-1, "<"), (0, "="), (1, ">"))]
-        facts |= {f"{change.kind} {told}": float(sum(len(c.marked("cusp")) for c in made)) for told, made in rows}
+        rows = [(relation, _outline(change, sign)) for sign, relation in ((-1, "<"), (0, "="), (1, ">"))]
+        facts |= {
+            f"{change.kind} {relation}": float(sum(len(c.marked("cusp")) for c in surface))
+            for relation, surface in rows
+        }
         together = [rows] if change.kind != "swallowtail" else [[row] for row in rows]  # its tip moves away at once
-        panels += _equally_high([panel for part in together for panel in _panels(letter, change, part)])
+        panels += _equally_high([panel for curve in together for panel in _panels(letter, change, curve)])
     caption = (
         "How the apparent outline $P$ changes as one number of the model moves through a value where two cusps "
         "(dots) meet. (a) Lips: a closed piece with two cusps shrinks to a point at the frequency $w_0$ = "
@@ -156,21 +159,21 @@ def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) ->
     middle = _middle(change, rows)
     shear = _shear(change, rows, middle)
     point = np.array([[change.tau + change.t, 0.0]])  # where lips are born; the shear of that panel goes through it
-    shown = [shear(curve.points) for _, made in rows for curve in made]
+    shown = [shear(curve.points) for _, surface in rows for curve in surface]
     box = _box(change, middle, shown)
     name, panels = "c" if change.over == "clearance" else change.over, []
-    for told, made in rows:
-        cusps = [shear(curve.marked("cusp")) for curve in made]
-        cusps += [point] if told == "=" and change.kind == "lips" else []
-        dots = [Dot("", (float(x), float(y))) for each in cusps for x, y in each]
-        lines = [Line(shear(curve.points), "P", "P") for curve in made]
-        note = {"=": "one point", ">": "no outline here"}.get(told, "") if change.kind == "lips" else ""
+    for relation, surface in rows:
+        cusps = [shear(curve.marked("cusp")) for curve in surface]
+        cusps += [point] if relation == "=" and change.kind == "lips" else []
+        dots = [Dot("", (float(x), float(y))) for cusp in cusps for x, y in cusp]
+        lines = [Line(shear(curve.points), "P", "P") for curve in surface]
+        note = {"=": "one point", ">": "no outline here"}.get(relation, "") if change.kind == "lips" else ""
         panels.append(
             Panel(
                 box,
                 y=r"$v - q(\tau)$",
                 note=note,
-                title=f"({letter}) {change.kind}: ${name} {told} {name}_0$",
+                title=f"({letter}) {change.kind}: ${name} {relation} {name}_0$",
                 lines=lines,
                 dots=dots,
             )

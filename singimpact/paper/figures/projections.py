@@ -21,7 +21,7 @@ def launch_and_landing(model: Oscillator, points: Array) -> tuple[Array, Array]:
     (array([3., 0.]), array([-3., -0.]))
     """
     tau, t = points.T
-    times = [np.array([each if each else 1.0]) for each in t.tolist()]
+    times = [np.array([time if time else 1.0]) for time in t.tolist()]
     rest, fast = (
         np.array([path[0] for path in many_paths(model, tau, np.full(len(tau), v), times)]) for v in (0.0, 1.0)
     )

@@ -72,9 +72,9 @@ def figure_10() -> Picture:
     """v against t for tau <= tau_*: where the return time folds, and which part is a first hit."""
     swan, size = positive(), half(positive())
     middle, panels = (swan.A + swan.B) / 2, []
-    for n, place in enumerate(PLACES):
+    for n, point in enumerate(PLACES):
         tau = {"A": swan.A, "D": swan.points["D"][0], "E": swan.points["E"][0]}.get(
-            NAMED.get(place, ""), middle + place * size
+            NAMED.get(point, ""), middle + point * size
         )
         t = np.linspace(-3.2, 7.2, 261) * size
         v = launch_and_landing(swan.model, np.stack([np.full(t.size, tau), t], axis=1))[0]
@@ -85,10 +85,10 @@ def figure_10() -> Picture:
             Line(np.array([[0.0, 1.1 * low], [0.0, 1.1 * high]]), "axis", "t = 0"),
             Line(curve, "P", "section", words="section of $V'$: $v$ against flight time $t$"),
         ]
-        lines += [Line(part, "graph", "first hits", words="first hits with $v > 0$") for part in _visible(tau, curve)]
-        letter = NAMED.get(place)
+        lines += [Line(piece, "graph", "first hits", words="first hits with $v > 0$") for piece in _visible(tau, curve)]
+        letter = NAMED.get(point)
         dots = [] if letter is None else [Dot(f"${letter}$", _on(letter))]
-        title = f"$\\sigma = {place:.3g}$" if letter is None else f"$\\sigma = {place:.3g}$, ${letter}$"
+        title = f"$\\sigma = {point:.3g}$" if letter is None else f"$\\sigma = {point:.3g}$, ${letter}$"
         panels.append(
             Panel(
                 ((-3.2 * size, 7.2 * size), (1.1 * low, 1.1 * high)),
@@ -126,13 +126,13 @@ def _visible(tau: float, curve: Array) -> list[Array]:
     """The stretches with v >= 0 and t > 0 that are first hits."""
     swan = positive()
     t, v = curve.T
-    asked = (t > 1e-9) & (v > 0)
+    inside = (t > 1e-9) & (v > 0)
     time = np.full(t.size, np.nan)
-    if asked.any():
-        time[asked] = first_hit(swan.model, np.full(int(asked.sum()), tau), v[asked]).flight_time
+    if inside.any():
+        time[inside] = first_hit(swan.model, np.full(int(inside.sum()), tau), v[inside]).flight_time
     seen = np.isfinite(time) & (np.abs(time - t) < 1e-6)
     return [
-        curve[part]
-        for part in np.split(np.arange(t.size), np.flatnonzero(np.diff(seen)) + 1)
-        if seen[part[0]] and len(part) > 1
+        curve[indices]
+        for indices in np.split(np.arange(t.size), np.flatnonzero(np.diff(seen)) + 1)
+        if seen[indices[0]] and len(indices) > 1
     ]

@@ -197,7 +197,7 @@ def _views(
             y=y,
             lines=plain,
             dots=far,
-            regions=[Region(each.points, each.tone, words=each.words) for each in lower],
+            regions=[Region(curve.points, curve.tone, words=curve.words) for curve in lower],
         ),
         Panel(
             box(swan, -3.0, 3.0, -v / ZOOM, v / ZOOM),

@@ -177,7 +177,7 @@ def figure_17() -> Picture:
     lines += _foot_and_lambda(manifold[0].points, swan.A, swan.Q)
     lines += [
         Line(
-            part,
+            branch,
             "loop",
             f"G^-{n}(lambda), {side} branch",
             r"$G^{-1}(\lambda)$" if label else "",
@@ -185,7 +185,7 @@ def figure_17() -> Picture:
             words="$W^s(X)$: stable manifold of $X$",
         )
         for n, branches in enumerate(loops, 1)
-        for side, part, label in (("right", branches[0], n == 1), ("left", branches[1], False))
+        for side, branch, label in (("right", branches[0], n == 1), ("left", branches[1], False))
     ]
     lines += [
         Line(
@@ -291,15 +291,15 @@ def _accumulation(loops: list[tuple[Array, Array]], gamma: Array, height: float)
 
     names = ("right", "left")
     return {"gap delta": at(delta()) - at(gamma)} | {
-        f"gap {n} {side}": at(part) - at(gamma)
+        f"gap {n} {side}": at(branch) - at(gamma)
         for n, branches in enumerate(loops, 1)
-        for side, part in zip(names, branches, strict=True)
+        for side, branch in zip(names, branches, strict=True)
     }
 
 
 def _preimages(frame: Window) -> list[Array]:
     """G^{-n}(delta) inside the frame."""
-    found, points = [], delta()[delta()[:, 1] > 0]
+    curves, points = [], delta()[delta()[:, 1] > 0]
     share = np.linspace(0, len(points) - 1, 600)
     points = np.stack([np.interp(share, np.arange(len(points)), column) for column in points.T], axis=1)
     for _ in range(GENERATIONS):
@@ -307,5 +307,5 @@ def _preimages(frame: Window) -> list[Array]:
         points = points[np.isfinite(points).all(axis=1)]
         inside = points[held(frame, points)]
         if len(inside) > 1:
-            found.append(inside)
-    return found
+            curves.append(inside)
+    return curves

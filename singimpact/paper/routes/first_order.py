@@ -105,12 +105,12 @@ def _solved(tried: Change, motion: Any, goal: Any) -> Change:
     """
     outer = transformed(tried, motion)
     rest = sympy.Poly(sympy.expand(sympy.cancel(truncated(outer - goal) * s / h)), s, L, x, y)
-    found = list(sympy.linsolve(rest.coeffs(), [alpha, beta]))
-    if len(found) != 1 or {alpha, beta} & set().union(*(value.free_symbols for value in found[0])):
+    solutions = list(sympy.linsolve(rest.coeffs(), [alpha, beta]))
+    if len(solutions) != 1 or {alpha, beta} & set().union(*(value.free_symbols for value in solutions[0])):
         raise ArithmeticError("no alpha and beta remove the term of first order")
-    images = {name: sympy.factor(value) for name, value in zip((alpha, beta), found[0], strict=True)}
+    images = {name: sympy.factor(value) for name, value in zip((alpha, beta), solutions[0], strict=True)}
     substitution(At(outer, images), At(goal, images), order=1, small=[h])
-    return Change(*(sympy.factor(part.subs(images)) for part in tried))
+    return Change(*(sympy.factor(trial.subs(images)) for trial in tried))
 
 
 def shift() -> Any:

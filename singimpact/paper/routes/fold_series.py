@@ -140,13 +140,13 @@ def _defect(rates: Any, bodies: Any, m: list[Fraction], degree: int) -> Fraction
 
 def _on_graph(table: dict[int, dict[int, Fraction]], m: list[Fraction], degree: int) -> list[Fraction]:
     """sum s^i m(s)^k table[i][k], cut after s^degree."""
-    top = max((k for part in table.values() for k in part), default=0)
+    top = max((k for series in table.values() for k in series), default=0)
     powers = [[Fraction(1)] + [Fraction(0)] * degree]
     for _ in range(top):
         powers.append(_times(powers[-1], m, degree))
     total = [Fraction(0)] * (degree + 1)
-    for i, part in table.items():
-        for k, value in part.items():
+    for i, series in table.items():
+        for k, value in series.items():
             for n in range(degree + 1 - i):
                 total[i + n] += value * powers[k][n]
     return total

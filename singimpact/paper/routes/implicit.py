@@ -70,9 +70,9 @@ def y_c(order: int = 3) -> Any:
             domain.zero,
         )
         x.append(_short(pushed, domain, order - n - 1) / ((n + 1) * (n + 2)))
-    made = sympy.expand(sum(poly.as_expr() * t ** (n - 1) for n, poly in enumerate(x) if n))
-    motion((sigma, v, t), sympy.expand(t * made), a, f, order=order)
-    return made
+    quotient = sympy.expand(sum(poly.as_expr() * t ** (n - 1) for n, poly in enumerate(x) if n))
+    motion((sigma, v, t), sympy.expand(t * quotient), a, f, order=order)
+    return quotient
 
 
 def _short(poly: Any, domain: Any, degree: int) -> Any:

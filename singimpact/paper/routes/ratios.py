@@ -69,10 +69,10 @@ def by_ratio(j: int) -> Speeds:
     [-(l - 1)*(l + 2), -(l - 1)*(2*l + 1)]
     """
     flight = {sigma: sympy.Integer(-1), t: 1 - l}
-    found = Speeds(*(sympy.expand(part.subs(flight)) for part in forms(j)))
-    for form, part in zip(forms(j), found, strict=True):
-        substitution(At(form, flight), part)
-    return found
+    speeds = Speeds(*(sympy.expand(speed.subs(flight)) for speed in forms(j)))
+    for form, speed in zip(forms(j), speeds, strict=True):
+        substitution(At(form, flight), speed)
+    return speeds
 
 
 def reduced(j: int) -> Speeds:
@@ -83,10 +83,10 @@ def reduced(j: int) -> Speeds:
     >>> reduced(2)
     Speeds(launch=l**2 + 2*l + 3, landing=3*l**2 + 2*l + 1)
     """
-    found = Speeds(*(sympy.expand(sympy.cancel(part / (1 - l))) for part in by_ratio(j)))
-    for whole, part in zip(by_ratio(j), found, strict=True):
-        substitution(At((1 - l) * X, {X: part}), whole)
-    return found
+    speeds = Speeds(*(sympy.expand(sympy.cancel(speed / (1 - l))) for speed in by_ratio(j)))
+    for whole, speed in zip(by_ratio(j), speeds, strict=True):
+        substitution(At((1 - l) * X, {X: speed}), whole)
+    return speeds
 
 
 def restitution_of_ratio(j: int) -> Any:
@@ -98,9 +98,9 @@ def restitution_of_ratio(j: int) -> Any:
     l**2*(l + 2)/(2*l + 1)
     """
     launch, landing = reduced(j)
-    found = sympy.factor(l ** (j + 1) * launch / landing)
-    substitution(At(X * by_ratio(j).landing, {X: found}), l ** (j + 1) * by_ratio(j).launch)
-    return found
+    restitution = sympy.factor(l ** (j + 1) * launch / landing)
+    substitution(At(X * by_ratio(j).landing, {X: restitution}), l ** (j + 1) * by_ratio(j).launch)
+    return restitution
 
 
 def multiplier(j: int) -> Any:
@@ -113,9 +113,9 @@ def multiplier(j: int) -> Any:
     """
     launch, landing = by_ratio(j)
     by_old = sympy.diff(l ** (j + 1), l) * launch - restitution_of_ratio(j) * sympy.diff(landing, l)
-    found = sympy.factor(sympy.cancel(-by_old / (l ** (j + 1) * sympy.diff(launch, l))))
+    factor_ = sympy.factor(sympy.cancel(-by_old / (l ** (j + 1) * sympy.diff(launch, l))))
     e = sympy.Symbol("e")  # a flight of ratio l + e is followed by one of ratio l + found e
-    moved = At(l ** (j + 1) * launch.subs(l, X), {l: l + e, X: l + found * e})
+    moved = At(l ** (j + 1) * launch.subs(l, X), {l: l + e, X: l + factor_ * e})
     again = At(X * landing.subs(l, Y), {Y: l + e, X: restitution_of_ratio(j)})
     substitution(moved, again, order=1, small=[e])
-    return found
+    return factor_

@@ -87,10 +87,10 @@ def limit_launch() -> Any:
     """
     poly = sympy.Poly(limit_acceleration().subs(sigma, sigma + s), s)
     displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2)) for (n,), value in poly.terms())
-    found = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))
+    velocity = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))
     powers = reversed(sympy.Poly(limit_acceleration(), sigma).all_coeffs())
-    motion((sigma, y, t), y * t + sympy.expand(displaced.subs(s, t)), tuple(powers), {}, launch=found)
-    return found
+    motion((sigma, y, t), y * t + sympy.expand(displaced.subs(s, t)), tuple(powers), {}, launch=velocity)
+    return velocity
 
 
 @equation("s6-leading")

@@ -45,10 +45,12 @@ def launch_velocity() -> Any:
     """
     poly = sympy.Poly(acceleration().subs(sigma, sigma + s), s)
     displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2)) for (n,), value in poly.terms())
-    found = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))
+    velocity = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))
     pushed = reversed(sympy.Poly(acceleration(), sigma).all_coeffs())
-    motion((sigma, _velocity, t), _velocity * t + sympy.expand(displaced.subs(s, t)), tuple(pushed), {}, launch=found)
-    return found
+    motion(
+        (sigma, _velocity, t), _velocity * t + sympy.expand(displaced.subs(s, t)), tuple(pushed), {}, launch=velocity
+    )
+    return velocity
 
 
 @equation("s6-impact")
@@ -95,10 +97,10 @@ def value_at_point(expression: Any, point: tuple[Any, Any]) -> Any:
 def _certified(expression: Any, images: dict[Any, Any], found: Any, order: int | None = None) -> None:
     """Leave the certificate of a substitution; a square root in the images is w."""
     radicands = {
-        part.base
+        power.base
         for image in images.values()
-        for part in sympy.sympify(image).atoms(sympy.Pow)
-        if part.exp == sympy.Rational(1, 2)
+        for power in sympy.sympify(image).atoms(sympy.Pow)
+        if power.exp == sympy.Rational(1, 2)
     }
     (radicand,) = radicands or {None}
     if radicand is not None:
@@ -117,14 +119,14 @@ def cusp_conditions(point: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
     """(v_t, v_tt, v_ttt, v_sigma t) at a point: p has a cusp where the first two vanish and the others do not."""
     v = launch_velocity()
     at = {sigma: point[0], t: point[1]}
-    found = {
+    derivatives = {
         (i, k): sympy.expand(sympy.diff(v, (sigma, i), (t, k)).subs(at, simultaneous=True))
         for i in range(4)
         for k in range(4 - i)
     }
-    taylor = sum(value * x**i * y**k / (factorial(i) * factorial(k)) for (i, k), value in found.items())
+    taylor = sum(value * x**i * y**k / (factorial(i) * factorial(k)) for (i, k), value in derivatives.items())
     _certified(v, {sigma: point[0] + x, t: point[1] + y}, sympy.expand(taylor), order=3)
-    return found[0, 1], found[0, 2], found[0, 3], found[1, 1]
+    return derivatives[0, 1], derivatives[0, 2], derivatives[0, 3], derivatives[1, 1]
 
 
 @equation("s6-shadow")
@@ -147,9 +149,9 @@ def cofactor() -> Any:
     >>> cofactor()
     6*sigma**2 + 4*sigma*t + 4*sigma*u + t**2 + t*u + u**2 - 6
     """
-    found = sympy.expand(sympy.cancel(height(u) / (kappa * u * (u - t))))
-    substitution(At(kappa * u * (u - t) * x, {x: found}), height(u))
-    return found
+    quotient = sympy.expand(sympy.cancel(height(u) / (kappa * u * (u - t))))
+    substitution(At(kappa * u * (u - t) * x, {x: quotient}), height(u))
+    return quotient
 
 
 def height(u: Any) -> Any:

@@ -56,7 +56,7 @@ def by_launch_time() -> Any:
     again = rate_of(change)
     if sympy.expand(again + f_x * difference + f_u * change) != 0:
         raise ArithmeticError("the difference does not solve the homogeneous equation")
-    if any(sympy.expand(part.subs(START)) != 0 for part in (difference, change)):
+    if any(sympy.expand(term.subs(START)) != 0 for term in (difference, change)):
         raise ArithmeticError("the difference does not vanish at the launch")
     return u - v * q - A * b
 
@@ -69,10 +69,10 @@ def wronskian() -> Any:
     ------
     ArithmeticError : it is not so.
     """
-    found = q * b1 - q1 * b
-    if sympy.expand(rate_of(found) + f_u * found) != 0 or found.subs(START) != 1:
+    determinant = q * b1 - q1 * b
+    if sympy.expand(rate_of(determinant) + f_u * determinant) != 0 or determinant.subs(START) != 1:
         raise ArithmeticError("the Wronskian does not decay at the rate f_u")
-    return found
+    return determinant
 
 
 INVOLUTION = {v: u, u: v}

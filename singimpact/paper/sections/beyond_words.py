@@ -161,7 +161,7 @@ def _threshold() -> tuple[Step, ...]:
 
 
 def _hertz() -> tuple[Step, ...]:
-    found = tuple(sympy.factor(part) for part in (hertz.FACTOR, hertz.SECOND))
+    coefficients = tuple(sympy.factor(coefficient) for coefficient in (hertz.FACTOR, hertz.SECOND))
     shown = (
         3 * (1 - hertz.q) / (2 * (3 + (2 + hertz.q) * j)),
         hertz.q
@@ -169,7 +169,7 @@ def _hertz() -> tuple[Step, ...]:
         * (3 + (1 + 2 * hertz.q) * j)
         / (3 * (1 - hertz.q) * (3 + 2 * j + 2 * j * hertz.q - j * hertz.q**2)),
     )
-    if any(sympy.cancel(one - other) != 0 for one, other in zip(found, shown, strict=True)):
+    if any(sympy.cancel(one - other) != 0 for one, other in zip(coefficients, shown, strict=True)):
         raise ArithmeticError("a constant of gamma is not the one that is printed")
     return (
         Step(
@@ -201,7 +201,7 @@ def _hertz() -> tuple[Step, ...]:
 
 
 def _loops() -> tuple[Step, ...]:
-    below, step = (in_powers(part, r) for part in (inner(), preimage()))
+    below, step = (in_powers(formula, r) for formula in (inner(), preimage()))
     return (
         Step(
             "Next to the tangency point $A$ of a negative swan heights are $w = v/(a'(A)\\sigma^2)$. An orbit that "

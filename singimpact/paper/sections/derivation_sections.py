@@ -54,7 +54,7 @@ def sections(names: Sequence[str] = ()) -> list[Section]:
     InputError : an unknown name; the nearest known ones are named.
     """
     wanted = [OTHER_NAMES.get(name, name) for name in names]
-    for name, given in zip(wanted, names, strict=True):
+    for name, name_ in zip(wanted, names, strict=True):
         if name not in SECTIONS:
-            raise unknown("section", given, [*SECTIONS, *OTHER_NAMES])
+            raise unknown("section", name_, [*SECTIONS, *OTHER_NAMES])
     return [NOTATION, *(build() for name, build in SECTIONS.items() if not wanted or name in wanted)]

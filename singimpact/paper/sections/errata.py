@@ -63,13 +63,13 @@ class Erratum:
 
     def as_dict(self) -> dict[str, Any]:
         """The erratum as plain data."""
-        verdict, place, remark = self.verdict, self.place, self.remark
+        verdict, where, remark = self.verdict, self.place, self.remark
         names = ("id", "section", "title", "printed", "corrected", "corrected_kind", "effective", "worth", "evidence")
         return {name: getattr(verdict, name) for name in names} | {
-            "page": place.page,
-            "equations": list(place.equations),
-            "statement": place.statement,
-            "line": place.line,
+            "page": where.page,
+            "equations": list(where.equations),
+            "statement": where.statement,
+            "line": where.line,
             "grade": remark.grade,
             "reason": remark.reason,
             "survives": remark.survives,
@@ -278,7 +278,7 @@ def _latex_entry(entry: Erratum) -> str:
     rows = [
         ("printed", f"${v.printed}$"),
         ("corrected", f"${v.corrected}$ ({escape.latex(v.worth)})"),
-        *((name, escape.latex_words(in_letters(told))) for name, told in _numbers(entry)),
+        *((name, escape.latex_words(in_letters(number))) for name, number in _numbers(entry)),
     ]
     rows += [("used by", escape.latex(entry.survives))] * bool(entry.dependants)
     body = "\n".join(rf"\say{{{name}}} {text}" for name, text in rows)
@@ -297,9 +297,9 @@ def errata(on_start: Callable[[Entry | Claim, int, int], None] | None = None) ->
 
     claims = select()
     verdicts = {verdict.id: verdict for verdict in run(claims, on_start=on_start, kept=True)}
-    found = []
+    entries = []
     for verdict in verdicts.values():
         if verdict.kind == "corrected":
             above = {c.id: verdicts[c.id].worth for c in claims if verdict.id in c.rests_on}
-            found.append(Erratum(verdict, above))
-    return Errata(tuple(found))
+            entries.append(Erratum(verdict, above))
+    return Errata(tuple(entries))

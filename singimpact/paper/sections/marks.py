@@ -15,6 +15,6 @@ def marks_of(shown: Iterable[Section], on_start: Callable[..., None] | None = No
     from singimpact.paper.claims import run, select
 
     return {
-        found.id: Mark(found.kind, found.worth, found.printed if found.corrected else "")
-        for found in run(select(ids), on_start=on_start, kept=True)
+        verdict.id: Mark(verdict.kind, verdict.worth, verdict.printed if verdict.corrected else "")
+        for verdict in run(select(ids), on_start=on_start, kept=True)
     }

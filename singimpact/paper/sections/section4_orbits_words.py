@@ -14,7 +14,7 @@ ell, rho = sympy.symbols("ell rho")
 
 def beside_gamma(j: int) -> tuple[Step, ...]:
     """The relation between successive ratios of times before tau_*, at contact order j, and what follows from it."""
-    launch, landing = (part.subs(ratios.l, ell) for part in ratios.reduced(j))
+    launch, landing = (speed.subs(ratios.l, ell) for speed in ratios.reduced(j))
     slope = sympy.diff(launch, ell) * landing - launch * sympy.diff(landing, ell)
     rate = sympy.factor(sympy.cancel((j + 1) + ell * slope / (launch * landing)))
     claims = ("t:t2-smooth", "t:t2-sides") if j == 1 else ("t:t3-smooth",)

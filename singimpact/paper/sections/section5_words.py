@@ -21,7 +21,7 @@ def told() -> Section:
 
 def _blow_up() -> tuple[Step, ...]:
     maps = [
-        tuple(sympy.factor(scale * part) for scale, part in zip((s, ell * s**3), images, strict=True))
+        tuple(sympy.factor(scale * image) for scale, image in zip((s, ell * s**3), images, strict=True))
         for images in (swan.p_blown_up(), swan.phi_blown_up())
     ]
     (p_first, p_second), (phi_first, phi_second) = maps

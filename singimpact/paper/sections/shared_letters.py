@@ -24,11 +24,11 @@ def rows(left: str, parts: list[str], remainder: int | None = None) -> tuple[str
     ('v ={}& a', '& - b + O(3)')
     """
     first, *rest = parts
-    signed = [first, *(f"- {part[1:]}" if part.startswith("-") else f"+ {part}" for part in rest)]
+    signed = [first, *(f"- {entry[1:]}" if entry.startswith("-") else f"+ {entry}" for entry in rest)]
     if remainder is not None:
         signed[-1] += f" + O({remainder})"
     room = PAGE.line - width(left) - PAGE.sign
     lines = [
-        rf"& \quad {line}" if at else f"& {line}" for part in signed for at, line in enumerate(lines_of(part, room))
+        rf"& \quad {line}" if at else f"& {line}" for entry in signed for at, line in enumerate(lines_of(entry, room))
     ]
     return (f"{left} ={{}}{lines[0]}", *lines[1:])

@@ -23,15 +23,15 @@ def in_letters(text: str) -> str:
     return _LETTERS.sub(_letter, text)
 
 
-def _letter(found: re.Match[str]) -> str:
-    if found["dot"]:
-        return rf"$\dot x{found['wall'] or ''}$"
-    if found["sign"]:
-        return f"${_SIGNS[found['sign']]}$"
-    if found["jet"]:
-        return f"$a{chr(39) * int(found['order'])}$"
-    name, below, primes = found["name"], (found["below"] or "").strip("_()"), found["primes"] or ""
+def _letter(letter: re.Match[str]) -> str:
+    if letter["dot"]:
+        return rf"$\dot x{letter['wall'] or ''}$"
+    if letter["sign"]:
+        return f"${_SIGNS[letter['sign']]}$"
+    if letter["jet"]:
+        return f"$a{chr(39) * int(letter['order'])}$"
+    name, below, primes = letter["name"], (letter["below"] or "").strip("_()"), letter["primes"] or ""
     if len(name) == 1 and not below and not primes:
-        return found[0]  # an article, or a letter that reads as well without
+        return letter[0]  # an article, or a letter that reads as well without
     below = re.sub(rf"\b({_GREEK})\b", r"\\\1", below)
     return f"${name if name == 'dv' or len(name) == 1 else chr(92) + name}{f'_{{{below}}}' if below else ''}{primes}$"

@@ -24,27 +24,27 @@ def kept_sections(names: Sequence[str] = ()) -> list[Section]:
     >>> kept_sections(["swan"]) == kept_sections(["5"])
     True
     """
-    place = cache_folder() / "derivations" / f"{cache.key_of(names, LIBRARIES, ABOVE)}.sections"
-    content = cache.recall(place)
+    file = cache_folder() / "derivations" / f"{cache.key_of(names, LIBRARIES, ABOVE)}.sections"
+    content = cache.recall(file)
     if content is not None:
-        found: list[Section] = cache.unpacked(content, (Section, Step))
-        return found
+        stored: list[Section] = cache.unpacked(content, (Section, Step))
+        return stored
     from singimpact.paper.sections.derivation_sections import sections
 
-    made = sections(names)
-    cache.keep(place, cache.packed(made))
-    return made
+    derived = sections(names)
+    cache.keep(file, cache.packed(derived))
+    return derived
 
 
 def kept_legend() -> tuple[str, ...]:
     """The result of `legend.legend`, from the cache if it was computed before."""
-    place = cache_folder() / "derivations" / f"{cache.key_of(['legend'], LIBRARIES, ABOVE)}.legend"
-    content = cache.recall(place)
+    file = cache_folder() / "derivations" / f"{cache.key_of(['legend'], LIBRARIES, ABOVE)}.legend"
+    content = cache.recall(file)
     if content is not None:
-        found: tuple[str, ...] = cache.unpacked(content, ())
-        return found
+        stored: tuple[str, ...] = cache.unpacked(content, ())
+        return stored
     from singimpact.paper.sections.legend import legend
 
-    made = legend()
-    cache.keep(place, cache.packed(made))
-    return made
+    entries = legend()
+    cache.keep(file, cache.packed(entries))
+    return entries

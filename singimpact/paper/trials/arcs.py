@@ -59,19 +59,19 @@ def jumps() -> tuple[JumpCase, ...]:
     return tuple(_jumps_on(place, side) for place in places() for side in (-1, 1))
 
 
-def _jumps_on(place: Place, side: int) -> JumpCase:
+def _jumps_on(point: Place, side: int) -> JumpCase:
     scaled = np.linspace(0.02, 1.2, 400)
-    counts, found = [], []
+    counts, jumps = [], []
     for size in (0.02, 0.01, 0.005):
-        unit = place.slope * size**2
-        tau = place.tau + side * size
-        times = _flight_times(place, tau, scaled * unit)
+        unit = point.slope * size**2
+        tau = point.tau + side * size
+        times = _flight_times(point, tau, scaled * unit)
         at = np.flatnonzero(np.abs(np.diff(times)) > size)
         counts.append(len(at))
         if len(at) == 1:
-            found.append((size, _bisected(place, tau, scaled[at[0]] * unit, scaled[at[0] + 1] * unit, size) / unit))
-    coefficient = float(true_orbits.extrapolated(found)) if found else float("nan")
-    return JumpCase(place.name, side, max(counts), coefficient)
+            jumps.append((size, _bisected(point, tau, scaled[at[0]] * unit, scaled[at[0] + 1] * unit, size) / unit))
+    coefficient = float(true_orbits.extrapolated(jumps)) if jumps else float("nan")
+    return JumpCase(point.name, side, max(counts), coefficient)
 
 
 def _flight_times(place: Place, tau: float, v: Any) -> Any:
@@ -118,17 +118,17 @@ def _common(fates: list[tuple[str, int]]) -> str:
     return names.pop() if len(names) == 1 else "undecided"
 
 
-def _fate(place: Place, factor: float, impacts: int = 400) -> tuple[str, int]:
+def _fate(point: Place, factor: float, impacts: int = 400) -> tuple[str, int]:
     """Follow impacts until the speed has died out before tau_*, or a flight leaves the neighbourhood of tau_*."""
     start = 0.02
-    tau, v = place.tau - start, factor * place.coefficient * start**2
+    tau, v = point.tau - start, factor * point.coefficient * start**2
     first = v
     for count in range(impacts):
-        step = place.model.impact_map(tau, v)
+        step = point.model.impact_map(tau, v)
         if float(step.flight_time) > 10 * start:
             return "lost", count
         tau, v = float(step.tau), float(step.v)
-        if v < 1e-9 * first and tau < place.tau:
+        if v < 1e-9 * first and tau < point.tau:
             return "chatter", count
     return "undecided", impacts
 
@@ -137,14 +137,14 @@ def _fate(place: Place, factor: float, impacts: int = 400) -> tuple[str, int]:
 def leaves_gamma() -> float:
     """Factor by which an orbit started beside gamma (v off by 1e-3) has left it once sigma has shrunk 30-fold."""
     growth = []
-    for place in places():
-        sigma, v = _on_gamma(place)
+    for point in places():
+        sigma, v = _on_gamma(point)
         offset = 1e-3
-        tau, speed, along = place.tau + sigma, v * (1 - offset), place.coefficient
-        while abs(tau - place.tau) > abs(sigma) / 30:
-            step = place.model.impact_map(tau, speed)
+        tau, speed, along = point.tau + sigma, v * (1 - offset), point.coefficient
+        while abs(tau - point.tau) > abs(sigma) / 30:
+            step = point.model.impact_map(tau, speed)
             tau, speed = float(step.tau), float(step.v)
-        growth.append(abs(speed / (along * (tau - place.tau) ** 2) - 1) / offset)
+        growth.append(abs(speed / (along * (tau - point.tau) ** 2) - 1) / offset)
     return min(growth)
 
 
@@ -170,13 +170,13 @@ class EigenvalueCase:
 def eigenvalues() -> tuple[EigenvalueCase, ...]:
     """From differences of the impact map at points of gamma on both models, against the homogeneous model."""
     cases = []
-    for place in places():
-        expected = float(eigenvalues_on_gamma(1)[0].subs(lambda_, sympy.Float(place.multiplier, 30)))
-        flow = true_orbits.scipy_flow(place.model, place.tau)
+    for point in places():
+        expected = float(eigenvalues_on_gamma(1)[0].subs(lambda_, sympy.Float(point.multiplier, 30)))
+        flow = true_orbits.scipy_flow(point.model, point.tau)
         start = true_orbits.SETTINGS.start[0]
-        orbit = true_orbits.backwards(flow, place.r, -start, place.coefficient * start**2, place.multiplier, 0.02)
-        points = [(sigma, _larger_eigenvalue(place, sigma, v)) for sigma, v in orbit[-4:]]
-        cases.append(EigenvalueCase(place.name, place.r, expected, float(true_orbits.extrapolated(points))))
+        orbit = true_orbits.backwards(flow, point.r, -start, point.coefficient * start**2, point.multiplier, 0.02)
+        points = [(sigma, _larger_eigenvalue(point, sigma, v)) for sigma, v in orbit[-4:]]
+        cases.append(EigenvalueCase(point.name, point.r, expected, float(true_orbits.extrapolated(points))))
     return tuple(cases)
 
 

@@ -77,42 +77,42 @@ def setting(name: str, j: int) -> Setting:
     return Setting(name, at, j, tau, Fraction(0) if j == 2 else None)
 
 
-def exact_zeros(place: Setting, generic: Sheet) -> set[str]:
+def exact_zeros(setting_: Setting, generic: Sheet) -> set[str]:
     """Names of the jets that are exactly zero at the point: found over the rationals where that is possible."""
     zeros: set[str] = set()
-    if place.exact_tau is not None:
+    if setting_.exact_tau is not None:
         with suppress(ArithmeticError):
-            a = acceleration_jet(place.model, place.exact_tau, max(generic.contact.a), EXACT)
-            zeros |= {derivative_name(k) for k in generic.contact.a if k > place.j and a[k] == 0}
+            a = acceleration_jet(setting_.model, setting_.exact_tau, max(generic.contact.a), EXACT)
+            zeros |= {derivative_name(k) for k in generic.contact.a if k > setting_.j and a[k] == 0}
     with suppress(ArithmeticError):
-        f = force_jet(place.model, place.j, generic.order, EXACT)
+        f = force_jet(setting_.model, setting_.j, generic.order, EXACT)
         zeros |= {f"f_{i}{k}" for i, k in generic.contact.f if f.get((i, k), 0) == 0}
     return zeros
 
 
-def first_omitted(place: Setting, order: int, quantity: str, search: int = 4) -> int:
+def first_omitted(setting_: Setting, order: int, quantity: str, search: int = 4) -> int:
     """The degree of the first term after `order` that does not vanish along `RAY`.
 
     Raises
     ------
     ArithmeticError : a part is not zero exactly, yet no ball of 256 bits excludes zero.
     """
-    generic = generic_sheet(place.j, order + search)
+    generic = generic_sheet(setting_.j, order + search)
     jet = generic.v if quantity == "v_c" else generic.xdot
-    zeros = exact_zeros(place, generic)
+    zeros = exact_zeros(setting_, generic)
     balls = Balls(BITS)
     with balls_at(BITS):
-        values = _ball_values(place, generic, balls)
+        values = _ball_values(setting_, generic, balls)
     for degree in range(order + 1, order + search + 1):
-        part = _without(_on_ray(jet, degree, generic), generic.contact.ring, zeros)
-        if part == 0:
+        terms = _without(_on_ray(jet, degree, generic), generic.contact.ring, zeros)
+        if terms == 0:
             continue
         with balls_at(BITS):
-            ball = _evaluated(part, generic.contact.ring.names, values)
+            ball = _evaluated(terms, generic.contact.ring.names, values)
             if not ball.contains(0):
                 return degree
-        raise ArithmeticError(f"the part of degree {degree} of {quantity} at {place.name} is not decided")
-    raise ArithmeticError(f"no part of degree up to {order + search} is left in {quantity} at {place.name}")
+        raise ArithmeticError(f"the part of degree {degree} of {quantity} at {setting_.name} is not decided")
+    raise ArithmeticError(f"no part of degree up to {order + search} is left in {quantity} at {setting_.name}")
 
 
 def _on_ray(jet: Jet, degree: int, generic: Sheet) -> Any:
@@ -196,11 +196,11 @@ def remainders(j: int | str, order: int) -> tuple[RemainderCase, ...]:
     j = contact_order(j)
     cases = []
     for name in true_orbits.MODELS:
-        place = setting(name, j)
-        series = sheet(Contact.of(place.model, place.tau, j, order, DOUBLES), order)
-        flow = true_orbits.scipy_flow(place.model, float(place.tau))
+        setting_ = setting(name, j)
+        series = sheet(Contact.of(setting_.model, setting_.tau, j, order, DOUBLES), order)
+        flow = true_orbits.scipy_flow(setting_.model, float(setting_.tau))
         for quantity in ("v_c", "phi"):
-            expected = first_omitted(place, order, quantity)
+            expected = first_omitted(setting_, order, quantity)
             cases.append(
                 RemainderCase(
                     f"{name}, DOP853", quantity, order, expected, measured(series, flow, quantity, list(STEPS))
@@ -211,9 +211,9 @@ def remainders(j: int | str, order: int) -> tuple[RemainderCase, ...]:
 
 def _with_digits(j: int, order: int) -> tuple[RemainderCase, ...]:
     """The linear model in closed form with true_orbits.SETTINGS.digits digits."""
-    place = setting("linear, omega 2", j)
+    setting_ = setting("linear, omega 2", j)
     context, origin, clearance = true_orbits.many_digits(j)
-    model = place.model.replace(clearance=clearance)
+    model = setting_.model.replace(clearance=clearance)
     ring = Multiprecision(context)
     series = sheet(Contact.of(model, origin, j, order, ring), order)
     flow = true_orbits.closed_flow(Fraction(2), clearance, origin, context)
@@ -223,7 +223,7 @@ def _with_digits(j: int, order: int) -> tuple[RemainderCase, ...]:
             "linear, closed form, 40 digits and more",
             quantity,
             order,
-            first_omitted(place, order, quantity),
+            first_omitted(setting_, order, quantity),
             measured(series, flow, quantity, steps),
         )
         for quantity in ("v_c", "phi")

@@ -72,7 +72,7 @@ def bracket(rate: str) -> Bracket | None:
     """
     with balls_at(BITS):
         r = _ball(Fraction(rate))
-        found, todo = list[tuple[Fraction, Fraction, Side | None]](), [(Fraction(0), LAST)]
+        pieces, todo = list[tuple[Fraction, Fraction, Side | None]](), [(Fraction(0), LAST)]
         while todo:
             low, high = todo.pop()
             side = _side(r, low, high)
@@ -80,15 +80,15 @@ def bracket(rate: str) -> Bracket | None:
                 middle = (low + high) / 2
                 todo += [(middle, high), (low, middle)]  # the lower one is taken next, so they come in order
             else:
-                found.append((low, high, side))
-    open_ = [(low, high) for low, high, side in found if side is None]
+                pieces.append((low, high, side))
+    open_ = [(low, high) for low, high, side in pieces if side is None]
     if not open_:
         return None
     low, high = open_[0][0], open_[-1][1]
     in_order = all(
-        side == (Side.complete if end <= low else Side.left) for _, end, side in found if not low < end <= high
+        side == (Side.complete if end <= low else Side.left) for _, end, side in pieces if not low < end <= high
     )
-    return Bracket(low, high, len(found)) if in_order and low > 0 and high < LAST else None
+    return Bracket(low, high, len(pieces)) if in_order and low > 0 and high < LAST else None
 
 
 def _ball(value: Fraction) -> Any:
@@ -188,10 +188,10 @@ class _Orbit:
             steep = self.slope(trial)
             if not steep < 0:
                 return None
-            found = centre - value / steep
-            if trial.contains_interior(found):
-                return found if found > 0 else None
-            reach = (found - centre).abs_upper()
+            time = centre - value / steep
+            if trial.contains_interior(time):
+                return time if time > 0 else None
+            reach = (time - centre).abs_upper()
         return None
 
 

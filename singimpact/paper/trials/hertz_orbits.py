@@ -81,9 +81,9 @@ def measured(start: Start, q: Fraction) -> Measured:
     rho = f"-v*(1 - C*(-v)**({q}))"
     osc = Oscillator(start.f, start.g, 0, rho, {"C": repr(loss)})
     distances, speeds, widths = [], [], []
-    for part in FLIGHTS[q]:
-        h = FARTHEST * (part / FLIGHTS[q][0]) ** float(1 / s)
-        v, width = edge(osc, j, h, part * h ** (j + 1), NARROW[q])
+    for count in FLIGHTS[q]:
+        h = FARTHEST * (count / FLIGHTS[q][0]) ** float(1 / s)
+        v, width = edge(osc, j, h, count * h ** (j + 1), NARROW[q])
         distances.append(h)
         speeds.append(v)
         widths.append(width)
@@ -110,11 +110,11 @@ def above(osc: Oscillator, order: int, h: float, v: float) -> bool:
     """Whether an impact from (-h, v) comes after the contact point at 0; else chatter is short beside what is left."""
     tau, flown = -h, 0
     while flown < IMPACTS:
-        found = orbit_segment(osc, tau, v, BLOCK)
-        if found.status or np.any(found.tau >= 0):
+        segment = orbit_segment(osc, tau, v, BLOCK)
+        if segment.status or np.any(segment.tau >= 0):
             return True
-        left = rest_after(osc, found.v[:-1], found.acceleration[1:])
-        if np.any(left < SHORT / (order + 1) * -found.tau[:-1]):
+        left = rest_after(osc, segment.v[:-1], segment.acceleration[1:])
+        if np.any(left < SHORT / (order + 1) * -segment.tau[:-1]):
             return False
-        tau, v, flown = float(found.tau[-1]), float(found.v[-1]), flown + BLOCK
+        tau, v, flown = float(segment.tau[-1]), float(segment.v[-1]), flown + BLOCK
     raise ArithmeticError(f"{IMPACTS} impacts do not decide on which side of gamma v = {v} over tau = {-h} lies")

@@ -58,10 +58,10 @@ class Iterates:
 def iterates() -> Iterates:
     """Arcs p(t = l sigma), 0 < sigma <= 0.05, for l = 0.1, 0.5, 2, followed together."""
     count, last, factor = 40, 0.0, 0.0
-    for _, model, place, k in places():
+    for _, model, point, k in places():
         for ell in (0.1, 0.5, 2.0):
             sigma = np.linspace(0.002, 0.05, 25)
-            tau, v = place + sigma, -k * (3 * ell + ell**2) * sigma**2
+            tau, v = point + sigma, -k * (3 * ell + ell**2) * sigma**2
             start, sizes = v.max(), []
             for _ in range(count):
                 step = model.impact_map(tau, v)
@@ -84,19 +84,19 @@ class Leaf:
 @lru_cache(maxsize=1)
 def ends() -> tuple[Leaf, ...]:
     """Launch from rest at tau_* + end, end < 0, where a > 0; chatter comes to rest at the foot of the leaf."""
-    found = []
-    for name, model, place, _ in places():
+    rows = []
+    for name, model, point, _ in places():
         r = as_float(model.restitution)
         for end in (-0.04, -0.02, -0.01):
-            tau, v = place + end, 0.0
+            tau, v = point + end, 0.0
             for _ in range(400):
                 step = model.impact_map(tau, v)
                 tau, v = float(step.tau), float(step.v)
                 if v < 1e-13:
                     break
             rest = tau + _remaining(model, tau, v, r)
-            found.append(Leaf(name, rest - place, end))
-    return tuple(found)
+            rows.append(Leaf(name, rest - point, end))
+    return tuple(rows)
 
 
 def _remaining(model: Any, tau: float, v: float, r: float) -> float:

@@ -75,10 +75,10 @@ def generations(w: float, r: float, count: int = GENERATIONS) -> list[float]:
     >>> [round(each, 4) for each in generations(0.375, 0.5, 3)]
     [0.375, 0.216, 0.1777]
     """
-    found = [w]
-    while len(found) < count:
-        found.append(preimage(found[-1], r))
-    return found
+    heights_ = [w]
+    while len(heights_) < count:
+        heights_.append(preimage(heights_[-1], r))
+    return heights_
 
 
 def inner_start(r: float) -> float:
@@ -135,13 +135,13 @@ def heights(swan: Swan, rate: str) -> Heights:
     """The crossings nearest to the heights of the limit, by the secant method."""
     at, r = _setting(swan, rate), float(Fraction(rate))
     starts = np.array([*generations(0.5, r), *generations(inner_start(r), r)])
-    line, place = np.repeat(LINES, starts.size), np.tile(starts, len(LINES))
+    line, start = np.repeat(LINES, starts.size), np.tile(starts, len(LINES))
     reach = line * (at.B - at.A) / 2
 
     def miss(w: Array) -> Array:
         return _feet(at, at.A - reach, w * at.slope * reach**2) - at.X
 
-    last, now = place, place + 0.1 * line
+    last, now = start, start + 0.1 * line
     before, off = miss(last), miss(now)
     for _ in range(STEPS):
         change = np.where(off == before, 0.0, off * (now - last) / np.where(off == before, 1.0, off - before))

@@ -218,13 +218,13 @@ def _jumps(model: Any, tau: float, coarse: int = 151, fine: int = 10, least: flo
     """Neighbours between which the flight time jumps, of coarse * fine velocities: looked for where it changes much."""
     v = np.linspace(0.05, 2.5, coarse)
     times = np.asarray(model.impact_map(tau, v).flight_time)
-    found = []
+    jumps = []
     for at in np.flatnonzero(np.abs(np.diff(times)) > least):
         between = np.linspace(v[at], v[at + 1], fine + 1)
         times_between = np.asarray(model.impact_map(tau, between).flight_time)
         places = np.flatnonzero(np.abs(np.diff(times_between)) > least)
-        found += [(float(between[place]), float(between[place + 1])) for place in places]
-    return found
+        jumps += [(float(between[index]), float(between[index + 1])) for index in places]
+    return jumps
 
 
 def _touch(model: Any, tau: float, low: float, high: float) -> float:

@@ -72,11 +72,11 @@ def fates() -> Fates:
     """From sigma in {-0.05, 0.02} and v at 0.2 to 5 times the height of gamma at |sigma|, at both models' swans."""
     count, lost, largest = 0, 0, -np.inf
     for oscillator in true_orbits.MODELS.values():
-        at, place = true_orbits.contact_model(oscillator, 2)
+        at, contact = true_orbits.contact_model(oscillator, 2)
         model = ImpactOscillator(**at.to_dict())
-        height = abs(float(model.acceleration(place, order=2))) * 0.05**3 / 12
+        height = abs(float(model.acceleration(contact, order=2))) * 0.05**3 / 12
         for sigma in (-0.05, 0.02):
-            tau, v = np.full(6, place + sigma), height * np.array([0.2, 0.5, 0.8, 1.3, 2.0, 5.0])
+            tau, v = np.full(6, contact + sigma), height * np.array([0.2, 0.5, 0.8, 1.3, 2.0, 5.0])
             for _ in range(300):
                 step = model.impact_map(tau, v)
                 lost += int(np.count_nonzero(np.asarray(step.flight_time) > 1.0))

@@ -255,9 +255,9 @@ def gamma_case(name: str, model: Oscillator, a_j: float, j: int, flow: Flow, sta
         accuracy,
     )
     tail = orbit[-5:]
-    found = float(extrapolated([(s, v / s ** (j + 1)) for s, v in tail]))
+    limit = float(extrapolated([(s, v / s ** (j + 1)) for s, v in tail]))
     ratio = float(extrapolated([(before[0], after[0] / before[0]) for after, before in pairwise(tail)]))
-    return GammaCase(name, j, expected, found, rate, ratio)
+    return GammaCase(name, j, expected, limit, rate, ratio)
 
 
 @lru_cache(maxsize=4)

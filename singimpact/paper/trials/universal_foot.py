@@ -55,17 +55,17 @@ def _next_length(sigma: Any, t: Any, rate: Any) -> Any:
     """The length of the flight after one of length t that lands at sigma: Newton's method, then one step in balls."""
     q = 6 * (sigma * sigma - 1)
     goal = rate * t * (q - 4 * sigma * t + t * t)
-    place = (goal / q).mid()
+    length = (goal / q).mid()
     for _ in range(60):
-        value = place * (q + place * (4 * sigma + place)) - goal
-        moved = (place - value / (q + place * (8 * sigma + 3 * place))).mid()
-        if abs(moved - place) <= abs(place) * _TINY:
+        value = length * (q + length * (4 * sigma + length)) - goal
+        moved = (length - value / (q + length * (8 * sigma + 3 * length))).mid()
+        if abs(moved - length) <= abs(length) * _TINY:
             break
-        place = moved
+        length = moved
     # the left side rises with t at a rate of q and more: so far lies the root
-    value = place * (q + place * (4 * sigma + place)) - goal
-    hull = place + (abs(value) / q) * arb(0, 1)
-    return place - value / (q + hull * (8 * sigma + 3 * hull))
+    value = length * (q + length * (4 * sigma + length)) - goal
+    hull = length + (abs(value) / q) * arb(0, 1)
+    return length - value / (q + hull * (8 * sigma + 3 * hull))
 
 
 _TINY = 1e-25  # relative step of Newton's method after which the next one is exact to all bits
@@ -87,7 +87,7 @@ def foot(rate: Fraction, near: float = EFFORT.near) -> tuple[Fraction, Fraction]
     """
     with balls_at(EFFORT.bits):
         r = arb(fmpq(rate.numerator, rate.denominator))
-        sigma, t = (arb(each) for each in START)
+        sigma, t = (arb(start) for start in START)
         while True:
             rest = r * t / (1 - r)  # each flight is shorter than r times the last (claim s6n-X)
             if rest < near * sigma:
@@ -159,7 +159,7 @@ def elastic() -> Elastic:
     """
     with balls_at(EFFORT.elastic_bits):
         one = arb(1)
-        sigma, t = (arb(each) for each in START)
+        sigma, t = (arb(start) for start in START)
         for _ in range(EFFORT.impacts):
             last = sigma
             t = _next_length(sigma, t, one)
@@ -170,9 +170,9 @@ def elastic() -> Elastic:
         reach, below = arb(0).union(ratio), arb(0).union(small)
         third = abs(_growth(arb_series([reach, arb(1)], 4), arb_series([below], 4))[3])
         spread = third * (1 + ratio) ** 3 * ratio * ratio / 2
-        found = u * (spread * arb(0, 1)).exp()
+        ball = u * (spread * arb(0, 1)).exp()
         return Elastic(
-            (_fraction(found.lower()), _fraction(found.upper())), EFFORT.impacts, float(ratio), float(third.upper())
+            (_fraction(ball.lower()), _fraction(ball.upper())), EFFORT.impacts, float(ratio), float(third.upper())
         )
 
 

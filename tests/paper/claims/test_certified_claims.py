@@ -301,8 +301,8 @@ MUTANTS = {
         "b:loops-map"),
     "a flight of the swan with another factor": (
         "paper/routes/unfolding.py",
-        "found = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))",
-        "found = sympy.expand(sympy.cancel(-2 * displaced.subs(s, t) / t))",
+        "velocity = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))",
+        "velocity = sympy.expand(sympy.cancel(-2 * displaced.subs(s, t) / t))",
         "b:foot-monotone b:foot-limit b:onset-hop"),
 }  # fmt: skip
 

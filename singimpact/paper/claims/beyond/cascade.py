@@ -38,12 +38,12 @@ def _forgets(stated: tuple[int, Any]) -> Check:
     power, speed = stated
     height, slope = _at_release()
     least = min(key[0] for key in sympy.Poly(height, _SCALE).as_dict())
-    kept = sympy.Poly(slope, _SCALE)
-    check = identity(lambda: kept.nth(2), "derived from the equation of motion at a tangency")(speed)
+    polynomial = sympy.Poly(slope, _SCALE)
+    check = identity(lambda: polynomial.nth(2), "derived from the equation of motion at a tangency")(speed)
     return every(
         [
             (f"x - c begins with h^{least}", least == power),
-            ("x' begins with h^2", is_zero(kept.nth(0)) and is_zero(kept.nth(1))),
+            ("x' begins with h^2", is_zero(polynomial.nth(0)) and is_zero(polynomial.nth(1))),
             (check.evidence, check.holds),
         ],
         witness=lambda: dict(check.witness or {"x - c": f"h^{least}", "stated": f"h^{power}"}),
@@ -114,16 +114,16 @@ def _measured(stated: tuple[int, int, int, int]) -> Check:
     from singimpact.theory.fixed_points import tangency
 
     checks, worst = [], dict[str, str]()
-    for place, (name, model, _) in enumerate(MODELS):
+    for index, (name, model, _) in enumerate(MODELS):
         at = tangency(model.restitution)
         lambda_, mu = float(at.lambda_.value), float(at.mu.value)
-        cascade = _border(place).cascade
+        cascade = _border(index).cascade
         edges, wanted = cascade.limit[0], lambda_**-a * mu**b
-        sizes = [abs(complex(each.orbit.multipliers[0])) for each in cascade.windows if each.orbit is not None]
+        sizes = [abs(complex(window.orbit.multipliers[0])) for window in cascade.windows if window.orbit is not None]
         # windows of doubles may not go so deep that multipliers fall
         deep = len(sizes) > 2 and sizes[-1] < SETTLED and sizes[-1] < sizes[-2] < sizes[-3]
-        told = f"{name}: edges {'' if deep else 'alone, they '}shrink by {edges:.10g}, mu = {mu:.10g}"
-        checks.append((told, abs(edges / wanted - 1) < SAME[0]))
+        finding = f"{name}: edges {'' if deep else 'alone, they '}shrink by {edges:.10g}, mu = {mu:.10g}"
+        checks.append((finding, abs(edges / wanted - 1) < SAME[0]))
         if not deep:
             continue
         share, stated_share = sizes[-1] / sizes[-2], lambda_**c * mu**d

@@ -72,16 +72,16 @@ def _critical(stated: Any) -> Check:
     """The component of c of the tangent of {x = c, x' = 0 at s + d} in (s_1, s_2, c)."""
     rows = ((-a_1 * Y, sympy.Integer(0), R_c), (-a_1 * Y_d, a_2, R_dc))  # x'(s_2) = 0, x''(s_2) = a_2
     (m, n, _), (o, u, _) = rows
-    found = sympy.expand(m * u - n * o)
-    tangent = tuple(sympy.expand(part) for part in sympy.Matrix(rows[0]).cross(sympy.Matrix(rows[1])))
-    kept = all(sympy.expand(sum(x * y for x, y in zip(row, tangent, strict=True))) == 0 for row in rows)
+    determinant = sympy.expand(m * u - n * o)
+    tangent = tuple(sympy.expand(component) for component in sympy.Matrix(rows[0]).cross(sympy.Matrix(rows[1])))
+    tangent_vanishes = all(sympy.expand(sum(x * y for x, y in zip(row, tangent, strict=True))) == 0 for row in rows)
     exact = composed(p * s - q * r, {p: m, q: n, r: o, s: u}, stated)
     return every(
         [
-            (f"the tangent is {tangent}, in (s_1, s_2, c), where its parts do not all vanish", kept),
-            (f"its component of c is {found}", exact and tangent[2] == found),
+            (f"the tangent is {tangent}, in (s_1, s_2, c), where its parts do not all vanish", tangent_vanishes),
+            (f"its component of c is {determinant}", exact and tangent[2] == determinant),
         ],
-        witness=lambda: {"derived": str(found), "stated": str(stated)},
+        witness=lambda: {"derived": str(determinant), "stated": str(stated)},
     )
 
 

@@ -50,11 +50,11 @@ def _two_families(stated: tuple[Any, Any, Any]) -> Check:
     turn, slip = (at["v1"] + at["v-1"]) / 2, (at["v1"] - at["v-1"]) / 2
     either = composed(p_ * Ch - q_ * Sh, {p_: odd, q_: turn}, -kappa * Sm * B)
     one = {Sm: sympy.Integer(0), Cm: g, Q: sympy.Integer(0), P: -kappa * omega * g * Sw / Sh}
-    ends = all(sympy.cancel(part.subs(one, simultaneous=True)) == 0 for part in (odd, turn, slip))
+    ends = all(sympy.cancel(factor.subs(one, simultaneous=True)) == 0 for factor in (odd, turn, slip))
     first = composed(even, one, symmetric)
     tangent = {Sw: omega * Cw * Sh / Ch}  # B = 0, Ch != 0: where Ch = 0 it asks for Cw = 0, and the flight is symmetric
     other = {**tangent, P: -kappa * omega**2 * Cm * Cw / Ch, Q: kappa * omega * Sm * Cw / Ch}
-    rests = all(sympy.cancel(part.subs(other, simultaneous=True)) == 0 for part in (odd, turn, slip))
+    rests = all(sympy.cancel(factor.subs(other, simultaneous=True)) == 0 for factor in (odd, turn, slip))
     real = {name: sympy.sympify(image).subs(kappa, REAL) for name, image in other.items()}
     second = composed(even, real | {kappa: REAL}, skew)
     pushes = composed(p_ + q_ - 2 * r_, {p_: at["a1"], q_: at["a-1"], r_: skew}, total)
@@ -93,7 +93,7 @@ def _exactly_two(stated: tuple[Any, Any, Any, dict[int, Any]]) -> Check:
     skew = composed(B, two, 2 * Sh * (1 - u**2))
     slope = sympy.factor(sympy.diff(clearance, u))
     critical = list(sympy.roots(sympy.Poly(slope, u)))
-    found = {sign: clearance.subs({u: 0, g: sign}) for sign in (1, -1)}
+    clearances = {sign: clearance.subs({u: 0, g: sign}) for sign in (1, -1)}
     upwards = [sign for sign in (1, -1) if positive_on(push.subs(g, sign), u, -1, 1)]
     return every(
         [
@@ -102,7 +102,10 @@ def _exactly_two(stated: tuple[Any, Any, Any, dict[int, Any]]) -> Check:
             ("x - c is a square in cos(t - m): two rests a turn, so no triple point", square),
             ("a at the rests vanishes for sin h = 0 alone: no tangency", pushed and positive_on(-push / g, u, -1, 1)),
             (f"dc/du = {slope} vanishes at u in {critical}: rests pi = T apart, once a period", critical == [0]),
-            (f"there c = {found}; upwards and x >= c for g in {upwards} alone", found == values and upwards == [-1]),
+            (
+                f"there c = {clearances}; upwards and x >= c for g in {upwards} alone",
+                clearances == values and upwards == [-1],
+            ),
         ]
     )
 
@@ -240,13 +243,13 @@ RATES = ("1.3", "2.3", "2.8", "3.3", "5.2")
 def _flown(below: Any, above: Any, border: int) -> bool:
     """The search of `surface.outline_transitions` on five rates."""
     for rate in RATES:
-        found = [
-            each
-            for each in transitions(linear(rate, 0, "1/2"), "clearance", ("-0.99", "0.99"), (0, 6.5))
-            if each.visible
+        events = [
+            event
+            for event in transitions(linear(rate, 0, "1/2"), "clearance", ("-0.99", "0.99"), (0, 6.5))
+            if event.visible
         ]
         wanted = _value(rate, below, above, border)
-        if not found or wanted is None or abs(found[-1].value - wanted) > 1e-11:
+        if not events or wanted is None or abs(events[-1].value - wanted) > 1e-11:
             return False
     return True
 

@@ -36,23 +36,23 @@ def closed_forms() -> list[tuple[str, bool]]:
     substitution(At(height, {V: launch}), sympy.Integer(0))
     substitution(At(speed, {V: launch}), landing)
     tried = all(
-        is_zero(sympy.expand(closed.subs(j, order).subs({L: ell**order}) - (1 - ell) ** 2 * found.subs(lambda_, ell)))
+        is_zero(sympy.expand(closed.subs(j, order).subs({L: ell**order}) - (1 - ell) ** 2 * derived.subs(lambda_, ell)))
         for order in range(1, SHOWN + 1)
-        for closed, found in ((CLOSED_P, P(order)), (CLOSED_Q, Q(order)))
+        for closed, derived in ((CLOSED_P, P(order)), (CLOSED_Q, Q(order)))
     )
     coefficient = j + 1 - i  # of l^i in P: second differences vanish, which leaves the ends of (1 - l)^2 P
     second = sympy.expand(coefficient - 2 * coefficient.subs(i, i - 1) + coefficient.subs(i, i - 2))
     reversed_ = coefficient.subs(i, j - i)  # of l^i in Q
     # coefficients of 1, l, l^(j+1) and l^(j+2) in (1 - l)^2 P and (1 - l)^2 Q
     ends = all(
-        same(found, stated)
-        for each, closed in ((coefficient, (j + 1, -(j + 2), 0, 1)), (reversed_, (1, 0, -(j + 2), j + 1)))
-        for found, stated in zip(
+        same(derived, stated)
+        for polynomial, closed in ((coefficient, (j + 1, -(j + 2), 0, 1)), (reversed_, (1, 0, -(j + 2), j + 1)))
+        for derived, stated in zip(
             (
-                each.subs(i, 0),
-                each.subs(i, 1) - 2 * each.subs(i, 0),
-                each.subs(i, j - 1) - 2 * each.subs(i, j),
-                each.subs(i, j),
+                polynomial.subs(i, 0),
+                polynomial.subs(i, 1) - 2 * polynomial.subs(i, 0),
+                polynomial.subs(i, j - 1) - 2 * polynomial.subs(i, j),
+                polynomial.subs(i, j),
             ),
             closed,
             strict=True,
@@ -203,7 +203,7 @@ def _exponents(power: int) -> Check:
 
 def _parity(stated: tuple[int, int]) -> Check:
     """The number of negative solutions of l^(j+1) P = r Q for every r: (for odd j, for even j), for j up to TURNED."""
-    found: dict[int, set[int]] = {0: set(), 1: set()}
+    counts: dict[int, set[int]] = {0: set(), 1: set()}
     monotone = True
     for order in range(1, TURNED + 1):
         top, below = sympy.Poly(P(order), lambda_), sympy.Poly(Q(order), lambda_)
@@ -211,14 +211,14 @@ def _parity(stated: tuple[int, int]) -> Check:
         monotone &= slope.count_roots(None, 0) == 0
         # for odd j P has a zero z < -1 and Q = l^j P(1/l) has 1/z: r takes each value > 0 once on (1/z, 0), once on
         # (-oo, z), and is negative between; for even j neither has a zero, and r < 0 for l < 0
-        found[order % 2].add(2 * top.count_roots(None, -1))
+        counts[order % 2].add(2 * top.count_roots(None, -1))
         monotone &= top.count_roots(-1, 0) == 0
     return every(
         [
             (f"r(l) has no critical point for l < 0, j = 1..{TURNED} (Sturm)", monotone),
             (
-                f"negative roots: {found[1]} for odd j, {found[0]} for even j",
-                (found[1], found[0]) == tuple({n} for n in stated),
+                f"negative roots: {counts[1]} for odd j, {counts[0]} for even j",
+                (counts[1], counts[0]) == tuple({n} for n in stated),
             ),
         ]
     )

@@ -24,10 +24,10 @@ WITHIN = 0.1  # of an order, between distances H that differ by a factor 2
 
 def _removed(stated: Any) -> Check:
     """alpha in S = s + alpha s^2, as a function of j and of the jets."""
-    found = route.removal()
-    derived = sympy.cancel(found.time / s**2)
+    change = route.removal()
+    derived = sympy.cancel(change.time / s**2)
     enough = [_weight(i, k) for i, k in ((1, 0), (2, 0), (1, 1), (0, 2))]
-    compared = [_sheet_agrees(order, found) for order in range(1, SHOWN + 1)] if same(stated, derived) else []
+    compared = [_sheet_agrees(order, change) for order in range(1, SHOWN + 1)] if same(stated, derived) else []
     return every(
         [
             (f"Y'' = a_j S^j + O(h^2) for every j with alpha = {derived}", same(stated, derived)),
@@ -52,10 +52,10 @@ def _sheet_agrees(order: int, change: Change) -> bool:
     sheet = generic_sheet(order, order + 2)
     jets = {first: sympy.Symbol(f"a_d{order}") / factorial(order), damping: sympy.Symbol("f_01")}
     jets[second] = sympy.Symbol(f"a_d{order + 1}") / factorial(order + 1)
-    moved, higher = (part.subs({j: order} | jets) for part in change)
+    moved, higher = (term.subs({j: order} | jets) for term in change)
     sigma, t = sympy.symbols("sigma t")
     start, end = (time + h * moved.subs(s, time) for time in (sigma, sigma + t))
-    tempo, scale = (1 + h * part.subs(s, sigma) for part in (sympy.diff(moved, s), higher))
+    tempo, scale = (1 + h * term.subs(s, sigma) for term in (sympy.diff(moved, s), higher))
     stated = route.truncated(jets[first] * launch_velocity(order, start, end) * tempo / scale)
     by_degree = sympy.expand(sheet.to_sympy(sheet.v).subs({sigma: h * sigma, t: h * t}, simultaneous=True))
     return is_zero(sympy.expand(stated - by_degree / h ** (order + 1)))
@@ -81,18 +81,18 @@ def _orders(stated: tuple[int, int, Any]) -> Check:
     plain, corrected, term = stated
     checks, worst = [], dict[str, str]()
     for model in MODELS:
-        told = []
+        findings = []
         for rate in RATES:
-            found = measured(model, rate)
-            weight = float(term.subs(X, found.limit))
-            rest = [off - weight * found.chi * size for size, off in zip(found.sizes, found.offsets, strict=True)]
-            bare, removed = found.order(found.offsets), found.order(rest)
-            told.append((rate, bare, removed))
-        wrong = any(abs(bare - plain) > WITHIN or abs(removed - corrected) > WITHIN for _, bare, removed in told)
+            feet = measured(model, rate)
+            weight = float(term.subs(X, feet.limit))
+            rest = [off - weight * feet.chi * size for size, off in zip(feet.sizes, feet.offsets, strict=True)]
+            bare, removed = feet.order(feet.offsets), feet.order(rest)
+            findings.append((rate, bare, removed))
+        wrong = any(abs(bare - plain) > WITHIN or abs(removed - corrected) > WITHIN for _, bare, removed in findings)
         if wrong:
-            worst = {"model": model.name, "orders": "; ".join(f"r = {r}: {b:.3f}, {c:.3f}" for r, b, c in told)}
-        words = ", ".join(f"{bare:.3f} and {removed:.3f} at r = {rate}" for rate, bare, removed in told)
-        checks.append((f"{model.name}, chi = {found.chi:.4f}: orders {words}", not wrong))
+            worst = {"model": model.name, "orders": "; ".join(f"r = {r}: {b:.3f}, {c:.3f}" for r, b, c in findings)}
+        words = ", ".join(f"{bare:.3f} and {removed:.3f} at r = {rate}" for rate, bare, removed in findings)
+        checks.append((f"{model.name}, chi = {feet.chi:.4f}: orders {words}", not wrong))
     return every(checks, "supported", witness=lambda: worst)
 
 

@@ -38,28 +38,28 @@ def _rises(stated: tuple[int, int, int]) -> Check:
     With t_1 the next length the equation is t_1 launch(s, t_1) = r t landing(s - t, t), s the place of landing.
     """
     launch, landing = _velocities()
-    place = sigma + t
-    left = sympy.expand(later * launch.subs({sigma: place, t: later}, simultaneous=True))
+    landing_place = sigma + t
+    left = sympy.expand(later * launch.subs({sigma: landing_place, t: later}, simultaneous=True))
     at_fixed_end = sympy.Symbol("s")
     right = sympy.expand(t * landing.subs(sigma, at_fixed_end - t))
-    by_length = sympy.expand(sympy.diff(right, t).subs(at_fixed_end, place))
+    by_length = sympy.expand(sympy.diff(right, t).subs(at_fixed_end, landing_place))
     # by the place, with r t landing replaced by t_1 launch: the sign of d(right)/right - d(left)/left
     by_place = sympy.expand(
-        sympy.diff(right, at_fixed_end).subs(at_fixed_end, place) * left
-        - sympy.diff(left, sigma) * right.subs(at_fixed_end, place)
+        sympy.diff(right, at_fixed_end).subs(at_fixed_end, landing_place) * left
+        - sympy.diff(left, sigma) * right.subs(at_fixed_end, landing_place)
     )
     by_place = sympy.cancel(by_place / (t * later * (t + later)))
     first = sympy.expand((t * launch).subs(sigma, -1))  # speed from A after which the flight takes t
-    found = tuple(
-        1 if positive_in(part, BEHIND) else -1 if positive_in(-part, BEHIND) else 0
-        for part in (by_place, by_length, t * landing)
+    signs = tuple(
+        1 if positive_in(slope, BEHIND) else -1 if positive_in(-slope, BEHIND) else 0
+        for slope in (by_place, by_length, t * landing)
     )
     return every(
         [
             ("behind B the launch speed rises with the length", positive_in(sympy.diff(left, later), BEHIND)),
             (
-                f"the next length changes with the place of landing, the last length and r by the signs {found}",
-                found == stated,
+                f"the next length changes with the place of landing, the last length and r by the signs {signs}",
+                signs == stated,
             ),
             (
                 "a flight from A that lands at 3 or later takes the longer the faster it leaves",
@@ -67,10 +67,10 @@ def _rises(stated: tuple[int, int, int]) -> Check:
             ),
             (
                 "so X rises with r and with the velocity at A, for the map (landing, length) is monotone",
-                found == (1, 1, 1),
+                signs == (1, 1, 1),
             ),
         ],
-        witness=lambda: {"signs": str(found), "stated": str(stated)},
+        witness=lambda: {"signs": str(signs), "stated": str(stated)},
     )
 
 
@@ -82,22 +82,25 @@ def boxes(low: Fraction, high: Fraction) -> tuple[Box, ...]:
 
 def _within(stated: tuple[Any, Fraction, Fraction, Fraction, Fraction]) -> Check:
     """(m, p, d, low, high): |X (1 - r)^p - m| < m d for all r in [low, high]."""
-    middle, power, part, low, high = stated
-    found = boxes(low, high)
-    above = [scaled(box.high / middle, box.r[0], power) for box in found]
-    below = [scaled(box.low / middle, box.r[1], power) for box in found]
+    middle, power, share, low, high = stated
+    covering = boxes(low, high)
+    above = [scaled(box.high / middle, box.r[0], power) for box in covering]
+    below = [scaled(box.low / middle, box.r[1], power) for box in covering]
     most, least = max(map(float, above)), min(map(float, below))
-    joined = all(one.r[1] == two.r[0] for one, two in itertools.pairwise(found))
+    joined = all(one.r[1] == two.r[0] for one, two in itertools.pairwise(covering))
     return every(
         [
-            (f"{len(found)} intervals of r follow one another from {low} to {high}", joined and found[-1].r[1] == high),
+            (
+                f"{len(covering)} intervals of r follow one another from {low} to {high}",
+                joined and covering[-1].r[1] == high,
+            ),
             (
                 f"on them X (1-r)^({power})/{middle} lies between {least:.5f} and {most:.5f}",
-                all(each < 1 + _ball(part) for each in above) and all(each > 1 - _ball(part) for each in below),
+                all(each < 1 + _ball(share) for each in above) and all(each > 1 - _ball(share) for each in below),
             ),
         ],
         "certified",
-        witness=lambda: {"least": f"{least:.5f}", "most": f"{most:.5f}", "stated": f"1 +- {part}"},
+        witness=lambda: {"least": f"{least:.5f}", "most": f"{most:.5f}", "stated": f"1 +- {share}"},
     )
 
 
@@ -108,11 +111,11 @@ def _ball(value: Fraction) -> Any:
 def _short_flights() -> tuple[bool, bool]:
     """Whether u = v/|a|^(1/3) of the elastic ball changes at the third order of e = t/sigma in a flight; whether v is
     t |a|/2 in the limit.  With b = 1/sigma^2 and |a| in units of 12 sigma^2."""
-    launch, landing = (sympy.expand(part.subs(t, e * sigma) / sigma**2) for part in _velocities())
+    launch, landing = (sympy.expand(velocity.subs(t, e * sigma) / sigma**2) for velocity in _velocities())
     pressed = sympy.expand(model.acceleration().subs(kappa, 1) / (12 * sigma**2))
     behind = sympy.expand(model.acceleration().subs(kappa, 1).subs(sigma, sigma * (1 + e)) / (12 * sigma**2))
     launch, landing, start, end = (
-        part.subs(sigma, b ** -sympy.Rational(1, 2)) for part in (launch, landing, pressed, behind)
+        velocity.subs(sigma, b ** -sympy.Rational(1, 2)) for velocity in (launch, landing, pressed, behind)
     )
     before, after = sympy.expand(launch**3 * end), sympy.expand(landing**3 * start)
     third = all(is_zero(sympy.expand(after - before).coeff(e, n)) for n in range(3))
@@ -140,17 +143,17 @@ def _limit(stated: tuple[Any, str, str]) -> Check:
     """
     formula, invariant, value = stated
     third, length = _short_flights()
-    derived, found = _used_up(), elastic()
-    u_low, u_high = found.invariant
-    ends = [_decimal(derived.subs(w, sympy.Rational(each.numerator, each.denominator))) for each in (u_low, u_high)]
+    derived, limit = _used_up(), elastic()
+    u_low, u_high = limit.invariant
+    ends = [_decimal(derived.subs(w, sympy.Rational(bound.numerator, bound.denominator))) for bound in (u_low, u_high)]
     equal = sympy.expand(formula**7 - derived**7) == 0
-    above = [[scaled(each, rate, SEVENTHS) for each in foot(rate, CLOSE)] for rate in NEAR_ONE]
+    above = [[scaled(bound, rate, SEVENTHS) for bound in foot(rate, CLOSE)] for rate in NEAR_ONE]
     nearer = all(low > high for (low, _), (_, high) in itertools.pairwise(above))
     return every(
         [
             ("u = v/|a|^(1/3) of the elastic ball changes at the third order of t/sigma in a flight", third),
             (
-                f"so it has a limit u: {float(u_low):.9f} < u < {float(u_high):.9f} after {found.impacts} flights",
+                f"so it has a limit u: {float(u_low):.9f} < u < {float(u_high):.9f} after {limit.impacts} flights",
                 _rounds((u_low, u_high), invariant),
             ),
             (

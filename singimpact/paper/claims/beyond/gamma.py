@@ -51,39 +51,39 @@ def _certified(stated: Stated) -> Check:
     """Whether gamma is proved up to the reach, with these numbers; and what comes after tau_*."""
     try:
         osc = Oscillator(stated.force, "cos(2*t)", stated.clearance, stated.restitution)
-        found = certified_gamma(osc, BEFORE, reach=stated.reach)
+        proof = certified_gamma(osc, BEFORE, reach=stated.reach)
     except InputError as reason:
         return Check(False, "certified", str(reason), {"fails": str(reason)})
-    at, (velocity, off) = found.at_reach(), map(Fraction, stated.velocity)
+    at, (velocity, off) = proof.at_reach(), map(Fraction, stated.velocity)
     close = abs(exact("value", at.value) - velocity) + exact("radius", at.radius) < off
     return every(
         [
-            (f"tau_* = {found.tau} is a zero of a_c of order {found.order}", found.order == stated.order),
+            (f"tau_* = {proof.tau} is a zero of a_c of order {proof.order}", proof.order == stated.order),
             (
-                f"for S <= {found.reach} the drift lemma holds on {found.boxes[0].boxes} boxes, the residual is below "
-                f"{float(found.boxes[0].R):.3g} S^6: gamma is one graph with |l - L(S)| <= {found.Kl:.3g} S^6, below "
+                f"for S <= {proof.reach} the drift lemma holds on {proof.boxes[0].boxes} boxes, the residual is below "
+                f"{float(proof.boxes[0].R):.3g} S^6: gamma is one graph with |l - L(S)| <= {proof.Kl:.3g} S^6, below "
                 "it chatter completes before tau_*, above it finitely many impacts come before tau_*",
-                found.reach == Fraction(stated.reach),
+                proof.reach == Fraction(stated.reach),
             ),
-            (f"gamma has v = {at} at S = {found.reach}", close),
-            (f"distances across gamma grow by {found.grow:.4g} per impact", found.grow > float(stated.grows)),
-            _after(found, stated),
+            (f"gamma has v = {at} at S = {proof.reach}", close),
+            (f"distances across gamma grow by {proof.grow:.4g} per impact", proof.grow > float(stated.grows)),
+            _after(proof, stated),
         ],
         "certified",
     )
 
 
-def _after(found: CertifiedGamma, stated: Stated) -> tuple[str, bool]:
+def _after(proof: CertifiedGamma, stated: Stated) -> tuple[str, bool]:
     """The proof of the time after tau_*, and whether it covers the statement."""
-    if found.lost:
-        time = found.lost.time
+    if proof.lost:
+        time = proof.lost.time
         return f"after tau_* at most one impact comes within {float(time):.6g}", time >= Fraction(stated.after)
-    if found.fastest:
-        fastest = exact("fastest", found.fastest.value) - exact("radius", found.fastest.radius)
+    if proof.fastest:
+        fastest = exact("fastest", proof.fastest.value) - exact("radius", proof.fastest.radius)
         return f"for every launch speed up to {float(fastest):.3g}", fastest >= Fraction(stated.after)
-    if found.settled is None:
+    if proof.settled is None:
         return "what comes after tau_* is not decided", False
-    launch, speed, _, end = found.settled
+    launch, speed, _, end = proof.settled
     return (
         f"above gamma, with dy/ds <= {float(speed):.3g} and S <= {launch}, tau_* is passed, chatter completes before "
         f"s = {end}",
@@ -96,15 +96,15 @@ def _for_all(stated: tuple[str, tuple[str, str], str, str]) -> Check:
     clearance, between, reach, bound = stated
     try:
         osc = Oscillator("x", "cos(2*t)", clearance, between[0])
-        found = certified_gamma(osc, BEFORE, reach=reach, restitution=between)
+        proof = certified_gamma(osc, BEFORE, reach=reach, restitution=between)
     except InputError as reason:
         return Check(False, "certified", str(reason), {"fails": str(reason)})
-    touch = all(one.high == other.low for one, other in pairwise(found.boxes))
+    touch = all(one.high == other.low for one, other in pairwise(proof.boxes))
     return every(
         [
-            (f"{len(found.boxes)} boxes of lambda touch, and hold that of every r in {list(between)}", touch),
-            (f"the lemmas hold for S <= {found.reach} on each of them", found.reach == Fraction(reach)),
-            (f"|l - L(S)| <= {found.Kl:.3g} S^6 on gamma", found.Kl <= float(bound)),
+            (f"{len(proof.boxes)} boxes of lambda touch, and hold that of every r in {list(between)}", touch),
+            (f"the lemmas hold for S <= {proof.reach} on each of them", proof.reach == Fraction(reach)),
+            (f"|l - L(S)| <= {proof.Kl:.3g} S^6 on gamma", proof.Kl <= float(bound)),
         ],
         "certified",
     )

@@ -79,23 +79,23 @@ def _routes_agree(damping: Fraction, square: Fraction) -> bool:
 def _of_the_ball(jet: dict[int, Fraction], damping: Fraction, square: Fraction) -> Jet:
     """v_c = y'/(E C) with y' = sum A_k ((k+2) s^(k+1) - h_(k+1)(s, e))/((k+1)(k+2)), h_n the sum of s^i e^(n-i)."""
     line = JetSpace(("u",), ORDER, RATIONALS)
-    made: dict[str, dict[tuple[int, ...], Fraction]] = {
+    series: dict[str, dict[tuple[int, ...], Fraction]] = {
         "C": {(2 * n,): (-square) ** n / factorial(2 * n) for n in range(ORDER // 2 + 1)},
         "S": {(2 * n + 1,): (-square) ** n / factorial(2 * n + 1) for n in range((ORDER + 1) // 2)},
         "E": {(n,): damping**n / factorial(n) for n in range(ORDER + 1)},
         "back": {(2 * n + 1,): (-square) ** n / (2 * n + 1) for n in range((ORDER + 1) // 2)},  # t as a function of s
         "a": {(k,): value for k, value in jet.items()},
     }
-    cosine, sine, growth, back, pressed = (line.jet(terms) for terms in made.values())
+    cosine, sine, growth, back, pressed = (line.jet(terms) for terms in series.values())
     gravity = (growth * cosine**3 * pressed).compose([back])
     time, scale = sine / cosine, growth * cosine
     plane = JetSpace(("sigma", "t"), ORDER, RATIONALS)
     sigma, t = plane.generators()
-    start, end = (time.compose([place]) for place in (sigma, sigma + t))
+    start, end = (time.compose([point]) for point in (sigma, sigma + t))
     powers = [[plane.constant(Fraction(1))], [plane.constant(Fraction(1))]]
-    for row, place in zip(powers, (start, end), strict=True):
+    for row, point in zip(powers, (start, end), strict=True):
         for _ in range(ORDER):
-            row.append(row[-1] * place)
+            row.append(row[-1] * point)
     total = plane.constant(Fraction(0))
     for k in range(1, ORDER):
         complete = sum((powers[0][i] * powers[1][k + 1 - i] for i in range(k + 2)), plane.constant(Fraction(0)))
@@ -106,7 +106,7 @@ def _of_the_ball(jet: dict[int, Fraction], damping: Fraction, square: Fraction) 
 
 def _entry(stated: tuple[int, ...]) -> Check:
     """By how many degrees the lowest term of v_c with a second derivative of f exceeds the leading one, j = 0, 1, 2."""
-    found = []
+    entries = []
     for j in range(3):
         bent = generic_sheet(j, 2 * j + 3)
         series = sympy.expand(bent.to_sympy(bent.v))
@@ -115,9 +115,9 @@ def _entry(stated: tuple[int, ...]) -> Check:
             for term in series.as_ordered_terms()
             if {str(name) for name in term.free_symbols} & {"f_20", "f_11", "f_02"}
         ]
-        found.append(min(degrees) - (j + 1))
+        entries.append(min(degrees) - (j + 1))
     return every(
-        [(f"second derivatives of f enter v_c {found} degrees above its leading part", tuple(found) == stated)]
+        [(f"second derivatives of f enter v_c {entries} degrees above its leading part", tuple(entries) == stated)]
     )
 
 

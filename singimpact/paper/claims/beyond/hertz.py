@@ -71,62 +71,62 @@ def _adiabatic(power: int) -> Check:
 def _balanced(stated: tuple[Any, Any]) -> Check:
     """(N, K): v = (K C b h^(j+1))^(1/(1-q)) = w h^N is kept by an impact to first order in the flight time."""
     stated_n, factor = stated
-    kept = _vanishes(LANDING * (1 - rate * e) - LAUNCH * (1 - exponent * e), {rate: exponent - j / 3}, e, 1)
-    found = 1 / (2 * (stated_n - j / 3))
+    balance = _vanishes(LANDING * (1 - rate * e) - LAUNCH * (1 - exponent * e), {rate: exponent - j / 3}, e, 1)
+    exponent_ = 1 / (2 * (stated_n - j / 3))
     power = j * (q + 2) / 3 + 1  # I^(1-q) is the integral of (1-q) C/2 |a|^((q+2)/3), |a| = b h^j
     averaged = (1 - q) / 2 / power
     return every(
         [
             *_expanded(),
-            ("U (1 - x e) = v (1 - e)^N for x = N - j/3 alone, and x e is the loss C v^q", kept),
+            ("U (1 - x e) = v (1 - e)^N for x = N - j/3 alone, and x e is the loss C v^q", balance),
             ("C v^q = 2x v/(b h^(j+1)) is solved by v = w h^N for N (1 - q) = j + 1", same(stated_n * (1 - q), j + 1)),
-            (f"v^(1-q) = K C b h^(j+1) with K = 1/(2N - 2j/3) = {sympy.factor(found)}", same(factor, found)),
+            (f"v^(1-q) = K C b h^(j+1) with K = 1/(2N - 2j/3) = {sympy.factor(exponent_)}", same(factor, exponent_)),
             (
                 "the invariant I = v/|a_c|^(1/3) falls by (C/2) I^q |a_c|^((q+2)/3) a time: this integral gives K too",
                 same(power + j * (1 - q) / 3, j + 1) and same(factor, averaged),
             ),
         ],
         "formal",
-        witness=lambda: sample(factor, found) if same(stated_n * (1 - q), j + 1) else sample(stated_n, EXPONENT),
+        witness=lambda: sample(factor, exponent_) if same(stated_n * (1 - q), j + 1) else sample(stated_n, EXPONENT),
     )
 
 
 def _repelled(stated: Any) -> Check:
     """The relative distance of v/h^N from its value on gamma grows like h^(-p)."""
-    found = sympy.factor((1 - q) * (EXPONENT - j / 3))
+    rate_ = sympy.factor((1 - q) * (EXPONENT - j / 3))
     box = {j: (0, sympy.oo), q: (0, 1)}
     return every(
         [
             ("on gamma the loss is x e, and over e it falls like (v/h^N)^(q-1), as q < 1", _balanced(FOUND).holds),
-            (f"an impact multiplies distances by 1 + p e, h by 1 - e: p = (1 - q) x = {found}", same(stated, found)),
+            (f"an impact multiplies distances by 1 + p e, h by 1 - e: p = (1 - q) x = {rate_}", same(stated, rate_)),
             ("p > 1 for every j > 0 and q in (0, 1)", positive_in(stated - 1, box)),
         ],
         "formal",
-        witness=lambda: sample(stated, found),
+        witness=lambda: sample(stated, rate_),
     )
 
 
 def _second(stated: Any) -> Check:
     """v/(b h^(j+1)) = P + G P^2 + O(P^3), P in proportion to h^s with s = N - (j+1)."""
-    v, speed, part, s, second = sympy.symbols("v U P s G")
+    v, speed, first, s, second = sympy.symbols("v U P s G")
     length = 2 * v + 4 * j * v**2 / 3 + 2 * j * (5 * j + 3) * v**3 / 9
     landed = v - 2 * j * v**2 / 3 - 2 * j * (j + 3) * v**3 / 9
     flown = [
         _vanishes(e * LAUNCH - v, {e: length}, v, 3),
         _vanishes(e * LANDING - speed, {e: length, speed: landed}, v, 3),
     ]
-    curve = part + second * part**2
-    images = {e: _cut(length.subs(v, curve), part), speed: _cut(landed.subs(v, curve), part)}
-    moved = part * _binomial(-e, s, 2)  # P at the landing
+    curve = first + second * first**2
+    images = {e: _cut(length.subs(v, curve), first), speed: _cut(landed.subs(v, curve), first)}
+    moved = first * _binomial(-e, s, 2)  # P at the landing
     # C U^q = 2x P (U/P)^q, where U/P = 1 + (G - 2j/3) P
-    lost = 2 * rate * part * (1 + q * (second - 2 * j / 3) * part)
+    lost = 2 * rate * first * (1 + q * (second - 2 * j / 3) * first)
     invariance = (moved + second * moved**2) * _binomial(-e, j + 1, 2) - speed * (1 - lost)
-    full = sympy.Poly(sympy.expand(invariance.subs(images, simultaneous=True)), part)
-    orders = [full.coeff_monomial(part**n) for n in (1, 2, 3)]
-    substitution(At(invariance, images), orders[1] * part**2 + orders[2] * part**3, order=3, small=[part])
+    full = sympy.Poly(sympy.expand(invariance.subs(images, simultaneous=True)), first)
+    orders = [full.coeff_monomial(first**n) for n in (1, 2, 3)]
+    substitution(At(invariance, images), orders[1] * first**2 + orders[2] * first**3, order=3, small=[first])
     values = {s: EXPONENT - (j + 1), rate: EXPONENT - j / 3}
     linear = sympy.Poly(orders[2], second)
-    found = sympy.cancel((-linear.coeff_monomial(1) / linear.coeff_monomial(second)).subs(values))
+    coefficient = sympy.cancel((-linear.coeff_monomial(1) / linear.coeff_monomial(second)).subs(values))
     return every(
         [
             *_expanded(),
@@ -135,10 +135,13 @@ def _second(stated: Any) -> Check:
                 "U (1 - C U^q) is v at the landing to the orders P and P^2 on gamma of the first term",
                 orders[0] == 0 and sympy.cancel(orders[1].subs(values)) == 0,
             ),
-            (f"and to the order P^3 for G = {sympy.factor(found)}", linear.degree() == 1 and same(stated, found)),
+            (
+                f"and to the order P^3 for G = {sympy.factor(coefficient)}",
+                linear.degree() == 1 and same(stated, coefficient),
+            ),
         ],
         "formal",
-        witness=lambda: sample(stated, found),
+        witness=lambda: sample(stated, coefficient),
     )
 
 
@@ -150,15 +153,15 @@ def _cut(expression: Any, small: Any) -> Any:
 
 def _left(stated: Any) -> Check:
     """The time left of a chatter under a_c < 0: j = 0, where h is the time to the end."""
-    found = sympy.cancel(1 / FACTOR.subs(j, 0))
+    ratio = sympy.cancel(1 / FACTOR.subs(j, 0))
     box = {q: (0, 1)}
     return every(
         [
-            (f"at j = 0 gamma is the line of one end, and h = v^(1-q)/(K C b) with 1/K = {found}", same(stated, found)),
+            (f"at j = 0 gamma is the line of one end, and h = v^(1-q)/(K C b) with 1/K = {ratio}", same(stated, ratio)),
             ("it is positive and finite for 0 < q < 1: chatter ends although r = 1", positive_in(stated, box)),
         ],
         "formal",
-        witness=lambda: sample(stated, found),
+        witness=lambda: sample(stated, ratio),
     )
 
 
@@ -167,21 +170,21 @@ def _found(stated: tuple[Any, Any, Any]) -> Check:
     stated_n, factor, second = stated
     checks, worst = [], dict[str, str]()
     for start in STARTS:
-        told = []
+        findings = []
         for power in POWERS:
-            found = measured(start, power)
+            widths_ = measured(start, power)
             values = {j: start.order, q: sympy.Rational(power.numerator, power.denominator)}
-            n, k, g = (float(part.subs(values)) for part in (stated_n, factor, second))
-            off = _beside(found, start.order, power, (n, k))
+            n, k, g = (float(within.subs(values)) for within in (stated_n, factor, second))
+            off = _beside(widths_, start.order, power, (n, k))
             near = all(
-                abs(ratio - g * part) < WITHIN * abs(g) * part + 2 * width
-                for (ratio, part), width in zip(off, found.widths, strict=True)
+                abs(ratio - g * within) < WITHIN * abs(g) * within + 2 * width
+                for (ratio, within), width in zip(off, widths_.widths, strict=True)
             )
-            told.append((f"{found.exponent:.3f} for {n:.3f} at q = {power}", near))
+            findings.append((f"{widths_.exponent:.3f} for {n:.3f} at q = {power}", near))
             if not near:
                 worst = {"model": start.name, "q": str(power), "v/(w h^N) - 1": f"{off[1][0]:.6f}"}
-        words = ", ".join(part for part, _ in told)
-        checks.append((f"{start.name}, j = {start.order}: slopes {words}", all(holds for _, holds in told)))
+        words = ", ".join(within for within, _ in findings)
+        checks.append((f"{start.name}, j = {start.order}: slopes {words}", all(holds for _, holds in findings)))
     return every(checks, "supported", witness=lambda: worst)
 
 

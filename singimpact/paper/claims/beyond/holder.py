@@ -54,15 +54,15 @@ def _slopes(stated: Any) -> Check:
     """The exponent of delta, in lambda and mu, on true orbits."""
     checks, worst = [], dict[str, str]()
     for start in STARTS:
-        told = []
+        findings = []
         for rate in RATES:
-            found = beside(start, rate)
-            wanted = float(sympy.sympify(stated).subs({lam: found.lambda_, mu: found.mu}))
-            told.append((f"{found.slope:.5f} at r = {rate}", abs(found.slope - wanted) < NEAR))
-            if not told[-1][1]:
-                worst = {"model": start.name, "r": rate, "found": f"{found.slope:.6f}", "stated": f"{wanted:.6f}"}
-        words = ", ".join(part for part, _ in told)
-        checks.append((f"{start.name}, j = {start.order}: slopes {words}", all(holds for _, holds in told)))
+            orbits = beside(start, rate)
+            wanted = float(sympy.sympify(stated).subs({lam: orbits.lambda_, mu: orbits.mu}))
+            findings.append((f"{orbits.slope:.5f} at r = {rate}", abs(orbits.slope - wanted) < NEAR))
+            if not findings[-1][1]:
+                worst = {"model": start.name, "r": rate, "found": f"{orbits.slope:.6f}", "stated": f"{wanted:.6f}"}
+        words = ", ".join(within for within, _ in findings)
+        checks.append((f"{start.name}, j = {start.order}: slopes {words}", all(holds for _, holds in findings)))
     return every(checks, "supported", witness=lambda: worst)
 
 
@@ -70,15 +70,15 @@ def _counts(stated: int) -> Check:
     """The number of additional impacts when delta is divided by mu."""
     checks, worst = [], dict[str, str]()
     for start in STARTS:
-        told = []
+        findings = []
         for rate in RATES:
-            found = beside(start, rate)
-            more = found.impacts[1] - found.impacts[0]
-            told.append((f"{more} for mu^{found.steps} at r = {rate}", more == stated * found.steps))
-            if not told[-1][1]:
-                worst = {"model": start.name, "r": rate, "impacts": str(more), "stated": str(stated * found.steps)}
-        words = ", ".join(part for part, _ in told)
-        checks.append((f"{start.name}: more impacts, {words}", all(holds for _, holds in told)))
+            orbits = beside(start, rate)
+            more = orbits.impacts[1] - orbits.impacts[0]
+            findings.append((f"{more} for mu^{orbits.steps} at r = {rate}", more == stated * orbits.steps))
+            if not findings[-1][1]:
+                worst = {"model": start.name, "r": rate, "impacts": str(more), "stated": str(stated * orbits.steps)}
+        words = ", ".join(within for within, _ in findings)
+        checks.append((f"{start.name}: more impacts, {words}", all(holds for _, holds in findings)))
     return every(checks, "supported", witness=lambda: worst)
 
 

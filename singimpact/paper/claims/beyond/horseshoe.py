@@ -85,12 +85,12 @@ def _is(ball: Certified, text: str, period: float = 0.0) -> bool:
 
 def _crosses(stated: Stated) -> Check:
     """Whether the certified orbit is the stated one."""
-    found = _certified(stated.restitution)
-    if isinstance(found, str):
-        return Check(False, "certified", found, {"fails": found})
+    crossing = _certified(stated.restitution)
+    if isinstance(crossing, str):
+        return Check(False, "certified", crossing, {"fails": crossing})
     period = 2 * pi / 2.8
-    at, multipliers = found.unstable, [pair[0] for pair in found.unstable.multipliers or ()]
-    away = [state for state in found.states if not _near(state, (at.tau[0], at.v[0]), period)]
+    at, multipliers = crossing.unstable, [pair[0] for pair in crossing.unstable.multipliers or ()]
+    away = [state for state in crossing.states if not _near(state, (at.tau[0], at.v[0]), period)]
     places = ", ".join(f"({float(tau.value) % period:.6f}, {float(v.value):.6f})" for tau, v in away)
     return every(
         [
@@ -103,10 +103,11 @@ def _crosses(stated: Stated) -> Check:
                 at.stable is False and len(multipliers) == 2,
             ),
             (
-                f"an orbit of {found.impacts} impacts from W^u to W^s exists, the only one within "
-                f"{float(found.unique_within):.1g}; all flights next to its closure are proved to be first hits with "
+                f"an orbit of {crossing.impacts} impacts from W^u to W^s exists, the only one within "
+                f"{float(crossing.unique_within):.1g}; all flights next to its closure are proved to be first hits "
+                "with "
                 "x' < 0: G is smooth along it",
-                found.kind == "homoclinic",
+                crossing.kind == "homoclinic",
             ),
             (
                 f"{len(away)} of its impacts are farther than {float(NEAR)} from the saddle: {places}",
@@ -114,8 +115,8 @@ def _crosses(stated: Stated) -> Check:
                 and all(_is(tau, t, period) and _is(v, w) for (tau, v), (t, w) in zip(away, stated.away, strict=True)),
             ),
             (
-                f"W^u and W^s cross at ({found.tau}, {found.v}) at the angle {found.angle}: transversally",
-                _is(found.angle, stated.angle) and found.angle.value > found.angle.radius,
+                f"W^u and W^s cross at ({crossing.tau}, {crossing.v}) at the angle {crossing.angle}: transversally",
+                _is(crossing.angle, stated.angle) and crossing.angle.value > crossing.angle.radius,
             ),
         ],
         "certified",
@@ -131,18 +132,20 @@ def _near(state: tuple[Certified, Certified], saddle: tuple[Certified, Certified
 def _chaotic(stated: tuple[str, tuple[int, int], str]) -> Check:
     """(r, loops, h): loops of these lengths are followed in any order, and the entropy is at least h."""
     restitution, loops, entropy = stated
-    found = _horseshoe(restitution)
-    if isinstance(found, str):
-        return Check(False, "certified", found, {"fails": found})
-    bound = exact("value", found.entropy.value) - exact("radius", found.entropy.radius)
+    horseshoe = _horseshoe(restitution)
+    if isinstance(horseshoe, str):
+        return Check(False, "certified", horseshoe, {"fails": horseshoe})
+    bound = exact("value", horseshoe.entropy.value) - exact("radius", horseshoe.entropy.radius)
     return every(
         [
             (
-                f"{len(found.sets)} parallelograms, round the saddle and along the homoclinic orbit, are crossed by "
-                f"images of one another: loops of {found.loops[0]} and {found.loops[1]} impacts follow in any order",
-                found.loops == loops,
+                f"{len(horseshoe.sets)} parallelograms, round the saddle and along the homoclinic orbit, are crossed "
+                "by "
+                f"images of one another: loops of {horseshoe.loops[0]} and {horseshoe.loops[1]} impacts follow in any "
+                "order",
+                horseshoe.loops == loops,
             ),
-            (f"the entropy of G is at least {found.entropy}", Fraction(entropy) <= bound),
+            (f"the entropy of G is at least {horseshoe.entropy}", Fraction(entropy) <= bound),
         ],
         "certified",
     )

@@ -128,19 +128,21 @@ def _crossings(stated: tuple[Any, Any]) -> Check:
     """(outer start, polynomial of the inner one): heights on true orbits differ from the stated ones by O(h)."""
     checks, worst = [], dict[str, str]()
     for swan in SWANS:
-        told = []
+        findings = []
         for rate in RATES:
-            found = heights(swan, rate)
+            loops = heights(swan, rate)
             starts = _starts(stated, rate)
-            predicted = np.array([each for start in starts for each in generations(start, float(sympy.Rational(rate)))])
-            errors = np.array(found.found) - predicted
+            predicted = np.array(
+                [generation for start in starts for generation in generations(start, float(sympy.Rational(rate)))]
+            )
+            errors = np.array(loops.found) - predicted
             orders = np.log(np.abs(errors[0] / errors[1])) / log(LINES[0] / LINES[1])
-            holds = bool(np.all(np.abs(orders - 1) < ORDER)) and found.left < 1e-12
-            told.append((f"{orders.min():.3f} to {orders.max():.3f} at r = {rate}", holds))
+            holds = bool(np.all(np.abs(orders - 1) < ORDER)) and loops.left < 1e-12
+            findings.append((f"{orders.min():.3f} to {orders.max():.3f} at r = {rate}", holds))
             if not holds:
-                worst = {"model": swan.name, "r": rate, "w": _numbers(found.found[1]), "stated": _numbers(predicted)}
-        words = ", ".join(part for part, _ in told)
-        checks.append((f"{swan.name}: {2 * GENERATIONS} crossings, orders {words}", all(good for _, good in told)))
+                worst = {"model": swan.name, "r": rate, "w": _numbers(loops.found[1]), "stated": _numbers(predicted)}
+        words = ", ".join(within for within, _ in findings)
+        checks.append((f"{swan.name}: {2 * GENERATIONS} crossings, orders {words}", all(good for _, good in findings)))
     return every(checks, "supported", witness=lambda: worst)
 
 
@@ -160,19 +162,19 @@ def _law(stated: Any) -> Check:
     """By which factor, in lambda and mu, foot - X changes where delta is divided by mu, in the limit."""
     checks, worst = [], dict[str, str]()
     for swan in SWANS:
-        told = []
+        findings = []
         for rate in RATES:
-            found = feet_beside_gamma(swan, rate)
-            wanted = float(sympy.sympify(stated).subs({lam: found.lambda_, mu: found.mu}))
-            rows = np.array(found.offsets)
+            feet = feet_beside_gamma(swan, rate)
+            wanted = float(sympy.sympify(stated).subs({lam: feet.lambda_, mu: feet.mu}))
+            rows = np.array(feet.offsets)
             ratios = rows[1:] / rows[:-1]
             off = np.abs(ratios / wanted - 1)
             holds = bool(np.all(off < NEAR) and np.all(off[1] < off[0]) and (rows[0] > 0).any() and (rows[0] < 0).any())
-            told.append((f"{ratios[-1].min():.5f} to {ratios[-1].max():.5f} at r = {rate}", holds))
+            findings.append((f"{ratios[-1].min():.5f} to {ratios[-1].max():.5f} at r = {rate}", holds))
             if not holds:
                 worst = {"model": swan.name, "r": rate, "found": _numbers(ratios[-1]), "stated": f"{wanted:.6f}"}
-        words = ", ".join(part for part, _ in told)
-        checks.append((f"{swan.name}: ratios at {len(PHASES)} phases {words}", all(good for _, good in told)))
+        words = ", ".join(within for within, _ in findings)
+        checks.append((f"{swan.name}: ratios at {len(PHASES)} phases {words}", all(good for _, good in findings)))
     return every(checks, "supported", witness=lambda: worst)
 
 

@@ -55,18 +55,21 @@ def _hop(stated: tuple[Any, Any, Any, Any]) -> Check:
     unit = sympy.Rational(1, 24)  # |a''| = 24 |kappa| in lengths scaled by H
     (summit,) = [root for root in sympy.Poly(sympy.diff(derived, s), s).real_roots() if -1 < root < 3]
     landing = sympy.diff(derived, s).subs(s, 3)
-    found = (sympy.Integer(4), -unit * landing, unit * derived.subs(s, summit))
+    coefficients = (sympy.Integer(4), -unit * landing, unit * derived.subs(s, summit))
     square = 2 * rate * drop / bend  # H^2, as a_c rises by |a''| H^2/2 from A to the middle of A and B
     check = every(
         [
             (f"the flight from rest at A is {sympy.factor(derived)}", same(derived, flight)),
-            (f"it hits after 4, the speed is {found[1]} and the height {found[2]}", found == (time, speed, top)),
+            (
+                f"it hits after 4, the speed is {coefficients[1]} and the height {coefficients[2]}",
+                coefficients == (time, speed, top),
+            ),
             (
                 "in c_0 - c the height is (9/2) a_c^2 (c_0 - c)^2/|a''|",
                 same(LAWS[2] * bend * square**2, sympy.Rational(9, 2) * rate**2 * drop**2 / bend),
             ),
         ],
-        witness=lambda: {"flight": str(sympy.factor(derived)), "hit, speed, height": str(found)},
+        witness=lambda: {"flight": str(sympy.factor(derived)), "hit, speed, height": str(coefficients)},
     )
     curve = sympy.diff(derived, s, 2).subs(s, summit)
     return near_the_swan(check, [("x' at the hit", landing * kappa), ("x'' at the summit", curve * kappa)])
@@ -78,14 +81,14 @@ def _orbit(stated: tuple[float, float, float, float]) -> Check:
     for lift in LIFTS:
         for rate_ in RATES:
             laws = (*stated[:3], stated[3] + limit_of(rate_))
-            found = [hop(lift, rate_, depth) for depth in DEPTHS]
-            parts = [(each.first, each.speed, each.top, each.rest) for each in found]
-            lacks = [[abs(part / law - 1) for part, law in zip(row, laws, strict=True)] for row in parts]
+            orbits = [hop(lift, rate_, depth) for depth in DEPTHS]
+            parts = [(orbit.first, orbit.speed, orbit.top, orbit.rest) for orbit in orbits]
+            lacks = [[abs(number / law - 1) for number, law in zip(row, laws, strict=True)] for row in parts]
             near = all(
                 two < max(ROUNDING, NEAR) and two < max(ROUNDING, one / FALLS) for one, two in zip(*lacks, strict=True)
             )
-            again = all(each.period < MERGED and each.merged for each in found)
-            ratios = ", ".join(f"{part / law:.5f}" for part, law in zip(parts[-1], laws, strict=True))
+            again = all(orbit.period < MERGED and orbit.merged for orbit in orbits)
+            ratios = ", ".join(f"{number / law:.5f}" for number, law in zip(parts[-1], laws, strict=True))
             checks.append(
                 (
                     f"{lift.name}, r = {rate_}, c_0 - c = 1e-{DEPTHS[-1]}: ratios {ratios}, released each "

@@ -49,22 +49,22 @@ def _dense(omega: Any) -> Check:
     alpha, beta = sympy.symbols("alpha beta")
     Ca, Sa, Cb, Sb, w = sympy.symbols("Ca Sa Cb Sb w")
     k = 1 / (1 - w**2)
-    place = {alpha: sympy.pi / 2, beta: sympy.pi / 6}
+    angles = {alpha: sympy.pi / 2, beta: sympy.pi / 6}
     level = k * (1 + w / 2)
     height = k + (level - k * Cb) * Ca + k * w * Sb * Sa - level
     velocity = -(level - k * Cb) * Sa + k * w * Sb * Ca
     substitution(At(height, {Ca: 0, Sa: 1, Sb: sympy.Rational(1, 2)}), sympy.Integer(0))
     circles = {Ca: sympy.cos(alpha), Sa: sympy.sin(alpha), Cb: sympy.cos(beta), Sb: sympy.sin(beta), w: omega}
-    met, speed = (part.subs(circles) for part in (height, velocity))
-    start, rate = (sympy.nsimplify(part.subs(place)) for part in (met, speed))
+    met, speed = (expression.subs(circles) for expression in (height, velocity))
+    start, rate = (sympy.nsimplify(expression.subs(angles)) for expression in (met, speed))
     along = sympy.diff(met, beta) * omega - sympy.diff(met, alpha)
     turn = sympy.Matrix([met, speed]).jacobian([alpha, beta]).det()
     return every(
         [
             (f"omega = {omega} is irrational, so (-s, omega s) modulo 2 pi is dense", omega.is_irrational is True),
             ("one flight from rest passes the wall at time 0, upwards", is_zero(start) and rate.is_positive is True),
-            ("nearby such (alpha, beta) lie on an arc that the dense line crosses", _signed(along.subs(place))),
-            ("along which the velocity changes: a dense set of an interval", _signed(turn.subs(place))),
+            ("nearby such (alpha, beta) lie on an arc that the dense line crosses", _signed(along.subs(angles))),
+            ("along which the velocity changes: a dense set of an interval", _signed(turn.subs(angles))),
         ],
         modulo=("Kronecker's theorem",),
     )

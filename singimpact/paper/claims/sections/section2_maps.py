@@ -33,7 +33,7 @@ def _smooth(exceptions: Any) -> Check:
     # x'' + x = 1 + c from rest comes back to c at rest after 2 pi, where dx/dv = sin t is 0 too
     height, by_v = 1 - sympy.cos(s), sympy.sin(s)
     again = {s: 2 * sympy.pi}
-    exists = all(part.subs(again) == 0 for part in (height, sympy.diff(height, s), by_v))
+    exists = all(expression.subs(again) == 0 for expression in (height, sympy.diff(height, s), by_v))
 
     def trial() -> tuple[str, bool]:
         found = surfaces.gradients()
@@ -173,8 +173,8 @@ def _phi_cusp(conditions: tuple[Any, ...]) -> Check:
     touching = surfaces.touching_flight()
     fails = touching.velocity == 0 and touching.mixed == 0 and touching.acceleration == 0 and touching.slope != 0
     needed = [third, mixed]
-    stated = all(any(_same_zeros(each, part) for part in needed) for each in conditions)
-    whole = all(any(_same_zeros(each, part) for each in conditions) for part in needed)
+    stated = all(any(_same_zeros(condition, zero) for zero in needed) for condition in conditions)
+    whole = all(any(_same_zeros(condition, zero) for condition in conditions) for zero in needed)
     return every(
         [
             (

@@ -57,37 +57,37 @@ def _determinant(place: Place, t: float) -> float:
 def _cusps(_printed: Any, corrected: tuple[Any, ...]) -> list[Trial]:
     """Flights from rest with a = 0, a' != 0 that touch c at rest, and beside each one that crosses c there."""
     s = surfaces.PATH
-    found = []
+    rows = []
     for touching, crossing in ((s**3 * (1 - s) ** 2, s**3 * (1 - s)), (s**3 * (2 - s) ** 2, s**3 * (2 - s) * (1 + s))):
         at_rest, passing = surfaces.touching_flight(touching), surfaces.touching_flight(crossing)
         ready = at_rest.acceleration == 0 and at_rest.slope != 0 and at_rest.velocity == 0
         holds = len(corrected) == 2 and passing.velocity != 0 and passing.mixed != 0
-        told = f"{at_rest.mixed} where x-dot = 0, {passing.mixed} where x-dot = {passing.velocity} on {crossing}"
-        found.append(
+        text = f"{at_rest.mixed} where x-dot = 0, {passing.mixed} where x-dot = {passing.velocity} on {crossing}"
+        rows.append(
             Trial(
                 f"x = {touching}",
                 "v_(sigma t), not 0 at a cusp",
-                told,
+                text,
                 "not 0 at all",
                 "not 0 where x-dot is not",
                 not (ready and at_rest.mixed == 0),
                 holds,
             )
         )
-    return found
+    return rows
 
 
 def _lift_off(printed: Any, corrected: Any) -> list[Trial]:
     """Whether the mass leaves the obstacle, against whether the free flight is above each level."""
-    found = []
-    for place in regular():
-        clearance = surfaces.clearance(place.model)
-        height = float(place.model.flight(place.tau, 0.0, 0.01).x)
-        flies = place.model.first_hit(place.tau, 0.0).status != Status.sticks
+    rows = []
+    for point in regular():
+        clearance = surfaces.clearance(point.model)
+        height = float(point.model.flight(point.tau, 0.0, 0.01).x)
+        flies = point.model.first_hit(point.tau, 0.0).status != Status.sticks
         says = {level: height > number(level, {"c": clearance}) for level in (printed, corrected)}
-        found.append(
+        rows.append(
             Trial(
-                place.name,
+                point.name,
                 f"it lifts off, x_c(0.01) = {height:.9f}, c = {clearance:g}",
                 str(flies),
                 str(says[printed]),
@@ -96,28 +96,28 @@ def _lift_off(printed: Any, corrected: Any) -> list[Trial]:
                 says[corrected] == flies,
             )
         )
-    return found
+    return rows
 
 
 def rest_at_tangency(_printed: Any, _corrected: Any) -> list[Trial]:
     """From (tau_*, 0): the first hit where a' > 0, and the status on the same model with g reversed, a' < 0."""
-    found = []
+    rows = []
     for name, (f, g) in arcs.LIFT_OFF.items():
         time = float(ImpactOscillator(f, g, 0, "0.5").impact_map(0.0, 0.0).flight_time)
         pressed = ImpactOscillator(f, f"-{g}", 0, "0.5").impact_map(0.0, 0.0).status == Status.sticks
-        told = f"{time:.8g} where a' > 0; {'rests' if pressed else 'flies'} where a' < 0"
-        found.append(
+        text = f"{time:.8g} where a' > 0; {'rests' if pressed else 'flies'} where a' < 0"
+        rows.append(
             Trial(
                 name,
                 "first flight from (tau_*, 0)",
-                told,
+                text,
                 "rests",
                 "flies where a' > 0",
                 not time > 0.1,
                 time > 0.1 and pressed,
             )
         )
-    return found
+    return rows
 
 
 def _sets(_printed: Any, _corrected: Any) -> list[Trial]:
@@ -125,15 +125,15 @@ def _sets(_printed: Any, _corrected: Any) -> list[Trial]:
 
     Damped models: without damping a linear one at omega = 2 repeats, and touches c at rest again after 2 pi.
     """
-    found = []
+    rows = []
     worst = surfaces.horizon_images().worst
-    for place in damped():
+    for point in damped():
         times = np.concatenate([np.linspace(-12, -0.1, 2400)[::-1], np.linspace(0.1, 12, 2400)])
-        flown = place.model.flight(place.tau, 0.0, times)
-        nearest = float(np.min(np.hypot(flown.x - surfaces.clearance(place.model), flown.xdot)))
-        found.append(
+        flown = point.model.flight(point.tau, 0.0, times)
+        nearest = float(np.min(np.hypot(flown.x - surfaces.clearance(point.model), flown.xdot)))
+        rows.append(
             Trial(
-                place.name,
+                point.name,
                 "distance from (c, 0) of the flight from (tau, 0), |t| > 0.1",
                 f"{nearest:.3g}",
                 "0",
@@ -142,28 +142,28 @@ def _sets(_printed: Any, _corrected: Any) -> list[Trial]:
                 nearest > 1e-2 and worst < 1e-9,
             )
         )
-    return found
+    return rows
 
 
 def _semiconjugacy(_printed: Any, _corrected: Any) -> list[Trial]:
     """G(p(z)) against R(phi(z)) at the first hit and at the next crossing of the free flight."""
-    found = []
-    for place in regular():
-        t = float(place.model.impact_map(place.tau, 0.5).flight_time)
+    rows = []
+    for point in regular():
+        t = float(point.model.impact_map(point.tau, 0.5).flight_time)
         times = np.linspace(t + 0.05, t + 9, 900)
-        above = np.sign(place.model.flight(place.tau, 0.5, times).x - surfaces.clearance(place.model))
+        above = np.sign(point.model.flight(point.tau, 0.5, times).x - surfaces.clearance(point.model))
         later = float(times[np.flatnonzero(above[1:] != above[:-1])[0]])
-        step = place.model.impact_map(place.tau, 0.5)
-        found.append(
+        step = point.model.impact_map(point.tau, 0.5)
+        rows.append(
             compared(
-                place.name,
+                point.name,
                 "tau of G(p(z)), z the next crossing",
                 float(step.tau),
-                place.tau + later,
-                place.tau + _first_return(place, t),
+                point.tau + later,
+                point.tau + _first_return(point, t),
             )
         )
-    return found
+    return rows
 
 
 def _first_return(place: Place, t: float) -> float:

@@ -86,12 +86,12 @@ def _slope_sign(stated: Any) -> Check:
 def _normally_hyperbolic(stated: tuple[Any, Any]) -> Check:
     """(multiplier along Pi_0, multiplier across): 1, as G is the identity there, and a contraction for every r in (0, 1)."""
     (along, tangent), (across, direction) = route.eigenvectors()
-    rest = [part.subs({route.sigma: 0, route.v: 0}) for part in (route.y_c(2).subs(t, 0),)]
+    rest = [component.subs({route.sigma: 0, route.v: 0}) for component in (route.y_c(2).subs(t, 0),)]
     return every(
         [
             (
                 "a launch with v = 0 is at rest where a < 0: Pi_0 consists of fixed points",
-                all(is_zero(part) for part in rest),
+                all(is_zero(component) for component in rest),
             ),
             (f"the multiplier along it is {along}", same(along, stated[0]) and is_zero(tangent[1])),
             (

@@ -95,13 +95,13 @@ def _zeros(stated: Any) -> Check:
     letters = {sympy.cos(omega * time): C, sympy.sin(omega * time): S}
     value, rate = model.subs(letters), sympy.diff(model, time).subs(letters)
     circle = C**2 + S**2 - 1
-    at_zero = {letter: _zero_of(part, letter) for letter, part in ((C, value), (S, rate))}
-    found = sympy.expand(circle.subs(at_zero))
-    substitution(At(circle, at_zero), found)
+    at_zero = {letter: _zero_of(value_, letter) for letter, value_ in ((C, value), (S, rate))}
+    remainder = sympy.expand(circle.subs(at_zero))
+    substitution(At(circle, at_zero), remainder)
     return every(
         [
-            (f"a_c = {value} and a_c' = {rate} vanish together only where {found} = 0", same(found, stated)),
-            ("so at c = 1 and c = -1 alone", sympy.Poly(found, c).real_roots() == [-1, 1]),
+            (f"a_c = {value} and a_c' = {rate} vanish together only where {remainder} = 0", same(remainder, stated)),
+            ("so at c = 1 and c = -1 alone", sympy.Poly(remainder, c).real_roots() == [-1, 1]),
         ],
         modulo=("Sard's theorem",),
     )
@@ -149,14 +149,14 @@ def followed_zero() -> tuple[Any, Any]:
     rate = sympy.cancel(-sympy.diff(acceleration, delta).subs(at_zero) / sympy.diff(acceleration, sigma).subs(at_zero))
     moved = {sigma: rate * delta}
     substitution(At(acceleration, moved), sympy.Integer(0), order=1, small=[delta])
-    found = []
+    rows = []
     for order in (1, 2):
         derivative = sympy.diff(acceleration, sigma, order)
         by_both = [sympy.diff(derivative, letter).subs(at_zero) for letter in (sigma, delta)]
-        found.append(sympy.cancel(by_both[0] * rate + by_both[1]))
+        rows.append(sympy.cancel(by_both[0] * rate + by_both[1]))
         start = derivative.subs(at_zero)
-        substitution(At(derivative, moved), At(start + X * delta, {X: found[-1]}), order=1, small=[delta])
-    return found[0], found[1]
+        substitution(At(derivative, moved), At(start + X * delta, {X: rows[-1]}), order=1, small=[delta])
+    return rows[0], rows[1]
 
 
 def _leading(j: int, order: int) -> Any:
@@ -190,7 +190,7 @@ def _saddle(stated: int) -> Check:
     square = sympy.cancel(determinant / a1**2)
     return every(
         [
-            ("the gradient vanishes", all(is_zero(part) for part in gradient)),
+            ("the gradient vanishes", all(is_zero(component) for component in gradient)),
             (
                 f"the Hessian determinant {determinant} has the stated sign for a' != 0",
                 square.is_Rational and sympy.sign(square) == stated,

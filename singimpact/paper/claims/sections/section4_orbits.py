@@ -43,12 +43,12 @@ def relation(j: int) -> list[Part]:
     """Signs of the forms of the flights between sigma = -S and -l S."""
     launch, landing = ratios.reduced(j)
     falls = same(sympy.diff(ratios.by_ratio(j).launch, l), -landing)
-    closed_form = all(is_zero(form.subs(l, lambda_) - part) for form, part in ((launch, P(j)), (landing, Q(j))))
+    closed_form = all(is_zero(form.subs(l, lambda_) - velocity) for form, velocity in ((launch, P(j)), (landing, Q(j))))
     return [
         (
             f"v_c(-S, (1-l)S) = b S^{j + 1} (1-l)(P + O(S)), impact speed b S^{j + 1} (1-l)(Q + O(S)), P = {launch}, "
             f"Q = {landing}, both > 0 for {BEHIND} <= l <= 1",
-            closed_form and all(positive_up_to_the_ends(part, BEHIND, 1) for part in (launch, landing)),
+            closed_form and all(positive_up_to_the_ends(velocity, BEHIND, 1) for velocity in (launch, landing)),
         ),
         ("d((1-l)P)/dl = -Q < 0, so the first hit is the only root and depends smoothly on the launch", falls),
         (f"l^{j + 1} P/Q rises strictly from 0 to 1 on [0, 1]: one invariant ratio lambda for every r", rises(j)),
@@ -82,12 +82,12 @@ def limit_of_DG(j: int) -> list[Part]:
 
     In (S, l) launch and landing are smooth, and G is the second after the inverse of the first.
     """
-    place = {sigma: -1, t: 1 - l}
+    point = {sigma: -1, t: 1 - l}
     launch, landing = ratios.forms(j)
-    before = sympy.Matrix([sigma, launch]).jacobian([sigma, t]).subs(place)
-    after = sympy.Matrix([sigma + t, ratios.restitution_of_ratio(j) * landing]).jacobian([sigma, t]).subs(place)
-    found, stated = after * before.inv(), DG_on_ray(j).subs(lambda_, l)
-    agree = all(is_zero(one - other) for one, other in ((found.trace(), stated.trace()), (found.det(), stated.det())))
+    before = sympy.Matrix([sigma, launch]).jacobian([sigma, t]).subs(point)
+    after = sympy.Matrix([sigma + t, ratios.restitution_of_ratio(j) * landing]).jacobian([sigma, t]).subs(point)
+    limit, stated = after * before.inv(), DG_on_ray(j).subs(lambda_, l)
+    agree = all(is_zero(one - other) for one, other in ((limit.trace(), stated.trace()), (limit.det(), stated.det())))
     return [
         (
             "launch and landing are S^j times smooth functions of (S, l), d launch/d l = -Q is not 0, so DG scaled "

@@ -25,12 +25,12 @@ RATES = ("1/2", "1/5")
 DIGITS = 40
 
 
-def _coefficient(found: Callable[[Place], float]) -> Trials:
+def _coefficient(measured: Callable[[Place], float]) -> Trials:
     """Trials of a coefficient of v_c at a regular point of two damped models (f_v = 0 would hide the misprint)."""
 
     def trials(printed: Any, corrected: Any) -> list[Trial]:
         return [
-            compared(place.name, "coefficient of v_c", found(place), says[0], says[1], tolerance=1e-5)
+            compared(place.name, "coefficient of v_c", measured(place), says[0], says[1], tolerance=1e-5)
             for place in damped()
             for says in [[number(part[0], place.jets()) for part in (printed, corrected)]]
         ]
@@ -58,16 +58,16 @@ def _impact(printed: Any, corrected: Any) -> list[Trial]:
 
 def _next_eta(printed: Any, corrected: Any) -> list[Trial]:
     """eta/h of the second flight after a launch at sigma = -h just below gamma."""
-    found = []
-    for place, arc in zip(tangencies(), arcs.places(), strict=True):
-        first = place.leading(lambda h, p=place, c=arc.coefficient: _etas(p, c, h)[0])
-        after = place.leading(lambda h, p=place, c=arc.coefficient: _etas(p, c, h)[1])
-        values = place.jets() | {"sigma": -1.0, "eta": first}
-        stated = [number(part[1], values) for part in (printed, corrected)]
-        found.append(
-            compared(place.name, f"eta of the next launch, from eta = {first:.6f} at sigma = -1", after, *stated)
+    rows = []
+    for point, arc in zip(tangencies(), arcs.places(), strict=True):
+        first = point.leading(lambda h, p=point, c=arc.coefficient: _etas(p, c, h)[0])
+        after = point.leading(lambda h, p=point, c=arc.coefficient: _etas(p, c, h)[1])
+        values = point.jets() | {"sigma": -1.0, "eta": first}
+        stated = [number(formula[1], values) for formula in (printed, corrected)]
+        rows.append(
+            compared(point.name, f"eta of the next launch, from eta = {first:.6f} at sigma = -1", after, *stated)
         )
-    return found
+    return rows
 
 
 def _etas(place: Place, coefficient: float, h: float) -> tuple[float, float]:
@@ -86,15 +86,15 @@ def _bent_sigma(printed: Any, corrected: Any) -> list[Trial]:
 
     A statement is tried by its last part, the degree from which it leaves out terms: 0 is left for more than 2.
     """
-    found = []
-    for place in tangencies():
-        values = place.jets()
-        truth = place.leading(lambda h, p=place, k=values["k"]: (RAY * h - h - _fold_eta(p, k, h) - h / 2) / h**2)
+    rows = []
+    for point in tangencies():
+        values = point.jets()
+        truth = point.leading(lambda h, p=point, k=values["k"]: (RAY * h - h - _fold_eta(p, k, h) - h / 2) / h**2)
         jets = values | {"a_d2": values["a_d2"] / values["k"], "sigma": -1.0, "eta": RAY - 1.5}
         quadratic = number(next_sigma() - (fold.eta - sigma / 2), jets)
         says = [0.0 if order > 2 else quadratic for *_, order in (printed, corrected)]
-        found.append(compared(place.name, f"(sigma' - eta + sigma/2)/h^2 at sigma = -h, t = {RAY} h", truth, *says))
-    return found
+        rows.append(compared(point.name, f"(sigma' - eta + sigma/2)/h^2 at sigma = -h, t = {RAY} h", truth, *says))
+    return rows
 
 
 def _fold_eta(place: Place, k: float, h: float) -> float:
@@ -117,18 +117,18 @@ def _arcs(_printed: Any, _corrected: Any) -> list[Trial]:
 def arcs_at(places: tuple[Place, ...], j: int) -> list[Trial]:
     """The number of invariant arcs that end at a contact point, v > 0 on them or not."""
     curves = {case.name.partition(",")[0]: case for case in true_orbits.gamma_cases(j)}
-    found = []
-    for place in places:
-        case = curves[place.name.partition(",")[0]]
+    rows = []
+    for point in places:
+        case = curves[point.name.partition(",")[0]]
         resting = all(
-            place.model.first_hit(place.tau - s, 0.0).status == Status.sticks for s in (0.2, 0.1, 0.01, 0.001)
+            point.model.first_hit(point.tau - s, 0.0).status == Status.sticks for s in (0.2, 0.1, 0.01, 0.001)
         )
         own = case.error < 1e-3
-        told = f"{own + resting}, of which {int(own)} with v > 0"
-        found.append(
-            Trial(place.name, "invariant arcs that end at w_*", told, "1", "1 with v > 0", own + resting == 1, own)
+        text = f"{own + resting}, of which {int(own)} with v > 0"
+        rows.append(
+            Trial(point.name, "invariant arcs that end at w_*", text, "1", "1 with v > 0", own + resting == 1, own)
         )
-    return found
+    return rows
 
 
 def _eigenvalue(printed: Any, corrected: Any) -> list[Trial]:
@@ -143,14 +143,14 @@ def _eigenvalue(printed: Any, corrected: Any) -> list[Trial]:
 def _cubic(printed: int, corrected: int) -> list[Trial]:
     """v_c has a term in t^3 at a tangency, so eta^3 in the fold coordinates; a source change by terms of degree n alters
     p from degree n + 1 on, so changes that are the identity to second order leave it."""
-    found = []
-    for place in tangencies():
-        truth = place.taylor(0.0, 3)
-        jets = place.jets()
+    rows = []
+    for point in tangencies():
+        truth = point.taylor(0.0, 3)
+        jets = point.jets()
         exact = -jets["a_d2"] / 24 + jets["a_d1"] * jets["b"] / 24
         says = [0.0 if order >= 2 else exact for order in (printed, corrected)]
-        found.append(compared(place.name, "coefficient of t^3 that the changes must remove", truth, *says))
-    return found
+        rows.append(compared(point.name, "coefficient of t^3 that the changes must remove", truth, *says))
+    return rows
 
 
 def _numbers(r: str, mp: Any) -> dict[str, Any]:
@@ -216,10 +216,10 @@ def _third_form(name: str, at: dict[str, Any]) -> Trial:
     slope = {m: (_image(m + step, rate) - _image(m - step, rate)) / (2 * step) for m in (mp.mpf(3) / 2, at["m3"])}
     (extra, own), (_, m3) = slope.values(), slope
     formula = [_at(fold.N_r_at_fixed_points(), m, rate) for m in (mp.mpf(3) / 2, m3)]
-    told = f"{nstr(extra, 12)} at 3/2, {nstr(own, 12)} at m3"
+    text = f"{nstr(extra, 12)} at 3/2, {nstr(own, 12)} at m3"
     says = [nstr(value, 12) for value in formula]
     near = [abs(a - b) < 1e-15 for a, b in zip((extra, own), formula, strict=True)]
-    return Trial(name, "dm'/dm", told, f"{says[0]} at 3/2", f"{says[1]} at m3, nothing of 3/2", near[0], near[1])
+    return Trial(name, "dm'/dm", text, f"{says[0]} at 3/2", f"{says[1]} at m3, nothing of 3/2", near[0], near[1])
 
 
 def _m2_line(printed: int, corrected: int) -> list[Trial]:

@@ -274,7 +274,7 @@ def limit_in_words(j: int) -> str:
     larger = eigenvalues_on_gamma(j)[0]
     if not is_zero(larger**2 - matrix.trace() * larger + matrix.det()):
         raise ArithmeticError("the eigenvalue is no root of the characteristic polynomial")
-    trace, determinant = (latex(sympy.factor(part)) for part in (matrix.trace(), matrix.det()))
+    trace, determinant = (latex(sympy.factor(invariant)) for invariant in (matrix.trace(), matrix.det()))
     return (
         r"\lim_{w\to w_*,\,w\in\gamma}\Lambda(w)>1,\ \text{the larger root of}\ \Lambda^2-T\Lambda+D=0,\ "
         rf"T={trace},\ D={determinant}"

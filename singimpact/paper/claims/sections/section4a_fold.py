@@ -99,13 +99,13 @@ def first_component(stated: Any, order: Any) -> list[tuple[str, bool]]:
     """
     lowest, terms = next_sigma_remainder(stated)
     shown = ", ".join(str(sympy.factor(value) * sigma**i * eta**n) for (i, n), value in terms.items())
-    kept = all(terms.get(key, 0) != 0 for key in ((2, 0), (0, 2)))
+    both_squares = all(terms.get(key, 0) != 0 for key in ((2, 0), (0, 2)))
     return [
         (
             f"in the coordinates of e:pdef, lengths in units of k, the terms of lowest degree beside it have degree {lowest}: {shown or 'none'}",
             order == lowest,
         ),
-        ("those in sigma^2 and eta^2 stay for every eta that keeps the phase sigma and the fold form", kept),
+        ("those in sigma^2 and eta^2 stay for every eta that keeps the phase sigma and the fold form", both_squares),
     ]
 
 
@@ -137,15 +137,15 @@ def _h(stated: tuple[Any, Any, Any]) -> Check:
     folded = fold.psi_p()
     target = fold.psi_q()
     closes = [
-        part.subs({sigma: new_sigma, eta: new_eta}, simultaneous=True) - goal
-        for part, goal in zip(folded, target, strict=True)
+        component.subs({sigma: new_sigma, eta: new_eta}, simultaneous=True) - goal
+        for component, goal in zip(folded, target, strict=True)
     ]
     point = {sigma: sympy.Integer(-1), eta: -sympy.Rational(11, 10), r: HALF}  # t = eta + 3/2 > 0, before the horizon
     landed = {"sigma'": new_sigma.subs(point), "eta'": new_eta.subs(point)}
     launched = landed["sigma'"] < 0 and bool(sympy.N(landed["eta'"], 30) < 0)
     return every(
         [
-            ("psi o p(h) = psi o q to second order", all(is_zero(part) for part in closes)),
+            ("psi o p(h) = psi o q to second order", all(is_zero(component) for component in closes)),
             (
                 "from the visible point sigma = -1, eta = -11/10 at r = 1/2 it lands on the visible part eta' < 0, sigma' < 0",
                 launched,

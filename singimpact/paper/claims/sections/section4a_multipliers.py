@@ -76,7 +76,7 @@ def _saddle(stated: tuple[Any, Any, Any, Any]) -> Check:
     """Limits of (lambda, mu) as r -> 0 and as r -> 1, and 0 < lambda < 1 < mu for every r in (0, 1)."""
     rate, _ = fold.h_blown_up()
     multiplier = fold.N_r_at_fixed_points()
-    ends = tuple(value_at(part, m, end) for end in (HALF, THREE_HALVES) for part in (rate, multiplier))
+    ends = tuple(value_at(eigenvalue, m, end) for end in (HALF, THREE_HALVES) for eigenvalue in (rate, multiplier))
     return every(
         [
             ("m3 in (1/2, 3/2) runs once through r in (0, 1)", ray_m3((HALF, THREE_HALVES)).holds),

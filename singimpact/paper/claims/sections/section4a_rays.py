@@ -40,20 +40,20 @@ def _line(low: Any, high: Any) -> Callable[[tuple[int, int]], Check]:
     """A verifier of (orientation of q against p, sign of v on the image) for every root in (low, high)."""
 
     def verify(stated: tuple[int, int]) -> Check:
-        found = _ray(low, high)
+        ray = _ray(low, high)
         return every(
             [
                 ("p and q map the line onto one parabola", _same_parabola()),
                 (
-                    f"q turns it {'round' if found['orientation'] < 0 else 'the same way'}",
-                    found["orientation"] == stated[0],
+                    f"q turns it {'round' if ray['orientation'] < 0 else 'the same way'}",
+                    ray["orientation"] == stated[0],
                 ),
-                (f"v is {'positive' if found['v'] > 0 else 'negative'} on it for k > 0", found["v"] == stated[1]),
+                (f"v is {'positive' if ray['v'] > 0 else 'negative'} on it for k > 0", ray["v"] == stated[1]),
             ],
             witness=lambda: {
                 "m in": f"({low}, {high})",
-                "orientation": str(found["orientation"]),
-                "sign of v": str(found["v"]),
+                "orientation": str(ray["orientation"]),
+                "sign of v": str(ray["v"]),
             },
         )
 
@@ -76,14 +76,14 @@ def _gradient(stated: Any) -> Check:
 
 def _m2_sign(stated: int) -> Check:
     """Sign of v after q o p^{-1} on the image of the m2 line, where v > 0 before."""
-    found = _ray(sympy.Integer(0), HALF)["v"]
+    ray = _ray(sympy.Integer(0), HALF)["v"]
     root = sympy.Poly(fold.fixed_point_factors()[1].subs(r, HALF), m).nroots(n=20)[1]
     before = fold.gamma_leading().subs({m: root, fold.k: 1})
     after = _q_velocity(root)
     return every(
         [
             ("p and q map the line onto one parabola", _same_parabola()),
-            ("on which v > 0 for k > 0, before and after", found == stated),
+            ("on which v > 0 for k > 0, before and after", ray == stated),
         ],
         witness=lambda: {"r": "1/2", "k": "1", "m2": str(root), "v before": str(before), "v after": str(after)},
     )
@@ -100,10 +100,10 @@ def ray_m3(stated: tuple[Any, Any]) -> Check:
     """On the m3 ray v > 0 and p, q agree in orientation; m3 grows from stated[0] to stated[1] with r."""
     low, high = stated
     rule = fold.r_of_m()
-    found = _ray(low, high)
+    ray = _ray(low, high)
     return every(
         [
-            ("v > 0 and the same orientation on the ray", found == {"v": 1, "orientation": 1}),
+            ("v > 0 and the same orientation on the ray", ray == {"v": 1, "orientation": 1}),
             ("t = (m - 3/2) sigma > 0 for sigma < 0", positive_on(THREE_HALVES - m, m, low, high)),
             ("r(m) increases on the interval", positive_on(sympy.diff(rule, m), m, low, high)),
             ("from 0 to 1", value_at(rule, m, low) == 0 and value_at(rule, m, high) == 1),

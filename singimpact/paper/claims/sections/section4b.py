@@ -215,10 +215,10 @@ def _conditions(stated: tuple[Any, Any]) -> Check:
     box = {ell: (0, sympy.oo), r: (0, 1), k: (-sympy.oo, 0)}
     return every(
         [
-            *((told, same(*sides)) for told, sides in left.items()),
+            *((wording, same(*sides)) for wording, sides in left.items()),
             (
                 "K_0 and L_0 are positive for every l > 0, so a delta exists",
-                all(positive_in(part, box) for part in stated),
+                all(positive_in(condition, box) for condition in stated),
             ),
         ]
     )

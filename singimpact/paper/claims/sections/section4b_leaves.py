@@ -87,9 +87,9 @@ def _foliated(stated: tuple[int, int]) -> Check:
 
     The signs of the ends are read off leaves of true orbits: the step to all leaves is a sentence.
     """
-    found = leaves.ends()
-    sides = (1 if all(case.foot > 0 for case in found) else 0, -1 if all(case.end < 0 for case in found) else 0)
-    ordered = all(abs(one.end) > abs(two.end) for one, two in pairwise(found) if one.name == two.name)
+    ends = leaves.ends()
+    sides = (1 if all(case.foot > 0 for case in ends) else 0, -1 if all(case.end < 0 for case in ends) else 0)
+    ordered = all(abs(one.end) > abs(two.end) for one, two in pairwise(ends) if one.name == two.name)
     return every(
         [
             *orbits.shortening(1, -1),
@@ -100,7 +100,7 @@ def _foliated(stated: tuple[int, int]) -> Check:
                 "a neighbourhood",
                 sides == stated,
             ),
-            (f"true orbits: {len(found)} leaves on two models, nested: one with a smaller foot lies inside", ordered),
+            (f"true orbits: {len(ends)} leaves on two models, nested: one with a smaller foot lies inside", ordered),
         ],
         "argued",
     )

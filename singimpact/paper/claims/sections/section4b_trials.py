@@ -43,15 +43,15 @@ def _gentle() -> tuple[Place, ...]:
 
 def _range(printed: Any, corrected: Any) -> list[Trial]:
     """t/sigma of true flights from the edge v = -(9/4) r k sigma^2, against the last ray of each statement."""
-    found = []
-    for place in _gentle():
-        jets = place.jets()
-        edge = -2.25 * place.r * jets["k"]
-        last = place.leading(lambda h, p=place, e=edge: float(p.model.impact_map(p.tau + h, e * h * h).flight_time) / h)
-        ends = [number(part, jets) for part in (printed, corrected)]
-        found.append(
+    rows = []
+    for point in _gentle():
+        jets = point.jets()
+        edge = -2.25 * point.r * jets["k"]
+        last = point.leading(lambda h, p=point, e=edge: float(p.model.impact_map(p.tau + h, e * h * h).flight_time) / h)
+        ends = [number(formula, jets) for formula in (printed, corrected)]
+        rows.append(
             Trial(
-                place.name,
+                point.name,
                 "l of the edge that the rays must reach",
                 f"{last:.8g}",
                 f"l <= {ends[0]:.8g}",
@@ -60,7 +60,7 @@ def _range(printed: Any, corrected: Any) -> list[Trial]:
                 last <= ends[1],
             )
         )
-    return found
+    return rows
 
 
 def _velocities(place: Place, sigma: float) -> tuple[float, float]:
@@ -77,44 +77,44 @@ def _bound(which: int, quantity: str, sign: int) -> Trials:
     """Trials of a bound on p~ (from below, sign 1), q~ or q~/p~ (from above, -1)."""
 
     def trials(printed: Any, corrected: Any) -> list[Trial]:
-        found = []
-        for place in foliated():
-            p, q = _velocities(place, NEAR)
+        rows = []
+        for point in foliated():
+            p, q = _velocities(point, NEAR)
             value = (p, q, q / p)[which]
-            bounds = [_stated(place, part) for part in (printed, corrected)]
+            bounds = [_stated(point, formula) for formula in (printed, corrected)]
             says = [f"{'>' if sign > 0 else '<'} {bound:.8g}" for bound in bounds]
             holds = [(value - bound) * sign > 0 for bound in bounds]
             name = f"{quantity} at sigma = {NEAR}, l = {ELL}"
-            found.append(Trial(place.name, name, f"{value:.8g}", says[0], says[1], holds[0], holds[1]))
-        return found
+            rows.append(Trial(point.name, name, f"{value:.8g}", says[0], says[1], holds[0], holds[1]))
+        return rows
 
     return trials
 
 
 def _back(_printed: Any, _corrected: Any) -> list[Trial]:
     """The other end of the leaf with its foot at tau_* + sigma, as sigma -> 0."""
-    found = []
+    rows = []
     for name in {leaf.name: None for leaf in leaves.ends()}:
         own = sorted((leaf for leaf in leaves.ends() if leaf.name == name), key=lambda leaf: leaf.foot)
         (one, two), before = own[:2], all(leaf.end < 0 < leaf.foot for leaf in own)
         limit = (one.end * two.foot - two.end * one.foot) / (two.foot - one.foot)
         gone = abs(limit) < 0.05 * abs(one.end)
-        told = f"{limit:.1e} at sigma = 0, {one.end:.4g} at sigma = {one.foot:.4g}"
-        found.append(Trial(name, "sigma' of the other end", told, "< 0 at 0", "< 0 for sigma > 0", not gone, before))
-    return found
+        text = f"{limit:.1e} at sigma = 0, {one.end:.4g} at sigma = {one.foot:.4g}"
+        rows.append(Trial(name, "sigma' of the other end", text, "< 0 at 0", "< 0 for sigma > 0", not gone, before))
+    return rows
 
 
 def _ratio(printed: Any, corrected: Any) -> list[Trial]:
     """The limit of q~/p~ on true flights."""
-    found = []
-    for place in foliated():
-        value = place.leading(lambda h, p=place: _velocities(p, h)[1] / _velocities(p, h)[0])
-        bounds = [_stated(place, part) for part in (printed, corrected)]
+    rows = []
+    for point in foliated():
+        value = point.leading(lambda h, p=point: _velocities(p, h)[1] / _velocities(p, h)[0])
+        bounds = [_stated(point, formula) for formula in (printed, corrected)]
         says = [f"< {bound:.8g}" for bound in bounds]
-        found.append(
-            Trial(place.name, "limit of q~/p~", f"{value:.8g}", says[0], says[1], value < bounds[0], value < bounds[1])
+        rows.append(
+            Trial(point.name, "limit of q~/p~", f"{value:.8g}", says[0], says[1], value < bounds[0], value < bounds[1])
         )
-    return found
+    return rows
 
 
 TRIALS: dict[str, Trials] = {

@@ -20,27 +20,25 @@ def _coordinates(printed: Any, corrected: Any) -> list[Trial]:
     """v/(ell s^3) of true flights with the flight time that each reading of (s, m) gives, against the formula."""
     m = -0.5
     formula = number(swan.p_blown_up()[1], {"m": m})
-    found = []
-    for place in swans():
-        ell = place.jets()["ell"]
+    rows = []
+    for point in swans():
+        ell = point.jets()["ell"]
         times = [number(part, {"s": 1.0, "m": m}) for part in (printed, corrected)]
-        values = [place.leading(lambda h, p=place, t=t, e=ell: p.launch(h, t * h) / (e * h**3)) for t in times]
-        found.append(compared(place.name, "v/(ell s^3) at m = -1/2 by the formula", formula, *values))
-    return found
+        values = [point.leading(lambda h, p=point, t=t, e=ell: p.launch(h, t * h) / (e * h**3)) for t in times]
+        rows.append(compared(point.name, "v/(ell s^3) at m = -1/2 by the formula", formula, *values))
+    return rows
 
 
 def _intersections(printed: int, corrected: int) -> list[Trial]:
     """Real m > -1 with f(m) = g(m), at two values of r."""
-    found = []
+    rows = []
     for r in RATES:
         difference = sympy.fraction(sympy.cancel((swan.f_map() - swan.g_map()).subs(restitution, sympy.Rational(r))))[0]
         roots = [root for root in sympy.Poly(difference, swan.m).real_roots() if root > -1]
-        told = f"{len(roots)}: {', '.join(f'{float(root):.8g}' for root in roots)}"
+        text = f"{len(roots)}: {', '.join(f'{float(root):.8g}' for root in roots)}"
         holds = (len(roots) == printed, len(roots) == corrected)
-        found.append(
-            Trial(f"f and g, r = {r}", "common points", told, str(printed), str(corrected), holds[0], holds[1])
-        )
-    return found
+        rows.append(Trial(f"f and g, r = {r}", "common points", text, str(printed), str(corrected), holds[0], holds[1]))
+    return rows
 
 
 def _cube_root(_printed: Any, _corrected: Any) -> list[Trial]:
@@ -60,20 +58,20 @@ def _arcs(_printed: Any, _corrected: Any) -> list[Trial]:
 
 def _eigenvalue(printed: Any, corrected: Any) -> list[Trial]:
     """The larger eigenvalue of the exact DG at points of gamma, found backwards on true flights, as sigma -> 0."""
-    found = []
-    for place in swans():
-        rate = true_orbits.lambda_of(place.r, 2)
-        truth = float(true_orbits.extrapolated([(s, _larger(place, s, v)) for s, v in _on_gamma(place, rate)]))
-        stated = [number(part, {"lambda": rate}) for part in (printed, corrected)]
-        found.append(
+    rows = []
+    for point in swans():
+        rate = true_orbits.lambda_of(point.r, 2)
+        truth = float(true_orbits.extrapolated([(s, _larger(point, s, v)) for s, v in _on_gamma(point, rate)]))
+        stated = [number(formula, {"lambda": rate}) for formula in (printed, corrected)]
+        rows.append(
             compared(
-                place.name,
-                f"larger eigenvalue of DG at w_*, r = {Fraction(place.r).limit_denominator(99)}",
+                point.name,
+                f"larger eigenvalue of DG at w_*, r = {Fraction(point.r).limit_denominator(99)}",
                 truth,
                 *stated,
             )
         )
-    return found
+    return rows
 
 
 def _on_gamma(place: Place, rate: float) -> list[tuple[float, float]]:

@@ -164,7 +164,7 @@ def _ends(stated: tuple[int, int]) -> Check:
 def _slopes_of_outline(stated: tuple[Any, Any]) -> Check:
     """Slope of p(H) at B and at E' = p(E): along H it is dv/dsigma, since v_t = 0 there."""
     rate = sympy.diff(model.launch_velocity(), sigma)
-    found = tuple(
+    slopes = tuple(
         sympy.expand(rate.subs({sigma: point[0], t: point[1]}, simultaneous=True)) for point in (model.B, model.E)
     )
     on_both = (
@@ -178,14 +178,14 @@ def _slopes_of_outline(stated: tuple[Any, Any]) -> Check:
         [
             (f"E = {model.E} lies on H and Z, and its flight time is positive", on_both == (True, 0, 0)),
             (
-                f"slopes {found[0]} at B and {found[1]} at E'",
-                all(is_zero(x - y) for x, y in zip(found, stated, strict=True)),
+                f"slopes {slopes[0]} at B and {slopes[1]} at E'",
+                all(is_zero(x - y) for x, y in zip(slopes, stated, strict=True)),
             ),
             ("v = 0 at t = 0, where H goes through B: there the image is tangent to Pi_0", _at_rest_tangent()),
         ]
     )
     along = at(sympy.diff(model.horizon(), sigma), model.B)
-    conditions = [("H and Z cross at E: their Jacobian", crossing(model.E)), ("dv/dsigma at E'", found[1])]
+    conditions = [("H and Z cross at E: their Jacobian", crossing(model.E)), ("dv/dsigma at E'", slopes[1])]
     return near_the_swan(check, [*conditions, ("dH/dsigma at B", along)])
 
 
@@ -199,7 +199,7 @@ def _slopes_of_reset(stated: tuple[Any, Any, int]) -> Check:
     """Slope of phi(Z) at A and at E'' = phi(E), and the sign of v on phi(AE): phi(Z) = p(iota(Z)), on H again."""
     rate = sympy.diff(model.launch_velocity(), sigma)
     involuted = [(point[0] + point[1], -point[1]) for point in (model.A, model.E)]
-    found = [sympy.expand(rate.subs({sigma: a, t: b}, simultaneous=True)) for a, b in involuted]
+    slopes = [sympy.expand(rate.subs({sigma: a, t: b}, simultaneous=True)) for a, b in involuted]
     middle = (-sympy.Rational(7, 5), -2 * -sympy.Rational(7, 5) - sympy.sqrt(6 - 2 * sympy.Rational(49, 25)))
     speed = model.reset(middle)[1].subs(kappa, 1)
     common = _common_points()
@@ -207,8 +207,8 @@ def _slopes_of_reset(stated: tuple[Any, Any, int]) -> Check:
     check = every(
         [
             (
-                f"slopes {found[0]} at A and {found[1]} at E''",
-                all(is_zero(x - y) for x, y in zip(found, stated[:2], strict=True)),
+                f"slopes {slopes[0]} at A and {slopes[1]} at E''",
+                all(is_zero(x - y) for x, y in zip(slopes, stated[:2], strict=True)),
             ),
             (
                 f"Z and H meet at sigma = {', '.join(str(point[0]) for point in common)} only, of which A and E are the ends of the arc, so x-dot keeps its sign on it, which is negative at sigma = -7/5",
@@ -223,7 +223,7 @@ def _slopes_of_reset(stated: tuple[Any, Any, int]) -> Check:
         (f"H and Z cross at {name}: their Jacobian", crossing(point))
         for name, point in zip("AE", (model.A, model.E), strict=True)
     ]
-    return near_the_swan(check, [*conditions, ("dv/dsigma at E''", found[1])])
+    return near_the_swan(check, [*conditions, ("dv/dsigma at E''", slopes[1])])
 
 
 def _common_points() -> list[tuple[Any, Any]]:
@@ -244,17 +244,20 @@ def _gamma(stated: tuple[tuple[str, ...], tuple[Any, Any]]) -> Check:
     (1, -1) in (sigma, t) the landing stays where it is when v = 0, and v changes by a, which is the slope of gamma.
     """
     rates, (low, high) = stated
-    found = {rate: bracket(rate) for rate in rates}
-    places = {rate: (-1 - at.high, -1 - at.low) for rate, at in found.items() if at is not None}
+    brackets = {rate: bracket(rate) for rate in rates}
+    places = {rate: (-1 - at.high, -1 - at.low) for rate, at in brackets.items() if at is not None}
     inside = [sympy.Rational(left) > low and sympy.Rational(right) < high for left, right in places.values()]
     shown = ", ".join(
         f"({float(left):.5f}, {float(right):.5f}) at r = {rate}" for rate, (left, right) in places.items()
     )
     landing, launch = model.impact_velocity(), model.launch_velocity()
-    turns = [sympy.expand(sympy.diff(part, sigma) - sympy.diff(part, t)) for part in (landing, launch)]
+    turns = [
+        sympy.expand(sympy.diff(expression, sigma) - sympy.diff(expression, t)) for expression in (landing, launch)
+    ]
     conic = sympy.Poly(model.zero_set(), sigma)
     left_over = [
-        sympy.rem(sympy.Poly(part, sigma), conic).as_expr() for part in (turns[0], turns[1] - model.acceleration())
+        sympy.rem(sympy.Poly(expression, sigma), conic).as_expr()
+        for expression in (turns[0], turns[1] - model.acceleration())
     ]
     first = sympy.Poly(model.zero_set().subs(t, 1 - sigma), sigma).real_roots()  # from rest there a flight lands at B
     return every(

@@ -58,7 +58,7 @@ def visible_check(stated: tuple[Sequence[Arc], int]) -> Check:
     """
     arcs, parity = stated
     q = model.cofactor()
-    conics = {sympy.expand(part) for part in (q.subs(u, 0), q.subs(u, t), sympy.discriminant(q, u))}
+    conics = {sympy.expand(polynomial) for polynomial in (q.subs(u, 0), q.subs(u, t), sympy.discriminant(q, u))}
     corners = [end for arc in arcs for end in ends(arc)]
     closed = all(corners.count(end) == 2 - (end[1] == 0) for end in corners)
     points = [p for p in _cells([*conics, *(arc.conic for arc in arcs)]) if q.subs(u, 0).subs(p) > 0]
@@ -93,12 +93,12 @@ def _cells(conics: Iterable[Any]) -> list[dict[Any, Any]]:
     curves = [curve for n, curve in enumerate(curves) if -curve not in curves[:n]]
     turns = [sympy.discriminant(curve, sigma) for curve in curves]
     meets = [sympy.resultant(one, two, sigma) for one, two in combinations(curves, 2)]
-    found = []
+    cells = []
     for time in _between([*turns, *meets, t], t):
         if time > 0:
             places = _between([curve.subs(t, time) for curve in curves], sigma)
-            found += [{sigma: place, t: time} for place in places]
-    return found
+            cells += [{sigma: phase, t: time} for phase in places]
+    return cells
 
 
 def _between(polynomials: Iterable[Any], variable: Any) -> list[Any]:
@@ -139,7 +139,7 @@ def interval_check(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
     """F takes AB, at rest with a > 0, to the arc of Z with t > 0 that runs from stated[0] to stated[1]; kappa < 0."""
     conic = model.zero_set()
     product, total = (sympy.Poly(conic, t).nth(n) for n in (0, 2))
-    found = tuple((end, max(sympy.Poly(conic.subs(sigma, end), t).real_roots())) for end in (-1, 1))
+    heights = tuple((end, max(sympy.Poly(conic.subs(sigma, end), t).real_roots())) for end in (-1, 1))
     rise = sympy.diff(conic, t)
     check = every(
         [
@@ -151,7 +151,7 @@ def interval_check(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
                 "the two values of t on Z have a negative product for -1 < sigma < 1, so one is positive",
                 negative_on(product, sigma, -1, 1) and total.is_positive,
             ),
-            (f"the arc runs from {found[0]} to {found[1]}", found == stated),
+            (f"the arc runs from {heights[0]} to {heights[1]}", heights == stated),
         ]
     )
     conditions = [(f"dZ/dt at {name}", at(rise, end)) for name, end in (("C", model.C), ("B", model.B))]
@@ -169,7 +169,7 @@ def chatter_check(stated: Any) -> Check:
 
     With t' of the next flight r x'(sigma, t) = v(sigma + t, t'), up to the sign of the two.
     """
-    place, speed = model.reset(model.C)
+    landing, speed = model.reset(model.C)
     launch = sympy.expand(sympy.cancel(model.launch_velocity() / (-kappa * t)))
     impact = sympy.expand(sympy.cancel(model.impact_velocity() / (kappa * t)))
     after = {sigma: (1, sympy.oo), t: (0, sympy.oo)}
@@ -180,7 +180,7 @@ def chatter_check(stated: Any) -> Check:
         every(
             [
                 (
-                    f"phi(C) = {(place, speed)}: v > 0 after the impact for kappa < 0",
+                    f"phi(C) = {(landing, speed)}: v > 0 after the impact for kappa < 0",
                     negative_on(speed, kappa, -sympy.oo, 0),
                 ),
                 (
@@ -193,16 +193,16 @@ def chatter_check(stated: Any) -> Check:
                     positive_in(excess, after | {r: (0, 1)}),
                 ),
                 (
-                    f"so X lies beyond {place}, which is more than {stated}, and nearer than any larger place as r -> 0; "
+                    f"so X lies beyond {landing}, which is more than {stated}, and nearer than any larger place as r -> 0; "
                     "a(X) has the sign of kappa",
-                    place == model.C[0] + model.C[1]
-                    and bool(stated <= place)
+                    landing == model.C[0] + model.C[1]
+                    and bool(stated <= landing)
                     and positive_in(model.acceleration().subs(kappa, 1), {sigma: (1, sympy.oo)}),
                 ),
             ]
         ),
         [
-            ("at t = 0 the excess over t", value_at(excess.subs({sigma: place, r: 0}), t, 0)),
+            ("at t = 0 the excess over t", value_at(excess.subs({sigma: landing, r: 0}), t, 0)),
             ("x' at phi(C)", speed),
             ("dZ/dt at C", at(sympy.diff(model.zero_set(), t), model.C)),
         ],

@@ -19,9 +19,9 @@ def _separated(stated: tuple[bool, bool]) -> Check:
     parts = []
     for rate in RATES:
         lines = universal_orbits.fates(rate)
-        changes = {line: sum(one != other for one, other in pairwise(found)) for line, found in lines.items()}
-        below = [found[0] for line, found in lines.items() if changes[line]]
-        above = [found[-1] for line, found in lines.items() if changes[line]]
+        changes = {line: sum(one != other for one, other in pairwise(feet)) for line, feet in lines.items()}
+        below = [feet[0] for line, feet in lines.items() if changes[line]]
+        above = [feet[-1] for line, feet in lines.items() if changes[line]]
         parts.append(
             (
                 f"r = {rate}: over {len(lines)} lines in S' the end changes {list(changes.values())} times as v rises, "
@@ -31,20 +31,20 @@ def _separated(stated: tuple[bool, bool]) -> Check:
         )
         as_stated = bool(below) and set(below) == {stated[0]} and set(above) == {stated[1]}
         parts.append((f"below it is complete: {set(below)}; above: {set(above)}", as_stated))
-        passing = [found for line, found in lines.items() if not changes[line]]
+        passing = [feet for line, feet in lines.items() if not changes[line]]
         parts.append(("a line without a change is left of gamma: all of it leaves", not any(map(any, passing))))
     return every(parts, kind="supported")
 
 
 def _crossed(stated: int) -> Check:
     """The sign of the derivative, along R(D''C'') from C'' to B, of the phase at which chatter ends."""
-    found = {rate: universal_orbits.feet_on_the_landing_arc(rate) for rate in RATES}
-    told = "; ".join(f"{min(rates):.4f} to {max(rates):.4f} for r = {rate}" for rate, rates in found.items())
+    feet = {rate: universal_orbits.feet_on_the_landing_arc(rate) for rate in RATES}
+    text = "; ".join(f"{min(rates):.4f} to {max(rates):.4f} for r = {rate}" for rate, rates in feet.items())
     return every(
         [
             (
-                f"per length of the arc the end of chatter changes by {told}: no stable manifold touches it",
-                all(rate * stated > 0 for rates in found.values() for rate in rates),
+                f"per length of the arc the end of chatter changes by {text}: no stable manifold touches it",
+                all(rate * stated > 0 for rates in feet.values() for rate in rates),
             ),
         ],
         kind="supported",
@@ -53,19 +53,19 @@ def _crossed(stated: int) -> Check:
 
 def _beyond(stated: tuple[int, int]) -> Check:
     """The sign of the excess of feet over X at discontinuities, and crossings gained by each that comes into reach."""
-    found = universal_orbits.beyond()
+    counts = universal_orbits.beyond()
     sign, gain = stated
     return every(
         [
             (
-                f"next to delta and its first inverse images, on both sides, orbits rest at {max(map(max, found.tears)):.2g} "
+                f"next to delta and its first inverse images, on both sides, orbits rest at {max(map(max, counts.tears)):.2g} "
                 "from X at most: W^s(Y), Y > X, meets none of them",
-                all(side * sign > 0 for sides in found.tears for side in sides),
+                all(side * sign > 0 for sides in counts.tears for side in sides),
             ),
             (
-                f"W^s(Y) for Y - X = {found.excess} crosses the line sigma = -1.02 {found.crossings} times: once up and "
+                f"W^s(Y) for Y - X = {counts.excess} crosses the line sigma = -1.02 {counts.crossings} times: once up and "
                 "down between two more of them each time",
-                found.crossings == tuple(gain * count for count in range(len(found.crossings))),
+                counts.crossings == tuple(gain * count for count in range(len(counts.crossings))),
             ),
         ],
         kind="supported",

@@ -163,13 +163,13 @@ def _tangent(order: int) -> Check:
 
 def _loop(stated: int) -> Check:
     """Branches of W^s(X) over lines that meet delta: one above it and one just below, joined to the left of D'."""
-    found = universal_orbits.loops()
-    pairs = all(sum(pair) == stated for pair in found.around)
+    loops = universal_orbits.loops()
+    pairs = all(sum(pair) == stated for pair in loops.around)
     return every(
         [
             (
-                f"W^s(X) crosses the lines sigma = -1.05, -1.8, -2.7 (above, just below delta) {found.around} times, and -4.5, -5 {found.beyond} times: two branches, which join to the left of D'; nearer to A than 0.05 no line was tried",
-                pairs and found.beyond == (stated, 0),
+                f"W^s(X) crosses the lines sigma = -1.05, -1.8, -2.7 (above, just below delta) {loops.around} times, and -4.5, -5 {loops.beyond} times: two branches, which join to the left of D'; nearer to A than 0.05 no line was tried",
+                pairs and loops.beyond == (stated, 0),
             )
         ],
         kind="supported",
@@ -178,18 +178,18 @@ def _loop(stated: int) -> Check:
 
 def _accumulation(factor: str) -> Check:
     """Heights v/h^2 of G^-n(delta) over sigma = -1 - h against gamma's; distances shrink by 1/mu."""
-    found = universal_orbits.preimages()
+    preimages = universal_orbits.preimages()
     expected = 1 / float(mu_of_lambda(1).subs(lambda_, lambda_of(0.5, 1)))
-    shown, twice = (", ".join(f"{v:.4f}" for v in heights[:5]) for heights in (found.heights, found.farther))
+    shown, twice = (", ".join(f"{v:.4f}" for v in heights[:5]) for heights in (preimages.heights, preimages.farther))
     return every(
         [
             (
-                f"v/h^2 on the line sigma = -1 - h, h = 0.001, is {shown}, ... and falls to gamma's {found.gamma:.4f}; last factor {found.factor:.3f}, 1/mu = {expected:.3f}",
-                abs(found.factor - expected) < 0.02 and factor == "1/mu",
+                f"v/h^2 on the line sigma = -1 - h, h = 0.001, is {shown}, ... and falls to gamma's {preimages.gamma:.4f}; last factor {preimages.factor:.3f}, 1/mu = {expected:.3f}",
+                abs(preimages.factor - expected) < 0.02 and factor == "1/mu",
             ),
             (
                 f"at h = 0.002 the first two are {twice}: v is of order h^2 on them",
-                all(abs(two / one - 1) < 0.02 for one, two in zip(found.heights, found.farther, strict=False)),
+                all(abs(two / one - 1) < 0.02 for one, two in zip(preimages.heights, preimages.farther, strict=False)),
             ),
         ],
         kind="supported",
@@ -198,12 +198,12 @@ def _accumulation(factor: str) -> Check:
 
 def _infinitely(count: int) -> Check:
     """Crossings of W^s(X) between successive inverse images of delta: a loop in each interval."""
-    found = universal_orbits.loops()
+    loops = universal_orbits.loops()
     return every(
         [
             (
-                f"read for the manifold through A (just after tau_* a > 0 and no point rests): W^s(X), X beyond tau_2, meets sigma = -1.02 {found.between} times in successive intervals between inverse images of delta",
-                all(number >= count for number in found.between) and count == 2,
+                f"read for the manifold through A (just after tau_* a > 0 and no point rests): W^s(X), X beyond tau_2, meets sigma = -1.02 {loops.between} times in successive intervals between inverse images of delta",
+                all(number >= count for number in loops.between) and count == 2,
             )
         ],
         kind="supported",

@@ -37,7 +37,7 @@ def _graphs(stated: tuple[int, int]) -> Check:
     middle = {sigma: sympy.Integer(0), t: sympy.sqrt(2)}  # of BE, on the horizon
     inner = -sympy.Rational(7, 5)
     other = {sigma: inner, t: -2 * inner - sympy.sqrt(6 - 2 * inner**2)}  # of AE, on the zero set
-    launch, landing = (part.subs(kappa, 1) for part in (model.launch_velocity(), model.impact_velocity()))
+    launch, landing = (velocity.subs(kappa, 1) for velocity in (model.launch_velocity(), model.impact_velocity()))
     signs = (sympy.sign(sympy.expand(launch.subs(middle))), sympy.sign(sympy.expand(landing.subs(other))))
     on_arcs = is_zero(model.horizon().subs(middle)) and is_zero(sympy.expand(model.zero_set().subs(other)))
     check = every(
@@ -79,8 +79,8 @@ def _counterpart(point: tuple[Any, Any]) -> Check:
 
 def _cusp_of_phi(point: tuple[Any, Any]) -> Check:
     """v = 0, a = 0, a' != 0 at the launch and x-dot != 0 at the landing: a cusp of phi (p:phising-cusp)."""
-    place = {sigma: point[0], t: point[1]}
-    launch, landing = model.launch_velocity().subs(place), sympy.expand(model.impact_velocity().subs(place))
+    point_ = {sigma: point[0], t: point[1]}
+    launch, landing = model.launch_velocity().subs(point_), sympy.expand(model.impact_velocity().subs(point_))
     pressed = model.acceleration().subs(sigma, point[0])
     check = every(
         [
@@ -103,9 +103,9 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
     falling = sympy.Poly(pressed * (t - s), s).terms()
     rest = -sympy.Add(*(value * s ** (n + 1) / (n + 1) for (n,), value in falling))
     flat, steep = (sympy.Poly(rest, t).nth(power) for power in (0, 1))
-    chords = [sympy.cancel((part - part.subs(s, other)) / (s - other)) for part in (flat, steep)]
+    chords = [sympy.cancel((slope - slope.subs(s, other)) / (s - other)) for slope in (flat, steep)]
     meeting = sympy.factor_list(sympy.resultant(*chords, other), s)[1]
-    found = {}
+    counts = {}
     for sign in (1, -1):
         cusps = sympy.Poly(pressed.subs({kappa: 1, scaling.e: sign}), s).real_roots()
         apart = [
@@ -114,7 +114,7 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
             for root in sympy.Poly(factor.subs({kappa: 1, scaling.e: sign}), s).real_roots()
             if root not in cusps
         ]
-        found[sign] = (len(cusps), len(apart) // 2)
+        counts[sign] = (len(cusps), len(apart) // 2)
     doubled = -3 * scaling.e  # s^2 at the crossing, whose other flight is that from -s
     substitution(At(steep, {s: -s}), -steep)
     square = sympy.Symbol("s_s")
@@ -126,7 +126,7 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
                 f"dR/ds = {sympy.factor(sympy.diff(rest, s))}: it vanishes at the zeros of a alone",
                 same(sympy.diff(rest, s), -pressed * (t - s)),
             ),
-            (f"cusps and crossings for e = 1 and e = -1: {found}", found == stated),
+            (f"cusps and crossings for e = 1 and e = -1: {counts}", counts == stated),
             (
                 "the flights from rest at -s and s are one where s^2 = -3e",
                 is_zero(sympy.rem(steep, s**2 - doubled, s)) and is_zero(flat - flat.subs(s, -s)),

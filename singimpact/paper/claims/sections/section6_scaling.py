@@ -32,15 +32,15 @@ def near_the_swan(check: Check, conditions: Named) -> Check:
     ----------
     conditions : (what, value): a value that must not be 0 for any kappa but 0, or whether the condition holds.
     """
-    told = [
+    conditions_ = [
         (f"{what} holds", value) if isinstance(value, bool) else (f"{what} = {value}", nonzero(value))
         for what, value in conditions
     ]
-    failed = [name for name, holds in told if not holds]
+    failed = [name for name, holds in conditions_ if not holds]
     if not conditions or failed:
         return replace(check, holds=False, evidence=f"{check.evidence}; does not persist near the swan: {failed}")
-    persists = f"persists near the swan for small H, since {'; '.join(name for name, _ in told)}"
-    return replace(check, evidence=f"{check.evidence}; {persists}", transverse=tuple(name for name, _ in told))
+    persists = f"persists near the swan for small H, since {'; '.join(name for name, _ in conditions_)}"
+    return replace(check, evidence=f"{check.evidence}; {persists}", transverse=tuple(name for name, _ in conditions_))
 
 
 def nonzero(value: Any) -> bool:
