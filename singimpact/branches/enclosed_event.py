@@ -10,7 +10,7 @@ shows one orbit for each: a curve of orbits. With M the derivative of the return
 
 is continuous on that curve, and has opposite signs at its ends. So it vanishes between them. At a fold dp/ds is this
 number times another that does not vanish on the box: p turns back. All orbits in the box lie on the curve. The rate of
-the number along it, from first and second derivatives of all flights over the box (`event_function`), has one sign: the
+the number along it, from first and second derivatives of all flights over the box (`rate_over`), has one sign: the
 number vanishes once, and the event is the only one.
 """
 
@@ -27,7 +27,6 @@ from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.ball_closing import BallClosing, TouchingClosing, return_slope
-from singimpact.branches.event_function import event_function, rate_over
 from singimpact.branches.events.table import kind_of
 from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
@@ -297,3 +296,37 @@ class _Curve:
                 return None
             smaller = radius / KRAWCZYK.shrink
             radius = smaller if smaller > max(KRAWCZYK.narrowest, least) else least
+
+
+# ---- what vanishes at an event of the return map
+
+
+def event_function(kind: str, total: Any) -> Any:
+    """The function of the derivative of the return map that vanishes at the event."""
+    return kind_of(kind).of_return_map(total)
+
+
+def rate_of(kind: str, total: Any, change: Any) -> Any:
+    """The rate of the test, where M changes at a rate."""
+    return kind_of(kind).rate_of_return_map(total, change)
+
+
+def rate_over(kind: str, closing: BallClosing, operator: Krawczyk, point: Point, radius: Fraction) -> Any:
+    """The rate of the test along the curve of orbits by the held unknown, over a box.
+
+    The curve has the tangent u with D F u = 0, the held component 1. Along it D G changes by D^2 G u.
+
+    Raises
+    ------
+    Refused : a flight over the box is not enclosed. ZeroDivisionError : D F may be singular on it.
+    """
+    import flint
+
+    hits = closing.bends(point, radius)
+    tangent = operator.tangent_over(closing.matrix(closing.slopes(point, radius)))
+    total, change = flint.arb_mat([[1, 0], [0, 1]]), flint.arb_mat([[0, 0], [0, 0]])
+    for i, hit in enumerate(hits):
+        slopes = flint.arb_mat([row[:2] for row in hit.slopes()])
+        moved = flint.arb_mat(hit.along((tangent[2 * i], tangent[2 * i + 1], tangent[-1])))
+        total, change = slopes * total, moved * total + slopes * change
+    return rate_of(kind, total, change)
