@@ -1,6 +1,7 @@
 """Certificates of the claims: none says X = X, each number in one matters, and a wrong derivation loses its claims."""
 
 import json
+import re
 import subprocess
 import sys
 
@@ -365,3 +366,22 @@ def test_each_proved_claim_has_a_derivation_that_a_mutant_breaks(verdicts):
 def test_the_unchanged_derivation_keeps_them():
     line = "sigma, t, v, r = sympy.symbols"
     assert held("paper/routes/implicit.py", line, line, "s3-DG s4b-M") == ["s3-DG", "s4b-M"]
+
+
+def unknown_names(old, new, source):
+    """Names of a mutated line that its source does not have, or another variable on its left side."""
+    names = {name for name in re.findall(r"(?<![\w.])[A-Za-z_]\w*", new) if not re.search(rf"\b{name}\b", source)}
+    left, right = (re.match(r"(\w+) =", text) for text in (old, new))
+    return names | ({right[1]} if left and right and left[1] != right[1] else set())
+
+
+@pytest.mark.parametrize("mutant", MUTANTS)
+def test_a_mutant_names_what_its_file_knows(mutant, clone):
+    """A name that does not exist would lose the claims for a reason of its own."""
+    file, old, new, _ = MUTANTS[mutant]
+    assert unknown_names(old, new, (clone / "singimpact" / file).read_text(encoding="utf-8")) == set()
+
+
+def test_a_stale_name_is_seen():
+    assert unknown_names("ratio = a / b", "found = a", "ratio = a / b") == {"found"}
+    assert unknown_names("ratio = a / b", "ratio = 2 * a", "ratio = a / b") == set()
