@@ -6,7 +6,7 @@ Not here: the points and their jets (`contact`), finite flights (`flights`), the
 
 from typing import TYPE_CHECKING, Any
 
-from singimpact.handed_on import names_of
+from singimpact.handed_on import names_of as _names_of
 from singimpact.theory.formulas import chatter_limit as chatter_limit
 from singimpact.theory.formulas import dynamics_on_gamma as dynamics_on_gamma
 from singimpact.theory.formulas import fibre as fibre
@@ -39,7 +39,7 @@ _FILES = {
     "notation": "latex",
     "plane_forms": "normal_form",
 }
-_value_of = names_of(__name__, _FILES)
+_value_of = _names_of(__name__, _FILES)
 
 
 def __getattr__(name: str) -> Any:
