@@ -57,6 +57,8 @@ CALLS = {
     "event_curve": lambda: si.event_curve(followed().events[0], ("A", "w"), ((0.3, 0.5), (0.75, 0.85)), points=6),
     "manifold": lambda: si.manifold(si.linear("2.8", 0, "0.8").periodic(1, 1)[0], length=1),
     "border_orbits": lambda: si.border_orbits(si.linear("2.8", 0, "1/2"), between=("0.6", "0.61"), points=10),
+    "homoclinic_points": lambda: si.homoclinic_points(si.linear("2.8", 0, "0.8").periodic(1, 1)[0], length=3),
+    "enclosed event": lambda: followed().events[0].certified(15),
     "enclosed orbit": lambda: OSC.periodic(1, 1)[0].certified(15),
     "fixed_points": lambda: si.fixed_points.tangency("1/2", digits=20),
 }
