@@ -1,5 +1,7 @@
 """What notebooks are committed as: run from top to bottom, with their pictures; .ci/check executes them again."""
 
+import ast
+import importlib
 import json
 import re
 
@@ -15,6 +17,16 @@ def notebooks(request):
 
 def test_seven_stories_in_order(notebooks):
     assert [name.partition("_")[0] for name in notebooks] == ["1", "2", "3", "4", "5", "6", "7"]
+
+
+def test_what_a_notebook_imports_is_there(notebooks):
+    """A file of the package that was renamed is renamed here too."""
+    for name, notebook in notebooks.items():
+        cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+        for imported in (node for cell in cells for node in ast.walk(ast.parse(cell))):
+            if isinstance(imported, ast.ImportFrom) and imported.module.startswith("singimpact"):
+                module = importlib.import_module(imported.module)
+                assert all(hasattr(module, alias.name) for alias in imported.names), (name, imported.module)
 
 
 def test_stored_as_run_with_pictures(notebooks):
