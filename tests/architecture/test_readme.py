@@ -86,3 +86,12 @@ def test_every_room_is_in_the_table(clone):
     rooms = {path.parent.name for path in (clone / "singimpact").glob("*/__init__.py")}
     table = (clone / "CONTRIBUTING.md").read_text().partition("## Which room")[2].partition("\n## ")[0]
     assert {room for room in rooms if f"`{room}`" not in table} == set()
+
+
+def test_a_flight_is_flown_in_at_most_ten_ways_that_are_there(clone):
+    table = (clone / "CONTRIBUTING.md").read_text().partition("## Ways to fly")[2].partition("\n## ")[0]
+    ways = [line.split("|")[1] for line in table.splitlines() if line.startswith("| `")]
+    assert 5 <= len(ways) <= 10
+    named = [name for way in ways for name in re.findall(r"`([^`]+)`", way) if name != "tests"]
+    paths = [clone / "singimpact" / name for name in named]
+    assert [path for path in paths if not path.exists() and not path.with_suffix(".py").exists()] == []
