@@ -71,14 +71,6 @@ def pytest_runtest_teardown(item):  # noqa: ARG001
         sys.modules["matplotlib.pyplot"].close("all")
 
 
-def pytest_sessionstart(session):
-    option = session.config.option
-    if not hasattr(session.config, "workerinput") and not option.collectonly and option.markexpr != "quick":
-        import singimpact as si
-
-        si.linear(2, 0, "1/2").impact_map(1, "0.1")  # a process begins to compile the kernels of linear models
-
-
 QUICK = (
     "tests/tool/algebra/test_puiseux.py",
     "tests/tool/branches/test_continuation.py",
@@ -108,15 +100,6 @@ def pytest_ignore_collect(collection_path, config):
     return None if collection_path.relative_to(config.rootpath).as_posix() in QUICK else True
 
 
-WITHOUT_FLIGHTS = (
-    "tests/paper/",
-    "tests/architecture/",
-    "tests/tool/algebra/",
-    "tests/tool/theory/",
-    "tests/tool/contact/",
-    "tests/tool/oscillator/",
-)
-"""Tests that come first, while kernels are compiled: flights take a hundred times as long until they are."""
 LONGEST = ("test_faults.py", "test_steep_layers.py", "test_threshold.py")
 """Files that take a minute: handed out next, so that no worker is left with one at the end."""
 
@@ -152,7 +135,7 @@ def pytest_collection_modifyitems(config, items):
     for item in items:
         if item.nodeid.partition("::")[0] in QUICK:
             item.add_marker("quick")
-    items.sort(key=lambda item: (not item.nodeid.startswith(WITHOUT_FLIGHTS), item.path.name not in LONGEST))
+    items.sort(key=lambda item: item.path.name not in LONGEST)
     left_out = set() if config.getoption("--slow") else {"slow"}
     if os.environ.get("SLIPCOVER_ENABLED"):
         left_out.add("plain_code")
@@ -173,15 +156,3 @@ def precision_is_put_back():
     yield
     flint = sys.modules.get("flint")
     assert flint is None or (flint.ctx.prec, flint.ctx.cap) == (53, 10)
-
-
-@pytest.fixture(scope="session", autouse=True)
-def few_compilers():
-    """Models are compiled after seconds of flights, not after a quarter: of hundreds each is flown a little."""
-    from dataclasses import replace
-
-    from singimpact.flights import machine
-
-    usual, machine.SETTINGS = machine.SETTINGS, replace(machine.SETTINGS, wait=3.0)
-    yield
-    machine.SETTINGS = usual

@@ -2,7 +2,7 @@
 
 `recurrence` (x'' = g - f to a recurrence), `disc` and `radii` (bounds of it on complex discs), `scalar` (an
 expression), `formulas` and `rational_series` (polynomials and series), `over_lists` (text over any numbers),
-`javascript` (text for a browser), `object_code` (machine code, emitted and loaded).
+`javascript` (text for a browser), `lowering` (text for LLVM), `object_code` (machine code, emitted and loaded).
 Not here: the expressions themselves (`algebra`), what a kernel is for (`flights`), frozen formulas (`generated`).
 """
 
@@ -10,6 +10,8 @@ from singimpact.handed_on import names_of
 
 _FILES = {
     "javascript": "translated",
+    "lowering": "REAL WHOLE Unsupported lowered",
+    "object_code": "emitted loaded",
     "over_lists": "FUNCTIONS",
     "radii": (
         "atan_radius bell_radius circular_radius exp_radius log_of_square_radius log_radius power_of_square_radius "

@@ -7,6 +7,7 @@ their own digest before they are mapped.
 from __future__ import annotations
 
 import ctypes
+import os
 import re
 from collections.abc import Callable
 from functools import lru_cache
@@ -17,26 +18,30 @@ NEVER_CALLED = r"(NRT_|Py|_Py|numba_)"
 """How names begin that compiled code would call to raise an exception: it raises none, so they end the process."""
 
 
-def emitted(text: str, entry: str) -> bytes:
-    """The object code of a module of LLVM whose one function to be called, an `entry`, is named by numba.
+def emitted(text: str, entry: str, machine: Any = None) -> bytes:
+    """The object code of a module of LLVM whose one function to be called is an `entry`.
 
     All other functions become internal, so that LLVM inlines them and drops arguments that nothing reads.
+
+    Parameters
+    ----------
+    text : of numba, which gives the entry a longer name, or of `codegen.lowering`. machine : another one than this.
     """
     import llvmlite.binding as llvm
 
-    machine = _machine()
+    machine = machine or _machine()
     module = llvm.parse_assembly(_closed(text))
+    module.triple, module.data_layout = machine.triple, str(machine.target_data)
     module.verify()
     for function in module.functions:
         if function.is_declaration:
             continue
         if function.name.startswith("cfunc.") and entry in function.name:
             function.name = entry
-        else:
+        elif function.name != entry:
             function.linkage = "internal"
     builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
-    for _ in range(2):  # text that numba has not optimised becomes twice as fast by a second run, and no faster by more
-        builder.getModulePassManager().run(module, builder)
+    builder.getModulePassManager().run(module, builder)
     return bytes(machine.emit_object(module))
 
 
@@ -87,32 +92,50 @@ def _machine() -> Any:
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    target = llvm.Target.from_triple(llvm.get_process_triple())
-    return target.create_target_machine(
-        cpu=llvm.get_host_cpu_name(),
-        features=llvm.get_host_cpu_features().flatten(),
-        opt=3,
-        reloc="pic",
-        codemodel="default",
-    )
+    return _of_target(llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
+
+
+def machine_for(triple: str, processor: str) -> Any:
+    """The machine of another platform, to emit object code for it.
+
+    Raises
+    ------
+    RuntimeError : this build of llvmlite knows nothing of it.
+    """
+    import llvmlite.binding as llvm
+
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    return _of_target(triple, processor, "")
+
+
+def _of_target(triple: str, processor: str, features: str) -> Any:
+    import llvmlite.binding as llvm
+
+    target = llvm.Target.from_triple(triple)
+    return target.create_target_machine(cpu=processor, features=features, opt=3, reloc="pic", codemodel="default")
 
 
 WITHOUT_EFFECT = {"NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "NUMBA_NUM_THREADS", "NUMBA_OPT", "NUMBA_THREADING_LAYER"}
 """Settings of numba that change no code, or that are set anew for each text."""
 
 
+def settings_of_numba() -> list[tuple[str, str]]:
+    """Settings in the environment that change the code which numba makes."""
+    names = sorted(name for name in os.environ if name.startswith("NUMBA_") and name not in WITHOUT_EFFECT)
+    return [(name, os.environ[name]) for name in names]
+
+
 def processor() -> str:
     """The processor and its features, on which object code depends beside its sources."""
-    import os
     from importlib.metadata import version
 
     import llvmlite
     import llvmlite.binding as llvm
 
-    names = sorted(name for name in os.environ if name.startswith("NUMBA_") and name not in WITHOUT_EFFECT)
-    settings = [(name, os.environ[name]) for name in names]
     features = llvm.get_host_cpu_features().flatten()
-    return f"{settings} {version('numba')} {llvmlite.__version__} {llvm.get_host_cpu_name()} {features}"
+    numba = version("numba")
+    return f"{settings_of_numba()} {numba} {llvmlite.__version__} {llvm.get_host_cpu_name()} {features}"
 
 
 _LOADED: list[Any] = []  # engines own the code: they live as long as the process

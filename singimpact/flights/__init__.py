@@ -8,10 +8,11 @@ Not here: flights after flights (`dynamics`), curves of flights (`surface`), pow
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "bind": "Compiler Emitted LAW MODULES constants floats_of over_floats over_lists",
+    "bind": "Emitted LAW MODULES constants floats_of over_floats over_lists",
     "certified_flights": "proof",
     "compiled_model": "CompiledModel allowed recurrence_of",
     "compiler_process": "first_wanted",
+    "compilers": "KernelCompiler text_of_model",
     "enclosures.analytic_flow": "AnalyticFlow",
     "enclosures.certified_hit": "Launch certified_hit",
     "enclosures.equation": "Equation NoHit Refused equation_of programs_of",
@@ -41,6 +42,7 @@ _FILES = {
     "no_return.polynomial": "never_turns",
     "orbits": "iterate orbit_segment",
     "rebound_law": "rebound speed_before",
+    "shipped": "PLATFORMS index_of objects platforms_here shipped_code sources_digest texts why_not",
     "states": "States",
     "together": "NotTogether in_step rest_flights runs_on_arrays",
 }

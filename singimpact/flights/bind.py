@@ -50,7 +50,6 @@ MODULES = (radii, state, lanes, double_double, waves, roots, linear, steps, tayl
            entries)  # fmt: skip
 COMPILED = (lanes, batch_isolate, batch_refine, batch, recurrence)
 """Modules that are never run over lists."""
-UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 IN_STEPS = {"step_size": "step_size_of_discs", "singular_part": "singular_part_of_discs",
             "next_hit": "next_hit_in_steps", "placed": "placed_in_steps", "quiet": "quiet_in_steps"}  # fmt: skip
 """Functions of linear models, and what stands in their places for models without a closed form."""
@@ -81,13 +80,6 @@ class Emitted:
         return self.flow, self.rho, "steps" if self.steps else ""
 
     @property
-    def passes(self) -> int:
-        """The level of numba's own passes: a text leaves them out, which saves a third of the time; with them batches
-        of states in kernels are three times as fast.
-        """
-        return 0 if self.flow or self.rho else 3
-
-    @property
     def entries(self) -> tuple[str, ...]:
         """The entries to compile, in this order."""
         if self.rho or self.flow:
@@ -95,7 +87,7 @@ class Emitted:
         return ("taylor_entry", "judge_entry") if self.steps else ("linear_entry", "batch_entry", "search_entry")
 
 
-def _own(module: types.ModuleType) -> dict[str, Callable[..., Any]]:
+def functions_of(module: types.ModuleType) -> dict[str, Callable[..., Any]]:
     return {name: part for name, part in vars(module).items()
             if isinstance(part, types.FunctionType) and part.__module__ == module.__name__}  # fmt: skip
 
@@ -110,16 +102,6 @@ def constants() -> dict[str, Any]:
             if name.isupper() or (isinstance(part, type) and issubclass(part, tuple)):
                 assert found.setdefault(name, part) is part or found[name] == part, name
     return found
-
-
-def sources() -> list[bytes]:
-    """The bytes of every file that a compiled entry is made from."""
-    from pathlib import Path
-
-    from singimpact.codegen import object_code
-
-    here = [Path(str(module.__file__)) for module in (*MODULES, object_code)]
-    return [path.read_bytes() for path in (*here, Path(__file__))]
 
 
 @lru_cache(maxsize=64)
@@ -202,122 +184,3 @@ def _nested_code(module: types.ModuleType) -> Any:
     tree = ast.parse(inspect.getsource(module))
     tree.body = [part for part in tree.body if isinstance(part, ast.FunctionDef) and not part.name.endswith("_entry")]
     return compile(nested(tree), str(module.__file__), "exec")
-
-
-class Compiler:
-    """numba's view of the kernels or of a text; its inner functions are compiled once for all entries."""
-
-    def __init__(self, emitted: Emitted) -> None:
-        import numba
-
-        self.passes = emitted.passes
-        module = types.ModuleType("singimpact_kernels")
-        self.space = vars(module)
-        self.space |= {**{name: getattr(math, name) for name in FUNCTIONS}, **constants()}
-        # without wrappers for Python, compiling takes a third less
-        inner: Any = numba.njit(error_model="numpy", **UNWRAPPED)
-        for name, part in _chosen(emitted).items():
-            bound = types.FunctionType(part.__code__, self.space, name)
-            self.space[name] = bound if name.endswith("_entry") else inner(bound)
-        self.space |= _of_addresses()
-        self.space |= _functions(emitted.rho, self.space)
-
-    def text(self, entry: str) -> str:
-        """An entry as text of LLVM; it takes seconds."""
-        import numba
-        from numba import types as kinds
-
-        address, sizes = kinds.CPointer(kinds.float64), kinds.CPointer(kinds.int64)
-        takes = {
-            LAW: kinds.float64(kinds.float64, address),
-            RECURRENCE: kinds.void(sizes, *[address] * 6),
-        }.get(entry, kinds.int64(sizes, *[address] * (ADDRESSES - 2), kinds.CPointer(kinds.int8)))
-        # the same level in every process: one name of an entry stands for one object code
-        settings: Any = numba.config
-        before, settings.OPT = settings.OPT, type(settings.OPT)(self.passes)
-        try:
-            text: str = numba.cfunc(takes, error_model="numpy")(self.space[entry]).inspect_llvm()
-        finally:
-            settings.OPT = before
-        return text
-
-
-def _chosen(emitted: Emitted) -> dict[str, Any]:
-    """The functions of all kernels by name, those of the model in their places."""
-    own = {name: part for each in MODULES for name, part in _own(each).items() if name not in ("block", "called", LAW)}
-    own |= _functions(emitted.flow, {})
-    if emitted.steps:
-        own |= {"restart": own["state_kept"], **{name: own[other] for name, other in IN_STEPS.items()}}
-        own |= {name: own[f"called_{name}"] for name in recurrence.PARTS}
-    return own
-
-
-def _functions(text: str, space: dict[str, Any]) -> dict[str, Any]:
-    """The functions of an emitted text by name; they read their globals from a namespace."""
-    made: dict[str, Any] = {}
-    exec(compile(text, "<emitted>", "exec"), space, made)
-    return {name: part for name, part in made.items() if isinstance(part, types.FunctionType)}
-
-
-def _of_addresses() -> dict[str, Any]:
-    """`layout.block` over an address; `orbits.law` and `recurrence.called` at an address."""
-    import numba
-    from llvmlite import ir
-    from numba import types as kinds
-    from numba.core import cgutils
-    from numba.extending import intrinsic
-
-    whole, number = ir.IntType(64), ir.DoubleType()
-
-    @intrinsic
-    def moved(_typing: Any, address: Any, count: Any) -> Any:
-        def emit(_context: Any, builder: Any, _signature: Any, given: Any) -> Any:
-            return builder.gep(given[0], [given[1]])
-
-        return address(address, count), emit
-
-    def block(flat: Any, at: Any, shape: Any) -> Any:
-        return numba.carray(moved(flat, at), shape)  # type: ignore[call-arg]
-
-    def last_address(builder: Any, numbers: Any, called: Any) -> Any:
-        """The function at the address that an array of numbers ends with."""
-        last = builder.sub(builder.extract_value(numbers.shape, 0), ir.Constant(whole, 1))
-        at = builder.fptoui(builder.load(builder.gep(numbers.data, [last])), whole)
-        return builder.inttoptr(at, called.as_pointer())
-
-    @intrinsic
-    def law(_typing: Any, velocity: Any, w: Any) -> Any:
-        def emit(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-            numbers = context.make_array(signature.args[1])(context, builder, given[1])
-            called = ir.FunctionType(number, [number, number.as_pointer()])
-            return builder.call(last_address(builder, numbers, called), [given[0], numbers.data])
-
-        return kinds.float64(velocity, w), emit
-
-    @intrinsic
-    def called(_typing: Any, _job: Any, _numbers: Any, p: Any, launch: Any, X: Any, W: Any, A: Any) -> Any:
-        def emit(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-            arrays = [context.make_array(kind)(context, builder, each)
-                      for kind, each in zip(signature.args[2:], given[2:], strict=True)]  # fmt: skip
-            rows = [builder.extract_value(arrays[3].shape, axis) for axis in (0, 1)]
-            sizes = written(builder, whole, [*cgutils.unpack_tuple(builder, given[0], 2), *rows])
-            numbers = written(builder, number, cgutils.unpack_tuple(builder, given[1], 4))
-            takes = ir.FunctionType(ir.VoidType(), [whole.as_pointer(), *[number.as_pointer()] * 6])
-            builder.call(
-                last_address(builder, arrays[0], takes), [sizes[0], numbers[0], *(each.data for each in arrays)]
-            )
-            return cgutils.pack_array(builder, [builder.load(place) for place in numbers])
-
-        four, two = kinds.UniTuple(kinds.float64, 4), kinds.UniTuple(kinds.int64, 2)
-        return four(two, four, p, launch, X, W, A), emit
-
-    def written(builder: Any, kind: Any, values: Any) -> Any:
-        """Places of values in memory, one after the other."""
-        memory = cgutils.alloca_once(builder, kind, len(values))
-        places = [builder.gep(memory, [ir.Constant(whole, at)]) for at in range(len(values))]
-        for place, value in zip(places, values, strict=True):
-            builder.store(value, place)
-        return places
-
-    bound: Any = numba.njit(**UNWRAPPED)(block)
-    return {"block": bound, LAW: law, "called": called}

@@ -1,4 +1,4 @@
-"""The process that compiles the entries of a text for a cache, started by `machine`.
+"""The process that compiles kernels for a cache where none come with the package, started by `machine`.
 
 It holds a lock as long as it lives.  A signal ends it, also in the middle of LLVM; so does the removal of its request.
 """
@@ -19,22 +19,19 @@ from threading import Lock, Thread
 from typing import Any
 
 from singimpact import cache
-from singimpact.flights import bind
 from singimpact.flights.bind import Emitted
+from singimpact.flights.compilers import KernelCompiler
 from singimpact.flights.machine import ASKED, BUSY, FIRST, SETTINGS, Machine, withdraw
 
 SIGNALS = {number for name in ("SIGTERM", "SIGINT", "SIGHUP") if (number := getattr(signal, name, None))}
 
 
 def compile_asked(request: Path) -> None:
-    """The work of the other process: it compiles the entries of a text and stores them, while it holds the lock."""
+    """The work of the other process: it compiles the entries of kernels and stores them, while it holds the lock."""
     if hasattr(os, "nice"):
         os.nice(10)
     gc.disable()  # a tenth of the time: numba makes millions of objects, and the process ends when it is done
-    flow, rho, steps = request.read_text(encoding="utf-8").split("\0")
-    machine = Machine(Emitted(flow, rho, bool(steps)))
-    if flow or rho:
-        _limited(*SETTINGS.text_limits)
+    machine = Machine(Emitted(steps=request.read_text(encoding="utf-8") == "steps"))
     held = machine.lock_of_cache
     signals = _heard()
     if not held.take(request.name, SETTINGS.lock):  # another program was a little faster
@@ -47,7 +44,7 @@ def compile_asked(request: Path) -> None:
 
     object_code.without_machine_code()
     try:
-        compiler = bind.Compiler(machine.emitted)
+        compiler = KernelCompiler(machine.emitted.steps)
         for name in first_wanted(request, machine.emitted.entries):
             if cache.recall(machine.place(name)) is None:
                 code = object_code.emitted(compiler.text(name), name)
@@ -60,18 +57,6 @@ def compile_asked(request: Path) -> None:
         withdraw(request)
         _remove_stale(request.parent)
         held.release()
-
-
-def _limited(seconds: int, memory: int) -> None:
-    """Let the system end this process when it takes more; a stranger's text may take gigabytes."""
-    try:
-        import resource
-    except ImportError:  # Windows has no such limits
-        return
-    for kind, most in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, memory)):
-        hard = resource.getrlimit(kind)[1]
-        with suppress(OSError, ValueError):
-            resource.setrlimit(kind, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 
 
 def _heard() -> tuple[Any, Any]:

@@ -1,7 +1,9 @@
-"""Compiled entries of a model's kernels: from memory, from the cache, or from a process that compiles them meanwhile.
+"""Compiled entries of a model: kernels that come with the package, and the model's own f, g and law, compiled once.
 
-Until they are there, flights are interpreted.  Compiling takes seconds, so one process of low priority does it, once a
-cache.  It holds a lock of the cache as long as it lives; only who finds the lock held, or has started it, waits for it.
+A model's own text takes a tenth of a second and is compiled here, as soon as its interpreted flights have taken as
+long.  Where no object code of the kernels comes for the machine, one process of low priority compiles them once a
+cache, which takes a minute, and flights are interpreted until then.  It holds a lock of the cache as long as it lives;
+only who finds the lock held, or has started it, waits for it.
 """
 
 from __future__ import annotations
@@ -17,13 +19,14 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
-from threading import Lock
+from threading import Lock, Thread
 from typing import Any
 
 from singimpact import cache
 from singimpact.file_lock import FileLock
 from singimpact.flights import bind
 from singimpact.flights.bind import Emitted
+from singimpact.flights.shipped import shipped_code, sources, why_not
 from singimpact.inputs import InputError
 from singimpact.progress import ProgressLine
 from singimpact.store import cache_folder, folder, tell, write_text
@@ -33,8 +36,8 @@ from singimpact.store import cache_folder, folder, tell, write_text
 class CompilingSettings:
     """When models are compiled."""
 
-    # seconds of interpreted flights after which a model of its own f and g is compiled: most sessions fly fewer
-    wait: float = 0.25
+    # seconds that a model's own text takes to compile, at first and for each of its characters
+    own_text: tuple[float, float] = (0.08, 3e-5)
     # seconds between two reads of the cache while a process compiles
     look: float = 0.2
     # seconds for which a new process waits for the lock, which others hold for an instant when they look at it
@@ -42,9 +45,6 @@ class CompilingSettings:
     # seconds of waiting for a process of another program, and for one of this program, after which a line says so; on
     # a terminal a line of progress does after one second
     silent: tuple[float, float] = (1.0, 30.0)
-    # seconds of CPU and bytes that the process of a text may take, after which the system ends it and flights stay
-    # interpreted: 40, 200, 270 rows take 5, 28, 32 s and 0.25, 0.6, 1.1 GB; 500 took minutes and gigabytes
-    text_limits: tuple[int, int] = (60, 3 * 2**30)
     # seconds after which the request of a process that was killed is removed
     stale: float = 86_400.0
     # bytes of address space that a process needs to compile; with 450 MB one was seen to import scipy without end
@@ -70,9 +70,11 @@ class Machine:
 
     def __init__(self, emitted: Emitted) -> None:
         self.emitted = emitted
+        self.is_own = bool(emitted.flow or emitted.rho)  # what a model adds, in place of kernels
+        self.price = SETTINGS.own_text[0] + SETTINGS.own_text[1] * len("".join(emitted.texts))
         self.spent = 0.0  # seconds of flights that were interpreted
         self._entries: dict[str, Entry] = {}
-        self._lock = Lock()
+        self._lock, self._compiling = Lock(), Lock()
         self._looked: dict[str, float] = {}
         self._asked, self._tried = "", -1e9
         self._killed = _is_confined()  # the process that compiled it, as where memory is short
@@ -80,33 +82,41 @@ class Machine:
 
     def entry(self, name: str) -> Entry | None:
         """An entry, if it is compiled: without the interpreter's lock, and with it."""
-        found = self._entries.get(name)
-        if found is not None or not compilable():
-            return found
+        entry = self._entries.get(name)
+        if entry is not None or not compilable():
+            return entry
         now = time.monotonic()
         if now - self._looked.get(name, -1e9) < SETTINGS.look:
             return None
         self._looked[name] = now
-        place = self.place(name)
-        if not place.is_file():
+        code = None if self.is_own else shipped_code(name)
+        if code is not None:
+            return self._load(name, code)
+        file = self.place(name)
+        if not file.is_file():
             return None
-        code = cache.recall(place)
+        code = cache.recall(file)
         if code is not None:
             try:
                 return self._load(name, code)
             except ValueError as error:
-                cache.damaged(place, str(error))
+                cache.damaged(file, str(error))
         with suppress(OSError):  # damaged, and said so once: who waits for this entry waits for another file
-            place.unlink()
+            file.unlink()
         return None
 
     def interpreted(self, seconds: float, name: str) -> None:
-        """Count flights that were interpreted; after a while a process compiles the text, the entry `name` first."""
+        """Count flights that were interpreted; after a while the text is compiled, the entry `name` first."""
         self.spent += seconds
-        waits = self.emitted != Emitted() and self.spent < SETTINGS.wait
+        if not compilable():
+            return
+        if self.is_own:
+            if self.spent > self.price and not _is_confined():
+                self.compile_here(name)
+            return
         if self._asked == name and _ended_with(self._request, BUSY):
             self._asked = ""
-        if self._asked == name or not compilable() or waits:
+        if self._asked == name:
             return
         now = time.monotonic()
         if now - self._tried > SETTINGS.look:
@@ -115,31 +125,74 @@ class Machine:
 
     def compile_here(self, name: str) -> Entry:
         """An entry that nothing can do without: from the process that compiles for this cache, or compiled here."""
-        from singimpact.codegen import object_code
+        entry = self.entry(name) if self.is_own else self.awaited(name)
+        if entry is not None:
+            return entry
+        with self._compiling:
+            self._looked.pop(name, None)
+            return self.entry(name) or self._compiled(name)
 
-        entry = self.awaited(name)
-        if entry is None:
-            code = object_code.emitted(bind.Compiler(self.emitted).text(name), name)
-            cache.keep(self.place(name), code)
-            entry = self._load(name, code)
-        return entry
+    def _compiled(self, name: str) -> Entry:
+        """An entry compiled now; another thread does it, so that Ctrl-C is heard, and a line says so after a second."""
+        codes: list[bytes] = []
+        errors: list[Exception] = []
+
+        def work() -> None:
+            try:
+                codes.append(self._code(name))
+            except Exception as error:
+                errors.append(error)
+
+        worker = Thread(target=work, daemon=True)
+        worker.start()
+        begun, silent = time.monotonic(), True
+        with ProgressLine() as line:
+            while worker.is_alive():
+                worker.join(SETTINGS.look / 10)
+                line.show(0, None, "the model's flights are compiled")
+                if silent and time.monotonic() - begun > SETTINGS.silent[0]:
+                    silent = False
+                    tell(f"the model's flights are compiled, once {self._reason}")
+        if errors:
+            raise errors[0]
+        cache.keep(self.place(name), codes[0])
+        return self._load(name, codes[0])
+
+    def _code(self, name: str) -> bytes:
+        from singimpact.codegen import object_code
+        from singimpact.flights.compilers import KernelCompiler, text_of_model
+
+        if self.is_own:
+            return object_code.emitted(text_of_model(self.emitted), name)
+        return object_code.emitted(KernelCompiler(self.emitted.steps).text(name), name)
+
+    @property
+    def _reason(self) -> str:
+        if self.is_own:
+            return f"a cache: its f, g or law is {len(''.join(self.emitted.texts))} characters of code"
+        return f"a cache: there is no object code of the kernels, for {why_not()}"
 
     def awaited(self, name: str) -> Entry | None:
-        """An entry from that process, started unless it runs; None when it is busy with another text, or has ended."""
+        """An entry from that process, started unless it runs; None when it is busy with another text, or has ended.
+
+        A model's own text is compiled here, unless memory is short.
+        """
+        if self.is_own:
+            return None if self._killed else self.compile_here(name)
         entry = self.entry(name)
         if entry is not None or self._given_up:
             return entry
         self._note_end()
         if not self._killed:
             self._compile_elsewhere(name)
-        place, begun, silent = self.place(name), time.monotonic(), True
+        file, begun, silent = self.place(name), time.monotonic(), True
         with ProgressLine() as line:
-            while self._is_compiled_now() and not place.is_file():
+            while self._is_compiled_now() and not file.is_file():
                 time.sleep(SETTINGS.look / 10)
                 line.show(0, None, "another process compiles the model's flights")
                 if silent and time.monotonic() - begun > SETTINGS.silent[_runs(self._request)]:
                     silent = False
-                    tell("waiting for a process that compiles the model's flights, usually for less than a minute")
+                    tell(f"waiting for a process that compiles kernels, usually for less than a minute: {why_not()}")
         self._looked.pop(name, None)
         entry = self.entry(name)
         self._given_up = entry is None
@@ -185,17 +238,12 @@ class Machine:
 
     @property
     def _request(self) -> Path:
-        return cache_folder() / FOLDER / f"{self.digest}.{self._kind}{ASKED}"
-
-    @property
-    def _kind(self) -> str:
-        """Of each kind one request runs at a time: a text takes seconds, so it does not wait for kernels."""
-        return "text" if self.emitted.flow or self.emitted.rho else "kernels"
+        return cache_folder() / FOLDER / f"{self.digest}{ASKED}"
 
     @property
     def lock_of_cache(self) -> FileLock:
-        """Held by the one process that compiles texts of this kind for the cache."""
-        return FileLock(cache_folder() / FOLDER / f".{self._kind}.lock")
+        """Held by the one process that compiles kernels for the cache."""
+        return FileLock(cache_folder() / FOLDER / ".kernels.lock")
 
     def _compile_elsewhere(self, name: str) -> bool:
         """Start a process of low priority that compiles, unless one runs for this cache; whether it compiles this text.
@@ -216,15 +264,15 @@ class Machine:
 
     def _asked_elsewhere(self, request: Path, name: str) -> bool:
         folder(request.parent)
-        running = [other.name for other in _STARTED if _runs(other) and other.name.endswith(f".{self._kind}{ASKED}")]
+        running = [other.name for other in _STARTED if _runs(other)]
         holder = running[0] if running else self.lock_of_cache.holder()
         if holder is not None and holder != request.name:
             return False
         write_text(request.with_suffix(FIRST), name)
         if holder is None:
-            write_text(request, "\0".join(self.emitted.texts))
+            write_text(request, "steps" if self.emitted.steps else "")
             try:
-                _STARTED[request] = _outliving(request, quick=not self.emitted.passes)
+                _STARTED[request] = _outliving(request)
             except (OSError, ValueError) as error:
                 withdraw(request)
                 _not_started(str(error))
@@ -308,9 +356,10 @@ class Called:
 @lru_cache(maxsize=1)
 def _digest_of_sources() -> bytes:
     """Of the kernels, of what compiles them and of the processor."""
+    from singimpact.codegen import lowering
     from singimpact.codegen.object_code import processor
 
-    parts = (*bind.sources(), processor().encode())
+    parts = (*sources(), Path(str(lowering.__file__)).read_bytes(), processor().encode())
     return hashlib.sha256(b"".join(hashlib.sha256(part).digest() for part in parts)).digest()
 
 
@@ -318,8 +367,8 @@ _STARTED: dict[Path, Any] = {}  # processes by their requests
 _STARTING = Lock()  # so that two threads do not start two
 
 
-def _outliving(request: Path, quick: bool) -> Any:
-    """Start a process that goes on when this one ends; a quick one leaves out numba's own passes."""
+def _outliving(request: Path) -> Any:
+    """Start a process that goes on when this one ends."""
     import subprocess  # 7 ms, and most processes find all compiled
 
     if not sys.executable:
@@ -327,8 +376,7 @@ def _outliving(request: Path, quick: bool) -> Any:
     return subprocess.Popen(
         [sys.executable, "-m", "singimpact.flights.compiler_process", str(request)], stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True, cwd=Path(__file__).parents[2],
-        # numba's passes take a third of the time; without them batches of states take three times as long
-        env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder()), "NUMBA_OPT": "0" if quick else "3"},
+        env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder())},
     )  # fmt: skip
 
 

@@ -33,13 +33,14 @@ from singimpact.flights import (
     VARIATIONS,
     Allowance,
     CompiledModel,
-    Compiler,
     Emitted,
+    KernelCompiler,
     constants,
     counted,
     first_wanted,
     interruptible,
     machine,
+    shipped_code,
 )
 from singimpact.flights.compiled_model import compiled_model
 
@@ -230,12 +231,23 @@ sys.stdin.readline()
 
 
 @pytest.fixture(scope="module")
-def whole_entry(compiled):
-    return compiled_model(compiled["linear"]).machine.place("linear_entry").read_bytes()
+def whole_entry(tmp_path_factory):
+    """An entry of the kernels as a cache has it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SINGIMPACT_CACHE", str(tmp_path_factory.mktemp("cache")))
+        place = machine.Machine(Emitted()).place("linear_entry")
+        machine.cache.keep(place, shipped_code("linear_entry"))
+        return place.read_bytes()
 
 
 @pytest.fixture
-def other(tmp_path, monkeypatch, compiled, whole_entry):  # noqa: ARG001
+def nothing_shipped(monkeypatch):
+    """No object code of the kernels comes with the package."""
+    monkeypatch.setattr(machine, "shipped_code", lambda _: None)
+
+
+@pytest.fixture
+def other(tmp_path, monkeypatch, compiled, whole_entry, nothing_shipped):  # noqa: ARG001
     """A machine without entries, in a cache of its own; in this process nothing compiles."""
     emitted = compiled_model(compiled["linear"]).machine.emitted
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path / "cache"))
@@ -277,7 +289,7 @@ def test_an_entry_is_waited_for_while_another_process_compiles_it(other, holder,
     monkeypatch.setattr(machine, "SETTINGS", replace(machine.SETTINGS, silent=(0.0, 0.0)))
     while_waiting(monkeypatch, lambda: (holder.stdin.write("\n"), holder.stdin.flush()))
     assert other.compile_here("linear_entry")
-    assert "waiting for a process that compiles the model's flights" in capsys.readouterr().err
+    assert "waiting for a process that compiles kernels" in capsys.readouterr().err
 
 
 def test_the_death_of_a_process_that_compiles_is_noticed(other, holder, monkeypatch):
@@ -333,8 +345,8 @@ def test_flights_go_on_interpreted_where_the_process_that_compiles_is_killed(oth
 @pytest.fixture
 def compiling(other):
     """A process that compiles, and holds the lock."""
-    other._request.write_text("\0\0")
-    process = machine._outliving(other._request, quick=False)
+    other._request.write_text("")
+    process = machine._outliving(other._request)
     lock = other.lock_of_cache
     while lock.holder() != other._request.name:
         assert process.poll() is None
@@ -441,11 +453,9 @@ def flown(place, seconds, **around):
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.split()
 
 
-@pytest.mark.slow
-def test_a_second_process_runs_what_a_third_compiled_meanwhile(tmp_path):
-    first = flown(tmp_path, 240)
-    assert first[1:] == ["True", "False"]  # never numba in a process that flies
-    assert flown(tmp_path, 0) == first  # there from its first call on
+def test_the_first_call_in_a_new_cache_is_compiled_and_needs_no_numba(tmp_path):
+    assert flown(tmp_path, 0)[1:] == ["True", "False"]
+    assert not list(tmp_path.rglob("*.o"))
 
 
 @pytest.mark.parametrize("around", [{"NUMBA_DISABLE_JIT": "1"}, {"SINGIMPACT_CACHE": "off"}])
@@ -460,7 +470,7 @@ def test_cache_off_is_a_passing_folder(monkeypatch):
     assert store.cache_folder() == store.passing_folder()
 
 
-@pytest.mark.usefixtures("compiled")
+@pytest.mark.usefixtures("nothing_shipped")
 def test_damaged_object_code_is_named_and_not_run(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
     other = machine.Machine(Emitted())
@@ -511,18 +521,51 @@ def test_the_name_of_an_entry_depends_on_the_settings_of_the_compiler(monkeypatc
         machine._digest_of_sources.cache_clear()
 
 
-def test_a_text_has_one_object_code_whatever_level_numba_is_set_to(monkeypatch):
+@pytest.mark.slow
+def test_kernels_have_one_object_code_whatever_level_numba_is_set_to(monkeypatch):
     """In the process that compiles, and in one that compiles by itself."""
     import numba
 
-    emitted = compiled_model(MODELS["a law"]).law.machine.emitted
     texts = []
     for level in (0, 3):
         monkeypatch.setattr(numba.config, "OPT", type(numba.config.OPT)(level))
-        text = Compiler(emitted).text(LAW)
+        text = KernelCompiler(True).text("taylor_entry")
         assert level == numba.config.OPT
         texts.append(Counter(re.findall(r"(?m)^ +(?:%\S+ = )?(\w+)", text)))  # instructions, without names
     assert texts[0] == texts[1]
+
+
+OWN_LAW = "def law(v, w):\n    return w[0] * v + {} * v\n"
+
+
+def test_a_text_of_a_model_is_compiled_once_its_flights_have_cost_as_much(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
+    own = machine.Machine(Emitted(rho=OWN_LAW.format(1.25)))
+    own.interpreted(own.price / 2, LAW)
+    assert own.entry(LAW) is None
+    own.interpreted(own.price, LAW)
+    assert own.entry(LAW)[1] is not None
+    assert [path.name for path in tmp_path.rglob("*.o")] == [own.place(LAW).name]
+    assert capsys.readouterr().err == ""  # a line comes after a second
+    assert machine.Machine(own.emitted).entry(LAW) is not None  # from the cache
+
+
+def test_a_text_that_takes_longer_says_so_and_threads_compile_it_once(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
+    monkeypatch.setattr(machine, "SETTINGS", replace(machine.SETTINGS, silent=(0.0, 0.0)))
+    own = machine.Machine(Emitted(rho=OWN_LAW.format(1.5)))
+    codes, write = [], own._code
+    monkeypatch.setattr(own, "_code", lambda name: codes.append(name) or time.sleep(0.2) or write(name))
+    entries = in_threads(lambda _: own.compile_here(LAW))
+    assert codes == [LAW]
+    assert len({id(entry) for entry in entries}) == 1
+    assert "characters of code" in capsys.readouterr().err
+
+
+def test_a_text_that_cannot_be_compiled_raises_its_reason(tmp_path, monkeypatch):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
+    with pytest.raises(ValueError, match="nothing_known"):
+        machine.Machine(Emitted(rho="def law(v, w):\n    return nothing_known(v)\n")).compile_here(LAW)
 
 
 def test_the_kinds_of_work_are_told_apart():
@@ -561,14 +604,3 @@ def test_long_calls_hear_an_interruption(compiled, monkeypatch):
     # what the interrupted call wrote into is not lent again
     again = osc.iterate(0.3, 0.5, 100)
     assert again == osc.iterate(0.3, 0.5, 100)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="the system has no limits of processes")
-@pytest.mark.parametrize(
-    ("limits", "work", "end"),
-    [((1, 2**40), "while True: pass", -getattr(signal, "SIGXCPU", 0)), ((60, 2**30), "bytearray(2**31)", 1),
-     ((60, 3 * 2**30), "bytearray(2**28)", 0)],
-)  # fmt: skip
-def test_a_process_that_compiles_a_text_has_limits(limits, work, end):
-    text = f"from singimpact.flights.compiler_process import _limited\n_limited{limits}\n{work}"
-    assert subprocess.run([sys.executable, "-c", text], capture_output=True, check=False).returncode == end
