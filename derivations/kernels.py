@@ -9,14 +9,12 @@ from __future__ import annotations
 import json
 import lzma
 
-from singimpact.codegen import object_code
 from singimpact.flights.shipped import FOLDER, INDEX, index_of, objects, texts
 from singimpact.store import folder, written
 
 
 def main() -> None:
     """Write them all; what was there before is removed."""
-    object_code.without_machine_code()
     contents = objects(texts())
     folder(FOLDER)
     for old in FOLDER.glob("*.xz"):

@@ -21,7 +21,8 @@ NEVER_CALLED = r"(NRT_|Py|_Py|numba_)"
 def emitted(text: str, entry: str, machine: Any = None) -> bytes:
     """The object code of a module of LLVM whose one function to be called is an `entry`.
 
-    All other functions become internal, so that LLVM inlines them and drops arguments that nothing reads.
+    All other functions become internal, so that LLVM inlines them and drops arguments that nothing reads.  They are
+    named by their order: numba's names depend on what its process has compiled before.
 
     Parameters
     ----------
@@ -33,13 +34,16 @@ def emitted(text: str, entry: str, machine: Any = None) -> bytes:
     module = llvm.parse_assembly(_closed(text))
     module.triple, module.data_layout = machine.triple, str(machine.target_data)
     module.verify()
-    for function in module.functions:
+    for at, function in enumerate(module.functions):
         if function.is_declaration:
             continue
         if function.name.startswith("cfunc.") and entry in function.name:
             function.name = entry
         elif function.name != entry:
-            function.linkage = "internal"
+            function.linkage, function.name = "internal", f"f{at}"
+    for variable in module.global_variables:
+        if not variable.is_declaration:
+            variable.linkage = "internal"
     builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
     builder.getModulePassManager().run(module, builder)
     return bytes(machine.emit_object(module))
