@@ -75,7 +75,7 @@ def command(
 
     from singimpact.case_pools import WorkerPool
     from singimpact.dynamics.bifurcation_diagram import bifurcation
-    from singimpact.scenes.bifurcation_picture import bifurcation_sheet
+    from singimpact.scenes.branch_picture import bifurcation_sheet
 
     if direction is not None:
         diagram = bifurcation(model, over, (low, high), points, start, impacts, kept, direction, output=keep)

@@ -57,7 +57,7 @@ def draw(thing: Any, output: str) -> None:
     matplotlib.use("Agg")
     from singimpact.dynamics.orbit import Orbit
     from singimpact.scenes import plot
-    from singimpact.scenes.orbit_sheet import orbit_sheet
+    from singimpact.scenes.orbit_picture import orbit_sheet
 
     figure = orbit_sheet(thing) if isinstance(thing, Orbit) else plot(thing).figure
     with written(output) as draft:
