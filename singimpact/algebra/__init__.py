@@ -26,10 +26,9 @@ _FILES = {
     "polynomials": "Exponents",
     "precision": "balls_at series_of_any_length",
     "puiseux": "NoExpansion expansion",
-    "rings": "DOUBLES EXACT Exact Multiprecision SYMBOLIC to_sympy",
+    "rings": "DOUBLES EXACT Exact Multiprecision SYMBOLIC SymbolRing to_sympy",
     "roots": "real_roots",
     "sentences": "sentence",
-    "symbols": "SymbolRing",
     "taylor": "NotSmooth",
     "univariate": "precision_of",
 }

@@ -14,8 +14,7 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.precision import balls_at
-from singimpact.algebra.rings import Doubles, Exact
-from singimpact.algebra.symbols import SymbolRing
+from singimpact.algebra.rings import Doubles, Exact, SymbolRing
 
 
 class ExactUnivariate:

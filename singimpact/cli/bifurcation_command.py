@@ -6,10 +6,8 @@ from typing import Any
 
 import click
 
-from singimpact.cli.followed import over_option, take_branches, take_orbits
-from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import save, suffix_of
+from singimpact.cli.model_options import model_options, over_option, take_branches, take_model, take_orbits
+from singimpact.cli.output import as_json_text, save, suffix_of
 from singimpact.store import require_writable
 
 

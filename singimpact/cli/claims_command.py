@@ -6,8 +6,7 @@ from typing import Any
 
 import click
 
-from singimpact.cli.columns import columns
-from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.output import as_json_text, columns, emit, output_options
 
 
 @click.group()

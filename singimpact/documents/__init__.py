@@ -11,7 +11,6 @@ _FILES = {
     "compiling": "CompileError compiled",
     "document_steps": "Mark Section Step claims_of equations_of",
     "escape": "latex",
-    "formats": "as_files as_text",
-    "rendering": "as_data as_latex as_markdown",
+    "rendering": "as_data as_files as_latex as_markdown as_text",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -21,12 +21,11 @@ from threading import Lock
 from typing import Any
 
 from singimpact import cache
-from singimpact.file_lock import FileLock
 from singimpact.flights import bind
 from singimpact.flights.bind import Emitted
 from singimpact.inputs import InputError
 from singimpact.progress import ProgressLine
-from singimpact.store import cache_folder, folder, tell, write_text
+from singimpact.store import FileLock, cache_folder, folder, tell, write_text
 
 
 @dataclass(frozen=True)

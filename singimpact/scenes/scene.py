@@ -14,8 +14,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.inputs import InputError, refuse, shown, unknown
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.toml_files import FIELDS, read_fields
+from singimpact.oscillator.model import FIELDS, Oscillator, read_fields
 from singimpact.scenes.layer_data import Results
 from singimpact.scenes.style import PENS
 from singimpact.store import read_bounded

@@ -26,8 +26,7 @@ from singimpact.algebra.expressions import Expression, Name, names_in
 from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
 from singimpact.algebra.isolated_zeros import IsolatedZeros, isolated_zeros
 from singimpact.algebra.precision import balls_at
-from singimpact.oscillator.linear import form_of
-from singimpact.oscillator.linear_flight import linear_flight
+from singimpact.oscillator.linear import form_of, linear_flight
 from singimpact.oscillator.moving_number import CLEARANCE
 from singimpact.surface.enclosed_touches import EnclosedTouches
 from singimpact.surface.swan_families import MARGIN, STEPS, Family, Transition

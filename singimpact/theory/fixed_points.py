@@ -20,8 +20,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.algebra.roots import real_roots
 from singimpact.contact.contact import contact_order
 from singimpact.inputs import InputError, refuse
-from singimpact.result import Result, columns_of
-from singimpact.words import in_words
+from singimpact.result import Result, columns_of, in_words
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
 MOST_DIGITS = 100_000

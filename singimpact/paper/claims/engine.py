@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from singimpact.paper.claims.claim import Claim, Verdict
 from singimpact.paper.claims.index import CLAIMS, INDEX, Entry, entry_of
-from singimpact.paper.claims.keys import key_of
-from singimpact.paper.claims.memory import keep, recall
+from singimpact.paper.claims.memory import keep, key_of, recall
 
 
 def select(ids: Sequence[str] | None = None) -> list[Entry]:

@@ -1,16 +1,101 @@
-"""Verdicts kept in the user's cache folder, one sealed file a claim, under the claim's canonical key."""
+"""Verdicts kept in the user's cache folder, one sealed file a claim, under the claim's canonical key.
+
+A key is what a verdict depends on, so that a kept verdict serves while nothing changed: a digest of the package's
+source outside `claims/sections` and `claims/beyond`, of the versions of Python and the libraries, of the claim's line
+in the index, of the source of its file there with the files of `sections` that this one imports, and of the keys of
+what the claim rests on.  An edited verifier runs again with its file and their dependants; an edit below the claims
+runs all again.  No claim is built for its key.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import asdict
 from functools import lru_cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from singimpact import cache
 from singimpact.algebra.checking import accepts
+from singimpact.cache import source_digest
 from singimpact.paper.claims.claim import KINDS, Trial, Verdict
+from singimpact.paper.claims.index import Entry
 from singimpact.store import cache_folder
+
+# The key of a claim.
+
+LIBRARIES = ("sympy", "numpy", "scipy", "python-flint", "mpmath", "numba")
+SECTIONS, BEYOND = (Path(__file__).with_name(name) for name in ("sections", "beyond"))
+IMPORTED = re.compile(
+    r"^\s*from singimpact\.paper\.claims\.sections(?:\.(\w+) import|\s+import ([\w, ]+))", re.MULTILINE
+)
+ABOVE = (  # folders that no verdict depends on, and the sections, which each claim adds for itself
+    "paper/claims/sections/",
+    "paper/claims/beyond/",
+    "paper/sections/",
+    "paper/figures/",
+    "cli/",
+    "documents/",
+    "scenes/",
+    "bench/",
+)
+
+
+@lru_cache(maxsize=1)
+def ground() -> str:
+    """The digest of everything below the sections: the package's source, Python and the libraries."""
+    source = source_digest(Path(__file__).parents[2], ABOVE)
+    libraries = repr((sys.version_info[:2], [version(name) for name in LIBRARIES]))
+    return hashlib.sha256((libraries + source).encode()).hexdigest()
+
+
+def source_of(file: str) -> str:
+    """The source of one file of `sections` or `beyond`."""
+    place = SECTIONS / f"{file}.py"
+    return (place if place.exists() else BEYOND / f"{file}.py").read_text(encoding="utf-8")
+
+
+def imported_by(file: str) -> list[str]:
+    """A file of `sections` and those that it imports from there, directly or not, in alphabetical order.
+
+    Examples
+    --------
+    >>> imported_by("section4a_fold")
+    ['section2_trials', 'section4_trials', 'section4a_fold']
+    """
+    modules: set[str] = set()
+    todo = [file]
+    while todo:
+        name = todo.pop()
+        if name not in modules:
+            modules.add(name)
+            named = [name_ for pair in IMPORTED.findall(source_of(name)) for name_ in "".join(pair).split(",")]
+            todo += [name_.split()[0] for name_ in named]  # "file as other" is the file
+    return sorted(modules)
+
+
+@lru_cache(maxsize=64)
+def file_digest(file: str) -> str:
+    """The digest of a file of `sections` with what it imports from there."""
+    return hashlib.sha256("\0".join(source_of(name) for name in imported_by(file)).encode()).hexdigest()
+
+
+def key_of(entry: Entry, below: Mapping[str, str]) -> str:
+    """The key of a claim, given the keys of the claims it rests on.
+
+    Examples
+    --------
+    >>> from singimpact.paper.claims.index import INDEX
+    >>> len(key_of(INDEX["e:yeq"], {}))
+    64
+    """
+    parts = [ground(), asdict(entry), file_digest(entry.file), [below.get(name, "") for name in entry.rests_on]]
+    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
 def _place(name: str) -> Path:

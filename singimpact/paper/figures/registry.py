@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+from singimpact import cache
 from singimpact.inputs import refuse
-from singimpact.paper.figures.panel import Picture
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
+from singimpact.scenes.stored_layers import key_of
+from singimpact.store import cache_folder
 
 FIGURES = tuple(range(1, 18))
 """The numbers of the paper's figures."""
@@ -95,3 +99,20 @@ def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
     from singimpact.paper.figures.figure_rendering import Look, drawn
 
     return drawn(picture(number), Look(serif, dark))
+
+
+# Figures kept in the user's cache folder as numbers, so that an interrupted run continues where it stopped.
+
+KINDS = (Picture, Panel, Line, Region, Dot)
+
+
+def kept_picture(number: int | str) -> Picture:
+    """The data of a figure as `registry.picture` gives them, from the cache when they were computed before."""
+    place = cache_folder() / "figures" / f"{key_of(number, cache.source_digest(Path(__file__).parent))}.figure"
+    content = cache.recall(place)
+    if content is not None:
+        found: Picture = cache.unpacked(content, KINDS)
+        return found
+    made = picture(number)
+    cache.keep(place, cache.packed(made))
+    return made
