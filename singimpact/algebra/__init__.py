@@ -27,9 +27,8 @@ _FILES = {
     "precision": "balls_at series_of_any_length",
     "puiseux": "NoExpansion expansion",
     "rings": "DOUBLES EXACT Exact Multiprecision SYMBOLIC SymbolRing to_sympy",
-    "roots": "real_roots",
     "sentences": "sentence",
     "taylor": "NotSmooth",
-    "univariate": "precision_of",
+    "univariate": "precision_of real_roots",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -1,7 +1,6 @@
 """Kinds of number a tree is evaluated over: rationals, doubles and arrays, mpmath numbers, sympy objects, polynomials.
 
 Balls have a file of their own (`balls`), jets too (`jets`).
-
 """
 
 from __future__ import annotations

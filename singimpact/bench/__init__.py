@@ -18,9 +18,8 @@ _FILES = {
         "Aim Case Counted EPSILON Effort FULL Measured Method Timed condition cpu_seconds measure relative_error"
     ),
     "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND TITLES digest_of recorded stress_page timed_digest",
-    "plots": "plotted",
     "problems": "Problem states values",
-    "report": "exponents fitted reached tables",
+    "report": "exponents fitted plotted reached tables",
     "selftest.basin_pixels": "Follower row",
     "selftest.batches": "grazes lanes",
     "selftest.draws": "flown",

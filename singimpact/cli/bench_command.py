@@ -166,7 +166,7 @@ def _text(found: Measured, form: str) -> str:
 
 
 def _draw(found: list[Measured], place: Path, picture: str) -> None:
-    from singimpact.bench.plots import plotted
+    from singimpact.bench.report import plotted
 
     for each in found:
         save(plotted(each), place / f"bench-{each.group}.{picture}")

@@ -2,7 +2,6 @@
 
 A launch at rest next to a zero of a_c is a launch from that zero: no double is pi/2, and a mass released at the double
 next to a zero would fly or stick by the sign of a rounding.
-
 """
 
 from __future__ import annotations

@@ -14,9 +14,8 @@ _FILES = {
         "Check Claim IN_MODEL KINDS MODULO PROVED STRENGTH STRONGEST_FIRST Statement Trial Verdict compared told"
     ),
     "claims.deciding": "decide effective",
-    "claims.graph": "COLOURS as_svg colour_of",
-    "claims.index": "BEYOND_PLACE PLACE claims_in written_index",
-    "claims.memory": "imported_by keep key_of recall",
+    "claims.engine": "imported_by keep key_of recall",
+    "claims.index": "BEYOND_PLACE COLOURS PLACE as_svg claims_in colour_of written_index",
     "claims.next_sigma": "next_sigma",
     "claims.sections.section6_scaling": "crossing near_the_swan nonzero scaling_check",
     "claims.verdicts": "VerdictTable verify",

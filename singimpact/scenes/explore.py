@@ -4,7 +4,6 @@ Left V_c' with the zero set Z and the horizon H, right the plane of states with 
 every place of the clearance's slider are computed beforehand and lie in the page.  Orbits are flown in the page: the
 kernels are those of `flights`, translated into JavaScript; every model is flown by its Taylor recurrence there, linear
 ones too.
-
 """
 
 from __future__ import annotations

@@ -2,7 +2,6 @@
 
 Truth of D G: central differences of fixed-step flights, with rho evaluated by Python. Truth of the rebound: rho
 evaluated by Python at the velocity of the hit. Shared with the package: f, g and rho as expression trees.
-
 """
 
 from __future__ import annotations

@@ -11,8 +11,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from singimpact.documents import escape
 from singimpact.documents.breaking import wrapping
+from singimpact.documents.rendering import latex_text, latex_words, markdown_text, markdown_words
 from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
 from singimpact.paper.sections.stored_sections import kept_legend
 
@@ -244,11 +244,11 @@ class Errata(Sequence[Erratum]):
     def latex(self) -> str:
         """A LaTeX document: two pages for a first look, then each remark with its numbers."""
         fields = {
-            "PAPER": escape.latex(PAPER),
-            "VERSION": escape.latex(VERSION),
-            "SUMMARY": escape.latex(self.summary),
+            "PAPER": latex_text(PAPER),
+            "VERSION": latex_text(VERSION),
+            "SUMMARY": latex_text(self.summary),
             "BRIEF": "\n".join(_brief_latex(group) for group in self.remarks),
-            "LEGEND": "\n".join(rf"\item {escape.latex_words(line)}" for line in kept_legend()),
+            "LEGEND": "\n".join(rf"\item {latex_words(line)}" for line in kept_legend()),
             "ITEMS": "\n".join(_latex_remark(number, group) for number, group in enumerate(self.remarks, 1)),
         }
         document = _DOCUMENT
@@ -336,31 +336,29 @@ def _markdown_entry(entry: Erratum) -> str:
         f"- corrected ({v.worth}): {wrapping(v.corrected or '')}",
         *(f"- {name}: {_words_markdown(told)}" for name, told in _numbers(entry)),
     ]
-    return "\n".join(lines + [f"- used by: {escape.markdown(entry.survives)}"] * bool(entry.dependants)) + "\n"
+    return "\n".join(lines + [f"- used by: {markdown_text(entry.survives)}"] * bool(entry.dependants)) + "\n"
 
 
 def _words_markdown(words: str) -> str:
-    return escape.markdown_words(in_letters(words))
+    return markdown_words(in_letters(words))
 
 
 def _brief_latex(group: Sequence[Erratum]) -> str:
     remark = group[0].remark
     read = ";\\ ".join(f"${entry.verdict.corrected}$" for entry in group)
-    place = escape.latex(_places(group))
-    return rf"\item \textbf{{{place}}} ({remark.grade}). Read {read}. {escape.latex_words(remark.reason)}"
+    place = latex_text(_places(group))
+    return rf"\item \textbf{{{place}}} ({remark.grade}). Read {read}. {latex_words(remark.reason)}"
 
 
 def _latex_remark(number: int, group: Sequence[Erratum]) -> str:
     remark = group[0].remark
-    head = (
-        rf"\subsection*{{{number}. {escape.latex(_places(group))}: \normalfont {escape.latex(GRADES[remark.grade])}}}"
-    )
+    head = rf"\subsection*{{{number}. {latex_text(_places(group))}: \normalfont {latex_text(GRADES[remark.grade])}}}"
     return "\n".join(
         [
             head,
-            rf"\raggedright {escape.latex_words(remark.reason)}\par",
+            rf"\raggedright {latex_words(remark.reason)}\par",
             *(_latex_entry(entry) for entry in group),
-            rf"\textit{{What survives:}} {escape.latex_words(remark.survives)}",
+            rf"\textit{{What survives:}} {latex_words(remark.survives)}",
             "",
         ]
     )
@@ -370,12 +368,12 @@ def _latex_entry(entry: Erratum) -> str:
     v = entry.verdict
     rows = [
         ("printed", f"${v.printed}$"),
-        ("corrected", f"${v.corrected}$ ({escape.latex(v.worth)})"),
-        *((name, escape.latex_words(in_letters(number))) for name, number in _numbers(entry)),
+        ("corrected", f"${v.corrected}$ ({latex_text(v.worth)})"),
+        *((name, latex_words(in_letters(number))) for name, number in _numbers(entry)),
     ]
-    rows += [("used by", escape.latex(entry.survives))] * bool(entry.dependants)
+    rows += [("used by", latex_text(entry.survives))] * bool(entry.dependants)
     body = "\n".join(rf"\say{{{name}}} {text}" for name, text in rows)
-    head = rf"\texttt{{{escape.latex(v.id)}}}: {escape.latex_words(in_letters(v.title))}."
+    head = rf"\texttt{{{latex_text(v.id)}}}: {latex_words(in_letters(v.title))}."
     return f"\\par {head}\n\\begin{{numbers}}\n{body}\n\\end{{numbers}}"
 
 
