@@ -27,7 +27,6 @@ def _function(number: int | str) -> Callable[[], Picture]:
     from singimpact.paper.figures import (  # they load what computes
         contact_figures,
         outlines,
-        section_figures,
         swan_figures,
         unfolded_figures,
     )
@@ -41,8 +40,8 @@ def _function(number: int | str) -> Callable[[], Picture]:
         6: contact_figures.figure_6,
         7: contact_figures.figure_7,
         8: contact_figures.figure_8,
-        9: section_figures.figure_9,
-        10: section_figures.figure_10,
+        9: outlines.figure_9,
+        10: outlines.figure_10,
         11: swan_figures.figure_11,
         12: swan_figures.figure_12,
         13: unfolded_figures.figure_13,
@@ -55,18 +54,18 @@ def _function(number: int | str) -> Callable[[], Picture]:
 
 
 def _beyond(name: str) -> Callable[[], Picture]:
-    from singimpact.paper.figures import corrections, hertz_figure, loop_figures, met
+    from singimpact.paper.figures import beyond_figures, corrections
 
     functions: dict[str, Callable[[], Picture]] = {
         "B1": corrections.figure_B1,
         "B2": corrections.figure_B2,
         "B3": corrections.figure_B3,
-        "B4": loop_figures.figure_B4,
-        "B5": loop_figures.figure_B5,
-        "B6": loop_figures.figure_B6,
-        "B7": met.figure_B7,
-        "B8": met.figure_B8,
-        "B9": hertz_figure.figure_B9,
+        "B4": beyond_figures.figure_B4,
+        "B5": beyond_figures.figure_B5,
+        "B6": beyond_figures.figure_B6,
+        "B7": beyond_figures.figure_B7,
+        "B8": beyond_figures.figure_B8,
+        "B9": beyond_figures.figure_B9,
     }
     return functions[name]
 

@@ -15,8 +15,8 @@ from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.fold import k
 from singimpact.paper.routes.implicit import r, sigma, t, v
 from singimpact.paper.sections import section4_orbits_words as orbits
+from singimpact.paper.sections.section2_words import rows, with_b
 from singimpact.paper.sections.section4_blowup_words import blow_up, in_lambda
-from singimpact.paper.sections.shared_letters import rows, with_b
 from singimpact.theory.notation import latex
 
 u, w = sympy.symbols("u w")
