@@ -15,7 +15,7 @@ import numpy as np
 
 from singimpact.algebra.rings import EXACT
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
-from singimpact.bench.peers import plain_series
+from singimpact.bench.peers import lambdified
 from singimpact.codegen.over_lists import plain
 from singimpact.contact.contact import Contact
 from singimpact.impact_oscillator import ImpactOscillator
@@ -79,8 +79,8 @@ def _horner(order: int, sigma: Any, t: Any, compensated: bool) -> Callable[[], A
 def _peers(terms: Any, order: int, sigma: Any, t: Any) -> list[Method]:
     few = slice(0, 20)  # a call of subs takes milliseconds
     made = [
-        (f"sympy lambdify{', cse' if shared else ''}", plain_series.function(terms, shared)) for shared in (False, True)
+        (f"sympy lambdify{', cse' if shared else ''}", lambdified.function(terms, shared)) for shared in (False, True)
     ]
     methods = [Method(name, f"order {order}", partial(function, sigma, t), order) for name, function in made]
-    by_point = plain_series.substituting(terms)
+    by_point = lambdified.substituting(terms)
     return [*methods, Method("sympy subs", f"order {order}", partial(by_point, sigma[few], t[few]), order)]
