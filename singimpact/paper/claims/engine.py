@@ -28,9 +28,7 @@ from singimpact.paper.claims.claim import KINDS, Claim, Trial, Verdict
 from singimpact.paper.claims.index import CLAIMS, INDEX, Entry, entry_of
 from singimpact.store import cache_folder
 
-# Kept verdicts and their keys.
-
-# The key of a claim.
+# The key of a claim, and its kept verdict.
 
 LIBRARIES = ("sympy", "numpy", "scipy", "python-flint", "mpmath", "numba")
 SECTIONS, BEYOND = (Path(__file__).with_name(name) for name in ("sections", "beyond"))
@@ -139,6 +137,9 @@ def keep(verdict: Verdict, key: str) -> None:
     """
     if verdict.kind != "error":
         cache.keep(_place(verdict.id), cache.packed((key, verdict)))
+
+
+# The run: claims are chosen, and each is decided or recalled after what it rests on.
 
 
 def select(ids: Sequence[str] | None = None) -> list[Entry]:

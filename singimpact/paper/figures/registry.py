@@ -106,7 +106,7 @@ KINDS = (Picture, Panel, Line, Region, Dot)
 
 
 def kept_picture(number: int | str) -> Picture:
-    """The data of a figure as `registry.picture` gives them, from the cache when they were computed before."""
+    """The data of a figure as `picture` gives them, from the cache when they were computed before."""
     place = cache_folder() / "figures" / f"{key_of(number, cache.source_digest(Path(__file__).parent))}.figure"
     content = cache.recall(place)
     if content is not None:

@@ -20,16 +20,6 @@ if TYPE_CHECKING:
     from singimpact.paper.claims.claim import Claim, Verdict
     from singimpact.paper.claims.index import Entry
 
-# Plain words of claims, with the letters of formulas between dollar signs; loads no sympy.
-
-_GREEK = "sigma|tau|eta|omega|kappa|lambda|beta|gamma|phi|chi|psi|ell|Pi"
-_SIGNS = {"!=": r"\ne", "<=": r"\le", ">=": r"\ge", "->": r"\to"}
-_LETTERS = re.compile(
-    rf"(?P<dot>x-dot|x_dot)(?P<wall>_c)?|(?P<sign>!=|<=|>=|->)|\b(?P<jet>a)_d(?P<order>\d)\b|\b(?P<name>{_GREEK}|dv|[A-Za-z])"
-    r"(?P<below>_[A-Za-z0-9*+-]+|_\([a-z ]+\)|(?<=m)[123])?(?P<primes>'+)?(?![A-Za-z0-9_('])"
-)
-
-
 # Where a claim stands in the paper: page, equation, theorem and line, for a reader with the paper beside him.
 
 PAPER = "D. R. J. Chillingworth, Dynamics of an impact oscillator near a degenerate graze"
@@ -85,6 +75,16 @@ def place_of(claim: str) -> Place:
     KeyError : a claim that the paper does not have.
     """
     return _stored_places()[claim]
+
+
+# Plain words of claims, with the letters of formulas between dollar signs; loads no sympy.
+
+_GREEK = "sigma|tau|eta|omega|kappa|lambda|beta|gamma|phi|chi|psi|ell|Pi"
+_SIGNS = {"!=": r"\ne", "<=": r"\le", ">=": r"\ge", "->": r"\to"}
+_LETTERS = re.compile(
+    rf"(?P<dot>x-dot|x_dot)(?P<wall>_c)?|(?P<sign>!=|<=|>=|->)|\b(?P<jet>a)_d(?P<order>\d)\b|\b(?P<name>{_GREEK}|dv|[A-Za-z])"
+    r"(?P<below>_[A-Za-z0-9*+-]+|_\([a-z ]+\)|(?<=m)[123])?(?P<primes>'+)?(?![A-Za-z0-9_('])"
+)
 
 
 def in_letters(text: str) -> str:
