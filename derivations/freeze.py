@@ -10,12 +10,11 @@ import json
 from pathlib import Path
 
 from singimpact.documents.document_steps import Section, equations_of
-from singimpact.documents.formats import as_files
-from singimpact.documents.rendering import Marks
+from singimpact.documents.rendering import Marks, as_files
 from singimpact.paper.claims.beyond import BEYOND
 from singimpact.paper.claims.index import BEYOND_PLACE, PLACE, reread, written_index
 from singimpact.paper.sections.derivation_sections import sections
-from singimpact.paper.sections.marks import marks_of
+from singimpact.paper.sections.stored_sections import marks_of
 from singimpact.store import folder, written
 
 HERE = Path(__file__).parent

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from singimpact.file_lock import lock
 from singimpact.inputs import InputError, shown
+from singimpact.store import lock
 
 MOST = 1 << 62  # cases of a sweep; an index of numpy holds no more
 HEAD = b"singimpact sweep 1 "

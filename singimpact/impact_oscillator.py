@@ -396,7 +396,7 @@ class ImpactOscillator(Oscillator):
         [parameters]
         omega = "2"
         """
-        from singimpact.oscillator.toml_files import to_toml
+        from singimpact.oscillator.model import to_toml
 
         return to_toml(self.to_dict())
 
@@ -484,6 +484,6 @@ def read_model(path: str | FilePath) -> ImpactOscillator:
     ------
     InputError : a file that cannot be read, or a field that is none of these.
     """
-    from singimpact.oscillator.toml_files import read_fields
+    from singimpact.oscillator.model import read_fields
 
     return ImpactOscillator(**read_fields(path))

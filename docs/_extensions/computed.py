@@ -29,7 +29,7 @@ def graph(place: Path) -> str:
     """Which claims rest on which, as a picture and as a table; a page for who wants to know what falls with a claim."""
     import singimpact as si
     from singimpact.paper.claims import INDEX
-    from singimpact.paper.claims.graph import as_svg, dependants
+    from singimpact.paper.claims.index import as_svg, dependants
 
     found = si.verify()
     _put(place / "graph.svg", as_svg(INDEX, {v.id: v.in_words if v.corrected else v.worth for v in found}))

@@ -26,11 +26,9 @@ _FILES = {
     "polynomials": "Exponents",
     "precision": "balls_at series_of_any_length",
     "puiseux": "NoExpansion expansion",
-    "rings": "DOUBLES EXACT Exact Multiprecision SYMBOLIC to_sympy",
-    "roots": "real_roots",
+    "rings": "DOUBLES EXACT Exact Multiprecision SYMBOLIC SymbolRing to_sympy",
     "sentences": "sentence",
-    "symbols": "SymbolRing",
     "taylor": "NotSmooth",
-    "univariate": "precision_of",
+    "univariate": "precision_of real_roots",
 }
 __getattr__ = names_of(__name__, _FILES)

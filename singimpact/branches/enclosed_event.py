@@ -32,8 +32,7 @@ from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.oscillator.model import Oscillator
-from singimpact.result import Result
-from singimpact.words import in_words
+from singimpact.result import Result, in_words
 
 
 @dataclass(frozen=True)

@@ -25,8 +25,7 @@ from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
 from singimpact.algebra.isolated_zeros import IsolatedZeros, isolated_zeros
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at
-from singimpact.oscillator.linear import linear_form
-from singimpact.oscillator.linear_flight import TAU, T, linear_flight
+from singimpact.oscillator.linear import TAU, T, linear_flight, linear_form
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]

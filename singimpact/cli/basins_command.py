@@ -6,10 +6,8 @@ from typing import Any
 
 import click
 
-from singimpact.cli.columns import columns
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import save, save_once, suffix_of
+from singimpact.cli.output import as_json_text, columns, save, save_once, suffix_of
 from singimpact.store import require_writable
 
 

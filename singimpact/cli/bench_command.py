@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from singimpact.cli.columns import columns, markdown
-from singimpact.cli.output import as_json_text, emit, output_options
-from singimpact.cli.pictures import save
+from singimpact.cli.output import as_json_text, columns, emit, markdown, output_options, save
 from singimpact.cli.steep import steep_states
 from singimpact.inputs import unknown
 from singimpact.progress import ProgressLine
@@ -168,7 +166,7 @@ def _text(found: Measured, form: str) -> str:
 
 
 def _draw(found: list[Measured], place: Path, picture: str) -> None:
-    from singimpact.bench.plots import plotted
+    from singimpact.bench.report import plotted
 
     for each in found:
         save(plotted(each), place / f"bench-{each.group}.{picture}")

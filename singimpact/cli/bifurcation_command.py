@@ -6,10 +6,8 @@ from typing import Any
 
 import click
 
-from singimpact.cli.followed import over_option, take_branches, take_orbits
-from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import save, suffix_of
+from singimpact.cli.model_options import model_options, over_option, take_branches, take_model, take_orbits
+from singimpact.cli.output import as_json_text, save, suffix_of
 from singimpact.store import require_writable
 
 
@@ -75,7 +73,7 @@ def command(
 
     from singimpact.case_pools import WorkerPool
     from singimpact.dynamics.bifurcation_diagram import bifurcation
-    from singimpact.scenes.bifurcation_picture import bifurcation_sheet
+    from singimpact.scenes.branch_picture import bifurcation_sheet
 
     if direction is not None:
         diagram = bifurcation(model, over, (low, high), points, start, impacts, kept, direction, output=keep)

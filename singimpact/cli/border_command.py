@@ -6,11 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from singimpact.cli.columns import columns
-from singimpact.cli.followed import over_option, take_ends
-from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import save, suffix_of
+from singimpact.cli.model_options import model_options, over_option, take_ends, take_model
+from singimpact.cli.output import as_json_text, columns, save, suffix_of
 from singimpact.inputs import InputError
 from singimpact.store import require_writable
 

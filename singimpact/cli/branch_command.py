@@ -6,11 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from singimpact.cli.columns import columns
-from singimpact.cli.followed import orbit_options, over_option, take_branches, take_ends, take_orbits
-from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import blank_axes, save, suffix_of
+from singimpact.cli.model_options import (
+    model_options,
+    orbit_options,
+    over_option,
+    take_branches,
+    take_ends,
+    take_model,
+    take_orbits,
+)
+from singimpact.cli.output import as_json_text, blank_axes, columns, save, suffix_of
 from singimpact.result import one_table
 from singimpact.store import require_writable, write_table
 

@@ -6,8 +6,7 @@ from typing import Any
 
 import click
 
-from singimpact.cli.columns import columns
-from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.output import as_json_text, columns, emit, output_options
 
 
 @click.group()
@@ -37,7 +36,7 @@ def listed(as_json: bool, output: str | None) -> None:
 def show(name: str, as_json: bool, output: str | None) -> None:
     """One claim: the printed statement, the verdict, the evidence, the claims it rests on and those that rest on it."""
     from singimpact.paper.claims import BEYOND, CLAIMS, INDEX, run, select
-    from singimpact.paper.claims.graph import dependants
+    from singimpact.paper.claims.index import dependants
 
     index = INDEX | BEYOND
     verdict = run(select([name]), kept=True)[-1]
@@ -73,7 +72,7 @@ def _item(item: dict[str, Any]) -> str:
 def graph(svg: bool, as_json: bool, output: str | None) -> None:
     """The claims that each claim rests on, as text, as JSON or as an SVG picture."""
     from singimpact.paper.claims import INDEX
-    from singimpact.paper.claims.graph import as_svg, as_text
+    from singimpact.paper.claims.index import as_svg, as_text
 
     if as_json:
         emit(as_json_text({name: list(entry.rests_on) for name, entry in INDEX.items()}), output)
@@ -95,7 +94,7 @@ def _kinds() -> dict[str, str]:
 def impact(name: str, as_json: bool, output: str | None) -> None:
     """The claims that would fail with one claim."""
     from singimpact.paper.claims import INDEX, select
-    from singimpact.paper.claims.graph import dependants
+    from singimpact.paper.claims.index import dependants
 
     select([name])  # an unknown id is refused with the nearest known ones
     affected = dependants(INDEX, name)

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 import click
 
-from singimpact.cli.columns import columns
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.output import as_json_text, columns, emit, output_options
 from singimpact.inputs import InputError
 
 if TYPE_CHECKING:

@@ -69,9 +69,8 @@ def command(
 
 
 def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
-    from singimpact.documents.formats import as_text
-    from singimpact.paper.sections.marks import marks_of
-    from singimpact.paper.sections.stored_sections import kept_sections
+    from singimpact.documents.rendering import as_text
+    from singimpact.paper.sections.stored_sections import kept_sections, marks_of
 
     derived = kept_sections(names)
     with ProgressLine() as line:
@@ -96,7 +95,7 @@ def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[
 
 def _series(request: SeriesRequest, form: str, output: str | None) -> None:
     """The series as text to standard output, or as files in the folder."""
-    from singimpact.documents.formats import as_text
+    from singimpact.documents.rendering import as_text
     from singimpact.documents.series_documents import series_section, series_text
     from singimpact.paper.sections.meaning_of_letters import NOTATION
     from singimpact.store import written
@@ -119,7 +118,7 @@ def _series(request: SeriesRequest, form: str, output: str | None) -> None:
 
 def _write(document: list[Section], marks: dict[str, Mark], form: str, output: str) -> None:
     from singimpact.documents.compiling import CompileError
-    from singimpact.documents.formats import as_files
+    from singimpact.documents.rendering import as_files
     from singimpact.store import written
 
     try:
@@ -135,9 +134,9 @@ def _picture(name: str) -> bytes:
     """A figure of the paper as PDF, from its computed data."""
     from tempfile import TemporaryDirectory
 
-    from singimpact.cli.pictures import save
+    from singimpact.cli.output import save
     from singimpact.paper.figures.figure_rendering import drawn
-    from singimpact.paper.figures.stored_figures import kept_picture
+    from singimpact.paper.figures.registry import kept_picture
 
     with TemporaryDirectory() as directory:
         number = name.removeprefix("figure")

@@ -8,8 +8,7 @@ import click
 
 from singimpact import cache
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, emit
-from singimpact.cli.pictures import kept_at
+from singimpact.cli.output import as_json_text, emit, kept_at
 from singimpact.inputs import InputError
 from singimpact.progress import ProgressLine
 from singimpact.store import require_writable, write_text

@@ -9,8 +9,7 @@ from typing import Any
 
 import click
 
-from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import PICTURES, save_once
+from singimpact.cli.output import PICTURES, as_json_text, save_once
 from singimpact.inputs import refuse
 from singimpact.paper.figures import BEYOND, FIGURES
 from singimpact.paper.figures.registry import ACCEPTED
@@ -64,14 +63,14 @@ def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: b
 
 def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
     from singimpact.paper.figures.figure_rendering import Look, drawn
-    from singimpact.paper.figures.stored_figures import kept_picture
+    from singimpact.paper.figures.registry import kept_picture
 
     picture = kept_picture(number)
     return drawn(picture, Look(serif, dark)), [picture.title, list(picture.claims)]
 
 
 def _data(number: int | str) -> Any:
-    from singimpact.paper.figures.stored_figures import kept_picture
+    from singimpact.paper.figures.registry import kept_picture
 
     return kept_picture(number).to_dict()
 

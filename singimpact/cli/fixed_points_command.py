@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import click
 
-from singimpact.cli.columns import columns
-from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.output import as_json_text, columns, emit, output_options
 
 
 @click.command()

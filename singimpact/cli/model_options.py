@@ -1,4 +1,4 @@
-"""The options that name an oscillator: a model file, or the linear one by its numbers."""
+"""The options that name an oscillator, its periodic orbits and the branches through them."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ import click
 from singimpact.inputs import InputError
 
 if TYPE_CHECKING:
+    from singimpact.branches.branch import Branch
+    from singimpact.branches.orbits import PeriodicOrbit
     from singimpact.impact_oscillator import ImpactOscillator
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -66,3 +68,112 @@ def _from_file(path: str, numbers: dict[str, str]) -> ImpactOscillator:
     from singimpact.impact_oscillator import read_model
 
     return read_model(path)
+
+
+# Periodic orbits, and the branches through them.
+
+SAME = 1e-6
+"""States that differ by less, of a period and of their velocity, are those of one orbit."""
+
+
+def orbit_options(function: Function) -> Function:
+    """``--orbit N K`` and ``--start TAU V``."""
+    function = click.option(
+        "--start", nargs=2, metavar="TAU V", help="A state near the orbit.  [default: every orbit found]"
+    )(function)
+    return click.option(
+        "--orbit",
+        nargs=2,
+        type=int,
+        metavar="N K",
+        default=(1, 1),
+        show_default=True,
+        help="N impacts in K periods of the forcing; N = 0: no impact.",
+    )(function)
+
+
+def over_option(function: Function) -> Function:
+    """``--over NAME``."""
+    return click.option(
+        "--over",
+        metavar="NAME",
+        default="clearance",
+        show_default=True,
+        help="The parameter, or clearance, restitution, ...",
+    )(function)
+
+
+def take_orbits(model: ImpactOscillator, orbit: tuple[int, int], start: tuple[str, str] | None) -> list[PeriodicOrbit]:
+    """The orbits that the options name.
+
+    Raises
+    ------
+    InputError : there is none.
+    """
+    orbits = model.periodic(*orbit, start=start)
+    if not orbits:
+        more = f" ({'; '.join(orbits.notes)})" if orbits.notes else ""
+        raise InputError(
+            f"--orbit {orbit[0]} {orbit[1]}: the model has no such orbit{more}: give another N K, another value of a "
+            "number, or --start TAU V"
+        )
+    return list(orbits)
+
+
+def take_branches(orbits: list[PeriodicOrbit], over: str, ends: tuple[str, str] | None, points: int) -> list[Branch]:
+    """Branches through orbits, each once."""
+    from singimpact.branches.branch import branch
+
+    found: list[Branch] = []
+    for orbit in orbits:
+        if not any(on_branch(orbit, each) for each in found):
+            found.append(branch(orbit, over, ends, points=points))
+    return found
+
+
+def on_branch(orbit: PeriodicOrbit, branch: Branch) -> bool:
+    """Whether an orbit is one of a branch's, with the model where the branch began.
+
+    Examples
+    --------
+    >>> from singimpact.branches.branch import branch
+    >>> from singimpact.impact_oscillator import linear
+    >>> low, high = linear("2.8", "0.1", "0.8", amplitude=-1).periodic(3, 3)  # both sides of a fold
+    >>> on_branch(high, branch(low, "clearance", (-0.2, 0.3)))
+    True
+    """
+    from singimpact.branches.periodic import periodic
+    from singimpact.oscillator.moving_number import value_of
+
+    if not branch.n:
+        return False
+    osc = branch.oscillator
+    gap = branch.parameter - value_of(osc, branch.over)
+    for i in (gap[:-1] * gap[1:] <= 0).nonzero()[0].tolist():
+        share = gap[i] / (gap[i] - gap[i + 1]) if gap[i] != gap[i + 1] else 0.0
+        tau, v = ((1 - share) * states[i] + share * states[i + 1] for states in (branch.tau, branch.v))
+        try:
+            near = periodic(osc, branch.n, branch.k, start=list(zip(tau.tolist(), v.tolist(), strict=True)))
+        except InputError:
+            continue
+        for other in near:
+            if abs(other.tau[0] - orbit.tau[0]) < SAME and abs(other.v[0] - orbit.v[0]) <= SAME * abs(orbit.v[0]):
+                return True
+    return False
+
+
+def take_ends(low: Any, high: Any) -> Any:
+    """--from and --to together, or neither.
+
+    Raises
+    ------
+    InputError : one of them alone.
+
+    Examples
+    --------
+    >>> take_ends("1", "2"), take_ends(None, None)
+    (('1', '2'), None)
+    """
+    if (low is None) != (high is None):
+        raise InputError(f"--{'to' if high is None else 'from'} is missing: give --from and --to, or neither")
+    return None if low is None else (low, high)

@@ -7,10 +7,8 @@ from typing import Any
 
 import click
 
-from singimpact.cli.columns import columns
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, output_options
-from singimpact.cli.pictures import PICTURES
+from singimpact.cli.output import PICTURES, as_json_text, columns, emit, output_options
 from singimpact.inputs import refuse
 from singimpact.store import written
 
@@ -57,7 +55,7 @@ def draw(thing: Any, output: str) -> None:
     matplotlib.use("Agg")
     from singimpact.dynamics.orbit import Orbit
     from singimpact.scenes import plot
-    from singimpact.scenes.orbit_sheet import orbit_sheet
+    from singimpact.scenes.orbit_picture import orbit_sheet
 
     figure = orbit_sheet(thing) if isinstance(thing, Orbit) else plot(thing).figure
     with written(output) as draft:

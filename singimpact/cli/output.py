@@ -1,16 +1,19 @@
-"""The output of a command: text or JSON, on standard output or in a file, which appears only when complete."""
+"""The output of a command: text, tables, JSON or a picture; a file appears only when complete."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from singimpact import cache
+from singimpact.inputs import refuse
 from singimpact.result import as_json
 from singimpact.status import Status
-from singimpact.store import require_writable, write_text
+from singimpact.store import cache_folder, require_writable, write_text, written
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -71,3 +74,100 @@ def lines_of(rows: Mapping[str, Any], status: Status, plain: tuple[Status, ...] 
     width = max(map(len, [*rows, "status"]))
     word = status.name if status in plain else f"{status.name}: {status.sentence}"
     return [f"{name:{width}}  {value}" for name, value in [*rows.items(), ("status", word)]]
+
+
+# Rows of cells as aligned text or as a Markdown table.
+
+
+def columns(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Left-aligned columns two spaces apart, no trailing blanks.
+
+    Examples
+    --------
+    >>> print(columns(["tau", "v"], [["0.5", "0.125"], ["10", "1"]]))
+    tau  v
+    0.5  0.125
+    10   1
+    """
+    table = [list(header), *map(list, rows)]
+    widths = [max(len(row[i]) for row in table) for i in range(len(header))]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in table
+    )
+
+
+def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Rows of cells as a table of Markdown.
+
+    Examples
+    --------
+    >>> print(markdown(["tau", "v"], [["0.5", "0.125"]]))
+    | tau | v |
+    |---|---|
+    | 0.5 | 0.125 |
+    """
+    lines = [list(header), *map(list, rows)]
+    text = ["| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines]
+    return "\n".join([text[0], "|" + "---|" * len(header), *text[1:]])
+
+
+# Pictures as files: the suffix gives the format.
+
+PICTURES = (".png", ".pdf", ".svg")
+
+
+def suffix_of(output: str) -> str:
+    """The ending of a picture's name.
+
+    Raises
+    ------
+    InputError : not .png, .pdf or .svg.
+    """
+    suffix = Path(output).suffix.lower()
+    if suffix not in PICTURES:
+        raise refuse("output", output, "a file name ending in .png, .pdf or .svg")
+    return suffix
+
+
+def save(figure: Any, output: str | Path, dpi: int = 150) -> None:
+    """Write a figure, without a date, so that the same picture gives the same file."""
+    kind = suffix_of(str(output))[1:]
+    import matplotlib
+
+    dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(kind)
+    # letters of a PDF as TrueType outlines: printers refuse matplotlib's own Type 3
+    with written(output) as draft, matplotlib.rc_context({"svg.hashsalt": "singimpact", "pdf.fonttype": 42}):
+        figure.savefig(draft, format=kind, dpi=dpi, metadata=dated)
+
+
+def save_once(request: tuple[Any, ...], output: str | Path, make: Callable[[], tuple[Any, Any]], dpi: int = 150) -> Any:
+    """Write a picture, from the cache if it was drawn before, and return the text that is printed with it.
+
+    Parameters
+    ----------
+    request : all that the picture depends on beside the package, as texts and numbers.
+    make : gives a matplotlib figure and what is to be said of it, which JSON holds.
+    """
+    stored = kept_at((*request, suffix_of(str(output)), dpi), ("matplotlib", "contourpy"))
+    content = cache.recall(stored)
+    if content is None:
+        figure, values = make()
+        save(figure, output, dpi)
+        cache.keep(stored, json.dumps(values).encode() + b"\n" + Path(output).read_bytes())
+        return json.loads(json.dumps(values))
+    values, _, picture = content.partition(b"\n")
+    with written(output) as draft:
+        draft.write_bytes(picture)
+    return json.loads(values)
+
+
+def kept_at(asked: tuple[Any, ...], libraries: tuple[str, ...]) -> Path:
+    """Where the cache keeps what was drawn: under what was asked, the package, and the libraries that draw."""
+    return cache_folder() / "pictures" / f"{cache.key_of(asked, ('numpy', *libraries))}.picture"
+
+
+def blank_axes() -> Any:
+    """Axes of a figure that no window shows, of the size of a picture of branches."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(7.2, 4.8), dpi=150, layout="constrained").add_subplot()

@@ -7,9 +7,7 @@ from typing import Any
 
 import click
 
-from singimpact.cli.columns import columns
-from singimpact.cli.output import as_json_text
-from singimpact.cli.pictures import save, suffix_of
+from singimpact.cli.output import as_json_text, columns, save, suffix_of
 from singimpact.store import require_writable
 
 

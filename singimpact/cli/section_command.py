@@ -7,11 +7,9 @@ from typing import Any
 
 import click
 
-from singimpact.cli.columns import columns
 from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.orbit_command import check_ending, draw
-from singimpact.cli.output import as_json_text, emit, output_options
-from singimpact.cli.pictures import PICTURES
+from singimpact.cli.output import PICTURES, as_json_text, columns, emit, output_options
 
 
 @click.command()

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from singimpact.cli.columns import columns
+from singimpact.cli.output import columns
 
 if TYPE_CHECKING:
     import numpy as np

@@ -6,8 +6,7 @@ import sys
 
 import click
 
-from singimpact.cli.columns import columns, markdown
-from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.output import as_json_text, columns, emit, markdown, output_options
 from singimpact.progress import ProgressLine
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from singimpact.algebra.expressions import Expression, evaluate, number, substitute, subtract
 from singimpact.algebra.jets import JetSpace
-from singimpact.algebra.symbols import SymbolRing
+from singimpact.algebra.rings import SymbolRing
 from singimpact.algebra.univariate import precision_of
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator, require_smooth_text

@@ -10,7 +10,6 @@ from typing import Any
 from singimpact.algebra.balls import Balls, Zero, as_rational, derivatives, refined
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.double_zeros import double_zeros
 from singimpact.algebra.expressions import (
     BOUND,
     Expression,
@@ -26,6 +25,7 @@ from singimpact.algebra.expressions import (
     subtract,
     walk,
 )
+from singimpact.algebra.isolated_zeros import double_zeros
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC, ExactAtAngles

@@ -10,8 +10,6 @@ _FILES = {
     "breaking": "PAGE lines_of width",
     "compiling": "CompileError compiled",
     "document_steps": "Mark Section Step claims_of equations_of",
-    "escape": "latex",
-    "formats": "as_files as_text",
-    "rendering": "as_data as_latex as_markdown",
+    "rendering": "as_data as_files as_latex as_markdown as_text latex_text",
 }
 __getattr__ = names_of(__name__, _FILES)

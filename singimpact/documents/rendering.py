@@ -1,14 +1,15 @@
-"""Sections into LaTeX and Markdown through templates: the same sections give the same bytes."""
+"""Words and sections into LaTeX, Markdown and JSON, as one text or as files: the same sections give the same bytes."""
 
 from __future__ import annotations
 
+import json
+import re
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from singimpact.documents import escape
 from singimpact.documents.breaking import lines_of
 from singimpact.documents.document_steps import Mark, Section, Step
 
@@ -18,6 +19,64 @@ if TYPE_CHECKING:
 PIECE, DOCUMENT, MARKDOWN = "section.tex", "document.tex", "section.md"
 MASTER = "derivations"
 Marks = Mapping[str, Mark]
+
+
+# Words into LaTeX and Markdown: signs that mean something there are written so that they mean themselves.
+
+_LATEX = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+}
+_FORMULA = re.compile(r"(\$[^$]*\$)")
+
+
+def latex_text(text: str) -> str:
+    """Plain text as LaTeX.
+
+    Examples
+    --------
+    >>> print(latex_text("50% of f_10 & more"))
+    50\\% of f\\_10 \\& more
+    """
+    return "".join(_LATEX.get(sign, sign) for sign in text)
+
+
+def latex_words(text: str) -> str:
+    """Words as LaTeX; what stands between dollar signs is a formula and stays.
+
+    Examples
+    --------
+    >>> print(latex_words("at $v_c$ by 5%"))
+    at $v_c$ by 5\\%
+    """
+    return "".join(part if _FORMULA.fullmatch(part) else latex_text(part) for part in _FORMULA.split(text))
+
+
+def markdown_text(text: str) -> str:
+    """Plain text as Markdown.
+
+    Examples
+    --------
+    >>> print(markdown_text("f_10 * 2"))
+    f\\_10 \\* 2
+    """
+    return re.sub(r"([\\`*_\[\]<>#|])", r"\\\1", text)
+
+
+def markdown_words(text: str) -> str:
+    """Words as Markdown; formulas between dollar signs stay."""
+    return "".join(part if _FORMULA.fullmatch(part) else markdown_text(part) for part in _FORMULA.split(text))
 
 
 def as_latex(sections: Sequence[Section], marks: Marks) -> str:
@@ -75,7 +134,7 @@ def display(step: Step, marks: Marks) -> str:
     if not step.label:
         return f"\\begin{{equation*}}\n{body}\n\\end{{equation*}}"
     badge = _stacked(marks[step.label].text) if step.label in step.claims else ""
-    tag = rf"\tag*{{\beside{{{escape.latex(step.label)}}}{{{badge}}}}}\label{{{step.label}}}"
+    tag = rf"\tag*{{\beside{{{latex_text(step.label)}}}{{{badge}}}}}\label{{{step.label}}}"
     return f"\\begin{{equation}}{tag}\n{body}\n\\end{{equation}}"
 
 
@@ -125,10 +184,47 @@ def _environment() -> Environment:
 
 
 _FILTERS: dict[str, Callable[..., Any]] = {
-    "latex": escape.latex,
-    "latex_words": escape.latex_words,
-    "markdown": escape.markdown,
-    "markdown_words": escape.markdown_words,
+    "latex": latex_text,
+    "latex_words": latex_words,
+    "markdown": markdown_text,
+    "markdown_words": markdown_words,
     "display": display,
     "notes": notes,
 }
+
+
+def as_text(shown: Sequence[Section], marks: Marks, form: str) -> str:
+    """Sections as one text: ``latex``, ``markdown`` or ``json``."""
+    if form == "latex":
+        return as_latex(shown, marks)
+    if form == "markdown":
+        return "\n".join(as_markdown(section, marks) for section in shown)
+    return _json({"sections": [as_data(section, marks) for section in shown]})
+
+
+def as_files(
+    shown: Sequence[Section], marks: Marks, form: str, drawn: Callable[[str], bytes] | None = None
+) -> dict[str, bytes]:
+    """File name -> content: one a section, and for LaTeX the master that takes them in; a PDF is one file.
+
+    Parameters
+    ----------
+    shown, marks : as of `as_latex`. form : ``latex``, ``pdf``, ``markdown`` or ``json``.
+    drawn : gives the picture of a name as PDF, for a PDF; None leaves pictures out.
+    """
+    if form == "pdf":
+        from singimpact.documents.compiling import compiled
+
+        names = [step.picture for section in shown for step in section.steps if step.picture and drawn]
+        pictures = {f"{name}.pdf": drawn(name) for name in names} if drawn else {}
+        return {f"{MASTER}.pdf": compiled(as_latex(shown, marks), pictures).pdf}
+    if form == "markdown":
+        return {f"{section.name}.md": as_markdown(section, marks).encode() for section in shown}
+    if form == "json":
+        return {f"{section.name}.json": _json(as_data(section, marks)).encode() for section in shown}
+    pieces = {f"{section.name}.tex": as_piece(section, marks).encode() for section in shown}
+    return {**pieces, f"{MASTER}.tex": as_master(shown).encode()}
+
+
+def _json(data: object) -> str:
+    return json.dumps(data, indent=2) + "\n"

@@ -29,10 +29,9 @@ from singimpact.inputs import whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.rho_series import series_of_rho
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.result import Result
+from singimpact.result import Result, in_words
 from singimpact.status import Cause, Status, status_array
 from singimpact.theory.completion import by_velocity
-from singimpact.words import in_words
 
 EPSILON = 2.0**-52
 ENDED = {

@@ -26,11 +26,10 @@ from singimpact.flights.states import require_room
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.wall_acceleration import acceleration, sign_of_acceleration
-from singimpact.result import Result
+from singimpact.result import Result, in_words
 from singimpact.status import Status
 from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
-from singimpact.words import in_words
 
 EPSILON = 2.0**-52
 

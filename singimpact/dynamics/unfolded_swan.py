@@ -24,8 +24,7 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 from singimpact.status import Status
-from singimpact.surface.impact_surface import Cusp, ImpactSurface
-from singimpact.surface.named_vertices import crossing
+from singimpact.surface.impact_surface import Cusp, ImpactSurface, crossing
 from singimpact.surface.rest_flights import RestFlights
 
 Array = np.ndarray[Any, Any]

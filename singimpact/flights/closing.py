@@ -16,8 +16,7 @@ from singimpact.algebra.expressions import Expression, Number, Pi, multiply, num
 from singimpact.algebra.numbers import as_float, as_fraction, sign_of
 from singimpact.oscillator.linear import LinearForm, linear_form
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.nearest_zero import Zero
-from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.oscillator.wall_acceleration import Zero, acceleration
 
 
 def touches_again(osc: Oscillator, rest: Zero, time: float) -> Expression | None:

@@ -17,9 +17,8 @@ from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
-from singimpact.result import Result
+from singimpact.result import Result, in_words
 from singimpact.status import Status
-from singimpact.words import in_words
 
 
 @dataclass(frozen=True, repr=False)

@@ -21,8 +21,7 @@ from singimpact.inputs import InputError
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.result import Result, plain
-from singimpact.words import in_words
+from singimpact.result import Result, in_words, plain
 
 Array = np.ndarray[Any, Any]
 

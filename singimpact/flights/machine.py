@@ -23,13 +23,12 @@ from threading import Lock, Thread
 from typing import Any
 
 from singimpact import cache
-from singimpact.file_lock import FileLock
 from singimpact.flights import bind
 from singimpact.flights.bind import Emitted
 from singimpact.flights.shipped import shipped_code, sources, why_not
 from singimpact.inputs import InputError
 from singimpact.progress import ProgressLine
-from singimpact.store import cache_folder, folder, tell, write_text
+from singimpact.store import FileLock, cache_folder, folder, tell, write_text
 
 
 @dataclass(frozen=True)

@@ -32,9 +32,8 @@ from singimpact.flights.states import States, require_room
 from singimpact.flights.undecided import Fates, escapes
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
-from singimpact.result import Result
+from singimpact.result import Result, in_words
 from singimpact.status import Cause, Status, status_array
-from singimpact.words import in_words
 
 Array = np.ndarray[Any, Any]
 

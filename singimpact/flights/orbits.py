@@ -19,9 +19,8 @@ from singimpact.flights.states import States
 from singimpact.inputs import require_memory
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.result import Result, default_axes
+from singimpact.result import Result, default_axes, in_words
 from singimpact.status import Status, status_array
-from singimpact.words import in_words
 
 Array = np.ndarray[Any, Any]
 SLOW = 1e-6

@@ -11,9 +11,8 @@ import numpy as np
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.expressions import Expression
 from singimpact.oscillator.model import Oscillator
-from singimpact.result import Result, plain
+from singimpact.result import Result, in_words, plain, value_in_words
 from singimpact.status import Cause, Status, status_array
-from singimpact.words import in_words, value_in_words
 
 JUDGED = ("condition", "velocity_condition", "time_error", "velocity_error")
 """Fields that may be computed when they are first read: of a Taylor flow they take longer than the flight."""

@@ -25,8 +25,7 @@ from singimpact.flights.limits import LIMITS
 from singimpact.flights.phase import phase_of
 from singimpact.inputs import InputError, refuse, require_memory
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.nearest_zero import Zero, zero_beside
-from singimpact.oscillator.wall_acceleration import sign_of_acceleration
+from singimpact.oscillator.wall_acceleration import Zero, sign_of_acceleration, zero_beside
 
 FAR = 2.0**25
 """Periods from which on launch times are reduced exactly: kernels reduce those before, to twice a double's bits."""

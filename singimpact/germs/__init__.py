@@ -6,7 +6,6 @@ Not here: jets (`algebra`), the maps p and phi whose germs these are (`theory`),
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "germ_forms": "normal_form",
-    "recognition": "recognised",
+    "germ_forms": "normal_form recognised",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -7,9 +7,8 @@ from singimpact.handed_on import names_of
 
 _FILES = {
     "linear": "linear_form",
-    "model": "Oscillator",
+    "model": "Oscillator fields_of read_fields",
     "rho_series": "series_of_rho",
-    "toml_files": "fields_of read_fields",
     "wall_acceleration": "acceleration",
 }
 __getattr__ = names_of(__name__, _FILES)

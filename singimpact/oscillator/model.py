@@ -1,18 +1,23 @@
-"""`Oscillator`: f, g, clearance, restitution and parameters, kept exact."""
+"""`Oscillator`: f, g, clearance, restitution and parameters, kept exact; and model files."""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Collection, Mapping
 from fractions import Fraction
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Self
 
 from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in, substitute, walk
 from singimpact.algebra.numbers import constant, tree_of
 from singimpact.algebra.puiseux import Puiseux
+from singimpact.algebra.rings import to_sympy
 from singimpact.inputs import InputError, refuse, shown, unknown
 from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, period_of
+from singimpact.oscillator.rebound import rho_of
+from singimpact.store import read_bounded
 
 STATE = ("x", "xdot")
 FIELDS = ("f", "g", "clearance", "restitution", "parameters", "period")
@@ -183,7 +188,6 @@ class Oscillator:
         )
 
     def _repr_latex_(self) -> str:
-        from singimpact.oscillator.equation_in_latex import equation
 
         return f"${equation(self.f, self.g, self.clearance, self.restitution, self.parameters)}$"
 
@@ -243,3 +247,86 @@ def _written(value: Any) -> str:
         return repr(value)
     short = repr(number)
     return short if len(short) < len(value) and Fraction(number) == Fraction(value) else repr(value)
+
+
+# Model files: TOML with the fields of an `Oscillator`.
+
+REQUIRED = ("f", "g", "clearance", "restitution")
+
+
+def fields_of(text: str, source: str = "model file") -> dict[str, Any]:
+    """The fields in a TOML text; numbers keep the decimals that are written.
+
+    Raises
+    ------
+    InputError : not TOML, an unknown key (the nearest known one is named), a field missing.
+
+    Examples
+    --------
+    >>> fields_of('f = "x"\\ng = "cos(2*t)"\\nclearance = 0.3\\nrestitution = 0.5')
+    {'f': 'x', 'g': 'cos(2*t)', 'clearance': '0.3', 'restitution': '0.5'}
+    """
+    try:
+        fields = tomllib.loads(text, parse_float=str)
+    except (ValueError, RecursionError) as error:  # an integer of 5000 digits is a plain ValueError
+        raise InputError(f"{source} is not TOML: {' '.join(str(error).split())}") from None
+    for key in fields:
+        if key not in FIELDS:
+            raise unknown(f"key in {source}:", key, FIELDS)
+    for key in REQUIRED:
+        if key not in fields:
+            raise InputError(f"{source} has no {key}: a model needs {', '.join(REQUIRED)}")
+    return fields
+
+
+def read_fields(path: str | Path) -> dict[str, Any]:
+    """The fields of a model file."""
+    raw = read_bounded(path, "model file")
+    try:
+        return fields_of(raw.decode("utf-8"), f"model file {shown(str(path))}")
+    except UnicodeDecodeError:
+        raise InputError(f"model file {shown(str(path))} is not UTF-8 text") from None
+
+
+def to_toml(fields: dict[str, Any]) -> str:
+    """The TOML text of a model's fields (`Oscillator.to_dict`)."""
+    lines = [f'{key} = "{value}"' for key, value in fields.items() if key != "parameters"]
+    if "parameters" in fields:
+        lines += ["", "[parameters]", *(f'{name} = "{value}"' for name, value in fields["parameters"].items())]
+    return "\n".join(lines) + "\n"
+
+
+# The model as the reader of a paper would write it, in LaTeX.
+
+
+def equation(
+    f: Expression, g: Expression, clearance: Expression, restitution: Expression, parameters: Mapping[str, Expression]
+) -> str:
+    """x'' + f = g, the wall, the rebound, and the numbers that the letters stand for.
+
+    Examples
+    --------
+    >>> from singimpact.oscillator.model import Oscillator
+    >>> osc = Oscillator("x + x**3", "t*omega", 1, "1/2", {"omega": 2})
+    >>> print(equation(osc.f, osc.g, osc.clearance, osc.restitution, osc.parameters))
+    \\ddot x + x^{3} + x = \\omega t,\\quad x \\ge 1,\\quad v \\mapsto - \\frac{v}{2},\\quad \\omega = 2
+    """
+    force = "" if to_sympy(f) == 0 else f" + {latex(f)}".replace("+ -", "-")
+    parts = [rf"\ddot x{force} = {latex(g)}", rf"x \ge {latex(clearance)}"]
+    parts.append(rf"v \mapsto {latex(rho_of(restitution))}")
+    parts += [f"{latex_name(name)} = {latex(value)}" for name, value in parameters.items()]
+    return r",\quad ".join(parts)
+
+
+def latex(tree: Expression) -> str:
+    """LaTeX of an expression of a model; x' has its dot."""
+    import sympy
+
+    return str(sympy.latex(to_sympy(tree), symbol_names={sympy.Symbol("xdot"): r"\dot x"}))
+
+
+def latex_name(name: str) -> str:
+    """LaTeX of the name of a parameter."""
+    import sympy
+
+    return str(sympy.latex(sympy.Symbol(name)))

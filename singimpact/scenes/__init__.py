@@ -16,13 +16,12 @@ if TYPE_CHECKING:
 
 _FILES = {
     "basins_picture": "class_colors draw_basins draw_first_chatter",
-    "bifurcation_picture": "bifurcation_sheet",
     "border_picture": "draw_border",
+    "branch_picture": "bifurcation_sheet",
     "clearance_frames": "clearance_film",
     "drawing": "plot",
     "explore": "CURVES explore_page",
-    "layers": "LAYERS",
-    "scene": "LONGEST_TEXT Scene",
+    "scene": "LAYERS LONGEST_TEXT Scene",
     "stored_layers": "keep recall",
     "style": "BLUE EVENT_PENS LINES MARKS ON_DARK PENS Pen VERMILLION on_dark orbit_color orbit_width",
 }

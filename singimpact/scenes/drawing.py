@@ -18,13 +18,10 @@ from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.sampling import Section
 from singimpact.inputs import refuse
-from singimpact.scenes.basins_picture import draw_basins
-from singimpact.scenes.bifurcation_picture import draw_bifurcation
+from singimpact.scenes.basins_picture import draw_basins, draw_both_sides
 from singimpact.scenes.border_picture import draw_border
-from singimpact.scenes.both_sides import draw_both_sides
-from singimpact.scenes.branch_picture import draw_branches, draw_event_curves
-from singimpact.scenes.horseshoe_picture import draw_horseshoe
-from singimpact.scenes.manifolds import draw_certified_crossing, draw_crossings, draw_manifolds
+from singimpact.scenes.branch_picture import draw_bifurcation, draw_branches, draw_event_curves
+from singimpact.scenes.manifolds import draw_certified_crossing, draw_crossings, draw_horseshoe, draw_manifolds
 from singimpact.scenes.orbit_picture import draw_orbit, draw_section
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import PENS

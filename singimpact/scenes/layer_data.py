@@ -20,8 +20,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.scenes.stored_layers import keep, key_of, recall
 from singimpact.surface.curve import STATES, SURFACE, Curve, Window
-from singimpact.surface.impact_surface import ImpactSurface
-from singimpact.surface.named_vertices import NamedLine
+from singimpact.surface.impact_surface import ImpactSurface, NamedLine
 
 STORED = ("lines", "visible", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")  # the rest costs no flight
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -14,17 +14,72 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.inputs import InputError, refuse, shown, unknown
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.toml_files import FIELDS, read_fields
+from singimpact.oscillator.model import FIELDS, Oscillator, read_fields
 from singimpact.scenes.layer_data import Results
-from singimpact.scenes.layers import LAYERS
+from singimpact.scenes.style import PENS
 from singimpact.store import read_bounded
-from singimpact.surface.curve import STATES, SURFACE, window_ends
+from singimpact.surface.curve import STATES, SURFACE, Curve, window_ends
 
 DPI = 100
 LONGEST_TEXT = 200  # characters of a title or a mark; 200 000 made a picture of 16 MB
 SIZES = (100, 8000)  # of a picture, in points
 LEAVES = 500
+
+
+# Layers of a scene: what each needs, the plane it lives in, and how it is drawn.
+
+Drawer = Callable[[Any, list[Curve], str], None]
+
+
+@dataclass(frozen=True)
+class Layer:
+    """need : the curves it draws. plane : names of the two axes. label : in the legend. draw : puts them on axes."""
+
+    need: str
+    plane: tuple[str, str]
+    label: str
+    draw: Drawer
+
+
+def _strokes(pen: str) -> Drawer:
+    def draw(axes: Any, curves: list[Curve], label: str) -> None:
+        for n, curve in enumerate(curves):
+            axes.plot(*curve.points.T, **PENS[pen].line(), label=label if n == 0 else None)
+
+    return draw
+
+
+def _first_hits(pen: str) -> Drawer:
+    """The stretches that are first hits."""
+
+    def draw(axes: Any, curves: list[Curve], label: str) -> None:
+        given: str | None = label
+        for curve in curves:
+            for part in curve.parts(curve.visible):
+                look = PENS[pen].line() | {"linewidth": 3.2, "linestyle": "solid"}
+                axes.plot(*part.points.T, **look, label=given)
+                given = None
+
+    return draw
+
+
+def _steps(axes: Any, curves: list[Curve], label: str) -> None:
+    for n, curve in enumerate(curves):
+        axes.plot(*curve.points.T, **PENS["orbit"].beads(), label=label if n == 0 else None)
+
+
+LAYERS: dict[str, Layer] = {
+    "horizon": Layer("horizon", SURFACE, PENS["H"].words, _strokes("H")),
+    "zero-set": Layer("zero-set", SURFACE, PENS["Z"].words, _strokes("Z")),
+    "visible": Layer("visible", SURFACE, "visible part of $H$", _first_hits("H")),
+    "shadow": Layer("shadow", SURFACE, PENS["shadow"].words, _strokes("shadow")),
+    "outline": Layer("outline", STATES, PENS["P"].words, _strokes("P")),
+    "discontinuities": Layer("discontinuities", STATES, PENS["jump"].words, _strokes("jump")),
+    "gamma": Layer("gamma", STATES, PENS["gamma"].words, _strokes("gamma")),
+    "stable-manifolds": Layer("stable-manifolds", STATES, r"$W^s_\tau$", _strokes("loop")),
+    "foliation": Layer("foliation", STATES, PENS["manifold"].words, _strokes("manifold")),
+    "orbits": Layer("orbits", STATES, PENS["orbit"].words, _steps),
+}
 
 
 @dataclass(frozen=True)

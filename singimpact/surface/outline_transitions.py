@@ -28,9 +28,8 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
 from singimpact.result import Results
 from singimpact.surface.curve import window_ends
-from singimpact.surface.followed_rests import FollowedRests
+from singimpact.surface.followed_rests import FollowedRests, doubts_of_rests, gaps_of, met_rests
 from singimpact.surface.proved_touches import doubts_left
-from singimpact.surface.rest_events import doubts_of_rests, gaps_of, met_rests
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.seen_events import bracketed, told
 from singimpact.surface.swan_families import STEPS, Family, Transition, swans_met

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.double_zeros import DoubleZero, DoubleZeros, double_zeros
 from singimpact.algebra.expressions import Expression, Name
+from singimpact.algebra.isolated_zeros import DoubleZero, DoubleZeros, double_zeros
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.swans import swan_points_over_clearance

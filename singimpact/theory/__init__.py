@@ -25,7 +25,6 @@ _FILES = {
     "completion": "leaves symbolic_completion",
     "contact_points": "multiplier",
     "fixed_points": "as_dict swan tangency",
-    "fold_normal_form": "fold_form",
     "frozen": "CURVED MOVED PLACES completion_module curve_module sheet_module",
     "gamma_in_symbols": "rho_names symbolic_curve",
     "gamma_series": "invariant_curve multiplier_across restitution_of",
@@ -33,11 +32,10 @@ _FILES = {
     "homogeneous": (
         "DG_on_ray P Q eigenvalues_on_gamma lambda_ launch_velocity leading_coefficient mu_of_lambda r_of_lambda"
     ),
-    "impact_sheet": "Sheet generic_sheet sheet",
-    "involution": "iota",
+    "impact_sheet": "Sheet generic_sheet iota sheet",
     "multipliers": "minimal_polynomial of_m series",
     "notation": "latex",
-    "plane_forms": "normal_form",
+    "plane_forms": "fold_form normal_form",
 }
 _value_of = _names_of(__name__, _FILES)
 

@@ -1,7 +1,7 @@
 """Fixed points of the blown-up maps and their multipliers, as numbers with a certified radius, to any number of digits.
 
 Everything follows from lambda, the root in (0, 1) of lambda^(j+1) P_j - r Q_j, and from u = 1 - lambda, the root of
-the same polynomial shifted to 1: so nothing is lost as r -> 0 or as r -> 1.  Isolation is `algebra.roots`.
+the same polynomial shifted to 1: so nothing is lost as r -> 0 or as r -> 1.  Isolation is `algebra.univariate`.
 As functions of r (`of_m`, `series`, `minimal_polynomial`) they are in `multipliers`, and reached from here too.
 """
 
@@ -17,11 +17,10 @@ from singimpact.algebra.certified import Certified as Certified
 from singimpact.algebra.certified import as_certified
 from singimpact.algebra.numbers import as_fraction, constant
 from singimpact.algebra.precision import balls_at
-from singimpact.algebra.roots import real_roots
+from singimpact.algebra.univariate import real_roots
 from singimpact.contact.contact import contact_order
 from singimpact.inputs import InputError, refuse
-from singimpact.result import Result, columns_of
-from singimpact.words import in_words
+from singimpact.result import Result, columns_of, in_words
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
 MOST_DIGITS = 100_000

@@ -9,8 +9,14 @@ from typing import Any
 
 from singimpact.algebra.jets import Jet
 from singimpact.algebra.polynomials import Exponents
-from singimpact.codegen.polynomial_source import function_source, module_source
-from singimpact.codegen.rational_series import Factored, RationalSeries, Unit, rational_series_source
+from singimpact.codegen.polynomial_source import (
+    Factored,
+    RationalSeries,
+    Unit,
+    function_source,
+    module_source,
+    rational_series_source,
+)
 from singimpact.contact.contact import NAMED_ORDERS, Contact, derivative_name
 from singimpact.germs.germ_forms import normal_form
 from singimpact.theory.completion import symbolic_completion

@@ -14,7 +14,7 @@ from typing import Any
 
 from singimpact.algebra.interpolation import RationalCoefficients, interpolated
 from singimpact.algebra.precision import kept_property
-from singimpact.algebra.symbols import sympy_rational
+from singimpact.algebra.rings import sympy_rational
 from singimpact.contact.contact import Contact, derivative_name
 from singimpact.theory.gamma_series import InvariantCurve, invariant_curve
 

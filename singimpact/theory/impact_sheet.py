@@ -19,10 +19,28 @@ from typing import Any
 from singimpact.algebra.gathering import gathering, remembered
 from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.algebra.precision import kept_property
-from singimpact.algebra.rings import Exact
-from singimpact.algebra.symbols import SymbolRing
+from singimpact.algebra.rings import Exact, SymbolRing
 from singimpact.contact.contact import Contact
-from singimpact.theory.involution import after_iota
+
+# The involution iota(sigma, t) = (sigma + t, -t): it exchanges launch and landing, and turns p into phi. In the
+# coordinates (s, e), launch time and landing time, iota is the exchange of s and e.
+
+
+def after_iota(v: Jet) -> Jet:
+    """v o iota for a jet in (sigma, t): impact velocity from launch velocity."""
+    sigma, t = v.space.generators()
+    return v.compose(iota(sigma, t))
+
+
+def iota(sigma: Any, t: Any) -> tuple[Any, Any]:
+    """(sigma + t, -t), for numbers, jets or sympy objects alike.
+
+    Examples
+    --------
+    >>> iota(*iota(2, 3))
+    (2, 3)
+    """
+    return sigma + t, -t
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from singimpact.bench import balls, digits, fixed_steps, flown, limits
 from singimpact.bench import motion as plain_steps_motion
 from singimpact.bench import orbits as orbits_orbits
 from singimpact.bench import row as basin_pixels_row
-from singimpact.bench.selftest import round_trip, rows, tangencies
+from singimpact.bench.selftest import responses, rows, tangencies
 from singimpact.contact import TangencyPoints
 from singimpact.dynamics import basins_of_attraction
 from singimpact.inputs import InputError
@@ -67,7 +67,7 @@ def wrong_model(kind):
     return kind(**DUFFING.to_dict())
 
 
-@pytest.mark.parametrize("row", [round_trip.row, fixed_steps, digits, balls])
+@pytest.mark.parametrize("row", [responses.round_trip, fixed_steps, digits, balls])
 def test_flights_that_are_off_are_wrong(row):
     found = row(flown(wrong_model(Shifted), 40, 0))
     assert found.wrong > found.agree
@@ -90,7 +90,7 @@ def test_missed_hits_are_wrong():
     states = flown(wrong_model(Missed), 20, 0)
     assert fixed_steps(states).wrong == 20
     assert balls(states).wrong == 20
-    assert round_trip.row(states).note
+    assert responses.round_trip(states).note
 
 
 class Wandering(si.ImpactOscillator):

@@ -219,7 +219,7 @@ LIMITED = (
         "kernel",
         12,
         'sheet(LetteredModel(LETTERED, ["d", "k"], 1).contact(12), 12).xdot',
-        OURS + "from singimpact.theory.letters import LetteredModel",
+        OURS + "from singimpact.theory.constants import LetteredModel",
         limit=0.05,
     ),
     Task(

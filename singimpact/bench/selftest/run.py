@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from time import process_time
 
-from singimpact.bench.selftest import basin_pixels, batches, followed_orbits, responses, round_trip, tangencies, truths
+from singimpact.bench.selftest import basin_pixels, batches, followed_orbits, responses, tangencies, truths
 from singimpact.bench.selftest.draws import Flown, flown
 from singimpact.bench.selftest.rows import Row, SelfTest
 from singimpact.impact_oscillator import ImpactOscillator
@@ -13,7 +13,7 @@ from singimpact.inputs import refuse, whole
 from singimpact.progress import ProgressLine
 
 COMPARED: dict[str, Callable[[Flown], Row]] = {
-    "flights forward and back": round_trip.row,
+    "flights forward and back": responses.round_trip,
     "small fixed steps": truths.fixed_steps,
     "more digits": truths.digits,
     "balls": truths.balls,

@@ -4,22 +4,75 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from math import pi
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.precision import balls_at
-from singimpact.bench.stress import layered
 from singimpact.bench.stress.judging import STEP, Function, Sweep, Trial
 from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch, both
+from singimpact.bench.truth import enclosed_flight
+from singimpact.bench.truth.enclosed_flight import EnclosureSettings
 from singimpact.bench.truth.first_hit import first_hit
+from singimpact.flights.inverse_map import backwards
 from singimpact.status import Status
 
 SQUARED = 1e-140  # the height of a flight is of the size of v squared, and below 1e-300 doubles lose digits
 IMPACTS = 4  # of an orbit: every impact multiplies the condition number, so more impacts would hide errors
 GONE = (Status.no_return, Status.escaped)
+
+
+# Models with steep layers: impacts in balls by `bench.truth.enclosed_flight`, and their derivatives as differences of
+# such balls.
+
+# differences over 10^-STEP, and differences of these, keep 10 digits
+EXACT = EnclosureSettings(accuracy=1e-60, bits=240)
+Pair = tuple[Any, Any]
+
+
+def landed(launch: SteepLaunch, tau: Any, v: Any, sign: int) -> tuple[Any, Any, tuple[Pair, Pair]] | None:
+    """Time and velocity of the next impact and their derivatives by (tau, v); None where there is none.
+
+    Parameters
+    ----------
+    tau, v : numbers or balls, of which the midpoints are flown. sign : -1 for the flight backwards.
+    """
+    import flint
+
+    start = [flint.arb(flint.arb(number).mid()) for number in (tau, v)]
+    time, velocity = _flown(launch, *map(_key, start), sign)
+    if time is None:
+        return None
+    small, rows = flint.arb(10) ** -STEP, []
+    for moved in (0, 1):
+        size = max(abs(float(start[moved])), 1.0) if moved == 0 else float(start[1])
+        change = flint.arb((small * size).mid())
+        there = [number + change if index == moved else number for index, number in enumerate(start)]
+        late, fast = _flown(launch, *(_key(flint.arb(number.mid())) for number in there), sign)
+        if late is None:
+            return None
+        rows.append(((late - time) / change, (fast - velocity) / change))
+    (time_by_tau, velocity_by_tau), (time_by_v, velocity_by_v) = rows
+    return time, velocity, ((time_by_tau, time_by_v), (velocity_by_tau, velocity_by_v))
+
+
+def _key(exact: Any) -> Pair:
+    """Mantissa and exponent of an exact ball."""
+    mantissa, exponent = exact.man_exp()
+    return int(mantissa), int(exponent)
+
+
+@lru_cache(maxsize=4096)  # the functions of a place fly the same states
+def _flown(launch: SteepLaunch, tau: Pair, v: Pair, sign: int) -> Pair:
+    import flint
+
+    model = launch.model if sign > 0 else backwards(launch.model)
+    state = [flint.arb(mantissa) * flint.arb(2) ** exponent for mantissa, exponent in (tau, v)]
+    with balls_at(launch.bits):
+        found = enclosed_flight.first_hit(model, state[0], state[1], launch.horizon, EXACT)
+    return found.flight_time, found.velocity
 
 
 @dataclass(frozen=True)
@@ -38,7 +91,7 @@ class Landing:
 def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
     """The impact, or the status that is right: sticks, graze or no return.  Call it with the working precision set."""
     if isinstance(launch, SteepLaunch):
-        there = layered.landed(launch, tau, v, sign)
+        there = landed(launch, tau, v, sign)
         return int(Status.no_return) if there is None else Landing(*there)
     motion = launch.motion(tau, v, sign)
     if v == 0 and not motion.at(0)[2] > 0:

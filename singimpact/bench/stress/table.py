@@ -9,15 +9,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from singimpact.bench.stress import chattered, everyday, expanded, flown, named, repeated, traced
+from singimpact.bench.stress import chattered, closed_forms, expanded, flown, named
 from singimpact.bench.stress.judging import LIMITS, Cell, Function, worst
 from singimpact.bench.stress.launches import PLACES
 from singimpact.inputs import unknown
 
 FUNCTIONS: dict[str, Function] = {
-    each.name: each
-    for room in (flown, everyday, repeated, chattered, expanded, named, traced)
-    for each in room.FUNCTIONS
+    each.name: each for room in (flown, closed_forms, chattered, expanded, named) for each in room.FUNCTIONS
 }
 POINTS, QUICK = 12, 4
 NOTE = (

@@ -1,13 +1,145 @@
-"""Run claims: choose them with what they rest on, and decide or recall each after what it rests on."""
+"""Run claims: choose them with what they rest on, and decide or recall each after what it rests on.
+
+Verdicts are kept in the user's cache folder, one sealed file a claim, under the claim's canonical key.  The key is what
+a verdict depends on, so that a kept verdict serves while nothing changed: a digest of the package's source outside
+`claims/sections` and `claims/beyond`, of the versions of Python and the libraries, of the claim's line in the index, of
+the source of its file there with the files of `sections` that this one imports, and of the keys of what the claim rests
+on.  An edited verifier runs again with its file and their dependants; an edit below the claims runs all again.  No
+claim is built for its key.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import json
+import re
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
 
-from singimpact.paper.claims.claim import Claim, Verdict
+from singimpact import cache
+from singimpact.algebra.checking import accepts
+from singimpact.cache import source_digest
+from singimpact.paper.claims.claim import KINDS, Claim, Trial, Verdict
 from singimpact.paper.claims.index import CLAIMS, INDEX, Entry, entry_of
-from singimpact.paper.claims.keys import key_of
-from singimpact.paper.claims.memory import keep, recall
+from singimpact.store import cache_folder
+
+# The key of a claim, and its kept verdict.
+
+LIBRARIES = ("sympy", "numpy", "scipy", "python-flint", "mpmath", "numba")
+SECTIONS, BEYOND = (Path(__file__).with_name(name) for name in ("sections", "beyond"))
+IMPORTED = re.compile(
+    r"^\s*from singimpact\.paper\.claims\.sections(?:\.(\w+) import|\s+import ([\w, ]+))", re.MULTILINE
+)
+ABOVE = (  # folders that no verdict depends on, and the sections, which each claim adds for itself
+    "paper/claims/sections/",
+    "paper/claims/beyond/",
+    "paper/sections/",
+    "paper/figures/",
+    "cli/",
+    "documents/",
+    "scenes/",
+    "bench/",
+)
+
+
+@lru_cache(maxsize=1)
+def ground() -> str:
+    """The digest of everything below the sections: the package's source, Python and the libraries."""
+    source = source_digest(Path(__file__).parents[2], ABOVE)
+    libraries = repr((sys.version_info[:2], [version(name) for name in LIBRARIES]))
+    return hashlib.sha256((libraries + source).encode()).hexdigest()
+
+
+def source_of(file: str) -> str:
+    """The source of one file of `sections` or `beyond`."""
+    place = SECTIONS / f"{file}.py"
+    return (place if place.exists() else BEYOND / f"{file}.py").read_text(encoding="utf-8")
+
+
+def imported_by(file: str) -> list[str]:
+    """A file of `sections` and those that it imports from there, directly or not, in alphabetical order.
+
+    Examples
+    --------
+    >>> imported_by("section4a_fold")
+    ['section2_trials', 'section4_trials', 'section4a_fold']
+    """
+    modules: set[str] = set()
+    todo = [file]
+    while todo:
+        name = todo.pop()
+        if name not in modules:
+            modules.add(name)
+            named = [name_ for pair in IMPORTED.findall(source_of(name)) for name_ in "".join(pair).split(",")]
+            todo += [name_.split()[0] for name_ in named]  # "file as other" is the file
+    return sorted(modules)
+
+
+@lru_cache(maxsize=64)
+def file_digest(file: str) -> str:
+    """The digest of a file of `sections` with what it imports from there."""
+    return hashlib.sha256("\0".join(source_of(name) for name in imported_by(file)).encode()).hexdigest()
+
+
+def key_of(entry: Entry, below: Mapping[str, str]) -> str:
+    """The key of a claim, given the keys of the claims it rests on.
+
+    Examples
+    --------
+    >>> from singimpact.paper.claims.index import INDEX
+    >>> len(key_of(INDEX["e:yeq"], {}))
+    64
+    """
+    parts = [ground(), asdict(entry), file_digest(entry.file), [below.get(name, "") for name in entry.rests_on]]
+    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+
+
+def _place(name: str) -> Path:
+    return cache_folder() / "verdicts" / f"{name.replace(':', '_')}.verdict"
+
+
+def recall(name: str, key: str) -> Verdict | None:
+    """The kept verdict of a claim, or None when there is none for this key or the file is damaged."""
+    content = cache.recall(_place(name))
+    if content is None:
+        return None
+    try:
+        digests, verdict = cache.unpacked(content, (Verdict, Trial))
+        return _checked(verdict) if digests == key else None
+    except (ValueError, KeyError, TypeError) as error:
+        cache.damaged(_place(name), str(error))
+        return None
+
+
+def _checked(verdict: Any) -> Verdict:
+    if not isinstance(verdict, Verdict) or verdict.kind not in KINDS:
+        raise ValueError("not a verdict")
+    if not all(_accepted(json.dumps(certificate)) for certificate in verdict.certificates):
+        raise ValueError("a certificate is not accepted")
+    return verdict
+
+
+@lru_cache(maxsize=4096)
+def _accepted(certificate: str) -> bool:
+    """Whether the checker accepts a certificate; many claims share those of what they rest on."""
+    return accepts(json.loads(certificate))
+
+
+def keep(verdict: Verdict, key: str) -> None:
+    """Keep a verdict that was reached; one that ended in an error is tried again next time.
+
+    A cache that cannot be written is no reason to fail: the verdict stands, it is only not kept.
+    """
+    if verdict.kind != "error":
+        cache.keep(_place(verdict.id), cache.packed((key, verdict)))
+
+
+# The run: claims are chosen, and each is decided or recalled after what it rests on.
 
 
 def select(ids: Sequence[str] | None = None) -> list[Entry]:

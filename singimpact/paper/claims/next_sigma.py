@@ -9,7 +9,7 @@ import sympy
 from singimpact.paper.routes.equations import equation
 from singimpact.paper.routes.fold import eta
 from singimpact.paper.routes.implicit import sigma
-from singimpact.theory.fold_normal_form import fold_form
+from singimpact.theory.plane_forms import fold_form
 
 
 @equation("s4-next-sigma")

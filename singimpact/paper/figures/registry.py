@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+from singimpact import cache
 from singimpact.inputs import refuse
-from singimpact.paper.figures.panel import Picture
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
+from singimpact.scenes.stored_layers import key_of
+from singimpact.store import cache_folder
 
 FIGURES = tuple(range(1, 18))
 """The numbers of the paper's figures."""
@@ -23,7 +27,6 @@ def _function(number: int | str) -> Callable[[], Picture]:
     from singimpact.paper.figures import (  # they load what computes
         contact_figures,
         outlines,
-        section_figures,
         swan_figures,
         unfolded_figures,
     )
@@ -37,8 +40,8 @@ def _function(number: int | str) -> Callable[[], Picture]:
         6: contact_figures.figure_6,
         7: contact_figures.figure_7,
         8: contact_figures.figure_8,
-        9: section_figures.figure_9,
-        10: section_figures.figure_10,
+        9: outlines.figure_9,
+        10: outlines.figure_10,
         11: swan_figures.figure_11,
         12: swan_figures.figure_12,
         13: unfolded_figures.figure_13,
@@ -51,18 +54,18 @@ def _function(number: int | str) -> Callable[[], Picture]:
 
 
 def _beyond(name: str) -> Callable[[], Picture]:
-    from singimpact.paper.figures import corrections, hertz_figure, loop_figures, met
+    from singimpact.paper.figures import beyond_figures, corrections
 
     functions: dict[str, Callable[[], Picture]] = {
         "B1": corrections.figure_B1,
         "B2": corrections.figure_B2,
         "B3": corrections.figure_B3,
-        "B4": loop_figures.figure_B4,
-        "B5": loop_figures.figure_B5,
-        "B6": loop_figures.figure_B6,
-        "B7": met.figure_B7,
-        "B8": met.figure_B8,
-        "B9": hertz_figure.figure_B9,
+        "B4": beyond_figures.figure_B4,
+        "B5": beyond_figures.figure_B5,
+        "B6": beyond_figures.figure_B6,
+        "B7": beyond_figures.figure_B7,
+        "B8": beyond_figures.figure_B8,
+        "B9": beyond_figures.figure_B9,
     }
     return functions[name]
 
@@ -95,3 +98,20 @@ def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
     from singimpact.paper.figures.figure_rendering import Look, drawn
 
     return drawn(picture(number), Look(serif, dark))
+
+
+# Figures kept in the user's cache folder as numbers, so that an interrupted run continues where it stopped.
+
+KINDS = (Picture, Panel, Line, Region, Dot)
+
+
+def kept_picture(number: int | str) -> Picture:
+    """The data of a figure as `picture` gives them, from the cache when they were computed before."""
+    place = cache_folder() / "figures" / f"{key_of(number, cache.source_digest(Path(__file__).parent))}.figure"
+    content = cache.recall(place)
+    if content is not None:
+        found: Picture = cache.unpacked(content, KINDS)
+        return found
+    made = picture(number)
+    cache.keep(place, cache.packed(made))
+    return made

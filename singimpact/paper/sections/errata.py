@@ -2,21 +2,114 @@
 
 from __future__ import annotations
 
+import json
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from singimpact.documents import escape
 from singimpact.documents.breaking import wrapping
-from singimpact.paper.sections.places import PAPER, VERSION, Place, place_of
+from singimpact.documents.rendering import latex_text, latex_words, markdown_text, markdown_words
 from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
-from singimpact.paper.sections.shared_words import in_letters
 from singimpact.paper.sections.stored_sections import kept_legend
 
 if TYPE_CHECKING:
     from singimpact.paper.claims.claim import Claim, Verdict
     from singimpact.paper.claims.index import Entry
+
+# Where a claim stands in the paper: page, equation, theorem and line, for a reader with the paper beside him.
+
+PAPER = "D. R. J. Chillingworth, Dynamics of an impact oscillator near a degenerate graze"
+VERSION = (
+    "Preprint submitted to Nonlinearity. Numbers of equations and theorems are those of its LaTeX source; pages are "
+    "those of the source set in the class article at 12 pt (24 pages), and may differ by one or two in print."
+)
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a claim stands in the paper.
+
+    Attributes
+    ----------
+    page : of the preprint, see `VERSION`. line : of its LaTeX source. equations : the numbers of the displayed
+        equations that hold the claim, empty where it stands in the text. statement : such as "Theorem 4.1", or "".
+    """
+
+    page: int
+    line: int
+    equations: tuple[int, ...]
+    statement: str
+
+    def __str__(self) -> str:
+        return ", ".join(part for part in (f"p. {self.page}", self.statement, self.numbers) if part)
+
+    @property
+    def numbers(self) -> str:
+        """The numbers of the equations, as they are printed.
+
+        Examples
+        --------
+        >>> place_of("s4-blowup").numbers, str(place_of("t:t2-fixed"))
+        ('(24), (25)', 'p. 11, Theorem 4.1')
+        """
+        return ", ".join(f"({number})" for number in self.equations)
+
+
+@cache
+def _stored_places() -> dict[str, Place]:
+    lines = json.loads(Path(__file__).with_name("places.json").read_text(encoding="utf-8"))
+    return {
+        line["id"]: Place(line["page"], line["line"], tuple(line["equations"]), line["statement"]) for line in lines
+    }
+
+
+def place_of(claim: str) -> Place:
+    """The place of a claim of the paper, by its id.
+
+    Raises
+    ------
+    KeyError : a claim that the paper does not have.
+    """
+    return _stored_places()[claim]
+
+
+# Plain words of claims, with the letters of formulas between dollar signs; loads no sympy.
+
+_GREEK = "sigma|tau|eta|omega|kappa|lambda|beta|gamma|phi|chi|psi|ell|Pi"
+_SIGNS = {"!=": r"\ne", "<=": r"\le", ">=": r"\ge", "->": r"\to"}
+_LETTERS = re.compile(
+    rf"(?P<dot>x-dot|x_dot)(?P<wall>_c)?|(?P<sign>!=|<=|>=|->)|\b(?P<jet>a)_d(?P<order>\d)\b|\b(?P<name>{_GREEK}|dv|[A-Za-z])"
+    r"(?P<below>_[A-Za-z0-9*+-]+|_\([a-z ]+\)|(?<=m)[123])?(?P<primes>'+)?(?![A-Za-z0-9_('])"
+)
+
+
+def in_letters(text: str) -> str:
+    r"""Plain words in which the letters of formulas get dollar signs: sigma, a_d1, x-dot, tau_*, m2, f_10.
+
+    Examples
+    --------
+    >>> print(in_letters("x-dot/h^2 at sigma' = -h, a_d1 = 7/4, m2 a root, f_10 = 2"))
+    $\dot x$/h^2 at $\sigma'$ = -h, $a'$ = 7/4, $m_{2}$ a root, $f_{10}$ = 2
+    """
+    return _LETTERS.sub(_letter, text)
+
+
+def _letter(letter: re.Match[str]) -> str:
+    if letter["dot"]:
+        return rf"$\dot x{letter['wall'] or ''}$"
+    if letter["sign"]:
+        return f"${_SIGNS[letter['sign']]}$"
+    if letter["jet"]:
+        return f"$a{chr(39) * int(letter['order'])}$"
+    name, below, primes = letter["name"], (letter["below"] or "").strip("_()"), letter["primes"] or ""
+    if len(name) == 1 and not below and not primes:
+        return letter[0]  # an article, or a letter that reads as well without
+    below = re.sub(rf"\b({_GREEK})\b", r"\\\1", below)
+    return f"${name if name == 'dv' or len(name) == 1 else chr(92) + name}{f'_{{{below}}}' if below else ''}{primes}$"
 
 
 @dataclass(frozen=True)
@@ -151,11 +244,11 @@ class Errata(Sequence[Erratum]):
     def latex(self) -> str:
         """A LaTeX document: two pages for a first look, then each remark with its numbers."""
         fields = {
-            "PAPER": escape.latex(PAPER),
-            "VERSION": escape.latex(VERSION),
-            "SUMMARY": escape.latex(self.summary),
+            "PAPER": latex_text(PAPER),
+            "VERSION": latex_text(VERSION),
+            "SUMMARY": latex_text(self.summary),
             "BRIEF": "\n".join(_brief_latex(group) for group in self.remarks),
-            "LEGEND": "\n".join(rf"\item {escape.latex_words(line)}" for line in kept_legend()),
+            "LEGEND": "\n".join(rf"\item {latex_words(line)}" for line in kept_legend()),
             "ITEMS": "\n".join(_latex_remark(number, group) for number, group in enumerate(self.remarks, 1)),
         }
         document = _DOCUMENT
@@ -243,31 +336,29 @@ def _markdown_entry(entry: Erratum) -> str:
         f"- corrected ({v.worth}): {wrapping(v.corrected or '')}",
         *(f"- {name}: {_words_markdown(told)}" for name, told in _numbers(entry)),
     ]
-    return "\n".join(lines + [f"- used by: {escape.markdown(entry.survives)}"] * bool(entry.dependants)) + "\n"
+    return "\n".join(lines + [f"- used by: {markdown_text(entry.survives)}"] * bool(entry.dependants)) + "\n"
 
 
 def _words_markdown(words: str) -> str:
-    return escape.markdown_words(in_letters(words))
+    return markdown_words(in_letters(words))
 
 
 def _brief_latex(group: Sequence[Erratum]) -> str:
     remark = group[0].remark
     read = ";\\ ".join(f"${entry.verdict.corrected}$" for entry in group)
-    place = escape.latex(_places(group))
-    return rf"\item \textbf{{{place}}} ({remark.grade}). Read {read}. {escape.latex_words(remark.reason)}"
+    place = latex_text(_places(group))
+    return rf"\item \textbf{{{place}}} ({remark.grade}). Read {read}. {latex_words(remark.reason)}"
 
 
 def _latex_remark(number: int, group: Sequence[Erratum]) -> str:
     remark = group[0].remark
-    head = (
-        rf"\subsection*{{{number}. {escape.latex(_places(group))}: \normalfont {escape.latex(GRADES[remark.grade])}}}"
-    )
+    head = rf"\subsection*{{{number}. {latex_text(_places(group))}: \normalfont {latex_text(GRADES[remark.grade])}}}"
     return "\n".join(
         [
             head,
-            rf"\raggedright {escape.latex_words(remark.reason)}\par",
+            rf"\raggedright {latex_words(remark.reason)}\par",
             *(_latex_entry(entry) for entry in group),
-            rf"\textit{{What survives:}} {escape.latex_words(remark.survives)}",
+            rf"\textit{{What survives:}} {latex_words(remark.survives)}",
             "",
         ]
     )
@@ -277,12 +368,12 @@ def _latex_entry(entry: Erratum) -> str:
     v = entry.verdict
     rows = [
         ("printed", f"${v.printed}$"),
-        ("corrected", f"${v.corrected}$ ({escape.latex(v.worth)})"),
-        *((name, escape.latex_words(in_letters(number))) for name, number in _numbers(entry)),
+        ("corrected", f"${v.corrected}$ ({latex_text(v.worth)})"),
+        *((name, latex_words(in_letters(number))) for name, number in _numbers(entry)),
     ]
-    rows += [("used by", escape.latex(entry.survives))] * bool(entry.dependants)
+    rows += [("used by", latex_text(entry.survives))] * bool(entry.dependants)
     body = "\n".join(rf"\say{{{name}}} {text}" for name, text in rows)
-    head = rf"\texttt{{{escape.latex(v.id)}}}: {escape.latex_words(in_letters(v.title))}."
+    head = rf"\texttt{{{latex_text(v.id)}}}: {latex_words(in_letters(v.title))}."
     return f"\\par {head}\n\\begin{{numbers}}\n{body}\n\\end{{numbers}}"
 
 

@@ -1,15 +1,53 @@
-"""Derivations and the legend of the errata, kept in the user's cache folder under the source that they come from."""
+"""Derivations and the errata's legend, kept in the user's cache folder under their source; marks of what they show."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from singimpact import cache
-from singimpact.documents.document_steps import Section, Step
+from singimpact.documents.breaking import wrapping
+from singimpact.documents.document_steps import Mark, Section, Step, claims_of
 from singimpact.store import cache_folder
 
 LIBRARIES = ("sympy", "python-flint", "mpmath")
 ABOVE = ("cli/", "bench/", "scenes/", "paper/figures/")  # rooms that no derivation depends on
+
+
+# The letters of the errata, and the models on which statements are tried, so that a trial can be repeated by hand.
+
+LETTERS = (
+    "A matter of reading: what is meant is right, what is written says more.",
+    "$a,a',a'',\\ldots$ are $a_c(\\tau)=g(\\tau)-f(c,0)$ and its derivatives at $\\tau_*$; $f_{ij}$ the derivatives of "
+    "$f$ at $(c,0)$, $i$ times by $x$ and $j$ times by $\\dot x$; $b=\\partial\\ddot x/\\partial v=-f_{01}$; "
+    "$\\sigma=\\tau-\\tau_*$; $k=\\frac16a'$ and $\\ell=-\\frac1{24}a''$, but in section 4.1(b) $\\ell$ is the slope "
+    "$t/\\sigma$ of a ray, as in the paper.",
+    "$\\lambda=m_3-\\frac12$ (at a swan point $1+m_*$) is the factor by which one impact shortens $\\sigma$ along "
+    "$\\gamma$, and $\\mu$ the multiplier across; the eigenvalue that the paper calls $\\lambda$ in Theorem 4.1 is "
+    "$\\Lambda$ here.",
+    "A statement is tried on true motions, which scipy's integrator DOP853, closed forms with many digits or the "
+    "impact map compute. Where no other point is named the trial is made at the point that the statement is about.",
+)
+
+
+def legend() -> tuple[str, ...]:
+    """Sentences; formulas in them stand between dollar signs."""
+    from singimpact.contact.points import tangency_points
+    from singimpact.contact.swans import swan_points_over_clearance
+    from singimpact.impact_oscillator import ImpactOscillator
+    from singimpact.paper.trials import true_orbits, true_sheet
+
+    models = {name: ImpactOscillator(**model.to_dict()) for name, model in true_orbits.MODELS.items()}
+    lines = []
+    for name, osc in (models | true_sheet.DAMPED).items():
+        points = {point.kind: f"{float(point.tau):.10f}" for point in tangency_points(osc)}
+        swan = next(point for point in swan_points_over_clearance(osc) if point.kind == "negative")
+        model = wrapping(osc._repr_latex_().strip("$"))
+        lines.append(
+            f'The model "{name}" is {model}. Regular point $\\tau={true_sheet.REGULAR}$; tangency points with '
+            f"$a'>0$ at $\\tau_*={points['gamma']}$ and with $a'<0$ at $\\tau_*={points['foliation']}$; negative swan "
+            f"at $c_0={float(swan.clearance):.10g}$, $\\tau_*={float(swan.tau):.10g}$."
+        )
+    return (*LETTERS, *lines)
 
 
 def kept_sections(names: Sequence[str] = ()) -> list[Section]:
@@ -37,14 +75,28 @@ def kept_sections(names: Sequence[str] = ()) -> list[Section]:
 
 
 def kept_legend() -> tuple[str, ...]:
-    """The result of `legend.legend`, from the cache if it was computed before."""
+    """The result of `legend`, from the cache if it was computed before."""
     file = cache_folder() / "derivations" / f"{cache.key_of(['legend'], LIBRARIES, ABOVE)}.legend"
     content = cache.recall(file)
     if content is not None:
         stored: tuple[str, ...] = cache.unpacked(content, ())
         return stored
-    from singimpact.paper.sections.legend import legend
-
     entries = legend()
     cache.keep(file, cache.packed(entries))
     return entries
+
+
+# The verdicts of what sections show, as marks beside their equations.
+
+
+def marks_of(shown: Iterable[Section], on_start: Callable[..., None] | None = None) -> dict[str, Mark]:
+    """Claim id -> its mark, for every claim that sections show; a kept verdict is not computed again."""
+    ids = claims_of(shown)
+    if not ids:
+        return {}
+    from singimpact.paper.claims import run, select
+
+    return {
+        verdict.id: Mark(verdict.kind, verdict.worth, verdict.printed if verdict.corrected else "")
+        for verdict in run(select(ids), on_start=on_start, kept=True)
+    }

@@ -102,12 +102,12 @@ MUTANTS = {
         "for k in free",
         "e:pdeg3 e:phi e:swan e:vtaylor-st e:vtaylor-st2 e:vtaylor-t3 s5-coordinates s5-phi"),
     "the involution with another sign": (
-        "theory/involution.py",
+        "theory/impact_sheet.py",
         "return sigma + t, -t",
         "return sigma - t, -t",
         "e:phinew"),
     "an outline that is halved": (
-        "theory/fold_normal_form.py",
+        "theory/plane_forms.py",
         "outline = _shown(source, sheet_), sheet_.to_sympy(form.offset)",
         "outline = _shown(source, sheet_), sheet_.to_sympy(form.offset) / 2",
         "e:defq e:hdef e:pdef s4-blowup s4-normal-id2"),

@@ -7,7 +7,7 @@ import pytest
 
 from singimpact.cache import recall, unpacked
 from singimpact.paper import CLAIMS, Trial, Verdict, keep, key_of, run, select
-from singimpact.paper.claims import deciding, keys
+from singimpact.paper.claims import deciding, engine
 
 
 @pytest.fixture(autouse=True)
@@ -35,14 +35,14 @@ def test_second_run_decides_nothing(decided):
 @pytest.fixture
 def edited(monkeypatch):
     """A file of `sections` is edited: its text changes, the claims that it makes do not."""
-    source = keys.source_of
+    source = engine.source_of
 
     def edit(file):
-        keys.file_digest.cache_clear()
-        monkeypatch.setattr(keys, "source_of", lambda name: source(name) + "# edited\n" * (name == file))
+        engine.file_digest.cache_clear()
+        monkeypatch.setattr(engine, "source_of", lambda name: source(name) + "# edited\n" * (name == file))
 
     yield edit
-    keys.file_digest.cache_clear()
+    engine.file_digest.cache_clear()
 
 
 def test_an_edited_verifier_runs_with_its_file_and_their_dependants_only(decided, edited):
@@ -79,14 +79,14 @@ def test_a_claim_that_is_given_itself_is_always_decided(decided):
     assert decided == ["e:yeq", "e:yeq"]
 
 
-@pytest.mark.parametrize("file", sorted(path.stem for path in keys.SECTIONS.glob("section*.py")))
+@pytest.mark.parametrize("file", sorted(path.stem for path in engine.SECTIONS.glob("section*.py")))
 def test_imports_within_the_sections_are_all_in_the_key(file):
     room = "singimpact.paper.claims.sections"
     direct = set()
-    for node in ast.walk(ast.parse(keys.source_of(file))):
+    for node in ast.walk(ast.parse(engine.source_of(file))):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(room):
             direct |= {node.module.rpartition(".")[2]} if node.module != room else {each.name for each in node.names}
-    assert {file, *direct} <= set(keys.imported_by(file))
+    assert {file, *direct} <= set(engine.imported_by(file))
     assert direct or file in (
         "section2_trials",
         "section4_orbits",

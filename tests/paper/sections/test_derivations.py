@@ -131,7 +131,7 @@ def test_writing_Q_is_refused_where_it_does_not_fit():
 
 _PROGRAM = """
 import json, sys
-from singimpact.documents.formats import as_text
+from singimpact.documents.rendering import as_text
 from singimpact.documents.document_steps import Mark, claims_of
 from singimpact.paper.sections.derivation_sections import sections
 told = sections()

@@ -21,7 +21,7 @@ from singimpact.documents import (
     as_latex,
     as_markdown,
     compiled,
-    latex,
+    latex_text,
     lines_of,
     width,
 )
@@ -96,7 +96,7 @@ def test_no_break_where_none_may_be(formula):
 
 @given(st.text(max_size=40))
 def test_escaped_text_has_no_sign_with_a_meaning(text):
-    bare = latex(text)
+    bare = latex_text(text)
     for command in (
         r"\textbackslash{}",
         r"\textasciicircum{}",

@@ -14,7 +14,7 @@ def rooms(monkeypatch):
     monkeypatch.setitem(sys.modules, "singimpact.impact_oscillator", oscillator_room())
     scenes = scenes_room()
     monkeypatch.setitem(sys.modules, "singimpact.scenes", scenes)
-    monkeypatch.setitem(sys.modules, "singimpact.scenes.orbit_sheet", scenes)
+    monkeypatch.setitem(sys.modules, "singimpact.scenes.orbit_picture", scenes)
 
 
 def test_map_as_a_table(singimpact):

@@ -57,7 +57,7 @@ def test_nothing_is_left_of_a_picture_that_failed(singimpact, tmp_path, monkeypa
     scenes = type(sys)("singimpact.scenes")
     scenes.plot = scenes.orbit_sheet = fails
     monkeypatch.setitem(sys.modules, "singimpact.scenes", scenes)
-    monkeypatch.setitem(sys.modules, "singimpact.scenes.orbit_sheet", scenes)
+    monkeypatch.setitem(sys.modules, "singimpact.scenes.orbit_picture", scenes)
     result = singimpact("orbit", *LINEAR, *STATE, "-o", tmp_path / "orbit.png")
     assert isinstance(result.exception, RuntimeError)
     assert list(tmp_path.iterdir()) == []

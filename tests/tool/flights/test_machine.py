@@ -220,7 +220,7 @@ def test_the_entry_that_is_waited_for_is_compiled_next(tmp_path):
 HOLDER = """
 import os, sys
 from pathlib import Path
-from singimpact.file_lock import FileLock
+from singimpact.store import FileLock
 lock = FileLock(Path(sys.argv[1]))
 assert lock.take(sys.argv[2])
 print("holds", flush=True)

@@ -18,7 +18,7 @@ from singimpact.surface import (
     FlightFromRest,
     Tangencies,
     boxes_from_rest,
-    enclosed_touches,
+    proved_touches,
     rest_flight,
     transitions,
 )
@@ -111,11 +111,11 @@ def test_what_balls_cannot_decide_ends_soon_and_is_said():
     undamped = si.ImpactOscillator("x + x**3/10", "cos(2.8*t)", 0, "0.8")
     made = EnclosedTouches(undamped, "clearance").touches(PERIOD, (0.052, 0.0532), (3.0, 4.0))
     assert not made.complete
-    assert made.looked_at < enclosed_touches.SETTINGS.most
+    assert made.looked_at < proved_touches.SETTINGS.most
 
 
 def test_too_few_boxes_are_no_proof(monkeypatch):
-    monkeypatch.setattr(enclosed_touches, "SETTINGS", replace(enclosed_touches.SETTINGS, most=10))
+    monkeypatch.setattr(proved_touches, "SETTINGS", replace(proved_touches.SETTINGS, most=10))
     assert not EnclosedTouches(DUFFING, "clearance").touches(PERIOD, *WINDOW).complete
 
 

@@ -82,12 +82,6 @@ def _events_harmonic() -> tuple[Claim, ...]:
     return section.CLAIMS
 
 
-def _events_met() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import events_met as section
-
-    return section.CLAIMS
-
-
 def _gamma() -> tuple[Claim, ...]:
     from singimpact.paper.claims.beyond import gamma as section
 
@@ -113,7 +107,6 @@ BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "onset": _onset,
     "events": _events,
     "events_harmonic": _events_harmonic,
-    "events_met": _events_met,
     "gamma": _gamma,
     "hertz": _hertz,
 }

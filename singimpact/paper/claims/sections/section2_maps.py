@@ -14,8 +14,8 @@ from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes import variations
 from singimpact.paper.routes.implicit import a_symbol, sigma, t, v
 from singimpact.paper.trials import surfaces
-from singimpact.theory.fold_normal_form import fold_form
 from singimpact.theory.impact_sheet import generic_sheet
+from singimpact.theory.plane_forms import fold_form
 
 a, a1 = a_symbol(0), a_symbol(1)
 

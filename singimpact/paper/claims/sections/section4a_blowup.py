@@ -16,8 +16,8 @@ from singimpact.paper.claims.verifiers import every, identity, is_zero
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import eta, m
 from singimpact.paper.routes.implicit import a_symbol, r, sigma, t
-from singimpact.theory.fold_normal_form import fold_form
 from singimpact.theory.impact_sheet import generic_sheet
+from singimpact.theory.plane_forms import fold_form
 
 HALF, THREE_HALVES = sympy.Rational(1, 2), sympy.Rational(3, 2)
 QUARTIC = m**2 * (m - HALF) ** 2

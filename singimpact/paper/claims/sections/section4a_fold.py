@@ -13,9 +13,9 @@ from singimpact.paper.claims.verifiers import every, identity, is_zero, sample
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import eta, k
 from singimpact.paper.routes.implicit import r, sigma, t
-from singimpact.theory.fold_normal_form import cubic_terms, fold_form
 from singimpact.theory.impact_sheet import generic_sheet
 from singimpact.theory.notation import latex
+from singimpact.theory.plane_forms import cubic_terms, fold_form
 
 HALF, QUARTERS = sympy.Rational(1, 2), sympy.Rational(9, 4)
 

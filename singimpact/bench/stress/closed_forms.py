@@ -1,4 +1,4 @@
-"""Periodic orbits of one impact in each period, and grazes of their branches, against closed forms."""
+"""Starts off the wall, Lyapunov exponents, periodic orbits and grazes of their branches, against closed forms."""
 
 from __future__ import annotations
 
@@ -11,7 +11,48 @@ from singimpact.bench.stress.judging import Function, Trial, moved, powers
 from singimpact.branches.branch import branch
 from singimpact.branches.event_curve import event_curve
 from singimpact.branches.events import GRAZE
-from singimpact.impact_oscillator import linear
+from singimpact.dynamics.lyapunov import lyapunov
+from singimpact.impact_oscillator import ImpactOscillator, linear
+
+# A start off the wall is judged against free fall, a sum of Lyapunov exponents against the contraction rate of areas.
+
+IMPACTS = 300
+
+
+def _launched(place: str, points: int) -> Iterator[Trial]:
+    """x'' = -2: from x with x' the fall lasts (x' + sqrt(x'^2 + 4 x))/2."""
+    for off in powers(points, 300 if place == "t -> 0" else 12):
+        r = 1 - off if place == "r -> 1" else off if place == "r -> 0" else 0.5
+        x, speed = (off, off**0.5) if place == "t -> 0" else (1.0, 0.3)
+        found = ImpactOscillator("0", "-2", 0, r).launch(x, speed, 0.0)
+        values, rounding = moved(_fall, [x, speed, r])
+        state = f"x = {x!r}, xdot = {speed!r}, restitution = {r!r}"
+        yield Trial(state, [float(found.flight_time), float(found.v)], values, rounding)
+
+
+def _fall(x: Any, speed: Any, r: Any) -> list[Any]:
+    import mpmath
+
+    root = mpmath.sqrt(speed**2 + 4 * x)
+    return [(speed + root) / 2, r * root]
+
+
+def _exponents(place: str, points: int) -> Iterator[Trial]:
+    """Their sum over all impacts is 2 n ln r + ln(v_0/v_n) - damping T."""
+    for off in powers(max(points // 4, 2), 5):
+        r = 1 - off if place == "r -> 1" else 0.8
+        omega = 1 + off if place == "omega -> 1" else 2.8
+        found = lyapunov(linear(omega, "0.1", r, damping="0.05"), 0.3, 0.5, IMPACTS)
+        shrinking = partial(_shrinking, found.impacts)
+        values, rounding = moved(shrinking, [r, found.start[1], found.last[1], found.time])
+        total = float(found.exponents.sum() * found.time)
+        yield Trial(f"omega = {omega!r}, restitution = {r!r}", [total], values, rounding)
+
+
+def _shrinking(impacts: int, r: Any, first: Any, last: Any, time: Any) -> list[Any]:
+    import mpmath
+
+    return [2 * impacts * mpmath.log(r) + mpmath.log(first / last) - time / 20]
 
 
 def _periodic(place: str, points: int) -> Iterator[Trial]:
@@ -78,6 +119,18 @@ def _touching(omega: Any, damping: Any) -> list[Any]:
 BRANCHES = ("v -> 0", "omega -> 1", "r -> 0", "r -> 1")
 GRAZES = "its grazes are judged, which have no other states"
 FUNCTIONS = (
+    Function(
+        "launch",
+        {place: partial(_launched, place) for place in ("t -> 0", "r -> 0", "r -> 1")},
+        "closed form",
+        "its first impact is judged, of a fall; others are those of first_hit",
+    ),
+    Function(
+        "lyapunov",
+        {place: partial(_exponents, place) for place in ("omega -> 1", "r -> 1")},
+        "closed form",
+        "the sum of both is judged, along one orbit",
+    ),
     Function(
         "periodic",
         {place: partial(_periodic, place) for place in ("omega -> 1", "r -> 1")},

@@ -1,0 +1,403 @@
+"""Figures B4 to B9, of what the paper does not have.
+
+Heights of the loops of W^s(X), the foot X as a function of r, the orbit that is born at a swan; the visible outline
+where a swan's arc meets other branches of P; gamma of impacts that lose a power of a low speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+import sympy
+
+from singimpact.algebra.numbers import as_float
+from singimpact.dynamics.orbit import orbit
+from singimpact.impact_oscillator import ImpactOscillator, linear
+from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.paper.claims.beyond.every_order import j
+from singimpact.paper.claims.beyond.hertz import EXPONENT, FACTOR, SECOND, q
+from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture, Point, Region
+from singimpact.paper.trials import loop_heights
+from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, measured
+from singimpact.paper.trials.universal_foot import covering, elastic, foot, scaled
+from singimpact.scenes.style import SKY
+from singimpact.surface.curve import Curve
+from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface.outline_transitions import transitions
+from singimpact.surface.swan_families import Transition
+
+SHOWN = 5  # generations in figure B4
+BORN = ("0.9", "0.97", "0.999")  # clearances of figure B6, c_0 = 1
+POWER = Fraction(3, 7)
+PENS_OF_DEPTHS = ("manifold", "preimage", "graph")
+
+
+def gamma_height(r: float) -> float:
+    """w of gamma at a tangency."""
+    roots = np.roots([1.0, 2.0, -2 * r, -r])  # lambda^2 (2 + lambda) = r (1 + 2 lambda)
+    (rate,) = [float(root.real) for root in roots if abs(root.imag) < 1e-9 and 0 < root.real < 1]
+    return (1 - rate) * (2 + rate) / 6
+
+
+def figure_B4() -> Picture:
+    """Heights of W^s(X), tears and gamma over A - h, in units of a'(A) h^2, against r."""
+    rates = np.linspace(0.01, 0.99, 197)
+    gamma = np.array([gamma_height(r) for r in rates.tolist()])
+    kinds = {
+        "outer": ("loop", "$W^s(X)$: upper and lower edge of each loop"),
+        "tear": ("P", "tears: $\\delta$ and inverse images"),
+        "inner": ("loop", "$W^s(X)$: upper and lower edge of each loop"),
+    }
+    curves = {
+        name: np.array([loop_heights.generations(_start(name, r), r, SHOWN) for r in rates.tolist()]).T
+        for name in kinds
+    }
+    plain, beside = [], []
+    for name, (pen, words) in kinds.items():
+        for row in curves[name]:
+            plain.append(Line(np.stack([rates, row], axis=1), pen, name, words=words))
+            beside.append(Line(np.stack([rates, np.log10(row - gamma)], axis=1), pen, name, words=words))
+    plain.append(Line(np.stack([rates, gamma], axis=1), "gamma", "gamma", r"$\gamma$", 0.6))
+    worst = 0.0
+    for swan in loop_heights.SWANS:
+        for rate in loop_heights.RATES:
+            r = float(Fraction(rate))
+            loops = loop_heights.heights(swan, rate).found[-1]
+            limits = [w for name in ("outer", "inner") for w in loop_heights.generations(_start(name, r), r)]
+            worst = max(worst, float(np.abs(np.array(loops) - limits).max()))
+            for w in loops:
+                plain.append(_point(r, w))
+                beside.append(_point(r, float(np.log10(w - gamma_height(r)))))
+    panels = [
+        Panel(((0.0, 1.0), (0.0, 0.52)), "$r$", r"$v/(a'(A)h^2)$", "(a)", plain),
+        Panel(((0.0, 1.0), (-4.2, -0.2)), "$r$", r"$\log_{10}(w - w_\gamma)$", "(b) above $\\gamma$", beside),
+    ]
+    caption = (
+        r"Over the line $\tau = A - h$ the loops of $W^s(X)$, the tears around which they lie and $\gamma$ "
+        r"have heights $a'(A)h^2 w$ with $w$ algebraic in $r$. Each tear lies between the two edges of its "
+        r"loop, so close to the lower one that a loop looks like a hairpin. (a) $w$; (b) its distance from "
+        r"that of $\gamma$. The dots are crossings on true orbits of the universal model and of two "
+        r"oscillators, at $h$ = 1/2000 of the half distance of $A$ and $B$."
+    )
+    return Picture(
+        "B4",
+        "Heights of the loops next to A",
+        ("b:loops-map", "b:loops"),
+        "; ".join(swan.name for swan in loop_heights.SWANS),
+        panels,
+        2,
+        {"farthest": worst},
+        caption,
+    )
+
+
+def _start(name: str, r: float) -> float:
+    return {"outer": 0.5, "tear": 0.375}.get(name) or loop_heights.inner_start(r)
+
+
+def _point(x: float, y: float) -> Line:
+    return Line(np.array([[x, y]]), "orbit", "true orbit", beads=True, words="true orbits")
+
+
+def figure_B5() -> Picture:
+    """X (1 - r)^(3/7): enclosed for all r up to 19/20, some values beyond, the limit, and 3 within 2 %."""
+    boxes = covering(Fraction(0), Fraction(19, 20))
+    tops = np.array([[float(edge), float(scaled(box.high, box.r[0], POWER))] for box in boxes for edge in box.r])
+    bottoms = np.array([[float(edge), float(scaled(box.low, box.r[1], POWER))] for box in boxes for edge in box.r])
+    band = np.array([[0.0, 2.94], [1.0, 2.94], [1.0, 3.06], [0.0, 3.06]])
+    thin = [Fraction(n, 40) for n in range(40)] + [
+        Fraction(*bound) for bound in ((97, 100), (98, 100), (99, 100), (199, 200))
+    ]
+    curve = np.array([[float(r), float(scaled(foot(r, 1e-3)[0], r, POWER))] for r in thin])
+    u = [float(bound) for bound in elastic().invariant]
+    limit = (14 * u[0] / (3 * 12 ** (2 / 3))) ** (3 / 7)
+    level = np.array([[0.0, limit], [1.0, limit]])
+    lines = [
+        Line(curve, "graph", "X(1-r)^(3/7)", words=r"$X(r)\,(1-r)^{3/7}$"),
+        Line(level, "before", "limit", words=r"its limit 2.94103 as $r \to 1$"),
+    ]
+    regions = [
+        Region(band, words="3 within 2 %"),
+        Region(np.vstack([tops, bottoms[::-1]]), SKY, words="proved bounds, for all $r$ up to 0.95"),
+    ]
+    facts = {"limit": limit, "most": float(tops[:, 1].max()), "least": float(bottoms[:, 1].min())}
+    caption = (
+        r"The time $X$ at which chatter from $A$ ends in the universal negative swan, for every restitution: "
+        r"$X(1-r)^{3/7}$ stays within 2 % of 3. It is enclosed for all $r$ up to 0.95 by balls, as $X$ rises "
+        r"with $r$. The limit as $r \to 1$ is $(14u/(3\cdot 12^{2/3}))^{3/7}$, where $u = 13.919146$ is the "
+        r"adiabatic invariant of the elastic ball from $A$."
+    )
+    panel = Panel(((0.0, 1.0), (2.92, 3.08)), "$r$", r"$X\,(1-r)^{3/7}$", lines=lines, regions=regions)
+    return Picture(
+        "B5",
+        "The foot X for every restitution",
+        ("b:foot-monotone", "b:foot", "b:foot-limit"),
+        "x'' = 12(1 - t^2), c = 0",
+        [panel],
+        facts=facts,
+        caption=caption,
+    )
+
+
+def figure_B6() -> Picture:
+    """The orbit that is born: over two periods, and its hop in lengths scaled by H beside the limit."""
+    first = _swan(BORN[0])
+    run = orbit(first, 1, 0, 200)
+    times = np.linspace(1.6, 1.6 + 2 * np.pi, 8001)
+    height = run.sample(times).x - as_float(first.clearance)
+    whole = Line(np.stack([times, height], axis=1), "orbit", "orbit", words=f"orbit that is born, $c = {BORN[0]}$")
+    s = np.linspace(-1, 3, 400)
+    hops, facts = list[Line](), dict[str, float]()
+    for c, pen in zip(BORN, PENS_OF_DEPTHS, strict=True):
+        points = hop_in_units(c)
+        hops.append(Line(points, pen, f"c = {c}", words=f"$c = {c}$"))
+        facts[f"height at c = {c}"] = float(points[:, 1].max())
+    limit = np.stack([s, (s + 1) ** 3 * (3 - s) / 24], axis=1)
+    hops.append(Line(limit, "at", "limit", words=r"$\frac{1}{24}(s+1)^3(3-s)$"))
+    top = 1.15 * float(height.max())
+    panels = [
+        Panel(((times[0], times[-1]), (-0.08 * top, top)), "$t$", "$x - c$", "(a)", [whole]),
+        Panel(((-1.2, 6.6), (-0.1, 1.25)), "$s$", r"$(x-c)/(|a''|H^4)$", "(b) one hop", hops),
+    ]
+    caption = (
+        r"Past a negative swan one orbit is born. (a) The mass rests on the wall, is thrown at $A$, hops, "
+        r"chatters and rests again, once a period, whatever it did before: $x'' + x = \cos 2t$, $r = 4/5$, "
+        r"$c_0 = 1$. (b) One hop in lengths scaled by the half distance $H$ of $A$ and $B$, $s$ from the "
+        r"middle, for three clearances: the first arc tends to $\frac{1}{24}(s+1)^3(3-s)$, of height 9/8, and "
+        r"hits with the speed $8/3$ after the time 4."
+    )
+    return Picture(
+        "B6",
+        "The orbit that is born at a negative swan",
+        ("b:onset-none", "b:onset-hop", "b:onset"),
+        str(first),
+        panels,
+        2,
+        facts,
+        caption,
+    )
+
+
+def _swan(c: str) -> ImpactOscillator:
+    return linear(2, c, "0.8")
+
+
+def hop_in_units(c: str) -> Array:
+    """(s, (x - c)/(|a''| H^4)) from the release to the end of the chatter."""
+    model = _swan(c)
+    run = orbit(model, 1, 0, 200)
+    released = float(run.tau[run.kind == "release"][0])
+    rested = float(run.tau[(run.kind == "complete") & (run.tau > released)][0])
+    middle = round(released / np.pi) * np.pi  # of A and B, as a_c is even about it
+    half = middle - released
+    bend = abs(float(acceleration(model, np.array([middle]), order=2)[0]))
+    times = np.linspace(released, rested, 3001)
+    height = run.sample(times).x - as_float(model.clearance)
+    return np.stack([(times - middle) / half, height / (bend * half**4)], axis=1)
+
+
+# B7 and B8: the visible outline before, at and after a swan's arc meets other branches of P.
+
+
+@dataclass(frozen=True)
+class Row:
+    """A transition with the clearances beside it.
+
+    title : of its panels. value : of the transition, near to which it is searched. kinds : looked for. reach : longest
+    time between rests. apart : clearances before and after, beyond it. tau, v : what is shown, around the launch of the
+    transition, or its first rest; v from 0 where it is (low, high). long : longest flight. degree : of the polynomial
+    in tau taken off v, so that branches that nearly coincide are seen apart; 0 takes off nothing. fine : parts of the
+    longest flight that curves are followed to.
+    """
+
+    title: str
+    value: float
+    kind: str
+    reach: float
+    apart: tuple[float, float]
+    tau: tuple[float, float]
+    v: tuple[float, float]
+    long: float
+    degree: int = 0
+    fine: int = 3000
+
+
+def two_waves() -> ImpactOscillator:
+    """A lightly damped oscillator whose swans meet every kind of transition."""
+    return ImpactOscillator("x + 0.04*xdot", "cos(2.8*t) + 0.5*cos(5.6*t + 2)", 0, "0.8")
+
+
+ASIDE = 0.01  # of the clearance before a transition: at it lines that cross are traced this far apart
+B7 = (
+    Row("tacnode", -0.0451779, "tacnode", 4.0, (0.0004, -0.0004), (-0.25, 0.2), (0, 0), 4.2, 3),
+    Row("tangency to tangency", -0.0461684, "tangency", 4.0, (0.0004, -0.0004), (-0.16, 0.16), (-0.006, 0.022), 4.2),
+)
+B8 = (
+    Row("triple point", -0.922413, "triple point", 12.0, (0.03, -0.03), (-0.23, 0.17), (0.95, 1.2), 18.0, 0, 1500),
+    Row("tangency last", -0.0552099, "tangency", 4.0, (0.0014, -0.0014), (-0.1, 0.06), (0, 0), 4.7, 3, 1500),
+    Row("tangency first", -1.19219, "tangency", 6.0, (0.02, -0.02), (-0.5, 0.5), (-0.05, 0.16), 9.0, 0, 2000),
+)
+
+
+def figure_B7() -> Picture:
+    """A lens opens on the arc of a swan, and the flight released at one tangency point is at rest at another."""
+    model = linear("2.8", 0, "0.8")
+    panels, facts = _rows(model, B7)
+    caption = (
+        "What the swan of $c = 1$ meets first as the clearance falls: $x'' + x = \\cos 2.8t$. Above: at the tacnode "
+        f"$c_0$ = {facts['tacnode']:.7f} (dot: the launch of its flight) an arc of the visible outline, bold, touches "
+        "its copy of the period before; beyond it a lens of launches that miss both is open between them. Shown "
+        r"is $v - q(\tau)$, $q$ a polynomial of degree 3. Below: the flight from tangency to tangency, released at A "
+        f"(dot), at $c_0$ = {facts['tangency to tangency']:.7f}; beyond it the piece of the copy to the right of A is "
+        "gone, and its tip lies above the arc that ends at A. The middle panels are a hair before the transition."
+    )
+    claims = ("b:events-first", "b:events-values", "b:events-met")
+    return Picture("B7", "A swan meets its copy", claims, str(model), panels, 3, facts, caption)
+
+
+def figure_B8() -> Picture:
+    """A triple point, and the two tangencies."""
+    model = two_waves()
+    panels, facts = _rows(model, B8)
+    caption = (
+        "Three more transitions of the visible outline (bold), each before, at and after, with the launch of its "
+        "flight as a dot. Top: a flight with three rests; two T-junctions trade places. Middle: as $c$ falls the tip "
+        r"of an arc comes out from behind another; $v - q(\tau)$ is shown, $q$ a polynomial of degree 3. Bottom: the "
+        "flight released at A is at rest again, and the arc that ended on both sides of A passes over it."
+    )
+    claims = ("b:events-front", "b:events-critical", "b:events-met")
+    title = "A triple point and two tangencies of the outline"
+    return Picture("B8", title, claims, str(model), panels, 3, facts, caption)
+
+
+def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[str, float]]:
+    panels, facts = list[Panel](), dict[str, float]()
+    for row in rows:
+        transition = _transition(model, row)
+        facts[row.title] = transition.value
+        launch = transition.launch or (transition.rests[0], 0.0)
+        tau = launch[0] + row.tau[0], launch[0] + row.tau[1]
+        shifts = (row.apart[0], ASIDE * row.apart[0], row.apart[1])
+        sides = [(transition.value + shift, sign) for shift, sign in zip(shifts, ">=<", strict=True)]
+        surfaces = [(_surface(model, c, tau, row), c, sign) for c, sign in sides]
+        facts |= {f"{row.title} {sign}": float(_ends(surface, tau)) for surface, _, sign in surfaces}
+        panels += _drawn(row, launch, tau, surfaces)
+    return panels, facts
+
+
+def _transition(model: Oscillator, row: Row) -> Transition:
+    ends = row.value - 1e-4, row.value + 1e-4
+    (found,) = transitions(model, "clearance", ends, (-row.reach, row.reach), row.kind).visible
+    return found
+
+
+def _surface(model: Oscillator, clearance: float, tau: tuple[float, float], row: Row) -> ImpactSurface:
+    """The surface in a window whose rests can be reached from the launches shown."""
+    window = (tau[0], tau[1] + row.long), (-row.long, 0.01)
+    return ImpactSurface(model.replace(clearance=clearance), *window, 1 / row.fine)
+
+
+def _ends(surface: ImpactSurface, tau: tuple[float, float]) -> int:
+    """The number of ends of visible arcs in the window."""
+    ends = np.vstack([arc.points[[0, -1]] for arc in surface.discontinuities])
+    return int(((ends[:, 0] > tau[0]) & (ends[:, 0] < tau[1])).sum())
+
+
+def _drawn(
+    row: Row, launch: Point, tau: tuple[float, float], surfaces: list[tuple[ImpactSurface, float, str]]
+) -> list[Panel]:
+    shift = _shift(row, launch, tau, surfaces)
+    panels, box = [], (tau, row.v)
+    if row.degree:
+        inner = np.vstack([shift(line) for surface, _, _ in surfaces for line in _inside(surface.discontinuities, tau)])
+        low, high = float(inner[:, 1].min()), float(inner[:, 1].max())
+        box = tau, (low - 0.1 * (high - low), high + 0.1 * (high - low))
+    for surface, _, sign in surfaces:
+        lines = [Line(shift(curve), "P", "P") for curve in _inside(surface.outline, tau)]
+        lines += [Line(shift(curve), "jump", "visible P") for curve in _inside(surface.discontinuities, tau)]
+        dots = [Dot("", _pair(shift(np.array([launch]))))] if sign == "=" else []
+        label = r"$v - q(\tau)$" if row.degree else "$v$"
+        panels.append(Panel(box, y=label, title=f"{row.title}: $c {sign} c_0$", lines=lines, dots=dots))
+    return panels
+
+
+def _pair(points: Array) -> Point:
+    return float(points[0, 0]), float(points[0, 1])
+
+
+def _inside(curves: list[Curve], tau: tuple[float, float]) -> list[Array]:
+    """The stretches of curves over the window, with a vertex beyond its edges."""
+    found = []
+    for curve in curves:
+        near = (curve.points[:, 0] > tau[0]) & (curve.points[:, 0] < tau[1])
+        wide = near | np.append(near[1:], False) | np.append(False, near[:-1])
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], wide.astype(int), [0]])))
+        found += [curve.points[i:j] for i, j in edges.reshape(-1, 2) if j - i > 1]
+    return found
+
+
+def _shift(
+    row: Row, place: Point, tau: tuple[float, float], made: list[tuple[ImpactSurface, float, str]]
+) -> Callable[[Array], Array]:
+    """(tau, v) -> (tau, v - q(tau)), q fitted to the visible arcs."""
+    if not row.degree:
+        return lambda points: points
+    points = np.vstack([part for surface, _, _ in made for part in _inside(surface.discontinuities, tau)])
+    q = np.polyfit(points[:, 0] - place[0], points[:, 1], row.degree)
+    return lambda part: np.stack([part[:, 0], part[:, 1] - np.polyval(q, part[:, 0] - place[0])], axis=1)
+
+
+# B9: gamma of impacts that lose a power of a low speed, its exponent and its second term on true orbits.
+
+ORDERS = {1: "graph", 2: "epsilon"}
+LARGEST = 0.6  # q
+
+
+def exponents(order: int) -> Array:
+    """(q, (j+1)/(1-q)) at a contact order."""
+    powers = np.linspace(0, LARGEST, 121)
+    return np.stack([powers, (order + 1) / (1 - powers)], axis=1)
+
+
+def figure_B9() -> Picture:
+    """The exponent against q, and what true orbits have beyond the first term against the second term."""
+    first, second, facts = list[Line](), list[Line](), dict[str, float]()
+    for order, pen in ORDERS.items():
+        words = f"contact order $j = {order}$"
+        first.append(Line(exponents(order), pen, f"j = {order}", f"$j = {order}$", 0.7, words=words))
+    guide = np.array([[x, x] for x in (-4.0, -1.0)])
+    second.append(Line(guide, "before", "equal", words="equal"))
+    for start in STARTS:
+        for power in POWERS:
+            measurement = measured(start, power)
+            values = {j: start.order, q: sympy.Rational(power.numerator, power.denominator)}
+            n, k, g = (float(formula.subs(values)) for formula in (EXPONENT, FACTOR, SECOND))
+            w = (k * measurement.loss) ** (1 / (1 - float(power)))
+            rows = [
+                (np.log10(g * v / h ** (start.order + 1)), np.log10(v / (w * h**n) - 1))
+                for h, v in zip(measurement.distances, measurement.speeds, strict=True)
+            ]
+            mark = np.array([[float(power), measurement.exponent]])
+            first.append(Line(mark, "crossing", "true orbits", beads=True, words="true orbits"))
+            for row in rows:
+                second.append(Line(np.array([row]), "crossing", "true orbits", beads=True, words="true orbits"))
+            facts[f"{start.name}, q = {power}"] = measurement.exponent - n
+    caption = (
+        r"Impacts that lose $Cv^q$ of a low speed $v$: $\rho(-v) = v(1 - Cv^q)$, $0 < q < 1$. (a) $\gamma$ is "
+        r"$|\sigma|^{(j+1)/(1-q)}$ times a constant, so it is flatter at the contact point than $|\sigma|^{j+1}$; "
+        r"the dots are slopes of $\ln v$ between two points of $\gamma$ found by halving, on four oscillators. (b) "
+        r"The relative excess of $v$ over the first term, against the second term $GP$, at all points of (a)."
+    )
+    panels = [
+        Panel(((0.0, LARGEST), (1.5, 7.0)), "$q$", r"exponent of $|\sigma|$", "(a) the exponent", first),
+        Panel(
+            ((-4.0, -1.0), (-4.0, -1.0)), r"$\log_{10} GP$", r"$\log_{10}$ of the excess", "(b) the second term", second
+        ),
+    ]
+    claims = ("b:hertz", "b:hertz-next", "b:hertz-measured")
+    models = "; ".join(start.name for start in STARTS)
+    return Picture("B9", "Gamma where impacts lose a power of the speed", claims, models, panels, 2, facts, caption)
