@@ -23,19 +23,25 @@ SIGNS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", a
 OPERATIONS = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
 
 
+Value = Any
+"""A value of the text: llvmlite gives its classes no types; or an `Array`, or `Fields`."""
+Kind = Any
+Kinds = tuple[Kind, ...]
+
+
 @dataclass(frozen=True)
 class Array:
     """An address, and the length of a row of an array of two indices."""
 
-    address: Any
-    row: Any = None
+    address: Value
+    row: Value | None = None
 
 
 @dataclass(frozen=True)
 class Fields:
     """The values of a named tuple; those of a plain tuple have no names."""
 
-    values: tuple[Any, ...]
+    values: tuple[Value, ...]
     names: tuple[str, ...] = ()
 
 
@@ -43,7 +49,7 @@ class Unsupported(ValueError):
     """A construct of Python that is not lowered."""
 
 
-def lowered(functions: Mapping[str, ast.FunctionDef], space: Mapping[str, Any], entry: str, takes: Any) -> str:
+def lowered(functions: Mapping[str, ast.FunctionDef], space: Mapping[str, Any], entry: str, takes: Kind) -> str:
     """The text of a module of LLVM whose one function to be called is `entry`.
 
     Parameters
@@ -66,7 +72,7 @@ def lowered(functions: Mapping[str, ast.FunctionDef], space: Mapping[str, Any], 
     return str(module.text)
 
 
-def _arrays(arguments: Sequence[Any]) -> list[Any]:
+def _arrays(arguments: Sequence[Value]) -> list[Value]:
     return [Array(value) if isinstance(value.type, ir.PointerType) else value for value in arguments]
 
 
@@ -76,11 +82,15 @@ class _Module:
     def __init__(self, functions: Mapping[str, ast.FunctionDef], space: Mapping[str, Any]) -> None:
         self.functions, self.space = functions, space
         self.text = ir.Module()
-        self._versions: dict[tuple[Any, ...], tuple[Any, tuple[Any, ...]]] = {}
+        self._versions: dict[tuple[object, ...], tuple[Value, Kinds]] = {}
 
     def define(
-        self, name: str, kinds: Sequence[Any], values_of: Callable[[Sequence[Any]], Sequence[Any]], returns: Any = None
-    ) -> tuple[Any, tuple[Any, ...]]:
+        self,
+        name: str,
+        kinds: Sequence[Kind],
+        values_of: Callable[[Sequence[Value]], Sequence[Value]],
+        returns: Kind | None = None,
+    ) -> tuple[Value, Kinds]:
         """Write a function; it is returned with the kinds of its results.
 
         Parameters
@@ -88,8 +98,8 @@ class _Module:
         kinds : of its arguments in LLVM. values_of : what they are to the body. returns : its type, if that is given.
         """
         tree = self.functions[name]
-        variables: dict[str, Any] = {}
-        results: tuple[Any, ...] = ()
+        variables: dict[str, Kind] = {}
+        results: Kinds = ()
         # a variable that turns out to be a double makes others doubles: write it for nothing until no kind changes
         while True:
             trial = ir.Function(ir.Module(), ir.FunctionType(NOTHING, kinds), name)
@@ -104,7 +114,7 @@ class _Module:
         _Body(self, function, variables, results).write(tree, values_of(function.args))
         return function, results
 
-    def version(self, name: str, values: Sequence[Any]) -> tuple[Any, tuple[Any, ...]]:
+    def version(self, name: str, values: Sequence[Value]) -> tuple[Value, Kinds]:
         """The function for values of these kinds, and the kinds of its results."""
         key = (name, *map(_shape, values))
         if key not in self._versions:
@@ -113,13 +123,13 @@ class _Module:
         return self._versions[key]
 
 
-def _packed(kinds: tuple[Any, ...]) -> Any:
+def _packed(kinds: Kinds) -> Kind:
     if len(kinds) < 2:
         return kinds[0] if kinds else NOTHING
     return ir.LiteralStructType(kinds)
 
 
-def _flat(values: Sequence[Any]) -> Iterator[Any]:
+def _flat(values: Sequence[Value]) -> Iterator[Value]:
     """The values of LLVM in values of all kinds."""
     for value in values:
         if isinstance(value, Fields):
@@ -132,9 +142,9 @@ def _flat(values: Sequence[Any]) -> Iterator[Any]:
             yield value
 
 
-def _like(values: Sequence[Any], flat: Iterator[Any]) -> list[Any]:
+def _like(values: Sequence[Value], flat: Iterator[Value]) -> list[Value]:
     """Values of the same kinds, made of others of LLVM."""
-    copies: list[Any] = []
+    copies: list[Value] = []
     for value in values:
         if isinstance(value, Fields):
             copies.append(Fields(tuple(_like(value.values, flat)), value.names))
@@ -145,7 +155,7 @@ def _like(values: Sequence[Any], flat: Iterator[Any]) -> list[Any]:
     return copies
 
 
-def _shape(value: Any) -> Any:
+def _shape(value: Value) -> object:
     if isinstance(value, Fields):
         return (value.names, *map(_shape, value.values))
     if isinstance(value, Array):
@@ -161,13 +171,13 @@ class _Body:
     kinds : of variables, as known from a trial. results : kinds of what is returned.
     """
 
-    def __init__(self, module: _Module, function: Any, kinds: Mapping[str, Any], results: tuple[Any, ...]) -> None:
+    def __init__(self, module: _Module, function: Value, kinds: Mapping[str, Kind], results: Kinds) -> None:
         self.module, self.kinds, self.results = module, dict(kinds), results
         self.builder = ir.IRBuilder(function.append_basic_block())
-        self.memory: dict[str, Any] = {}  # of numbers by variable
-        self.objects: dict[str, Any] = {}  # arrays and named tuples by variable: each is assigned once
+        self.memory: dict[str, Value] = {}  # of numbers by variable
+        self.objects: dict[str, Array | Fields] = {}  # arrays and named tuples by variable: each is assigned once
 
-    def write(self, tree: ast.FunctionDef, arguments: Sequence[Any]) -> None:
+    def write(self, tree: ast.FunctionDef, arguments: Sequence[Value]) -> None:
         """Write the whole function."""
         for name, value in zip(tree.args.args, arguments, strict=True):
             self._set(name.arg, value)
@@ -208,7 +218,7 @@ class _Body:
             case _:
                 raise Unsupported(ast.unparse(statement))
 
-    def _assign(self, target: ast.expr, value: Any) -> None:
+    def _assign(self, target: ast.expr, value: Value) -> None:
         match target:
             case ast.Name(id=name):
                 self._set(name, value)
@@ -220,7 +230,7 @@ class _Body:
             case _:
                 raise Unsupported(ast.unparse(target))
 
-    def _set(self, name: str, value: Any) -> None:
+    def _set(self, name: str, value: Value) -> None:
         if isinstance(value, Array | Fields):
             self.objects[name] = value
             return
@@ -231,7 +241,7 @@ class _Body:
         self.kinds[name] = _joined(self.kinds[name], value.type)
         self.builder.store(self._as(value, self.memory[name].type.pointee), self.memory[name])
 
-    def _return(self, value: Any) -> None:
+    def _return(self, value: Value) -> None:
         values = value.values if isinstance(value, Fields) else (value,)
         if len(self.results) != len(values):  # a trial, before the kinds are known
             self.results = tuple(item.type for item in values)
@@ -259,7 +269,9 @@ class _Body:
                 self.builder.branch(after)
         self.builder.position_at_end(after)
 
-    def _loop(self, test: Callable[[], Any], body: Sequence[ast.stmt], step: Callable[[], None] = lambda: None) -> None:
+    def _loop(
+        self, test: Callable[[], Value], body: Sequence[ast.stmt], step: Callable[[], None] = lambda: None
+    ) -> None:
         head, inside, after = (self.builder.append_basic_block() for _ in range(3))
         self.builder.branch(head)
         self.builder.position_at_end(head)
@@ -271,13 +283,13 @@ class _Body:
             self.builder.branch(head)
         self.builder.position_at_end(after)
 
-    def _count(self, name: str, bounds: Sequence[Any], body: Sequence[ast.stmt]) -> None:
+    def _count(self, name: str, bounds: Sequence[Value], body: Sequence[ast.stmt]) -> None:
         begin, end = bounds if len(bounds) == 2 else (ir.Constant(WHOLE, 0), *bounds)
         with self.builder.goto_entry_block():
             counter = self.builder.alloca(WHOLE)
         self.builder.store(begin, counter)
 
-        def test() -> Any:
+        def test() -> Value:
             value = self.builder.load(counter)
             self._set(name, value)
             return self.builder.icmp_signed("<", value, end)
@@ -289,7 +301,7 @@ class _Body:
 
     # ---- values
 
-    def _value(self, tree: ast.expr) -> Any:
+    def _value(self, tree: ast.expr) -> Value:
         match tree:
             case ast.Constant(value=bool()):
                 raise Unsupported(ast.unparse(tree))
@@ -320,7 +332,7 @@ class _Body:
                 return self._call(name, arguments)
         raise Unsupported(ast.unparse(tree))
 
-    def _named(self, name: str) -> Any:
+    def _named(self, name: str) -> Value:
         if name in self.objects:
             return self.objects[name]
         if name in self.memory:
@@ -329,7 +341,7 @@ class _Body:
             return _constant(self.module.space[name])
         raise Unsupported(name)
 
-    def _address(self, array: Any, index: ast.expr) -> Any:
+    def _address(self, array: Value, index: ast.expr) -> Value:
         if not isinstance(array, Array):
             raise Unsupported(f"an index {ast.unparse(index)} of what is no array")
         if isinstance(index, ast.Tuple):
@@ -339,7 +351,7 @@ class _Body:
             offset = self._value(index)
         return self.builder.gep(array.address, [offset])
 
-    def _operation(self, operation: ast.operator, left: Any, right: Any) -> Any:
+    def _operation(self, operation: ast.operator, left: Value, right: Value) -> Value:
         if isinstance(operation, ast.Pow):
             return self._function("pow", self._as(left, REAL), self._as(right, REAL))
         if isinstance(operation, ast.Div):
@@ -351,7 +363,7 @@ class _Body:
         write = getattr(self.builder, name if kind == WHOLE else f"f{name}")
         return write(self._as(left, kind), self._as(right, kind))
 
-    def _whole_power(self, value: Any, power: int) -> Any:
+    def _whole_power(self, value: Value, power: int) -> Value:
         """A power by repeated squares, as numba has it, so that both have the same bits."""
         result, left = _constant(1.0), abs(power)
         while left:
@@ -361,7 +373,7 @@ class _Body:
             value = self.builder.fmul(value, value)
         return self.builder.fdiv(_constant(1.0), result) if power < 0 else result
 
-    def _truth(self, tree: ast.expr) -> Any:
+    def _truth(self, tree: ast.expr) -> Value:
         match tree:
             case ast.Compare(left=first, ops=signs, comparators=others):
                 values = [self._value(item) for item in (first, *others)]
@@ -378,7 +390,7 @@ class _Body:
                 return self.builder.not_(self._truth(inner))
         raise Unsupported(ast.unparse(tree))
 
-    def _both(self, first: ast.expr, rest: Sequence[ast.expr], decided: bool) -> Any:
+    def _both(self, first: ast.expr, rest: Sequence[ast.expr], decided: bool) -> Value:
         """`and`, or `or` where a first True decides: what is decided by the first is not looked at further."""
         truth = self._truth(first)
         if not rest:
@@ -387,7 +399,7 @@ class _Body:
         longer = [lambda: self._both(rest[0], rest[1:], decided), lambda: known]
         return self._choice(truth, *(longer[::-1] if decided else longer))
 
-    def _compared(self, sign: ast.cmpop, left: Any, right: Any) -> Any:
+    def _compared(self, sign: ast.cmpop, left: Value, right: Value) -> Value:
         kind, name = _joined(left.type, right.type), SIGNS[type(sign)]
         values = self._as(left, kind), self._as(right, kind)
         if kind == WHOLE:
@@ -396,7 +408,7 @@ class _Body:
         compare: Any = self.builder.fcmp_unordered if name == "!=" else self.builder.fcmp_ordered
         return compare(name, *values)
 
-    def _choice(self, truth: Any, body: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:
+    def _choice(self, truth: Value, body: Callable[[], Value], otherwise: Callable[[], Value]) -> Value:
         """A value that is computed on one of two ways."""
         blocks = [self.builder.append_basic_block() for _ in range(2)]
         after = self.builder.append_basic_block()
@@ -418,7 +430,7 @@ class _Body:
             chosen.add_incoming(value, block)
         return chosen
 
-    def _as(self, value: Any, kind: Any) -> Any:
+    def _as(self, value: Value, kind: Kind) -> Value:
         if value.type == kind:
             return value
         if kind == REAL:
@@ -427,7 +439,7 @@ class _Body:
 
     # ---- calls
 
-    def _call(self, name: str, arguments: Sequence[ast.expr]) -> Any:
+    def _call(self, name: str, arguments: Sequence[ast.expr]) -> Value:
         values = [self._value(argument) for argument in arguments]
         if name in ("max", "min"):
             return self._extreme(">" if name == "max" else "<", values)
@@ -445,14 +457,14 @@ class _Body:
             return Fields(tuple(values), self.module.space[name]._fields)
         raise Unsupported(name)
 
-    def _called(self, name: str, values: Sequence[Any]) -> Any:
+    def _called(self, name: str, values: Sequence[Value]) -> Value:
         function, kinds = self.module.version(name, values)
         result = self.builder.call(function, list(_flat(values)))
         if len(kinds) < 2:
             return result
         return Fields(tuple(self.builder.extract_value(result, at) for at in range(len(kinds))))
 
-    def _extreme(self, sign: str, values: Sequence[Any]) -> Any:
+    def _extreme(self, sign: str, values: Sequence[Value]) -> Value:
         """The largest or least of numbers; as in Python, nan is passed over unless it comes first."""
         kind = REAL if any(value.type == REAL for value in values) else WHOLE
         extreme, *others = [self._as(value, kind) for value in values]
@@ -461,28 +473,28 @@ class _Body:
             extreme = self.builder.select(compare(sign, other, extreme), other, extreme)
         return extreme
 
-    def _whole(self, value: Any) -> Any:
+    def _whole(self, value: Value) -> Value:
         if value.type == WHOLE:
             return value
         return self.builder.call(self._declared("llvm.fptosi.sat.i64.f64", WHOLE, 1), [value])
 
-    def _block(self, array: Array, at: Any, shape: Fields) -> Array:
+    def _block(self, array: Array, at: Value, shape: Fields) -> Array:
         """`flights.kernels.layout.block` over an address."""
         lengths = shape.values
         return Array(self.builder.gep(array.address, [at]), lengths[1] if len(lengths) == 2 else None)
 
-    def _function(self, name: str, *values: Any) -> Any:
+    def _function(self, name: str, *values: Value) -> Value:
         full = f"llvm.{name}.f64" if name in INTRINSICS else name
         return self.builder.call(self._declared(full, REAL, len(values)), values)
 
-    def _declared(self, name: str, returns: Any, count: int) -> Any:
+    def _declared(self, name: str, returns: Kind, count: int) -> Value:
         text = self.module.text
         return text.globals.get(name) or ir.Function(text, ir.FunctionType(returns, [REAL] * count), name)
 
 
-def _constant(number: float) -> Any:
+def _constant(number: float) -> Value:
     return ir.Constant(WHOLE if isinstance(number, int) else REAL, number)
 
 
-def _joined(one: Any, other: Any) -> Any:
+def _joined(one: Kind, other: Kind) -> Kind:
     return WHOLE if one == other == WHOLE else REAL
