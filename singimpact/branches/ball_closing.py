@@ -136,8 +136,10 @@ class BallClosing:
     def ends(self, point: list[Fraction], radius: Fraction) -> tuple[list[Arrival], list[list[Any]]]:
         """z and z' at the end of each flight over a box; the velocity after it, and its derivatives."""
         model = self.model(point)
-        ends = [timed_flight(model, launch, time, self.digits + SPARE, derivative=bool(radius))
-                for launch, time in self.flights(point, radius)]  # fmt: skip
+        ends = [
+            timed_flight(model, launch, time, self.digits + SPARE, derivative=bool(radius))
+            for launch, time in self.flights(point, radius)
+        ]
         numbers = self.number(point, radius)
         law = programs_of(model, tuple(numbers)).rho.prepared(numbers)
         return ends, [list(law({"v": end.velocity})) for end in ends]

@@ -49,9 +49,14 @@ class BranchWalk(OrbitCurve):
     """
 
     def __init__(
-        self, closing: AnyClosing, ends: tuple[float, float], step: float, most: int, over: str,
+        self,
+        closing: AnyClosing,
+        ends: tuple[float, float],
+        step: float,
+        most: int,
+        over: str,
         own: Sequence[EventKind] = (),
-    ) -> None:  # fmt: skip
+    ) -> None:
         super().__init__(closing, [ends], step, most)
         self.over, self.own = over, own
 
@@ -210,8 +215,10 @@ class BranchWalk(OrbitCurve):
             return None
         jump = search.jump(crossing, along) if kind.is_own else None
         if jump is not None:
-            self.notes.append(f"{kind.name} jumps from {jump[0]:.6g} to {jump[1]:.6g} near {self.over} = "
-                              f"{point.at[-1]:.9g}: this change of sign is not a zero")  # fmt: skip
+            self.notes.append(
+                f"{kind.name} jumps from {jump[0]:.6g} to {jump[1]:.6g} near {self.over} = "
+                f"{point.at[-1]:.9g}: this change of sign is not a zero"
+            )
             return None
         time = np.nan
         if crossing.ends[0].is_minimum:

@@ -101,8 +101,8 @@ class Loop:
         first = far / (2 * two)
         second = 2 * zero / far if far else first
         if product is not None and abs(zero) < CANCELLED * size:
-            known = product()
-            second = known / first if np.isfinite(known) and abs(first) > 0 else second
+            determinant = product()
+            second = determinant / first if np.isfinite(determinant) and abs(first) > 0 else second
         return np.array([first, second])
 
 
@@ -147,12 +147,12 @@ class Closing:
             scale = np.array([1.0, factor])
             slope[2 * i : 2 * i + 2, i] += scale * (end.by_tau - end.by_time)
             slope[2 * i : 2 * i + 2, n + i] += scale * end.by_v
-            part = np.zeros((2, 2 * n))
-            part[:, after] = scale * end.by_time
-            part[1, n + after] = -1.0
-            slope[2 * i : 2 * i + 2, : 2 * n] += part
+            by_next = np.zeros((2, 2 * n))
+            by_next[:, after] = scale * end.by_time
+            by_next[1, n + after] = -1.0
+            slope[2 * i : 2 * i + 2, : 2 * n] += by_next
             if last:
-                wrap[2 * i : 2 * i + 2] = part
+                wrap[2 * i : 2 * i + 2] = by_next
             if len(over):
                 # launches in the first period move with the period, and so does the length of the last flight
                 moved = end.by_numbers - np.outer(before * slopes, end.by_tau)
@@ -165,8 +165,9 @@ class Closing:
         """The product of the multipliers, det D G over all impacts; nan at a graze."""
         launches, _, speeds, times = np.array(self.flights(point)).T
         values = self.values(point)
-        ends = [self.family.end(values, tau, v, time).place[1]
-                for tau, v, time in zip(launches, speeds, times, strict=True)]  # fmt: skip
+        ends = [
+            self.family.end(values, tau, v, time).place[1] for tau, v, time in zip(launches, speeds, times, strict=True)
+        ]
         velocities = np.array(ends)
         if not (velocities < 0).all() or not (speeds != 0).all():
             return float("nan")

@@ -34,7 +34,7 @@ def in_digits(osc: Oscillator, rough: PeriodicOrbit, digits: int) -> PeriodicOrb
         # refused where the orbit is virtual, or a flight is not shown to be its own: the status says so
         with suppress(Refused, ZeroDivisionError, ValueError):
             states = Krawczyk(closing, states, small).solved(states)
-            miss = max(abs(as_rational(part)) for part in closing.miss(states).entries())
+            miss = max(abs(as_rational(residual)) for residual in closing.miss(states).entries())
             total = return_slope(closing.slopes(states, small))
             half, product = as_rational((total[0, 0] + total[1, 1]) / 2), as_rational(total.det())
             closing.first_hits(states, small)

@@ -46,10 +46,10 @@ class FreeClosing:
         flow = np.stack([end.by_numbers[self.family.over.index(CLEARANCE)] + np.array([1.0, 0.0]), end.by_v], axis=1)
         slope = np.zeros((2, 2 + len(self.over)))
         slope[:, :2] = flow - np.eye(2)
-        for place, name in enumerate(self.over):
+        for column, name in enumerate(self.over):
             if name != CLEARANCE and name in self.family.over:
                 at = self.family.over.index(name)
-                slope[:, 2 + place] = end.by_numbers[at] + self.k * period.slopes[at] * end.by_time
+                slope[:, 2 + column] = end.by_numbers[at] + self.k * period.slopes[at] * end.by_time
         return Loop(np.array([end.place[0], end.place[1] - point[1]]), slope, -np.eye(2))
 
     def heights(self, point: Array) -> list[tuple[float, float]]:

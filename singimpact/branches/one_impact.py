@@ -87,8 +87,8 @@ def _refined(angles: Array, total: Array, size: int) -> Array:
                 break
     waves = np.exp(np.outer(at, orders))
     good = np.abs((waves @ total).real) <= 1e-13 * np.abs(total).sum()
-    found: list[float] = []
+    roots: list[float] = []
     for angle in np.sort(np.mod(at[good], 2 * np.pi)).tolist():
-        if all(min(abs(angle - other), 2 * np.pi - abs(angle - other)) > 1e-9 for other in found):
-            found.append(angle)
-    return np.array(found)
+        if all(min(abs(angle - other), 2 * np.pi - abs(angle - other)) > 1e-9 for other in roots):
+            roots.append(angle)
+    return np.array(roots)

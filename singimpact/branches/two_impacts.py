@@ -65,12 +65,12 @@ def two_impacts(osc: Oscillator, k: int) -> tuple[list[Array], IsolatedZeros] | 
         end = evaluate(flights.span, {}, Balls(SEARCH.bits))
         window = (-Fraction(period) * EDGE, Fraction(period) * (1 + EDGE)), (Fraction(0), Fraction(k * period))
         excluded = _Excluded(flights, end)
-        made = isolated_zeros(flights.heights, ("tau", "t"), window, excluded=excluded, settings=SEARCH)
+        zeros = isolated_zeros(flights.heights, ("tau", "t"), window, excluded=excluded, settings=SEARCH)
         points = []
-        for tau, t in made.found:
+        for tau, t in zeros.found:
             v, after = excluded.speeds({"tau": tau, "t": t})
-            points.append(np.array([float(part.mid()) for part in (tau, tau + t, v, after)]))
-    return points, made
+            points.append(np.array([float(number.mid()) for number in (tau, tau + t, v, after)]))
+    return points, zeros
 
 
 def _formulas(osc: Oscillator, k: int) -> TwoFlights | None:

@@ -57,5 +57,9 @@ def trace(matrix: Any) -> Any:
 
 def rate_of_determinant(total: Any, change: Any) -> Any:
     """The rate of the determinant where the matrix changes at a rate."""
-    return (change[0, 0] * total[1, 1] + total[0, 0] * change[1, 1]
-            - change[0, 1] * total[1, 0] - total[0, 1] * change[1, 0])  # fmt: skip
+    return (
+        change[0, 0] * total[1, 1]
+        + total[0, 0] * change[1, 1]
+        - change[0, 1] * total[1, 0]
+        - total[0, 1] * change[1, 0]
+    )
