@@ -139,7 +139,7 @@ def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float)
     times, speeds = states_of(model, code, tau, v)
     size = SETTINGS.catch
     while size > SETTINGS.close:
-        made = Attractor(code, times, speeds, size)
+        attractor = Attractor(code, times, speeds, size)
         edge = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]) * size
         start = (
             times[:, None] + period * edge[:, 0],
@@ -148,10 +148,10 @@ def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float)
         at, speed, turned = start[0].ravel(), start[1].ravel(), 0
         for turns in SETTINGS.turns:
             ends = iterate(model, at, speed, (turns - turned) * count)
-            if not (ends.status == 0).all() or not within(made, model, ends.tau, ends.v, fast, 2 * size).all():
+            if not (ends.status == 0).all() or not within(attractor, model, ends.tau, ends.v, fast, 2 * size).all():
                 break
-            if within(made, model, ends.tau, ends.v, fast, size / 2).all():
-                return made
+            if within(attractor, model, ends.tau, ends.v, fast, size / 2).all():
+                return attractor
             at, speed, turned = ends.tau, ends.v, turns
         size /= 10
     return Attractor(code, times, speeds, SETTINGS.close)

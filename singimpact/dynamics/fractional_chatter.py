@@ -44,10 +44,10 @@ def loss_at_rest(osc: Oscillator) -> Loss:
     >>> print(loss.r, loss.C, loss.q)
     1 0.3 1/5
     """
-    found, r = osc.rho_at_rest(), osc.slope_at_rest()
-    if found is None or len(found.terms) < 2:
+    law, r = osc.rho_at_rest(), osc.slope_at_rest()
+    if law is None or len(law.terms) < 2:
         return Loss(r, number(0), Fraction(1))
-    exponent, value = found.terms[1]
+    exponent, value = law.terms[1]
     return Loss(r, multiply(MINUS_ONE, value, power(r, MINUS_ONE)), exponent - 1)
 
 
@@ -96,18 +96,18 @@ def sum_of_speeds(osc: Oscillator) -> tuple[tuple[float, float], ...]:
     assert rho is not None
     elastic, C, r = compare(loss.r, 1) == 0, as_float(loss.C), as_float(loss.r)
     bends = {e - 1: as_float(c) / r for e, c in rho.terms[1:]}
-    left, found = {Fraction(1): 1.0}, list[tuple[float, float]]()
-    while left and len(found) < TERMS:
+    left, terms = {Fraction(1): 1.0}, list[tuple[float, float]]()
+    while left and len(terms) < TERMS:
         e = min(left)
         if rho.bound is not None and e >= rho.bound:
             break
         p = e - loss.q if elastic else e
         s = left.pop(e) / (float(p) * C if elastic else 1 - r ** float(p))
-        found.append((float(p), s))
+        terms.append((float(p), s))
         for further, c in _bent(bends, float(p)).items():
             if p + further != e:
                 left[p + further] = left.get(p + further, 0.0) + s * r ** float(p) * c
-    return tuple(found)
+    return tuple(terms)
 
 
 def _bent(bends: dict[Fraction, float], p: float) -> dict[Fraction, float]:

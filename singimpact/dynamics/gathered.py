@@ -15,13 +15,13 @@ def gathered(kind: Any, results: list[Any], shape: tuple[int, ...]) -> Any:
 
     Fields that are not printed say where one result comes from, and are left out.
     """
-    found = {}
-    for each in (part for part in fields(kind) if part.repr):
-        values = [getattr(one, each.name) for one in results]
-        if each.name in ("status", "cause"):
-            found[each.name] = np.array(values, dtype=np.int8).reshape(shape)
+    columns = {}
+    for field in (entry for entry in fields(kind) if entry.repr):
+        values = [getattr(one, field.name) for one in results]
+        if field.name in ("status", "cause"):
+            columns[field.name] = np.array(values, dtype=np.int8).reshape(shape)
         else:
             plain = all(isinstance(value, int | float) for value in values)
-            found[each.name] = np.array(values, dtype=None if plain else object).reshape(shape)
-    found["status"] = status_array(found["status"])
-    return kind(**found)
+            columns[field.name] = np.array(values, dtype=None if plain else object).reshape(shape)
+    columns["status"] = status_array(columns["status"])
+    return kind(**columns)

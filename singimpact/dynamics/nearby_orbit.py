@@ -74,8 +74,8 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
     assert model.period is not None
     period, scale = as_float(model.period), np.array([as_float(model.period), fast])
     tau = tau - period * np.floor(tau / period)
-    given = np.stack([tau, v], axis=-1)
-    states, found = given.copy(), np.zeros(tau.size, dtype=bool)
+    starts = np.stack([tau, v], axis=-1)
+    states, attracting = starts.copy(), np.zeros(tau.size, dtype=bool)
     first, left = np.full(tau.size, np.inf), np.arange(tau.size)
     for step in range(SETTINGS.steps):
         residual, slopes = _return(model, states[left], n[left], k[left])
@@ -86,17 +86,17 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
         size, trace, area = SETTINGS.neutral, np.trace(slopes, axis1=1, axis2=2), np.linalg.det(slopes)
         attracts = (np.abs(area) <= size**2) & (np.abs(trace) * size <= size**2 + area)
         closed = away < SETTINGS.closed
-        found[left[closed]] = attracts[closed]
+        attracting[left[closed]] = attracts[closed]
         moved = _newton(residual, slopes)
         aim = states[left] + moved
-        there = np.abs((aim - given[left]) / scale).max(axis=1, initial=0.0) < SETTINGS.near
+        there = np.abs((aim - starts[left]) / scale).max(axis=1, initial=0.0) < SETTINGS.near
         going = ~closed & there & (aim[:, 1] > 0)
         left = left[going]
         if not left.size:
             break
         states[left] = aim[going]
-    n, k = _least(model, states, n, k, found, scale)
-    return Nearby(states[:, 0], states[:, 1], n, k, found, first)
+    n, k = _least(model, states, n, k, attracting, scale)
+    return Nearby(states[:, 0], states[:, 1], n, k, attracting, first)
 
 
 def _newton(residual: Array, slopes: Array) -> Array:
@@ -122,12 +122,14 @@ def _return(model: Oscillator, states: Array, n: Array, k: Array) -> tuple[Array
     return np.stack([at - states[:, 0] - k * as_float(model.period), speed - states[:, 1]], axis=-1), slopes
 
 
-def _least(model: Oscillator, states: Array, n: Array, k: Array, found: Array, scale: Array) -> tuple[Array, Array]:
+def _least(
+    model: Oscillator, states: Array, n: Array, k: Array, attracting: Array, scale: Array
+) -> tuple[Array, Array]:
     """The least impacts and periods of the orbits that were found."""
     assert model.period is not None
     n, k = n.copy(), k.copy()
     at, speed = states.T.copy()
-    several = np.flatnonzero(found & (n > 1))
+    several = np.flatnonzero(attracting & (n > 1))
     for count in range(1, int(n[several].max(initial=1))):
         ends = iterate(model, at[several], speed[several], 1)
         at[several], speed[several] = ends.tau, ends.v

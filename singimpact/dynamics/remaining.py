@@ -68,16 +68,16 @@ def _jets(osc: Oscillator) -> tuple[dict[str, float], dict[str, float], tuple[Ex
 
 def _coefficients(osc: Oscillator) -> dict[str, float]:
     """rho_2, rho_3, ... of a law that is smooth at rest; zeros of one that is not, which has other terms."""
-    found = {f"rho_{n}": 0.0 for n in range(2, ORDER + 1)}
+    coefficients = {f"rho_{n}": 0.0 for n in range(2, ORDER + 1)}
     if not osc.smooth_at_rest:
-        return found
-    known = osc.rho_at_rest()
-    if known is not None and (known.bound is None or known.bound > ORDER):
-        terms = {int(exponent): as_float(value) for exponent, value in known.terms}
+        return coefficients
+    law = osc.rho_at_rest()
+    if law is not None and (law.bound is None or law.bound > ORDER):
+        terms = {int(exponent): as_float(value) for exponent, value in law.terms}
         return {f"rho_{n}": (-1) ** n * terms.get(n, 0.0) for n in range(2, ORDER + 1)}
     slope = osc.rho()
     for n in range(1, ORDER + 1):
         slope = derivative(slope, "v")
         if n > 1:
-            found[f"rho_{n}"] = as_float(substitute(slope, {"v": number(0)})) / factorial(n)
-    return found
+            coefficients[f"rho_{n}"] = as_float(substitute(slope, {"v": number(0)})) / factorial(n)
+    return coefficients

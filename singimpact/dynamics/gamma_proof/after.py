@@ -215,5 +215,5 @@ def flight_bound(speed: Any, e: Any, alpha: Any) -> Any:
             high = d
         else:
             low = d
-    found = arb(high * 1.001)
-    return found if alpha * found * (e * e / 2 + e * found / 3 + found * found / 12) >= speed else None
+    length = arb(high * 1.001)
+    return length if alpha * length * (e * e / 2 + e * length / 3 + length * length / 12) >= speed else None

@@ -81,8 +81,13 @@ def numbers_of(osc: Oscillator, zero: ContactZero, bits: int) -> LinearNumbers:
 
     time, b = zero.moved(bits), ball(form.damping) / 2
     waves = tuple(
-        (ball(each.rate), ball(each.rate) * time + ball(each.phase), ball(each.cosine), ball(each.sine))
-        for each in form.harmonics
+        (
+            ball(harmonic.rate),
+            ball(harmonic.rate) * time + ball(harmonic.phase),
+            ball(harmonic.cosine),
+            ball(harmonic.sine),
+        )
+        for harmonic in form.harmonics
     )
     return LinearNumbers(b, ball(form.stiffness) - b * b, ball(at_rest(form, osc.clearance)), waves)
 
@@ -116,10 +121,10 @@ def gravity(osc: Oscillator, zero: ContactZero, reach: Fraction, bits: int, smal
             raise InputError(f"S <= {reach} is not accepted: the series in S converges up to 1/omega_d only")
         for K in range(40, MOST + 1, 8):  # folded models take at least D + j terms
             size, radius = min(discs, key=lambda disc: float((disc[0] * (s0 / disc[1]) ** K).upper()))
-            found = Gravity(zero.order, reach, tuple(b[: K + 1]), size, radius, bits)
-            if found.tail(zero.order + 1) < small * b[zero.order]:
+            series = Gravity(zero.order, reach, tuple(b[: K + 1]), size, radius, bits)
+            if series.tail(zero.order + 1) < small * b[zero.order]:
                 break
-        return found
+        return series
 
 
 def _coefficients(numbers: LinearNumbers, j: int, K: int) -> list[Any]:
@@ -135,15 +140,15 @@ def _coefficients(numbers: LinearNumbers, j: int, K: int) -> list[Any]:
             angle = rate * time + arb_series([phase], prec=prec)
             pressed += cosine * angle.cos() + sine * angle.sin()
         whole = (numbers.damping * time).exp() * pressed / (spread * spread.sqrt())
-        found = [-((-1) ** k) * whole[k] for k in range(K + 1)]
-    return [arb(0)] * j + found[j:]
+        coefficients = [-((-1) ** k) * whole[k] for k in range(K + 1)]
+    return [arb(0)] * j + coefficients[j:]
 
 
 def _discs(numbers: LinearNumbers, s0: Any) -> list[tuple[Any, Any]]:
     """Bounds of |A| on discs |s| <= R with R > reach: |t| <= atanh(sqrt|w| R)/sqrt|w| and |cos z| <= cosh |z| there."""
     from flint import arb
 
-    w, found = abs(numbers.square), []
+    w, discs = abs(numbers.square), []
     root = arb(w.upper()).sqrt()
     widest = 1 / root if root > 0 else 64 * s0
     widest = arb((19 * widest / 20).min(64 * s0).lower())
@@ -159,5 +164,5 @@ def _discs(numbers: LinearNumbers, s0: Any) -> list[tuple[Any, Any]]:
             push = push + size * (shifted[0] + shifted[1])
         left = 1 - w * R * R  # |C^-2| is at least this
         size = (abs(numbers.damping) * time).exp() / (left * left.sqrt())
-        found.append((arb((size * push).upper()), R))
-    return found
+        discs.append((arb((size * push).upper()), R))
+    return discs
