@@ -110,11 +110,11 @@ class _Parts:
         self.later: list[Any] = []
         self.kind: Any = None
 
-    def add(self, part: Any, chosen: slice) -> None:
+    def add(self, block: Any, chosen: slice) -> None:
         """The results of one block."""
         if self.kind is None:
-            self._begin(part)
-        fields = vars(part)
+            self._begin(block)
+        fields = vars(block)
         for name, target in self.arrays.items():
             if target.flags.c_contiguous:
                 target.reshape(self.size, *target.shape[len(self.shape) :])[chosen] = fields[name]
@@ -123,25 +123,25 @@ class _Parts:
         self.notes |= {chosen.start + index: note for index, note in fields.get("notes", {}).items()}
         if SPARSE[0] in fields and self.out is None:
             rows = np.stack([fields[name] for name in SPARSE])
-            known = np.flatnonzero(~np.isnan(rows).all(axis=0))
-            if known.size:
-                self.rare.append((chosen.start + known, rows[:, known]))
+            sparse = np.flatnonzero(~np.isnan(rows).all(axis=0))
+            if sparse.size:
+                self.rare.append((chosen.start + sparse, rows[:, sparse]))
         if "_later" in fields and self.out is None:
             self.later.append(fields["_later"])
 
-    def _begin(self, part: Any) -> None:
-        self.kind = type(part)
-        fields = {name: value for name, value in vars(part).items() if isinstance(value, np.ndarray)}
+    def _begin(self, block: Any) -> None:
+        self.kind = type(block)
+        fields = {name: value for name, value in vars(block).items() if isinstance(value, np.ndarray)}
         for name in SPARSE if self.out is None else ():
             fields.pop(name, None)
         if self.out is not None:
             self._check(fields)
             fields = {name: value for name, value in fields.items() if name in self.out or name in ALWAYS}
         for name, value in fields.items():
-            given = None if self.out is None else self.out.get(name)
-            if given is None:
-                given = np.empty(self.shape + value.shape[1:], value.dtype)
-            self.arrays[name] = given
+            target = None if self.out is None else self.out.get(name)
+            if target is None:
+                target = np.empty(self.shape + value.shape[1:], value.dtype)
+            self.arrays[name] = target
 
     def _check(self, fields: Mapping[str, Array]) -> None:
         assert self.out is not None
@@ -149,10 +149,10 @@ class _Parts:
             if name not in fields:
                 raise InputError(f"out has the name {name!r}: give arrays for {', '.join(fields)}")
             wanted = self.shape + fields[name].shape[1:], fields[name].dtype
-            found = (getattr(target, "shape", None), getattr(target, "dtype", type(target).__name__))
-            if found != wanted or not target.flags.writeable:
+            layout = (getattr(target, "shape", None), getattr(target, "dtype", type(target).__name__))
+            if layout != wanted or not target.flags.writeable:
                 raise InputError(
-                    f"out[{name!r}] has shape {found[0]} and type {found[1]}: give a writable array of shape"
+                    f"out[{name!r}] has shape {layout[0]} and type {layout[1]}: give a writable array of shape"
                     f" {wanted[0]} and type {wanted[1]}"
                 )
 

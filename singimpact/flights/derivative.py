@@ -51,15 +51,15 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
     )
     hit, rows = flights_and_rows(osc, model, states)
     status, velocity = np.asarray(hit.status).copy(), hit.velocity
-    known = rows[TIME_BY_TAU : VELOCITY_BY_V + 1]
-    others = np.isnan(known[0]) & (status == Status.hit)
+    columns = rows[TIME_BY_TAU : VELOCITY_BY_V + 1]
+    others = np.isnan(columns[0]) & (status == Status.hit)
     if others.any():
         at = np.flatnonzero(others)
         answers = response(osc, states.tau[at], states.v[at], hit.flight_time[at], velocity[at])
-        known[:, at] = answers.time_by_tau, answers.time_by_v, answers.velocity_by_tau, answers.velocity_by_v
-    known[:, status != Status.hit] = np.nan
+        columns[:, at] = answers.time_by_tau, answers.time_by_v, answers.velocity_by_tau, answers.velocity_by_v
+    columns[:, status != Status.hit] = np.nan
     slope = rebound_slope(osc, velocity)
-    matrix = np.stack([1 + known[0], known[1], slope * known[2], slope * known[3]], axis=-1).reshape(-1, 2, 2)
+    matrix = np.stack([1 + columns[0], columns[1], slope * columns[2], slope * columns[3]], axis=-1).reshape(-1, 2, 2)
     if names_in(osc.restitution):
         dead = (status == Status.hit) & np.isnan(rebound(osc, velocity))
         status[dead], matrix[dead] = Status.no_rebound, np.nan

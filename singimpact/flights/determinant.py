@@ -66,8 +66,9 @@ def _integral_of_damping(osc: Oscillator, tau: Array, v: Array, time: Array) -> 
     unit = 1.0 if osc.period is None else as_float(osc.period)
     counts = np.maximum(1, np.ceil(SETTINGS.pieces * time / unit)).astype(int)
     widths = time / counts
-    ticks = [((np.arange(n)[:, None] + (1 + nodes) / 2) * width).ravel()
-             for n, width in zip(counts, widths, strict=True)]  # fmt: skip
+    ticks = [
+        ((np.arange(n)[:, None] + (1 + nodes) / 2) * width).ravel() for n, width in zip(counts, widths, strict=True)
+    ]
     clearance, integrals = as_float(osc.clearance), []
     for way, width in zip(many_paths(osc, tau, v, ticks), widths, strict=True):
         values = evaluate(slope, {"x": clearance + way[:, 0], "xdot": way[:, 1]}, DOUBLES) + np.zeros(len(way))

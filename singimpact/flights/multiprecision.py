@@ -88,8 +88,11 @@ def _escaping(osc: Oscillator, states: States, index: int, outcome: Outcome) -> 
     """`escaped` in place of `no_return` where it is proved; doubles are enough for that."""
     form, numbers = linear_form(osc), outcome[1]
     time, speed, place = (np.array([float(value)]) for value in numbers[:3])
-    proved = (never_turns(osc, place, speed) if form is None
-              else never_returns(osc, form, states.tau[[index]], time, place, speed))  # fmt: skip
+    proved = (
+        never_turns(osc, place, speed)
+        if form is None
+        else never_returns(osc, form, states.tau[[index]], time, place, speed)
+    )
     return (int(Status.escaped), numbers) if proved[0] else outcome
 
 

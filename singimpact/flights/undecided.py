@@ -98,27 +98,27 @@ class Shaped:
         return {each: np.asarray(value).reshape(self.shape)[()] for each, value in self.later(name).items()}
 
 
-def flights(osc: Oscillator, model: CompiledModel, states: States, known: Flown | None = None) -> Flight:
+def flights(osc: Oscillator, model: CompiledModel, states: States, hits: Flown | None = None) -> Flight:
     """First hits in doubles, flat.
 
     Parameters
     ----------
-    known : of states with v > 0 that have been flown.
+    hits : of states with v > 0 that have been flown.
     """
-    return flights_and_rows(osc, model, states, known)[0]
+    return flights_and_rows(osc, model, states, hits)[0]
 
 
 def flights_and_rows(
-    osc: Oscillator, model: CompiledModel, states: States, known: Flown | None = None
+    osc: Oscillator, model: CompiledModel, states: States, hits: Flown | None = None
 ) -> tuple[Flight, Array]:
     """First hits in doubles, flat; and the columns of `kernels.state`, nan where they are not known."""
     if model.linear:
-        codes, rows = known or model.hits(model.near(states.tau), states.v)
+        codes, rows = hits or model.hits(model.near(states.tau), states.v)
         if not codes.any():
             return plain(codes, rows), rows
         fates, judge = decided(osc, model, states, codes, rows), None
     else:
-        fates, judge = flown(osc, model, states, known)
+        fates, judge = flown(osc, model, states, hits)
     # first: a flight that left the range of doubles would be followed again in many digits
     escapes(osc, model, states, fates)
     settled = _settled(osc, model, states, fates)
@@ -129,10 +129,10 @@ def flights_and_rows(
     return result(osc, states, fates, judge, settled), fates.rows
 
 
-def flown(osc: Oscillator, model: CompiledModel, states: States, known: Flown | None = None) -> tuple[Fates, Judge]:
+def flown(osc: Oscillator, model: CompiledModel, states: States, hits: Flown | None = None) -> tuple[Fates, Judge]:
     """Flights of a Taylor flow, and what judges them."""
     tau = model.near(states.tau)
-    codes, rows = known or model.hits(tau, states.v)
+    codes, rows = hits or model.hits(tau, states.v)
     rows[4:] = np.nan
     open_ones = np.flatnonzero(codes == CANCELS)
     if open_ones.size:  # a_c at the launch has lost digits: flown with the exact one
@@ -164,9 +164,19 @@ def decided(osc: Oscillator, model: CompiledModel, states: States, codes: Array,
 def plain(codes: Array, rows: Array) -> Flight:
     """Hits and nothing else."""
     nothing = np.full(codes.size, np.nan)
-    return Flight.made(flight_time=rows[0], velocity=rows[1], status=codes, depth=nothing, bound=nothing.copy(),
-                       condition=rows[2], velocity_condition=rows[3], time_error=rows[4], velocity_error=rows[5],
-                       cause=np.zeros(codes.size, np.int8), notes={})  # fmt: skip
+    return Flight.made(
+        flight_time=rows[0],
+        velocity=rows[1],
+        status=codes,
+        depth=nothing,
+        bound=nothing.copy(),
+        condition=rows[2],
+        velocity_condition=rows[3],
+        time_error=rows[4],
+        velocity_error=rows[5],
+        cause=np.zeros(codes.size, np.int8),
+        notes={},
+    )
 
 
 def _decided_at_launch(osc: Oscillator, model: CompiledModel, states: States, fates: Fates) -> None:
@@ -191,13 +201,13 @@ def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array
 
     for index in wanted:
         fates.status[index] = Status.hit
-        found = refined_hit(osc, states, index, float(fates.rows[0, index]))
-        if found is None and left:
+        hit = refined_hit(osc, states, index, float(fates.rows[0, index]))
+        if hit is None and left:
             left -= 1
             settled = settle(osc, states, index, float(model.allowance.until(states.v[index])))
-            found = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
-        if found is not None:
-            fates.rows[:2, index] = found
+            hit = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
+        if hit is not None:
+            fates.rows[:2, index] = hit
             fates.rows[4:6, index] = np.minimum(fates.rows[4:6, index], (4 * EPSILON, 64 * EPSILON))
 
 
@@ -208,9 +218,12 @@ def escapes(osc: Oscillator, model: CompiledModel, states: States, fates: Fates)
     singular = (fates.cause == Cause.domain_left) & (numbers[:, 3] > 0)
     gone = np.flatnonzero(((fates.status == Status.no_return) | (fates.lost & ~singular)) & (numbers[:, 0] > 0))
     if gone.size:
-        time, speed, place, _ = numbers[gone].T
-        proved = (never_turns(osc, place, speed) if model.form is None
-                  else never_returns(osc, model.form, states.tau[gone], time, place, speed))  # fmt: skip
+        time, speed, position, _ = numbers[gone].T
+        proved = (
+            never_turns(osc, position, speed)
+            if model.form is None
+            else never_returns(osc, model.form, states.tau[gone], time, position, speed)
+        )
         fates.status[gone[proved]], fates.cause[gone[proved]] = Status.escaped, Cause.decided
 
 
@@ -238,10 +251,17 @@ def result(osc: Oscillator, states: States, fates: Fates, judge: Judge | None, s
     time[gone], velocity[gone | unknown], time[unknown] = np.inf, np.nan, np.nan
     rests = status == Status.sticks
     velocity[graze | rests], time[rests] = 0.0, 0.0
-    known = (unknown & ~fates.lost) | graze
-    depth, bound = np.where(known, rows[2], np.nan), np.where(known, rows[3], np.nan)
-    fields = {"flight_time": time, "velocity": velocity, "status": status, "depth": depth, "bound": bound,
-              "cause": fates.cause, "notes": notes}  # fmt: skip
+    bounded = (unknown & ~fates.lost) | graze
+    depth, bound = np.where(bounded, rows[2], np.nan), np.where(bounded, rows[3], np.nan)
+    fields = {
+        "flight_time": time,
+        "velocity": velocity,
+        "status": status,
+        "depth": depth,
+        "bound": bound,
+        "cause": fates.cause,
+        "notes": notes,
+    }
     if judge is not None:
         return Flight.made(judge, **fields)
     judged = np.where(hit, rows[2:6], np.nan)
@@ -275,6 +295,6 @@ def notes_of(osc: Oscillator, states: States, fates: Fates) -> dict[int, str]:
         def way(times: Array, at: int = index) -> Any:
             return path(osc, states.tau[at], states.v[at], times)
 
-        found = explained(osc, tau, fates.numbers[index], Cause(int(fates.cause[index])), way)
-        fates.cause[index], notes[index] = found
+        explanation = explained(osc, tau, fates.numbers[index], Cause(int(fates.cause[index])), way)
+        fates.cause[index], notes[index] = explanation
     return notes

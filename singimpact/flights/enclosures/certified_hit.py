@@ -94,9 +94,15 @@ class ProvedImpact(NamedTuple):
 
 
 def certified_hit(
-    osc: Oscillator, launch: Launch, digits: int, horizon: Fraction, *, derivative: bool = False,
-    steps: int = ENCLOSURE.steps, expected: tuple[float, float] = (0.0, 1.0),
-) -> ProvedImpact:  # fmt: skip
+    osc: Oscillator,
+    launch: Launch,
+    digits: int,
+    horizon: Fraction,
+    *,
+    derivative: bool = False,
+    steps: int = ENCLOSURE.steps,
+    expected: tuple[float, float] = (0.0, 1.0),
+) -> ProvedImpact:
     """The first impact of a flight in balls, with so many digits where the launch is a point.
 
     Parameters
@@ -137,10 +143,10 @@ def certified_hit(
             with working_at(bits + ENCLOSURE.guard):
                 begun = motion_from(osc, launch, bits, coarse, derivative, framed, expected[0])
                 hit = first_hit(begun, Balls(bits).rational(horizon), steps)
-                found = _impact(osc, launch, hit, bits)
-                lack = 0 if box else _lack(found, wanted + 1)
+                impact = _impact(osc, launch, hit, bits)
+                lack = 0 if box else _lack(impact, wanted + 1)
                 if lack <= 0:
-                    return found
+                    return impact
                 why, ladder.lack, flown = f"{lack} bits of the result are lacking", lack + 6, hit.steps
         except (NoHit, TooLong):
             raise
@@ -255,16 +261,17 @@ def _period_moves(osc: Oscillator, names: tuple[str, ...]) -> bool:
 def _impact(osc: Oscillator, launch: Launch, hit: BallHit, bits: int) -> ProvedImpact:
     """The state after a hit, and D G."""
     names = launch.names
-    law = programs_of(osc, names).rho.prepared({name: _ball(_number(osc, name), bits) + _radius(launch.radii[name])
-                                               for name in names})  # fmt: skip
+    law = programs_of(osc, names).rho.prepared(
+        {name: _ball(_number(osc, name), bits) + _radius(launch.radii[name]) for name in names}
+    )
     v, slope, *by_law = law({"v": hit.velocity})
     tau = _ball(launch.tau, bits) + _radius(launch.radii.get("tau", Fraction(0))) + hit.flight_time
     rows: list[list[Any]] = []
     if hit.derivatives:
         first = [delay + (1 if k == 0 else 0) for k, (delay, _) in enumerate(hit.derivatives)]
         second = [slope * change for _, change in hit.derivatives]
-        for k, part in enumerate(by_law):
-            second[2 + k] += part
+        for k, slope_by_number in enumerate(by_law):
+            second[2 + k] += slope_by_number
         rows = [first, second]
     return ProvedImpact(hit.flight_time, hit.velocity, tau, v, rows, hit.steps, bits)
 

@@ -102,8 +102,10 @@ class JetHit:
 
     def along(self, direction: tuple[Any, Any, Any]) -> list[list[Any]]:
         """The derivative of `slopes`, columns tau and v alone, in a direction of (tau, v, number)."""
-        return [[sum((self._second(each, i, j) * part for j, part in enumerate(direction)), each[0] * 0)
-                 for i in (0, 1)] for each in self.jets]  # fmt: skip
+        return [
+            [sum((self._second(each, i, j) * part for j, part in enumerate(direction)), each[0] * 0) for i in (0, 1)]
+            for each in self.jets
+        ]
 
     @staticmethod
     def _second(each: Jet, i: int, j: int) -> Any:
@@ -181,24 +183,24 @@ class _JetFlight:
         if not X[-1].is_finite():
             raise NotAnalytic("f or g has no power series where the flight goes")
         zero = arb_series([0], prec=count)
-        forced = [listed(part, count) for part in self._forcing(arb_series([time, 1], prec=count))]
-        found = [X, *([[arb(0)]] * (len(MONOMIALS) - 1))]
-        V = [(k + 1) * part for k, part in enumerate(X[1:])]
+        forced = [listed(series, count) for series in self._forcing(arb_series([time, 1], prec=count))]
+        rows = [X, *([[arb(0)]] * (len(MONOMIALS) - 1))]
+        V = [(k + 1) * coefficient for k, coefficient in enumerate(X[1:])]
         partials = self._run("near", 3, 2, x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
-        partials = {key: part + zero for key, part in partials.items()}
+        partials = {key: partial + zero for key, partial in partials.items()}
         by_x, by_v = (listed(partials[key], count) for key in ((1, 0, 0), (0, 1, 0)))
         z, v = jet({}, zero), jet({}, zero)  # without the coefficients that are not known yet
         for degree in (1, 2):
             f = composed(partials, (z, v, jet({3: 1}, 0)))
-            for place, monomial in enumerate(MONOMIALS):
+            for index, monomial in enumerate(MONOMIALS):
                 if len(monomial) == degree:
-                    pull = listed(f[place], count)
-                    driven = [a - b for a, b in zip(forced[place], pull, strict=True)]
-                    P = response(by_x, by_v, driven, (self.z[place], self.v[place]))
-                    found[place] = P
-                    z[place] = arb_series(P, prec=count)
-                    v[place] = arb_series([(k + 1) * part for k, part in enumerate(P[1:])], prec=count)
-        return found
+                    pull = listed(f[index], count)
+                    driven = [a - b for a, b in zip(forced[index], pull, strict=True)]
+                    P = response(by_x, by_v, driven, (self.z[index], self.v[index]))
+                    rows[index] = P
+                    z[index] = arb_series(P, prec=count)
+                    v[index] = arb_series([(k + 1) * coefficient for k, coefficient in enumerate(P[1:])], prec=count)
+        return rows
 
     def _defect(self, series: list[list[Any]], sums: list[Any], R: Any) -> list[Any] | None:
         """A bound of the norm of the defect on a disc; None where f or g is not shown analytic on its image."""
@@ -218,13 +220,15 @@ class _JetFlight:
         series = self._series()
         n = len(series[0]) - 1
         with balls_at(STEP.disc_bits):
-            sums = [sums_of(part) for part in series]
+            sums = [sums_of(column) for column in series]
             length, R, (M,) = widest_disc(series[0], lambda R: self._defect(series, sums, R), self.bits, self.last)
             self.last = R
             slack = arb(2) ** (-self.bits // 2)
             for _ in range(STEP.boxes):
-                z, v = ([P[order] + ball(part[order](length) + slack) for P, part in zip(series, sums, strict=True)]
-                        for order in (0, 1))  # fmt: skip
+                z, v = (
+                    [P[order] + ball(column[order](length) + slack) for P, column in zip(series, sums, strict=True)]
+                    for order in (0, 1)
+                )
                 A, B = (norm(self._force(z, v, "far", at)) for at in ((1, 0, 0), (0, 1, 0)))
                 if A.is_finite() and B.is_finite():
                     K = upper(M * R ** (1 - n) * (B * length + A * length**2 / 2).exp() / n)
@@ -248,7 +252,7 @@ class _JetFlight:
             root, length = self._root(inner, length)
             tubes = [(height(P, K), speed(P, K)) for P in series]
             at = length if root is None else root
-            self.z, self.v = [part(at) for part, _ in tubes], [rate(at) for _, rate in tubes]
+            self.z, self.v = [height_tube(at) for height_tube, _ in tubes], [rate(at) for _, rate in tubes]
             self.time = self.time + at
             if root is not None:
                 return self._landed()

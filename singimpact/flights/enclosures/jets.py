@@ -21,8 +21,12 @@ FIRST = ((0,), (1,), (2,))
 SECOND = tuple((i, j) for i in range(3) for j in range(i, 3))
 MONOMIALS: tuple[tuple[int, ...], ...] = ((), *FIRST, *SECOND)
 PLACES = {monomial: place for place, monomial in enumerate(MONOMIALS)}
-PRODUCTS = tuple((i, j, PLACES[tuple(sorted(a + b))]) for i, a in enumerate(MONOMIALS)
-                 for j, b in enumerate(MONOMIALS) if len(a + b) <= 2)  # fmt: skip
+PRODUCTS = tuple(
+    (i, j, PLACES[tuple(sorted(a + b))])
+    for i, a in enumerate(MONOMIALS)
+    for j, b in enumerate(MONOMIALS)
+    if len(a + b) <= 2
+)
 """Which coefficients of two factors are multiplied, and the coefficient to which the product belongs."""
 Partials = Mapping[tuple[int, ...], Any]
 """Values of the partial derivatives of a function by its arguments, by the orders of each."""
@@ -80,16 +84,19 @@ def composed(partials: Partials, small: Sequence[Sequence[Any]], at: tuple[int, 
     """
     base = at or (0,) * len(small)
     zero = partials[base] * 0
-    found = jet({0: partials[base]}, zero)
-    for each in orders(len(small), 2):
-        if any(each):
-            term: Jet = jet({0: partials[tuple(a + b for a, b in zip(base, each, strict=True))]}, 0)
-            for n, count in enumerate(each):
+    image = jet({0: partials[base]}, zero)
+    for powers in orders(len(small), 2):
+        if any(powers):
+            term: Jet = jet({0: partials[tuple(a + b for a, b in zip(base, powers, strict=True))]}, 0)
+            for n, count in enumerate(powers):
                 for _ in range(count):
                     term = product(term, small[n])
-                term = [part / factorial(count) if count > 1 and _counts(part) else part for part in term]
-            found = total(found, term)
-    return found
+                term = [
+                    coefficient / factorial(count) if count > 1 and _counts(coefficient) else coefficient
+                    for coefficient in term
+                ]
+            image = total(image, term)
+    return image
 
 
 def norm(one: Sequence[Any]) -> Any:
@@ -100,6 +107,7 @@ def norm(one: Sequence[Any]) -> Any:
 def quotient(one: Sequence[Any], other: Sequence[Any]) -> Jet:
     """The quotient of two jets."""
     small = [0, *(part / other[0] for part in other[1:])]
-    inverse = total(jet({0: 1 / other[0]}, other[0] * 0), scaled(small, -1 / other[0]),
-                    scaled(product(small, small), 1 / other[0]))  # fmt: skip
+    inverse = total(
+        jet({0: 1 / other[0]}, other[0] * 0), scaled(small, -1 / other[0]), scaled(product(small, small), 1 / other[0])
+    )
     return product(one, inverse)
