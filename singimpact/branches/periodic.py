@@ -2,34 +2,40 @@
 
 Orbits of one impact of a linear model are found in closed form. All else by Newton's method on the closing conditions,
 from many starts, grazes among them; for two impacts of a linear model balls show, when they are asked, that none is
-missed.
+missed. Orbits with digits= are these, refined in balls.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
+from math import ceil
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float, constant, rational_near
+from singimpact.algebra.precision import balls_at, digits_at, for_user
+from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
-from singimpact.branches.digits import in_digits
 from singimpact.branches.enclosed_closing import closed_boxes
-from singimpact.branches.one_impact import phases_and_speeds
+from singimpact.branches.krawczyk import Krawczyk
+from singimpact.branches.one_or_two_impacts import phases_and_speeds, two_impacts
 from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits, same_states
 from singimpact.branches.resting import chatter_orbits, free_orbits
 from singimpact.branches.solutions import orbit_at
 from singimpact.branches.starts import closed_from, grid_of_starts
-from singimpact.branches.two_impacts import two_impacts
+from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
 
@@ -48,6 +54,8 @@ class PeriodicSettings:
 
 SETTINGS = PeriodicSettings()
 SEARCHED = "found from a grid of starts and from grazes: it is not shown that there are no others"
+SPARE = 5
+"""Digits of the states in balls beside those asked for."""
 
 
 def periodic(
@@ -237,3 +245,39 @@ def _sooner(orbit: PeriodicOrbit, closing: Closing) -> bool:
         ):
             return True
     return False
+
+
+# ---- in many digits, by Newton's method in balls: nothing is proved
+
+
+def in_digits(osc: Oscillator, rough: PeriodicOrbit, digits: int) -> PeriodicOrbit:
+    """The orbit and its multipliers in many digits; `unresolved` where the next impacts are not its own to these."""
+    states = [Fraction(float(number)) for state in zip(rough.tau, rough.v, strict=True) for number in state]
+    small, miss, status = Fraction(1, 10 ** (digits + SPARE)), Fraction(float(rough.miss)), Status.unresolved
+    half: Fraction | None = None
+    product = Fraction(0)
+    bits = ceil((digits + SPARE) * BITS_A_DIGIT) + 64
+    with balls_at(bits):
+        closing = BallClosing(osc, rough.k, digits + SPARE, bits)
+        # refused where the orbit is virtual, or a flight is not shown to be its own: the status says so
+        with suppress(Refused, ZeroDivisionError, ValueError):
+            states = Krawczyk(closing, states, small).solved(states)
+            miss = max(abs(as_rational(residual)) for residual in closing.miss(states).entries())
+            total = return_slope(closing.slopes(states, small))
+            half, product = as_rational((total[0, 0] + total[1, 1]) / 2), as_rational(total.det())
+            closing.first_hits(states, small)
+            status = Status.hit
+    with digits_at(digits + 15) as mp:
+        if half is None:
+            multipliers = [mp.convert(complex(multiplier)) for multiplier in rough.multipliers]
+        else:
+            root = mp.sqrt(mp.mpc(mp.convert(half * half - product)))
+            multipliers = [half + root, half - root]
+        numbers = [mp.convert(state) for state in states]
+        missed = mp.convert(miss)
+    with digits_at(digits):
+        tau, v, sizes = (
+            np.array([for_user(+number) for number in row], dtype=object)
+            for row in (numbers[::2], numbers[1::2], multipliers)
+        )
+        return replace(rough, tau=tau, v=v, multipliers=sizes, miss=for_user(+missed), status=np.int8(status))

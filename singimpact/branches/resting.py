@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.branches.closing import lowest
-from singimpact.branches.free import FreeClosing
+from singimpact.branches.closing import FreeClosing, lowest
 from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, chatter_orbit
 from singimpact.dynamics.lift_off import turns_between
 from singimpact.dynamics.long_run import lift_offs

@@ -28,7 +28,7 @@ from typing import Any
 
 from singimpact.algebra.balls import as_rational
 from singimpact.algebra.numbers import exact
-from singimpact.branches.enclosed_map import POINT, EnclosedMap
+from singimpact.branches.ball_closing import POINT, EnclosedMap
 from singimpact.branches.enclosed_orbit import EnclosedOrbit, enclosed_orbit
 from singimpact.branches.krawczyk import upper
 from singimpact.branches.orbits import PeriodicOrbit

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.branches.closing import Closing
-from singimpact.branches.free import FreeClosing
+from singimpact.branches.closing import Closing, FreeClosing
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.resting import free_orbit_at
 from singimpact.flights.family import family
