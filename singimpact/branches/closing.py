@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.branches.continuation import cubic_between
-from singimpact.flights.determinant import log_determinant
+from singimpact.flights.derivative import log_determinant
 from singimpact.flights.family import Family
 from singimpact.oscillator.moving_number import CLEARANCE
 

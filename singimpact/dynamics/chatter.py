@@ -16,7 +16,6 @@ from singimpact.algebra.rings import Multiprecision
 from singimpact.contact.contact import Contact
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.fractional_chatter import chatter_completes
-from singimpact.dynamics.gathered import gathered
 from singimpact.dynamics.remaining import remaining
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import compiled_model
@@ -24,6 +23,7 @@ from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.kernels.chatter import COMPLETED, EXHAUSTED, LIFTED, NO_ROOM, TOO_WIDE
 from singimpact.flights.orbits import Segment, orbit_segment
+from singimpact.flights.results import gathered
 from singimpact.flights.states import States
 from singimpact.inputs import whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho

@@ -20,8 +20,7 @@ from singimpact.dynamics.chatter import ENDING, chatter_limit
 from singimpact.dynamics.fractional_chatter import chatter_completes
 from singimpact.dynamics.lift_off import periods_between, release
 from singimpact.flights.compiled_model import compiled_model
-from singimpact.flights.derivative import derivative
-from singimpact.flights.determinant import log_determinant
+from singimpact.flights.derivative import derivative, log_determinant
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.rebound_law import rebound_slope

@@ -18,8 +18,7 @@ from typing import Any, NamedTuple
 from flint import arb
 
 from singimpact.dynamics.gamma_proof.folded import between, symmetric
-from singimpact.dynamics.gamma_proof.gauge import time_of
-from singimpact.dynamics.gamma_proof.gravity import Gravity, LinearNumbers
+from singimpact.dynamics.gamma_proof.gravity import Gravity, LinearNumbers, time_of
 from singimpact.dynamics.gamma_proof.lemmas import rational, short
 
 PIECES = 64  # of an interval on which a sign is shown

@@ -12,10 +12,13 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from flint import arb, arb_series
+
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.contact.zero_ahead import ContactZero
+from singimpact.dynamics.gamma_proof.folded import symmetric
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
@@ -129,8 +132,6 @@ def gravity(osc: Oscillator, zero: ContactZero, reach: Fraction, bits: int, smal
 
 def _coefficients(numbers: LinearNumbers, j: int, K: int) -> list[Any]:
     """b_0, ..., b_K: the first j are 0 by the contact order."""
-    from flint import arb, arb_series
-
     with series_of_any_length():
         prec, w = K + 1, numbers.square
         time = arb_series([0] + [(-w) ** (k // 2) / (k + 1) if k % 2 == 0 else 0 for k in range(K)], prec=prec)
@@ -146,8 +147,6 @@ def _coefficients(numbers: LinearNumbers, j: int, K: int) -> list[Any]:
 
 def _discs(numbers: LinearNumbers, s0: Any) -> list[tuple[Any, Any]]:
     """Bounds of |A| on discs |s| <= R with R > reach: |t| <= atanh(sqrt|w| R)/sqrt|w| and |cos z| <= cosh |z| there."""
-    from flint import arb
-
     w, discs = abs(numbers.square), []
     root = arb(w.upper()).sqrt()
     widest = 1 / root if root > 0 else 64 * s0
@@ -166,3 +165,44 @@ def _discs(numbers: LinearNumbers, s0: Any) -> list[tuple[Any, Any]]:
         size = (abs(numbers.damping) * time).exp() / (left * left.sqrt())
         discs.append((arb((size * push).upper()), R))
     return discs
+
+
+# ---- the time T before a contact point and the coordinate S = tan(sqrt(w) T)/sqrt(w), each as a function of the other
+
+
+def clock_of(osc: Oscillator, zero: ContactZero, bits: int) -> LinearNumbers:
+    """The numbers by which S and time are exchanged: those of a linear model; S is the time for others."""
+    if linear_form(osc) is None:
+        return LinearNumbers(arb(0), arb(0), arb(0), ())
+    return numbers_of(osc, zero, bits)
+
+
+def time_of(w: Any, S: Any) -> Any:
+    """T = atan(sqrt(w) S)/sqrt(w), by atanh for w < 0.
+
+    Examples
+    --------
+    >>> print(time_of(arb(1), arb(1)).str(10, radius=False))
+    0.7853981634
+    """
+    if w > 0:
+        return (w.sqrt() * S).atan() / w.sqrt()
+    if w < 0:
+        return ((-w).sqrt() * S).atanh() / (-w).sqrt()
+    root = arb(abs(w).upper()).sqrt()  # w may be 0: the distance from T = S is at most that for w = -|w|
+    return S + symmetric((root * S).atanh() / root - S) if root > 0 else S
+
+
+def place_of(w: Any, T: Any) -> Any:
+    """S = tan(sqrt(w) T)/sqrt(w), by tanh for w < 0."""
+    if w > 0:
+        return (w.sqrt() * T).tan() / w.sqrt()
+    if w < 0:
+        return ((-w).sqrt() * T).tanh() / (-w).sqrt()
+    root = arb(abs(w).upper()).sqrt()
+    return T + symmetric((root * T).tan() / root - T) if root > 0 else T
+
+
+def speed_factor(numbers: LinearNumbers, S: Any) -> Any:
+    """v/y' at an impact S before the contact point: e^(b T) sqrt(1 + w S^2)."""
+    return (numbers.damping * time_of(numbers.square, S)).exp() * (1 + numbers.square * S * S).sqrt()
