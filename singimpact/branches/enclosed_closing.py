@@ -22,9 +22,8 @@ from singimpact.algebra.isolated_zeros import IsolatedZeros, Place, zeros_of
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
-from singimpact.flights.enclosures.first_root import narrowed
 from singimpact.flights.enclosures.motion import CarriedMotion, Met, Start
-from singimpact.flights.enclosures.tube import Tube, centre, divided
+from singimpact.flights.enclosures.tube import Tube, centre, divided, narrowed
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]

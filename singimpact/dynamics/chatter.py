@@ -15,8 +15,7 @@ from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
 from singimpact.contact.contact import Contact
 from singimpact.dynamics import enclosed
-from singimpact.dynamics.fractional_chatter import chatter_completes
-from singimpact.dynamics.remaining import remaining
+from singimpact.dynamics.remaining import chatter_completes, remaining
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative

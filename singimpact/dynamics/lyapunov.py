@@ -17,8 +17,8 @@ import numpy as np
 from singimpact.algebra.numbers import as_float, compare
 from singimpact.dynamics.attractors import apart
 from singimpact.dynamics.chatter import ENDING, chatter_limit
-from singimpact.dynamics.fractional_chatter import chatter_completes
 from singimpact.dynamics.lift_off import periods_between, release
+from singimpact.dynamics.remaining import chatter_completes
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative, log_determinant
 from singimpact.flights.impact_map import impact_map

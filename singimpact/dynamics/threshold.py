@@ -15,7 +15,7 @@ from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics import enclosed
-from singimpact.dynamics.fractional_chatter import chatter_completes, power_of_gamma, rest_after
+from singimpact.dynamics.remaining import chatter_completes, power_of_gamma, rest_after
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map

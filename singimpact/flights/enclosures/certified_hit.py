@@ -24,9 +24,8 @@ from singimpact.flights.enclosures.equation import (
     equation_of,
     programs_of,
 )
-from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
 from singimpact.flights.enclosures.motion import CarriedMotion, Start
-from singimpact.flights.enclosures.tube import Tube, centre, divided
+from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, centre, divided, first_root
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import common_period
 

@@ -30,7 +30,6 @@ from singimpact.algebra.analytic import Place, Program, Recorder
 from singimpact.algebra.precision import balls_at
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, SHORTER, SHORTEST, Launch, box_of, working_at
 from singimpact.flights.enclosures.equation import Equation, NotAnalytic, Programs, Refused, programs_of, recorded
-from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
 from singimpact.flights.enclosures.taylor_step import (
     STEP,
     around,
@@ -41,7 +40,18 @@ from singimpact.flights.enclosures.taylor_step import (
     sums_of,
     widest_disc,
 )
-from singimpact.flights.enclosures.tube import Tube, ball, centre, divided, height, speed, upper
+from singimpact.flights.enclosures.tube import (
+    NearGraze,
+    RootAtEnd,
+    Tube,
+    ball,
+    centre,
+    divided,
+    first_root,
+    height,
+    speed,
+    upper,
+)
 from singimpact.oscillator.model import Oscillator
 
 Jet = list[Any]

@@ -14,9 +14,8 @@ from singimpact.algebra.balls import BITS_A_DIGIT
 from singimpact.algebra.precision import Ladder
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, bits_of_a_set, motion_from, working_at
 from singimpact.flights.enclosures.equation import Refused
-from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
 from singimpact.flights.enclosures.motion import CarriedMotion, Pair
-from singimpact.flights.enclosures.tube import Tube, centre, divided
+from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, centre, divided, first_root
 from singimpact.oscillator.model import Oscillator
 
 
