@@ -14,8 +14,7 @@ from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
-from singimpact.dynamics.attractors import apart
-from singimpact.dynamics.nearby_orbit import nearby_orbits
+from singimpact.dynamics.attractors import apart, nearby_orbits
 from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.inputs import refuse, require_memory
 from singimpact.oscillator.model import Oscillator
