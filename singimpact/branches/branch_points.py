@@ -98,17 +98,10 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
     n = closing.n
     half = closing_of(closing.family.osc, n // 2, closing.k // 2, closing.over)
     shift = closing.k // 2 * closing.family.period(closing.values(near)).value if n else 0.0
-    guess = (
-        np.concatenate(
-            [
-                (near[: n // 2] + near[n // 2 : n] - shift) / 2,
-                near[n : 2 * n].reshape(2, -1).mean(axis=0),
-                near[2 * n :],
-            ]
-        )
-        if n
-        else near
-    )
+    guess = near
+    if n:
+        times, speeds = (near[: n // 2] + near[n // 2 : n] - shift) / 2, near[n : 2 * n].reshape(2, -1).mean(axis=0)
+        guess = np.concatenate([times, speeds, near[2 * n :]])
     places = [*range(n // 2), *range(n, n + n // 2), 2 * n] if n else [0, 1, 2]
     sizes = scales[places]
     curve = Curve(Equations(half), sizes, 1.0)

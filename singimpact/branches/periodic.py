@@ -155,11 +155,8 @@ def _doubts_of_two(osc: Oscillator, k: int, listed: list[PeriodicOrbit]) -> tupl
     if proved is None:
         return (SEARCHED, "the free motion is in resonance with the forcing: no formulas for a proof")
     points, boxes = proved
-    doubts = (
-        []
-        if boxes.complete
-        else [f"{len(boxes.undecided)} boxes of phases and flight times, of {boxes.looked_at}, are not decided"]
-    )
+    undecided = f"{len(boxes.undecided)} boxes of phases and flight times, of {boxes.looked_at}, are not decided"
+    doubts = [] if boxes.complete else [undecided]
     return (*doubts, *_lacking(osc, (2, k), points, listed))
 
 
@@ -171,11 +168,8 @@ def _doubts_in_window(
         points, boxes = closed_boxes(osc, *counts, speeds)
     except InputError as reason:
         return SEARCHED, f"f, g or rho is not analytic: {reason}"
-    doubts = (
-        []
-        if boxes.complete
-        else [f"{len(boxes.undecided)} boxes of phases and velocities, of {boxes.looked_at}, are not decided"]
-    )
+    undecided = f"{len(boxes.undecided)} boxes of phases and velocities, of {boxes.looked_at}, are not decided"
+    doubts = [] if boxes.complete else [undecided]
     return (*doubts, *_lacking(osc, counts, points, listed))
 
 

@@ -293,17 +293,8 @@ class _Search:
     def found(self) -> OrbitTransitions:
         """The transitions with intervals and branches."""
         low, high = self.ends
-        edges = [
-            low,
-            *sorted(
-                {
-                    transition.value
-                    for transition in self.transitions
-                    if low < transition.value < high and _parts(transition)
-                }
-            ),
-            high,
-        ]
+        inner = {change.value for change in self.transitions if low < change.value < high and _parts(change)}
+        edges = [low, *sorted(inner), high]
         middles = [(one + other) / 2 for one, other in pairwise(edges)]
         extra = np.linspace(low, high, SETTINGS.samples + 2)[1:-1].tolist()
         at_middles = {}
