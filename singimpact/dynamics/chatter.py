@@ -16,13 +16,13 @@ from singimpact.algebra.rings import Multiprecision
 from singimpact.contact.contact import Contact
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.remaining import chatter_completes, remaining
+from singimpact.flights.blocks import gathered
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.kernels.chatter import COMPLETED, EXHAUSTED, LIFTED, NO_ROOM, TOO_WIDE
 from singimpact.flights.orbits import Segment, orbit_segment
-from singimpact.flights.results import gathered
 from singimpact.flights.states import States
 from singimpact.inputs import whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho

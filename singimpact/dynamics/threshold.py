@@ -16,12 +16,12 @@ from singimpact.algebra.precision import digits_at, for_user
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.remaining import chatter_completes, power_of_gamma, rest_after
+from singimpact.flights.blocks import gathered
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.kernels.gamma import TERMS_OF_GAMMA
 from singimpact.flights.orbits import orbit_segment
-from singimpact.flights.results import gathered
 from singimpact.flights.states import require_room
 from singimpact.inputs import InputError, whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho

@@ -1,15 +1,20 @@
-"""Large arrays of states, flown block by block: results are written into arrays made once, or into the caller's."""
+"""Large arrays of states, flown block by block: results are written into arrays made once, or into the caller's.
+
+What is computed one state at a time is put together by `gathered`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from dataclasses import fields as fields_of
 from typing import Any
 
 import numpy as np
 
 from singimpact.flights.results import Flight
 from singimpact.inputs import InputError, require_memory
+from singimpact.status import status_array
 
 Array = np.ndarray[Any, Any]
 SPARSE = ("depth", "bound")
@@ -187,3 +192,20 @@ class _NotKept:
 
     def __call__(self, name: str) -> dict[str, Any]:
         raise AttributeError(f"{name} was not kept: name it in out=, or leave out= away")
+
+
+def gathered(kind: Any, results: list[Any], shape: tuple[int, ...]) -> Any:
+    """One result whose fields are arrays of a shape; statuses and causes are int8.
+
+    Fields that are not printed say where one result comes from, and are left out.
+    """
+    columns = {}
+    for name in (entry.name for entry in fields_of(kind) if entry.repr):
+        values = [getattr(one, name) for one in results]
+        if name in ("status", "cause"):
+            columns[name] = np.array(values, dtype=np.int8).reshape(shape)
+        else:
+            plain = all(isinstance(value, int | float) for value in values)
+            columns[name] = np.array(values, dtype=None if plain else object).reshape(shape)
+    columns["status"] = status_array(columns["status"])
+    return kind(**columns)

@@ -191,20 +191,3 @@ def _sentence(status: int, cause: int, note: str | None) -> str:
     if status != Status.unresolved or not cause:
         return Status(status).sentence
     return Cause(cause).sentence if note is None else f"{note}; {Cause(cause).sentence}"
-
-
-def gathered(kind: Any, results: list[Any], shape: tuple[int, ...]) -> Any:
-    """One result whose fields are arrays of a shape; statuses and causes are int8.
-
-    Fields that are not printed say where one result comes from, and are left out.
-    """
-    columns = {}
-    for name in (entry.name for entry in fields(kind) if entry.repr):
-        values = [getattr(one, name) for one in results]
-        if name in ("status", "cause"):
-            columns[name] = np.array(values, dtype=np.int8).reshape(shape)
-        else:
-            plain = all(isinstance(value, int | float) for value in values)
-            columns[name] = np.array(values, dtype=None if plain else object).reshape(shape)
-    columns["status"] = status_array(columns["status"])
-    return kind(**columns)
