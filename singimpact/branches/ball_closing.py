@@ -3,25 +3,51 @@
     z(T_i) = 0,   rho(z'(T_i)) = v_(i+1),   z = x - c,   T_i = tau_(i+1) - tau_i,   tau_(n+1) = tau_1 + k P,
 
 as in doubles (`closing`). They are smooth where the orbit touches the wall: v_1 = 0 is then known, and no unknown. That
-flights are above the wall until they meet it is shown apart, by `first_hits`.
+flights are above the wall until they meet it is shown apart, by `first_hits`. `EnclosedMap` is the impact map over
+boxes, for orbits that need not close.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
-from singimpact.branches.enclosed_map import SPARE
-from singimpact.flights.enclosures.certified_hit import Launch
+from singimpact.flights.enclosures.certified_hit import Launch, ProvedImpact, certified_hit
 from singimpact.flights.enclosures.equation import programs_of
 from singimpact.flights.enclosures.jet_flight import JetHit, jet_hit
 from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
 from singimpact.flights.horizons import horizon_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import common_period
+
+SPARE = 6
+"""Digits of a flight beside those of the states."""
+POINT = (Fraction(0), Fraction(0))
+
+
+class EnclosedMap:
+    """G and D G of a model over boxes, in balls of one precision.
+
+    Parameters
+    ----------
+    osc : the model. digits : of the image of a point. bits : of the balls.
+    """
+
+    def __init__(self, osc: Oscillator, digits: int, bits: int) -> None:
+        assert osc.period is not None
+        self.osc, self.digits, self.balls = osc, digits, Balls(bits)
+        self.period = evaluate(osc.period, {}, self.balls)
+        self.horizon = Fraction(horizon_of(osc, None))
+
+    def __call__(self, state: Sequence[Fraction], radii: Sequence[Fraction] = POINT) -> ProvedImpact:
+        """The image of a box, with D G unless it is a point; `Refused` where a member is not shown to hit."""
+        box = any(radii)
+        launch = Launch(number(state[0]), number(state[1]), 1, {"tau": radii[0], "v": radii[1]} if box else {})
+        return certified_hit(self.osc, launch, self.digits + SPARE, self.horizon, derivative=box)
 
 
 class Spans:
@@ -136,8 +162,10 @@ class BallClosing:
     def ends(self, point: list[Fraction], radius: Fraction) -> tuple[list[Arrival], list[list[Any]]]:
         """z and z' at the end of each flight over a box; the velocity after it, and its derivatives."""
         model = self.model(point)
-        ends = [timed_flight(model, launch, time, self.digits + SPARE, derivative=bool(radius))
-                for launch, time in self.flights(point, radius)]  # fmt: skip
+        ends = [
+            timed_flight(model, launch, time, self.digits + SPARE, derivative=bool(radius))
+            for launch, time in self.flights(point, radius)
+        ]
         numbers = self.number(point, radius)
         law = programs_of(model, tuple(numbers)).rho.prepared(numbers)
         return ends, [list(law({"v": end.velocity})) for end in ends]

@@ -151,9 +151,14 @@ class BorderOrbits(Results, list[BorderOrbit]):
 
 
 def border_orbits(
-    osc: Oscillator, over: str = "clearance", between: Any = None, *, digits: int | None = None, periods: int = 1,
+    osc: Oscillator,
+    over: str = "clearance",
+    between: Any = None,
+    *,
+    digits: int | None = None,
+    periods: int = 1,
     points: int = 200,
-) -> BorderOrbits:  # fmt: skip
+) -> BorderOrbits:
     """Where an orbit released at rest at a zero of a_c returns exactly onto gamma of such a zero.
 
     Parameters
@@ -193,10 +198,10 @@ def border_orbits(
     whole("points", points, 2, 10**6)
     search = _Search(Releases(osc, over, whole("periods", periods, 1, 1000)), np.linspace(low, high, points).tolist())
     search.scan()
-    found = search.orbits()
+    orbits = search.orbits()
     if digits is not None:
-        found = [_with_digits(each, digits) for each in found]
-    return BorderOrbits(found, False, search.what_may_be_missing(points))
+        orbits = [_with_digits(orbit, digits) for orbit in orbits]
+    return BorderOrbits(orbits, False, search.what_may_be_missing(points))
 
 
 def _ends(osc: Oscillator, over: str, between: Any) -> tuple[float, float]:
@@ -235,8 +240,10 @@ class _Search:
     def _compared(self, one: Any, other: Any) -> None:
         if len(one[1]) != len(other[1]):
             over = self.releases.over
-            self.notes.add(f"between {over} = {one[0]:.9g} and {other[0]:.9g} the number of releases changes (a swan): "
-                           "not searched there")  # fmt: skip
+            self.notes.add(
+                f"between {over} = {one[0]:.9g} and {other[0]:.9g} the number of releases changes (a swan): "
+                "not searched there"
+            )
             return
         for index in range(len(one[1])):
             self._piece(index, one[1], (one[0], one[2][index]), (other[0], other[2][index]))
@@ -263,7 +270,7 @@ class _Search:
     ) -> list[Any]:
         """One change of fate between two values, and the pieces on both sides of it."""
         last = self.releases.periods * len(phases)
-        goal = min(each[1].place or last + 1 for each in (low, high))
+        goal = min(end[1].place or last + 1 for end in (low, high))
 
         def in_time(orbit: Released) -> bool:
             return 0 < orbit.place <= goal
@@ -277,7 +284,7 @@ class _Search:
         near = self._phases(value, phases)
         self.found.append(Return(self.releases, value, near, index, at.place, entry, side, reach))
         gap = SETTINGS.away * self.spacing
-        beside = [(each, self._flown(each, index, phases)) for each in (value - gap, value + gap)]
+        beside = [(end, self._flown(end, index, phases)) for end in (value - gap, value + gap)]
         return [(a, b) for a, b in ((low, beside[0]), (beside[1], high)) if a[0] < b[0]]
 
     def _flown(self, value: float, index: int, phases: tuple[float, ...]) -> Released:
@@ -311,55 +318,75 @@ def _aligned(phases: tuple[float, ...], before: tuple[float, ...], period: float
     (1.5, 2.1)
     """
     turned = [[*phases[first:], *(phase + period for phase in phases[:first])] for first in range(len(phases))]
-    gaps = [np.array(each) - before for each in turned]
-    moved = [np.array(each) - period * np.rint(gap[0] / period) for each, gap in zip(turned, gaps, strict=True)]
-    return tuple(min(moved, key=lambda each: float(np.abs(each - before).max())).tolist()) if phases else phases
+    gaps = [np.array(row) - before for row in turned]
+    moved = [np.array(row) - period * np.rint(gap[0] / period) for row, gap in zip(turned, gaps, strict=True)]
+    return tuple(min(moved, key=lambda row: float(np.abs(row - before).max())).tolist()) if phases else phases
 
 
-def _border(found: Return, spacing: float) -> BorderOrbit:
+def _border(returned: Return, spacing: float) -> BorderOrbit:
     """A change of fate with its state next to gamma."""
-    model = found.releases.model(found.value)
-    release, end = found.ends(model)
+    model = returned.releases.model(returned.value)
+    release, end = returned.ends(model)
     period = as_float(model.period)  # type: ignore[arg-type]
     notes: list[str] = []
-    gap, tau, v, error = _gap(found, found.value)
+    gap, tau, v, error = _gap(returned, returned.value)
     width = SETTINGS.width * spacing
-    near = [_gap(found, found.value + shift)[0] for shift in (-width, width)]
+    near = [_gap(returned, returned.value + shift)[0] for shift in (-width, width)]
     slope = (near[1] - near[0]) / (2 * width)
     resolved = bool(abs(gap) < SETTINGS.near * v and np.isfinite(slope) and slope)
     if not resolved:
         notes.append("the fate of the orbit changes here, and its velocity is not seen to be on gamma in doubles")
-    error = error / abs(slope) + SETTINGS.ulps * EPSILON * abs(found.value) if resolved else np.inf
+    error = error / abs(slope) + SETTINGS.ulps * EPSILON * abs(returned.value) if resolved else np.inf
     return BorderOrbit(
-        model, found.releases.over, found.value, error, None, release, end, float(round((end - release) / period, 12)),
-        tau, v, float(slope), "above" if found.side > 0 else "below",
-        np.int8(Status.hit if resolved else Status.unresolved), tuple(notes), None, found,
-    )  # fmt: skip
+        model,
+        returned.releases.over,
+        returned.value,
+        error,
+        None,
+        release,
+        end,
+        float(round((end - release) / period, 12)),
+        tau,
+        v,
+        float(slope),
+        "above" if returned.side > 0 else "below",
+        np.int8(Status.hit if resolved else Status.unresolved),
+        tuple(notes),
+        None,
+        returned,
+    )
 
 
-def _gap(found: Return, value: float) -> tuple[float, float, float, float]:
+def _gap(returned: Return, value: float) -> tuple[float, float, float, float]:
     """v - gamma where the orbit of a value comes back, tau and v there, and the error of the difference."""
-    orbit = found.flown(value)
-    if not 0 < found.entry <= orbit.times.size:
+    orbit = returned.flown(value)
+    if not 0 < returned.entry <= orbit.times.size:
         return np.nan, np.nan, np.nan, np.nan
-    tau, v = float(orbit.times[found.entry - 1]), float(orbit.speeds[found.entry - 1])
-    if not tau < orbit.zeros[found.place - 1]:
+    tau, v = float(orbit.times[returned.entry - 1]), float(orbit.speeds[returned.entry - 1])
+    if not tau < orbit.zeros[returned.place - 1]:
         return np.nan, tau, v, np.nan
     edge = threshold(orbit.model, tau)
     # on gamma |dv/dtau| is below |a_c| of its beginning
-    rounding = SETTINGS.roundings * EPSILON * (v + abs(tau) * v / (orbit.zeros[found.place - 1] - tau))
+    rounding = SETTINGS.roundings * EPSILON * (v + abs(tau) * v / (orbit.zeros[returned.place - 1] - tau))
     return v - float(edge.v), tau, v, float(edge.error) + rounding
 
 
-def _with_digits(found: BorderOrbit, digits: int) -> BorderOrbit:
+def _with_digits(rough: BorderOrbit, digits: int) -> BorderOrbit:
     """A border orbit in many digits."""
-    if found.status != Status.hit:
-        return replace(found, digits=digits)
-    precise = in_digits(found.returned, abs(found.v / found.slope), digits)
+    if rough.status != Status.hit:
+        return replace(rough, digits=digits)
+    precise = in_digits(rough.returned, abs(rough.v / rough.slope), digits)
     if precise is None:
-        return replace(found, notes=(*found.notes, f"not resolved to {digits} digits: the number is a double's"))
-    notes = found.notes if precise.certified is not None else (*found.notes, precise.note)
+        return replace(rough, notes=(*rough.notes, f"not resolved to {digits} digits: the number is a double's"))
+    notes = rough.notes if precise.certified is not None else (*rough.notes, precise.note)
     exact: Fraction = precise.exact
-    model = found.returned.releases.model(exact)
-    return replace(found, oscillator=model, parameter=precise.value, error=precise.error, certified=precise.certified,
-                   digits=digits, notes=notes)  # fmt: skip
+    model = rough.returned.releases.model(exact)
+    return replace(
+        rough,
+        oscillator=model,
+        parameter=precise.value,
+        error=precise.error,
+        certified=precise.certified,
+        digits=digits,
+        notes=notes,
+    )

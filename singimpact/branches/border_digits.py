@@ -145,33 +145,36 @@ class DigitOrbits:
             if step.status != Status.hit:
                 break
             tau, v = step.tau, step.v
-            time, speed = (self.balls.rational(exact("tau", part)) for part in (tau, v))
+            time, speed = (self.balls.rational(exact("tau", coordinate)) for coordinate in (tau, v))
             rows.append(Landing((time - end).mid(), speed))
             if rows[-1].sigma > 0:
                 break
         return rows
 
 
-def in_digits(found: Return, scale: float, digits: int) -> InDigits | None:
+def in_digits(returned: Return, scale: float, digits: int) -> InDigits | None:
     """The value of the number at a border orbit, in many digits; None where it is not reached.
 
     Parameters
     ----------
-    found : the return in doubles. scale : the change of the number that changes v by itself. digits : of the result.
+    returned : the return in doubles. scale : the change of the number that changes v by itself. digits : of the result.
     """
-    middle, unit = Fraction(found.value), Fraction(scale)
-    extra = max(0, ceil(log10(scale / abs(found.value)))) + 1 if found.value else 0
-    orbits = DigitOrbits(found, digits + extra)
+    middle, unit = Fraction(returned.value), Fraction(scale)
+    extra = max(0, ceil(log10(scale / abs(returned.value)))) + 1 if returned.value else 0
+    orbits = DigitOrbits(returned, digits + extra)
     # v/gamma is a positive number; its relative error is in `searched`
     with balls_at(orbits.bits):
         near = searched(
             lambda impacts, share: orbits.missed(impacts, middle + (share - 1) * unit),
-            Fraction(1), orbits.contact(), digits + extra, orbits.balls,
-        )  # fmt: skip
+            Fraction(1),
+            orbits.contact(),
+            digits + extra,
+            orbits.balls,
+        )
     if near is None:
         return None
     exactly = middle + (near - 1) * unit
-    proof, note = _proved(found, exactly, digits)
+    proof, note = _proved(returned, exactly, digits)
     with digits_at(digits) as mp:
         if proof is not None:
             value = mp.convert(proof.value)
@@ -182,27 +185,27 @@ def in_digits(found: Return, scale: float, digits: int) -> InDigits | None:
         return InDigits(for_user(+value), for_user(+error), exact("parameter", +value), proof, note)
 
 
-def _proved(found: Return, near: Fraction, digits: int) -> tuple[Certified | None, str]:
+def _proved(returned: Return, near: Fraction, digits: int) -> tuple[Certified | None, str]:
     """A ball about a value in which a border orbit is proved to be, or why there is none."""
-    model = found.releases.model(near)
+    model = returned.releases.model(near)
     if not enclosable(model):
         return None, "not certified: balls fly orbits of models with a number below 1 for restitution"
     margin = abs(near) / (4 * 10**digits)
     low, high = near - margin, near + margin
-    times = found.ends(model)
+    times = returned.ends(model)
     sides: dict[Fraction, int | None] = {low: None, high: None}
     followed = False
     # the fates of both ends are open while rounding is wider than their distance from gamma
     for bits in Ladder(ceil(digits * BITS_A_DIGIT) + 64, SETTINGS.bits * (digits + 32)):
         with balls_at(bits):
-            followed = followed or _followed(_flow(found, (low, high), bits), times, found.entry) is not None
-            for value, known in sides.items():
-                sides[value] = known or _fate(_flow(found, (value, value), bits), times, found.entry)
+            followed = followed or _followed(_flow(returned, (low, high), bits), times, returned.entry) is not None
+            for value, fate in sides.items():
+                sides[value] = fate or _fate(_flow(returned, (value, value), bits), times, returned.entry)
         if followed and None not in sides.values():
             break
     else:
         return None, f"not certified: balls of {bits} bits do not decide what the orbits next to it do"
-    if (sides[low], sides[high]) != (found.side, -found.side):
+    if (sides[low], sides[high]) != (returned.side, -returned.side):
         return None, "not certified: the orbits on both sides of it have one fate"
     return from_ends(low, high, digits), ""
 

@@ -74,8 +74,13 @@ class Branch(Result):
     def as_dict(self) -> dict[str, Any]:
         """n, k, the arrays of points, events and notes."""
         points = {name: getattr(self, name) for name in POINTS}
-        return {"n": self.n, "k": self.k, "points": points, "events": [event.as_dict() for event in self.events],
-                "notes": list(self.notes)}  # fmt: skip
+        return {
+            "n": self.n,
+            "k": self.k,
+            "points": points,
+            "events": [event.as_dict() for event in self.events],
+            "notes": list(self.notes),
+        }
 
     def arrays(self) -> dict[str, tuple[tuple[str, ...], Array]]:
         """The arrays of points, with the names of their axes."""
@@ -102,9 +107,14 @@ class Branch(Result):
 
 
 def branch(
-    orbit: PeriodicOrbit, over: str = CLEARANCE, between: Any = None, *, points: int = 2000, step: float | None = None,
+    orbit: PeriodicOrbit,
+    over: str = CLEARANCE,
+    between: Any = None,
+    *,
+    points: int = 2000,
+    step: float | None = None,
     events: Iterable[Any] = (),
-) -> Branch:  # fmt: skip
+) -> Branch:
     """The branch of periodic orbits through an orbit, over a parameter of its model.
 
     Parameters
@@ -161,14 +171,25 @@ def branch(
     walk = BranchWalk(closing, (low, high), step or SETTINGS.step, points, over, own)
     rows = walk.rows(np.append(state, value))
     listed = places([row.listed for row in rows])
-    events = [replace(row.event, index=i - row.listed) for i, row in zip(listed, rows, strict=True)
-              if row.event is not None]  # fmt: skip
+    events = [
+        replace(row.event, index=i - row.listed) for i, row in zip(listed, rows, strict=True) if row.event is not None
+    ]
     rows = [row for row in rows if row.listed]
     n, at = max(closing.n, 1), np.array([row.point.at for row in rows])
-    found = Branch(osc, over, closing.n, closing.k, at[:, -1], at[:, :n], at[:, n : 2 * n],
-                   np.array([row.multipliers for row in rows]), np.array([row.visible for row in rows]), tuple(events),
-                   tuple(walk.notes))  # fmt: skip
-    return _confirmed(found, at)
+    curve = Branch(
+        osc,
+        over,
+        closing.n,
+        closing.k,
+        at[:, -1],
+        at[:, :n],
+        at[:, n : 2 * n],
+        np.array([row.multipliers for row in rows]),
+        np.array([row.visible for row in rows]),
+        tuple(events),
+        tuple(walk.notes),
+    )
+    return _confirmed(curve, at)
 
 
 def _confirmed(branch: Branch, at: Array) -> Branch:
@@ -198,7 +219,7 @@ def _checked(orbit: PeriodicOrbit) -> tuple[Oscillator, Array]:
         values = {CLEARANCE: float(orbit.x[0])}
         end = closing.family.end(values, span, float(orbit.v[0]), -span)
         return orbit.oscillator, np.array([float(orbit.x[0]) + end.place[0], end.place[1]])
-    return orbit.oscillator, np.concatenate([np.asarray(part, dtype=float) for part in (orbit.tau, orbit.v)])
+    return orbit.oscillator, np.concatenate([np.asarray(row, dtype=float) for row in (orbit.tau, orbit.v)])
 
 
 def interval(over: str, between: Any, value: float) -> tuple[float, float]:

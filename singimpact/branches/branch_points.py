@@ -98,29 +98,31 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
     n = closing.n
     half = closing_of(closing.family.osc, n // 2, closing.k // 2, closing.over)
     shift = closing.k // 2 * closing.family.period(closing.values(near)).value if n else 0.0
-    guess = np.concatenate([(near[: n // 2] + near[n // 2 : n] - shift) / 2,
-                            near[n : 2 * n].reshape(2, -1).mean(axis=0), near[2 * n :]]) if n else near  # fmt: skip
+    guess = near
+    if n:
+        times, speeds = (near[: n // 2] + near[n // 2 : n] - shift) / 2, near[n : 2 * n].reshape(2, -1).mean(axis=0)
+        guess = np.concatenate([times, speeds, near[2 * n :]])
     places = [*range(n // 2), *range(n, n + n // 2), 2 * n] if n else [0, 1, 2]
     sizes = scales[places]
     curve = Curve(Equations(half), sizes, 1.0)
     start = curve.begin(guess)
     if start is None:
         return None
-    known = start.at, half.at(start.at).characteristic().doubling
+    previous = start.at, half.at(start.at).characteristic().doubling
     moved = curve.beyond(start, 1e-6)
     lengths = 0.0, 1e-6
     if moved is None:
         return None
     latest = moved[0].at, half.at(moved[0].at).characteristic().doubling
     for _ in range(SETTINGS.secants):
-        slope = (latest[1] - known[1]) / (lengths[1] - lengths[0]) if lengths[1] != lengths[0] else 0.0
+        slope = (latest[1] - previous[1]) / (lengths[1] - lengths[0]) if lengths[1] != lengths[0] else 0.0
         if not slope:
             break
         length = lengths[1] - latest[1] / slope
         step = curve.beyond(start, length) if abs(length) < 1 else None
         if step is None:
             return None
-        known, latest = latest, (step[0].at, half.at(step[0].at).characteristic().doubling)
+        previous, latest = latest, (step[0].at, half.at(step[0].at).characteristic().doubling)
         lengths = lengths[1], length
         if abs(lengths[1] - lengths[0]) <= SETTINGS.arrived:
             break
@@ -170,8 +172,9 @@ def _cubic_root(low: Node, high: Node) -> float:
     square, cube = cubic_between(one.value, rates[0], other.value, rates[1])
     if not np.isfinite(square + cube):
         return low.along - one.value / (other.value - one.value) * width
-    share = root_between(lambda s: one.value + s * (rates[0] + s * (square + s * cube)), 0.0, 1.0,
-                         (one.value, other.value))  # fmt: skip
+    share = root_between(
+        lambda s: one.value + s * (rates[0] + s * (square + s * cube)), 0.0, 1.0, (one.value, other.value)
+    )
     return low.along + share * width
 
 
@@ -180,8 +183,9 @@ def _between(low: Node, high: Node, along: float, search: StepSearch) -> Array:
     width = high.along - low.along
     s = (along - low.along) / width
     scales = search.tests.scales
-    rates = [node.point.tangent * scales * width / float(node.point.tangent @ search.here.tangent)
-             for node in (low, high)]  # fmt: skip
+    rates = [
+        node.point.tangent * scales * width / float(node.point.tangent @ search.here.tangent) for node in (low, high)
+    ]
     square, cube = cubic_between(low.point.at, rates[0], high.point.at, rates[1])
     return np.asarray(low.point.at + s * (rates[0] + s * (square + s * cube)))
 

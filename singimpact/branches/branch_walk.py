@@ -1,28 +1,40 @@
-"""A branch of periodic orbits while it is followed: points, and the events between them."""
+"""A branch of periodic orbits while it is followed: points, and the events between them.
+
+Points are stored in the user's cache, so that an interrupted branch continues where it was.
+"""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from singimpact import cache
 from singimpact.branches.branch_points import BranchPoint, branch_point
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
-from singimpact.branches.event_tests import EventTests, Tests
+from singimpact.branches.event_tests import EventTests, Key, Tests
 from singimpact.branches.events import KINDS, Event, EventKind
 from singimpact.branches.events.meeting_branches import PITCHFORK
-from singimpact.branches.kept import KeptSide
+from singimpact.branches.events.orbit_state import Test
+from singimpact.branches.events.table import kind_of
 from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, orbit_of
 from singimpact.branches.step_search import Crossing, StepSearch
 from singimpact.flights.family import SteppedFamily
 from singimpact.inputs import InputError
+from singimpact.store import cache_folder
 
 Array = np.ndarray[Any, Any]
+ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/")
+"""Sub-packages that no branch depends on: a change of theirs leaves stored points valid."""
+EVERY = 1.0
+"""Seconds of work between two writings of points to the user's cache."""
 
 
 class Row(NamedTuple):
@@ -49,9 +61,14 @@ class BranchWalk(OrbitCurve):
     """
 
     def __init__(
-        self, closing: AnyClosing, ends: tuple[float, float], step: float, most: int, over: str,
+        self,
+        closing: AnyClosing,
+        ends: tuple[float, float],
+        step: float,
+        most: int,
+        over: str,
         own: Sequence[EventKind] = (),
-    ) -> None:  # fmt: skip
+    ) -> None:
         super().__init__(closing, [ends], step, most)
         self.over, self.own = over, own
 
@@ -210,8 +227,10 @@ class BranchWalk(OrbitCurve):
             return None
         jump = search.jump(crossing, along) if kind.is_own else None
         if jump is not None:
-            self.notes.append(f"{kind.name} jumps from {jump[0]:.6g} to {jump[1]:.6g} near {self.over} = "
-                              f"{point.at[-1]:.9g}: this change of sign is not a zero")  # fmt: skip
+            self.notes.append(
+                f"{kind.name} jumps from {jump[0]:.6g} to {jump[1]:.6g} near {self.over} = "
+                f"{point.at[-1]:.9g}: this change of sign is not a zero"
+            )
             return None
         time = np.nan
         if crossing.ends[0].is_minimum:
@@ -239,3 +258,71 @@ class BranchWalk(OrbitCurve):
         self.notes += [remark] if remark else []
         event = Event(kind.name, value, orbit, 0, impact, time, self.over, other)
         return self.row(point, SETTINGS.located, event)
+
+
+# ---- points in the user's cache
+
+
+@dataclass(frozen=True)
+class KeptPoint:
+    """A point with its computed values.
+
+    Parameters
+    ----------
+    following : length of the next step. multipliers, visible : of the orbit.
+    tests : of events, by kind, impact and number: the numbers of `orbit_state.Test`.
+    """
+
+    at: Array
+    tangent: Array
+    following: float
+    multipliers: Array
+    visible: bool
+    tests: dict[str, tuple[float, ...]]
+
+    def named_tests(self) -> Tests:
+        """The test functions of events."""
+        named = {}
+        for name, numbers in self.tests.items():
+            kind, impact, number = name.rsplit(" ", 2)
+            named[Key(kind_of(kind), int(impact), int(number))] = Test(*numbers)
+        return named
+
+
+class KeptSide:
+    """The points of one side of a branch, as far as they are known.
+
+    Parameters
+    ----------
+    asked : texts and numbers that the side depends on; None: nothing is kept.
+    """
+
+    def __init__(self, asked: tuple[Any, ...] | None) -> None:
+        self.place = (
+            None if asked is None else cache_folder() / "branches" / f"{cache.key_of(asked, ('numpy',), ABOVE)}.points"
+        )
+        self.points: list[KeptPoint] = []
+        content = None if self.place is None else cache.recall(self.place)
+        if content is not None:
+            self.points = list(cache.unpacked(content, (KeptPoint,)))
+        self._written, self._new = time.monotonic(), False
+
+    def add(self, at: tuple[Array, Array, float], row: tuple[Any, Array, bool], tests: Tests) -> None:
+        """Keep one point more: `at`, tangent and next step; `row` with multipliers and whether it is visible."""
+        if self.place is None:
+            return
+        named = {
+            f"{kind.name} {impact} {number}": tuple(test)
+            for (kind, impact, number), test in tests.items()
+            if not kind.is_own
+        }
+        self.points.append(KeptPoint(*at, row[1], bool(row[2]), named))
+        self._new = True
+        if time.monotonic() - self._written > EVERY:
+            self.write()
+
+    def write(self) -> None:
+        """Write the points to disk, if there are new ones."""
+        if self.place is not None and self._new:
+            cache.keep(self.place, cache.packed(self.points))
+            self._written, self._new = time.monotonic(), False

@@ -91,7 +91,7 @@ class CascadeWindow(Result):
         }
         orbit = self.orbit
         if orbit is not None:
-            pairs = [[complex(each).real, complex(each).imag] for each in orbit.multipliers]
+            pairs = [[complex(multiplier).real, complex(multiplier).imag] for multiplier in orbit.multipliers]
             values |= {"n": "inf" if orbit.kind == "chatter" else int(orbit.n), "k": orbit.k, "multipliers": pairs}
         return values
 
@@ -150,7 +150,7 @@ class Cascade(Result):
         is least they are taken. mu(r) is not used. nan where there are fewer than five ratios.
         """
         best = (np.nan, np.inf)
-        ratios, errors = (np.array(part, dtype=float) for part in (self.ratios, self.errors))
+        ratios, errors = (np.array(column, dtype=float) for column in (self.ratios, self.errors))
         steps = np.diff(ratios)
         for i in range(len(ratios) - 4):
             three = [_aitken(*ratios[j : j + 3].tolist()) for j in range(i, i + 3)]
@@ -174,7 +174,7 @@ class Cascade(Result):
         ----------
         count : of values in a window. Those that doubles do not tell from the border orbit are left out.
         """
-        found: list[CascadeWindow] = []
+        windows: list[CascadeWindow] = []
         side = -self.returned.side
         border = float(self.parameter[-1] + self.returned.side * self.distance[-1]) if len(self) else np.nan
         for i in range(len(self) - 1):
@@ -182,11 +182,11 @@ class Cascade(Result):
             for j in range(count):
                 distance = far * (near / far) ** ((j + 0.5) / count)
                 if distance < SETTINGS.apart * (EPSILON * abs(border) + 5e-324):
-                    return tuple(found)
+                    return tuple(windows)
                 orbit = self.returned.flown(border + side * distance)
                 settled = settled_orbit(orbit.model, orbit.tau)
-                found.append(CascadeWindow(int(self.impacts[i]), border + side * distance, distance, settled))
-        return tuple(found)
+                windows.append(CascadeWindow(int(self.impacts[i]), border + side * distance, distance, settled))
+        return tuple(windows)
 
     def __repr__(self) -> str:
         if not len(self):
@@ -206,33 +206,33 @@ def _aitken(a: float, b: float, c: float) -> float:
     return c - (c - b) ** 2 / lost if lost else c
 
 
-def cascade(found: Return, osc: Oscillator, border: tuple[Any, Any, float], digits: int | None) -> Cascade:
+def cascade(returned: Return, osc: Oscillator, border: tuple[Any, Any, float], digits: int | None) -> Cascade:
     """The edges beside a border orbit.
 
     Parameters
     ----------
-    found : the border orbit in doubles. osc : the model there. border : its value (None: that of doubles), the error
+    returned : the border orbit in doubles. osc : the model there. border : its value (None: that of doubles), the error
         of it, and the change of the number that changes v by itself. digits : None for doubles.
     """
     value, error, scale = border
     flights: _Flights
     if digits is None or value is None:
-        centre, flights, digits = Fraction(found.value), _InDoubles(found), None
-        wrong = Fraction(float(error)) + Fraction(EPSILON * abs(found.value))
+        centre, flights, digits = Fraction(returned.value), _InDoubles(returned), None
+        wrong = Fraction(float(error)) + Fraction(EPSILON * abs(returned.value))
     else:
-        centre, flights = exact("parameter", value), _InDigits(found, digits)
+        centre, flights = exact("parameter", value), _InDigits(returned, digits)
         wrong = exact("error", error) + abs(centre) / 10**digits
-    search = _Edges(found, flights, centre, wrong)
+    search = _Edges(returned, flights, centre, wrong)
     edges, note = search.edges(scale)
-    places = [place for _, place in edges]
-    distances = [abs(place - centre) for place in places]
+    places = [edge for _, edge in edges]
+    distances = [abs(edge - centre) for edge in places]
     pairs = list(pairwise(distances))
     ratios = [one / two for one, two in pairs]
     errors = [float(one / two * wrong * (1 / one + 1 / two)) for one, two in pairs]
-    parameter, distance, ratio = (_array(each, digits) for each in (places, distances, ratios))
+    parameter, distance, ratio = (_array(column, digits) for column in (places, distances, ratios))
     mu = tangency(osc.slope_at_rest(), digits=SETTINGS.digits).mu.value
     numbers = np.array([number for number, _ in edges], dtype=int)
-    return Cascade(found.releases.over, numbers, parameter, distance, ratio, np.array(errors), mu, (note,), found)
+    return Cascade(returned.releases.over, numbers, parameter, distance, ratio, np.array(errors), mu, (note,), returned)
 
 
 def _array(values: list[Fraction], digits: int | None) -> Array:
@@ -298,15 +298,15 @@ class _Edges:
         """N on the near side and the value of the number of each edge, and why there are no more."""
         rows: list[tuple[int, Fraction]] = []
         for number, near, far in self._counted(min(SETTINGS.start * scale, self.found.reach)):
-            place = self._solved(number, *self._halved(number, near, far))
-            if place is None:
+            edge = self._solved(number, *self._halved(number, near, far))
+            if edge is None:
                 return rows, f"the edge of {number} impacts is not resolved"
-            rows.append((number, place))
+            rows.append((number, edge))
         if len(rows) < 3:
             return rows, "fewer than three edges are resolved"
         still = 0
         while len(rows) < SETTINGS.most:
-            distances = [abs(place - self.border) for _, place in rows[-3:]]
+            distances = [abs(edge - self.border) for _, edge in rows[-3:]]
             before, ratio = distances[0] / distances[1], distances[1] / distances[2]
             still = still + 1 if abs(before - ratio) < SETTINGS.settled * (ratio - 1) else 0
             if still == SETTINGS.still:
@@ -316,10 +316,10 @@ class _Edges:
                 return rows, ("nearer edges are not told from the border orbit: digits=, or more of them, goes on")
             guess = self.border + self.side * following
             # from the side where the impact is still before the end of gamma
-            place = self._solved(number, guess, guess - self.side * following / 1000)
-            if place is None:
+            edge = self._solved(number, guess, guess - self.side * following / 1000)
+            if edge is None:
                 return rows, f"the edge of {number} impacts is not resolved"
-            rows.append((number, place))
+            rows.append((number, edge))
         return rows, f"only {SETTINGS.most} edges are given"
 
     def _solved(self, number: int, first: Fraction, second: Fraction) -> Fraction | None:
@@ -352,10 +352,10 @@ class _Edges:
             count = self._count(distance)
             rows += self._between(rows[-1], (distance, count)) if rows else []
             rows.append((distance, count))
-            found = _regular(rows)
+            regular = _regular(rows)
             # edges farther away are kept too, once their ratios are regular
-            if len(found) >= 2 * SETTINGS.regular:
-                return found[: SETTINGS.regular]
+            if len(regular) >= 2 * SETTINGS.regular:
+                return regular[: SETTINGS.regular]
             distance *= SETTINGS.factor
         return _regular(rows)[: SETTINGS.regular]
 

@@ -139,14 +139,14 @@ class Curve:
         with ProgressLine() as line:
             for count in range(most):
                 line.show(count, None, "points of a curve")
-                found = self.beyond(here, length)
-                while found is None or here.tangent @ found[0].tangent < SETTINGS.turn:
+                corrected = self.beyond(here, length)
+                while corrected is None or here.tangent @ corrected[0].tangent < SETTINGS.turn:
                     length /= 2
                     if length < SETTINGS.least * self.step:
                         self.note = self._ended(here, length)
                         return
-                    found = self.beyond(here, length)
-                after, rounds = found
+                    corrected = self.beyond(here, length)
+                after, rounds = corrected
                 grown = length * (SETTINGS.longer if rounds <= SETTINGS.easy else 1.0)
                 self.following = min(grown, self.longest(after))
                 yield here, length, after
@@ -166,23 +166,23 @@ class Curve:
         -------
         None : the test, or the curve, has no value on the way.
         """
-        known: dict[float, Point] = {0.0: here}
+        points: dict[float, Point] = {0.0: here}
 
-        def value(part: float) -> float:
-            if part not in known:
-                found = self.beyond(here, part)
-                if found is None:
+        def value(along: float) -> float:
+            if along not in points:
+                corrected = self.beyond(here, along)
+                if corrected is None:
                     raise ArithmeticError
-                known[part] = found[0]
-            tested = test(known[part])
+                points[along] = corrected[0]
+            tested = test(points[along])
             return np.nan if tested is None else tested
 
         try:
-            part = root_between(value, 0.0, length, ends)
-            value(part)
+            along = root_between(value, 0.0, length, ends)
+            value(along)
         except ArithmeticError:
             return None
-        return part, known[part]
+        return along, points[along]
 
     def passes(self, start: Point, here: Point, after: Point, gap: Array | None = None) -> bool:
         """Whether a step passes the start in the direction in which it was left.

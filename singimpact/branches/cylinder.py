@@ -26,10 +26,10 @@ def placed(points: Array, sides: Array) -> Array:
     >>> placed(np.array([[-0.5, 1.0]]), np.array([2.0, 4.0])).tolist()
     [[0.75, 0.25]]
     """
-    found = points / sides
-    found[:, 0] -= np.floor(found[:, 0])
-    found[:, 0][found[:, 0] >= 1.0] = 0.0  # -1e-20 and its like
-    return np.asarray(found)
+    scaled = points / sides
+    scaled[:, 0] -= np.floor(scaled[:, 0])
+    scaled[:, 0][scaled[:, 0] >= 1.0] = 0.0  # -1e-20 and its like
+    return np.asarray(scaled)
 
 
 def filled(line: Array, sides: Array, fine: float) -> tuple[Array, Array]:
@@ -104,12 +104,13 @@ def distances(points: Array, lines: Sequence[Array], sides: Array, fine: float) 
     parts = [filled(line, sides, fine) for line in lines]
     first = np.cumsum([0, *(len(line) for line in lines[:-1])])  # of each line among all vertices
     vertices = np.vstack(lines) / sides
-    chords = np.concatenate([part[1] + at for part, at in zip(parts, first, strict=True)])
-    last = np.concatenate([np.full(len(part[1]), at + len(line) - 2)
-                           for part, at, line in zip(parts, first, lines, strict=True)])  # fmt: skip
-    begin = np.concatenate([np.full(len(part[1]), at) for part, at in zip(parts, first, strict=True)])
+    chords = np.concatenate([samples[1] + at for samples, at in zip(parts, first, strict=True)])
+    last = np.concatenate(
+        [np.full(len(samples[1]), at + len(line) - 2) for samples, at, line in zip(parts, first, lines, strict=True)]
+    )
+    begin = np.concatenate([np.full(len(samples[1]), at) for samples, at in zip(parts, first, strict=True)])
     at = placed(points, sides)
-    nearest = KDTree(np.vstack([part[0] for part in parts]), boxsize=ROUND).query(at)[1]
+    nearest = KDTree(np.vstack([samples[0] for samples in parts]), boxsize=ROUND).query(at)[1]
     best = np.full(len(points), np.inf)
     for shift in (-1, 0, 1):
         chord = np.clip(chords[nearest] + shift, begin[nearest], np.maximum(last[nearest], begin[nearest]))
@@ -149,8 +150,8 @@ def meetings(one: tuple[Array, Array], other: tuple[Array, Array]) -> Meeting:
     trees = [KDTree(placed(start + step / 2, np.ones(2)), boxsize=ROUND) for start, step in (one, other)]
     reach = sum(float(np.hypot(*step.T).max()) for _, step in (one, other)) / 2
     pairs = trees[0].query_ball_tree(trees[1], reach)
-    i = np.repeat(np.arange(len(pairs)), [len(each) for each in pairs])
-    j = np.array([k for each in pairs for k in each], dtype=int)
+    i = np.repeat(np.arange(len(pairs)), [len(partners) for partners in pairs])
+    j = np.array([k for partners in pairs for k in partners], dtype=int)
     u, w = one[1][i], other[1][j]
     gap = other[0][j] - one[0][i]
     gap[:, 0] -= np.rint(gap[:, 0] + (w - u)[:, 0] / 2)

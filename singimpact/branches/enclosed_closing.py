@@ -22,9 +22,8 @@ from singimpact.algebra.isolated_zeros import IsolatedZeros, Place, zeros_of
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
-from singimpact.flights.enclosures.first_root import narrowed
 from singimpact.flights.enclosures.motion import CarriedMotion, Met, Start
-from singimpact.flights.enclosures.tube import Tube, centre, divided
+from singimpact.flights.enclosures.tube import Tube, centre, divided, narrowed
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
@@ -65,19 +64,22 @@ class ClosingBoxes:
             except (Refused, ValueError, ZeroDivisionError):
                 return False
 
-    def linearised(self, place: Place, middle: Place) -> tuple[Sequence[Any], Sequence[Sequence[Any]]] | None:
+    def linearised(self, box: Place, middle: Place) -> tuple[Sequence[Any], Sequence[Sequence[Any]]] | None:
         """The miss at the middle, and its derivatives over the box; None unless one sequence of impacts may close."""
         with series_of_any_length():
             try:
-                over = [each for each in self._ends(*place, visible=False) if self._may_close(place[1], each[1])]
+                over = [final for final in self._ends(*box, visible=False) if self._may_close(box[1], final[1])]
                 if len(over) != 1:
                     return None
                 ((first, end),) = over
-                if first is not None and not (first.speed < 0 and first.inside and first.time - place[0] < self.span):
+                if first is not None and not (first.speed < 0 and first.inside and first.time - box[0] < self.span):
                     return None
-                rows = self._slopes(place, first, end)
-                at = [each for met, each in self._ends(*middle, visible=False)
-                      if first is None or met is None or met.time.overlaps(first.time)]  # fmt: skip
+                rows = self._slopes(box, first, end)
+                at = [
+                    final
+                    for met, final in self._ends(*middle, visible=False)
+                    if first is None or met is None or met.time.overlaps(first.time)
+                ]
                 if len(at) != 1:
                     return None
                 return [at[0].height, self._after(at[0].speed)[0] - middle[1]], rows
@@ -130,8 +132,8 @@ class ClosingBoxes:
         while True:
             height, _, length = motion.tubes()
             if left < length or left.upper() <= length:
-                found = motion.met(left)
-                return None if visible and found.speed > 0 else found
+                met = motion.met(left)
+                return None if visible and met.speed > 0 else met
             first = left.lower()
             stop = length if length <= first else first
             if not stop > 0:
@@ -158,10 +160,10 @@ class ClosingBoxes:
                     del pieces[-1]
             for s in pieces:
                 stays = s > 0 and s < length and not any(s.overlaps(other) for other in slow)
-                found = motion.hit(s, length)
-                found = found._replace(inside=bool(stays))
-                if not found.speed > 0 and not found.time > end:
-                    yield found
+                impact = motion.hit(s, length)
+                impact = impact._replace(inside=bool(stays))
+                if not impact.speed > 0 and not impact.time > end:
+                    yield impact
             if below:
                 return
             motion.advance(stop)
@@ -171,9 +173,9 @@ class ClosingBoxes:
         after = self._after(speed(during))[0]
         return bool(after < self.low or after > self.high)
 
-    def _slopes(self, place: Place, first: Met | None, end: Met) -> list[list[Any]]:
+    def _slopes(self, box: Place, first: Met | None, end: Met) -> list[list[Any]]:
         """Derivatives of x - c at the end, and of what v misses, by tau and v."""
-        rate, last = self._after(end.speed)[1], self._force(place[0] + self.span, end)
+        rate, last = self._after(end.speed)[1], self._force(box[0] + self.span, end)
         by = []
         for k in (0, 1):
             if first is None:
@@ -187,7 +189,7 @@ class ClosingBoxes:
                 height, speed = a * late + p * fast, b * late + q * fast
             # the end is k periods after the launch
             by.append((height + (1 - k) * end.speed, speed + (1 - k) * last))
-        return [[part[0] for part in by], [rate * part[1] - k for k, part in enumerate(by)]]
+        return [[column[0] for column in by], [rate * column[1] - k for k, column in enumerate(by)]]
 
     def _force(self, t: Any, at: Met) -> Any:
         """x'' on the wall."""
@@ -216,8 +218,8 @@ def closed_boxes(
     window = (-period / 64, period * Fraction(65, 64)), speeds
     with balls_at(SEARCH.bits):
         system = ClosingBoxes(osc, n, k, speeds)
-        made = zeros_of(system, window, SEARCH, (period, speeds[1]))
-        return [np.array(system.states(zero)) for zero in made.found], made
+        zeros = zeros_of(system, window, SEARCH, (period, speeds[1]))
+        return [np.array(system.states(zero)) for zero in zeros.found], zeros
 
 
 def _zeros(value: Tube, rate: Tube, length: Any, other: Callable[[Any], bool]) -> tuple[list[Any], list[Any], bool]:
@@ -227,7 +229,7 @@ def _zeros(value: Tube, rate: Tube, length: Any, other: Callable[[Any], bool]) -
     """
     from flint import arb
 
-    found: list[Any] = []
+    zeros: list[Any] = []
     left_out: list[Any] = []
     stack, least = [(arb(0), length)], length * arb(2) ** -PIECES
     while stack:
@@ -237,7 +239,7 @@ def _zeros(value: Tube, rate: Tube, length: Any, other: Callable[[Any], bool]) -
         if here > 0:
             continue
         if here < 0:
-            return found, left_out, True
+            return zeros, left_out, True
         if other(piece):
             left_out.append(piece)
             continue
@@ -250,8 +252,8 @@ def _zeros(value: Tube, rate: Tube, length: Any, other: Callable[[Any], bool]) -
             middle = centre((a + b) / 2)
             stack += [(middle, b), (a, middle)]
             continue
-        if found and found[-1].overlaps(piece):
-            found[-1] = found[-1].union(piece)
+        if zeros and zeros[-1].overlaps(piece):
+            zeros[-1] = zeros[-1].union(piece)
         else:
-            found.append(piece)
-    return found, left_out, False
+            zeros.append(piece)
+    return zeros, left_out, False

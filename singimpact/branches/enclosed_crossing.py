@@ -127,13 +127,13 @@ def enclosed_crossing(
         working = digits + SETTINGS.spare + attempt * SETTINGS.more
         bits = ceil(working * BITS_A_DIGIT) + 64
         with balls_at(bits):
-            found = proved(lambda w=working, b=bits: _enclosed(ends, states, index, (digits, w, b)))  # type: ignore[misc]
-        if isinstance(found, str):  # nearer to the saddles the boxes are smaller
-            why = found
+            enclosure = proved(lambda w=working, b=bits: _enclosed(ends, states, index, (digits, w, b)))  # type: ignore[misc]
+        if isinstance(enclosure, str):  # nearer to the saddles the boxes are smaller
+            why = enclosure
             continue
-        radius = max(exact("radius", part.radius) for part in (found.tau, found.v))
+        radius = max(exact("radius", coordinate.radius) for coordinate in (enclosure.tau, enclosure.v))
         if radius < Fraction(1, 10**digits):
-            return found  # type: ignore[no-any-return]
+            return enclosure  # type: ignore[no-any-return]
         why = f"the enclosure has a radius of {float(radius):.1g}"
     return why
 
@@ -153,13 +153,13 @@ def _enclosed(
     if max(abs(one - other) for one, other in zip(at, first, strict=True)) > SETTINGS.moved:
         raise Refused("Newton's method leaves the states")
     step = operator.step(at)
-    own = [max(KRAWCZYK.margin * upper(part), small) for part in step]
+    own = [max(KRAWCZYK.margin * upper(component), small) for component in step]
     tight = operator.tight(at, step, own)
-    for each, radius in ((at[0], own[0]), (at[-1], own[-1])):
-        if not abs(each) > radius:
+    for end, radius in ((at[0], own[0]), (at[-1], own[-1])):
+        if not abs(end) > radius:
             raise Refused("an end of the orbit is not told from the saddle")
-    place = turned + index
-    angle = _angle(between, tight, place)
+    position = turned + index
+    angle = _angle(between, tight, position)
     if not angle > 0:
         raise Refused("the angle of W^u and W^s is not told from 0")
     least = min(radius / unit for radius, unit in zip(own, between.radii(Fraction(1)), strict=True))
@@ -167,10 +167,17 @@ def _enclosed(
     shown = [(_shown(tau, digits), _shown(v, digits)) for tau, v in between.states(tight)]
     wedges = (between.leaving(at[0], own[0]).slope, between.coming(at[-1], own[-1]).slope)
     return EnclosedCrossing(
-        *shown[place], _shown(angle, digits), tuple(shown), place, unique,
-        "homoclinic" if come is leave else "heteroclinic", leave.orbit, come.orbit,
-        leave.saddle.oscillator, wedges,
-    )  # fmt: skip
+        *shown[position],
+        _shown(angle, digits),
+        tuple(shown),
+        position,
+        unique,
+        "homoclinic" if come is leave else "heteroclinic",
+        leave.orbit,
+        come.orbit,
+        leave.saddle.oscillator,
+        wedges,
+    )
 
 
 def _shown(ball: Any, digits: int) -> Certified:
@@ -187,20 +194,22 @@ def prolonged(leave: Cones, come: Cones, states: Array, working: int) -> tuple[t
     A wedge at s is s^2 wide, and the width at the middle is that times what the turns in between contract:
     |s|^(2 + e), where |s|^e is the contraction of the |s|^(-1) by which the other direction is stretched.
     """
-    sizes = [[abs(float(pair[0].value)) for pair in each.orbit.multipliers or ()] for each in (leave, come)]
+    sizes = [[abs(float(pair[0].value)) for pair in cones.orbit.multipliers or ()] for cones in (leave, come)]
     if not all(len(pair) == 2 and pair[0] > 1 > pair[1] for pair in sizes):
         raise Refused("the orbit is not proved to be a saddle")
     period = float(leave.map.period)
     xi, eta = _coordinates(leave, states[0], period)[0], _coordinates(come, states[-1], period)[1]
     (far, near), (out, inward) = sizes
-    mu = [float(each.orbit.multipliers[i][0].value) for i, each in enumerate((leave, come))]  # type: ignore[index]
+    mu = [float(cones.orbit.multipliers[i][0].value) for i, cones in enumerate((leave, come))]  # type: ignore[index]
     lengths = 10 ** (-working / (2 - log(near) / log(far))), 10 ** (-working / (2 - log(out) / log(inward)))
     before = max(ceil(log(abs(xi) / lengths[0]) / log(far)), 0)
     after = max(ceil(log(lengths[1] / abs(eta)) / log(inward)), 0)
     n, m = int(leave.saddle.n), int(come.saddle.n)
     if len(states) + n * before + m * after > SETTINGS.impacts:
-        raise Refused(f"the ends are near enough to the saddles after {len(states) + n * before + m * after} impacts, "
-                      f"more than {SETTINGS.impacts}: ask for fewer digits")  # fmt: skip
+        raise Refused(
+            f"the ends are near enough to the saddles after {len(states) + n * before + m * after} impacts, "
+            f"more than {SETTINGS.impacts}: ask for fewer digits"
+        )
     added = [state for turn in range(before) for state in _turn(leave, (xi * mu[0] ** (turn - before), 0.0))[:-1]]
     behind = [state for turn in range(after) for state in _turn(come, (0.0, eta * mu[1] ** turn))[1:]]
     ends = Fraction(xi * mu[0] ** -before), Fraction(eta * mu[1] ** after)
@@ -275,8 +284,11 @@ class _Between:
         first, last = self.leaving(at[0], none), self.coming(at[-1], none)
         for i in range(self.count):
             hit = self.map(at[2 * i - 1 : 2 * i + 1]) if i else self.map(first.centre, first.radii)
-            after = ([self.balls.rational(part) for part in at[2 * i + 1 : 2 * i + 3]] if i < self.count - 1
-                     else list(map(self.ball, last.centre, last.radii)))  # fmt: skip
+            after = (
+                [self.balls.rational(coordinate) for coordinate in at[2 * i + 1 : 2 * i + 3]]
+                if i < self.count - 1
+                else list(map(self.ball, last.centre, last.radii))
+            )
             rows += [[hit.tau - after[0] - self.turns[i] * self.map.period], [hit.v - after[1]]]
         return flint.arb_mat(rows)
 
@@ -308,8 +320,10 @@ class _Between:
         """K' over a wedge."""
         import flint
 
-        rows = [[self.balls.rational(row[along]) + self.ball(Fraction(0), slope) * self.balls.rational(row[1 - along])]
-                for row in cones.frame]  # fmt: skip
+        rows = [
+            [self.balls.rational(row[along]) + self.ball(Fraction(0), slope) * self.balls.rational(row[1 - along])]
+            for row in cones.frame
+        ]
         return flint.arb_mat(rows)
 
     def radii(self, distance: Fraction) -> list[Fraction]:
@@ -336,7 +350,7 @@ def _angle(between: _Between, zero: Image, index: int) -> Any:
     u = _carried(start, slopes[:index])
     w = _carried(end, [slope.inv() for slope in reversed(slopes[index:])])
     crossed = abs(u[0, 0] * w[1, 0] - u[1, 0] * w[0, 0])
-    sizes = [(each.transpose() * each)[0, 0] for each in (u, w)]
+    sizes = [(direction.transpose() * direction)[0, 0] for direction in (u, w)]
     return (crossed / (sizes[0] * sizes[1]).sqrt()).asin()
 
 
@@ -347,7 +361,7 @@ def _carried(vector: Any, slopes: list[Any]) -> Any:
     """
     import flint
 
-    image, kappa = flint.arb_mat([[part, 0] for part in vector.entries()]), flint.arb(0)
+    image, kappa = flint.arb_mat([[component, 0] for component in vector.entries()]), flint.arb(0)
     for slope in [*slopes, None]:
         x, y = ((image[row, 0] + kappa.mid() * image[row, 1]).mid() for row in (0, 1))
         length = (x * x + y * y).sqrt().mid()

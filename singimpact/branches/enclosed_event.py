@@ -154,8 +154,18 @@ def _touching(kind: str, orbit: PeriodicOrbit, over: str, parameter: float, digi
         unique = operator.unique_within(point, step, own)
         tau, *rest = _numbers(closing.balls, point, tight.offsets, digits)
         rested = from_ball(closing.balls.rational(Fraction(0)), digits)
-        return EnclosedEvent(kind, over, rest[-1], (tau, *rest[:-1:2]), (rested, *rest[1:-1:2]), unique,
-                             kind_of(kind).proof, None, orbit.oscillator, orbit.k)  # fmt: skip
+        return EnclosedEvent(
+            kind,
+            over,
+            rest[-1],
+            (tau, *rest[:-1:2]),
+            (rested, *rest[1:-1:2]),
+            unique,
+            kind_of(kind).proof,
+            None,
+            orbit.oscillator,
+            orbit.k,
+        )
 
 
 def _from_touching_point(orbit: PeriodicOrbit, closing: TouchingClosing, parameter: Fraction) -> Point:
@@ -270,9 +280,18 @@ class _Curve:
         alone = self._monotone_within(operator, near, step, (radius, curved))
         if alone is None:
             return "the test of the event is not shown to vary at a rate of one sign: there may be more events than one"
-        return EnclosedEvent(self.kind, self.over, parameter, tuple(states[::2]), tuple(states[1::2]),
-                             alone / SETTINGS.reach, kind_of(self.kind).proof, curved / SETTINGS.reach,
-                             self.orbit.oscillator, self.orbit.k)  # fmt: skip
+        return EnclosedEvent(
+            self.kind,
+            self.over,
+            parameter,
+            tuple(states[::2]),
+            tuple(states[1::2]),
+            alone / SETTINGS.reach,
+            kind_of(self.kind).proof,
+            curved / SETTINGS.reach,
+            self.orbit.oscillator,
+            self.orbit.k,
+        )
 
     def _monotone_within(
         self, operator: Krawczyk, near: Point, step: list[Any], between: tuple[Fraction, Fraction]

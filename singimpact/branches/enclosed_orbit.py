@@ -54,7 +54,7 @@ def enclosed_orbit(osc: Oscillator, times: Any, speeds: Any, k: int, digits: int
     >>> print(found.v[0], found.stable)
     0.4968833769630701986638762 True
     """
-    states = [Fraction(float(part)) for pair in zip(times, speeds, strict=True) for part in pair]
+    states = [Fraction(float(coordinate)) for pair in zip(times, speeds, strict=True) for coordinate in pair]
     bits = ceil(digits * BITS_A_DIGIT) + 64
     with balls_at(bits):
         return proved(lambda: _enclosed(BallClosing(osc, k, digits, bits), states, digits))  # type: ignore[no-any-return]
@@ -68,7 +68,9 @@ def _enclosed(orbit: BallClosing, states: list[Fraction], digits: int) -> Enclos
     tight = operator.tight(states, step, own)
     orbit.first_hits(states, own)
     unique = operator.unique_within(states, step, own)
-    numbers = [from_ball(orbit.balls.rational(x) + part, digits) for x, part in zip(states, tight.offsets, strict=True)]
+    numbers = [
+        from_ball(orbit.balls.rational(x) + offset, digits) for x, offset in zip(states, tight.offsets, strict=True)
+    ]
     multipliers, stable = _multipliers(return_slope(tight.slopes), digits)
     return EnclosedOrbit(
         tuple(numbers[::2]), tuple(numbers[1::2]), unique, multipliers, stable, orbit.osc, orbit.spans.k

@@ -94,16 +94,22 @@ class EventCurve(Result):
         return numbers | states | {"visible": self.visible.astype(int)}
 
     def __repr__(self) -> str:
-        lines = [f"<curve of {self.kind} events of ({self.n}, {self.k}) orbits in {' and '.join(self.over)}, "
-                 f"{len(self)} points"]  # fmt: skip
+        lines = [
+            f"<curve of {self.kind} events of ({self.n}, {self.k}) orbits in {' and '.join(self.over)}, "
+            f"{len(self)} points"
+        ]
         lines += [f"  {each.kind} at ({each.parameters[0]:.12g}, {each.parameters[1]:.12g})" for each in self.special]
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)]) + ">"
 
 
 def event_curve(
-    event: Event, over: Sequence[str] = (CLEARANCE, RESTITUTION), between: Any = None, *, points: int = 1000,
+    event: Event,
+    over: Sequence[str] = (CLEARANCE, RESTITUTION),
+    between: Any = None,
+    *,
+    points: int = 1000,
     step: float | None = None,
-) -> EventCurve:  # fmt: skip
+) -> EventCurve:
     """The curve of a fold, doubling, graze or hidden impact in two parameters.
 
     Parameters
@@ -138,14 +144,14 @@ def event_curve(
     osc = orbit.oscillator
     for name in over:
         osc = with_number(osc, name)
-    given = (None, None) if between is None else tuple(between)
-    if len(given) != 2:
+    intervals = (None, None) if between is None else tuple(between)
+    if len(intervals) != 2:
         raise refuse("between", between, "a pair of intervals, one for each number")
     values = [value_of(osc, name) for name in over]
-    ends = [interval(name, part, value) for name, part, value in zip(over, given, values, strict=True)]
+    ends = [interval(name, limits, value) for name, limits, value in zip(over, intervals, values, strict=True)]
     n = int(orbit.n)
     closing = closing_of(osc, n, orbit.k, over)
-    states = np.concatenate([np.asarray(part, dtype=float) for part in (orbit.tau, orbit.v)])
+    states = np.concatenate([np.asarray(row, dtype=float) for row in (orbit.tau, orbit.v)])
     if not n:
         raise refuse("event", event, "an event of an orbit with impacts: event.others()[0] has one that grazes alike")
     walk = _Walk(closing, event, ends, step or SETTINGS.step, points)
@@ -209,8 +215,19 @@ class _Walk(OrbitCurve):
         points = [row for row in rows if isinstance(row, Point)]
         at, n, k = np.array([point.at for point in points]), self.closing.n, self.closing.k
         seen, names = np.array([self._visible(point.at) for point in points]), self.closing.over
-        return EventCurve(osc, self.kind.name, (names[0], names[1]), n, k, at[:, 2 * n :], at[:, :n], at[:, n : 2 * n],
-                          seen, tuple(special), tuple(self.notes))  # fmt: skip
+        return EventCurve(
+            osc,
+            self.kind.name,
+            (names[0], names[1]),
+            n,
+            k,
+            at[:, 2 * n :],
+            at[:, :n],
+            at[:, n : 2 * n],
+            seen,
+            tuple(special),
+            tuple(self.notes),
+        )
 
     def row(self, point: Point) -> Point:
         return point
@@ -246,7 +263,7 @@ class _Walk(OrbitCurve):
         self, curve: Curve, here: Point, length: float, tests: tuple[dict[str, float], dict[str, float]]
     ) -> list[Special]:
         before, after = tests
-        found: list[tuple[float, str, Point]] = []
+        crossings: list[tuple[float, str, Point]] = []
         for name, value in before.items():
             later = after.get(name)
             if later is None or not value * later < 0:
@@ -254,10 +271,10 @@ class _Walk(OrbitCurve):
             located = curve.located(here, length, partial(self._one_test, name), (value, later))
             if located is None:
                 continue
-            part, point = located
+            along, point = located
             if not (name == "cusp" and abs(self._tests(point)[name]) > 0.1 * max(abs(value), abs(later))):
-                found.append((part, name.rstrip("0123456789 "), point))
-        return _merged(sorted(found, key=lambda each: each[0]), length)
+                crossings.append((along, name.rstrip("0123456789 "), point))
+        return _merged(sorted(crossings, key=lambda crossing: crossing[0]), length)
 
     def _visible(self, at: Array) -> bool:
         n = self.closing.n
@@ -267,14 +284,16 @@ class _Walk(OrbitCurve):
         return low >= -1e-9 * float(self.scales[n])
 
 
-def _merged(found: list[tuple[float, str, Point]], length: float) -> list[Special]:
+def _merged(crossings: list[tuple[float, str, Point]], length: float) -> list[Special]:
     """Fold and doubling that meet a graze at one point are one resonant graze."""
-    names = {name for _, name, _ in found}
+    names = {name for _, name, _ in crossings}
     special: list[Special] = []
     for pair in ({"fold at a graze", "doubling at a graze"}, {"graze", "fold and doubling"}):
-        parts = [part for part, name, _ in found if name in pair]
+        parts = [along for along, name, _ in crossings if name in pair]
         if pair <= names and max(parts) - min(parts) < 1e-6 * length:
-            point = next(point for _, name, point in found if name in pair)
+            point = next(point for _, name, point in crossings if name in pair)
             special.append(Special("resonant graze", (float(point.at[-2]), float(point.at[-1]))))
-            found = [each for each in found if each[1] not in pair]
-    return special + [Special(name, (float(each.at[-2]), float(each.at[-1]))) for _, name, each in found]
+            crossings = [crossing for crossing in crossings if crossing[1] not in pair]
+    return special + [
+        Special(name, (float(crossing.at[-2]), float(crossing.at[-1]))) for _, name, crossing in crossings
+    ]

@@ -123,10 +123,10 @@ class Crossing(Result):
 
         wanted = checked_digits(digits)
         ends = (self.unstable, self.unstable if self.kind == "homoclinic" else self.stable)
-        found = enclosed_crossing(ends, self.states, self.index, wanted)
-        if isinstance(found, str):
-            raise InputError(f"{self!r} is not certified: {found}")
-        return found
+        enclosure = enclosed_crossing(ends, self.states, self.index, wanted)
+        if isinstance(enclosure, str):
+            raise InputError(f"{self!r} is not certified: {enclosure}")
+        return enclosure
 
     def horseshoe(self) -> Horseshoe:
         """Chaos next to a homoclinic orbit, proved: loops near the saddle and along the orbit, in any order.
@@ -146,10 +146,10 @@ class Crossing(Result):
 
         if self.kind != "homoclinic":
             raise InputError(f"{self!r} is not accepted: a horseshoe needs an orbit that comes back to its saddle")
-        found = horseshoe(self.unstable, self.states)
-        if isinstance(found, str):
-            raise InputError(f"no horseshoe is proved next to {self!r}: {found}")
-        return found
+        loops = horseshoe(self.unstable, self.states)
+        if isinstance(loops, str):
+            raise InputError(f"no horseshoe is proved next to {self!r}: {loops}")
+        return loops
 
     def __repr__(self) -> str:
         return (
@@ -174,9 +174,13 @@ class Crossings(Results, list[Crossing]):
 
 
 def homoclinic_points(
-    saddle: PeriodicOrbit, to: PeriodicOrbit | None = None, *, v: Any = None, length: Any = 6,
+    saddle: PeriodicOrbit,
+    to: PeriodicOrbit | None = None,
+    *,
+    v: Any = None,
+    length: Any = 6,
     resolution: Any = RESOLUTION.usual,
-) -> Crossings:  # fmt: skip
+) -> Crossings:
     """Where W^u of a saddle crosses its W^s, each homoclinic orbit once.
 
     Parameters
@@ -214,9 +218,9 @@ def homoclinic_points(
 
 def crossings(one: Manifold, other: Manifold) -> Crossings:
     """Where a W^u and a W^s cross, of one saddle or of two of one model: see `Crossings`."""
-    for each in (one, other):
-        if not isinstance(each, Manifold):
-            raise refuse("manifold", each, "a result of si.manifold")
+    for curve in (one, other):
+        if not isinstance(curve, Manifold):
+            raise refuse("manifold", curve, "a result of si.manifold")
     if one.stable == other.stable:
         raise InputError(f"two curves {one.name}: give W^u of one saddle and W^s of one (stable=)")
     if one.saddle.oscillator != other.saddle.oscillator:
@@ -244,7 +248,7 @@ class _Search:
 
     def found(self) -> Crossings:
         """Each orbit once."""
-        known: list[tuple[int, Crossing]] = []
+        distinct: list[tuple[int, Crossing]] = []
         seen: list[tuple[int, Array]] = []
         for away, home, point in self._polylines():
             if any(side == away.side and self._passes(states, away, point) for side, states in seen):
@@ -255,13 +259,14 @@ class _Search:
                 self.rejected[crossing] = self.rejected.get(crossing, 0) + 1
                 continue
             seen.append((away.side, crossing.states[first:]))
-            if not any(side == away.side and self._same(crossing, old) for side, old in known):
-                known.append((away.side, crossing))
+            if not any(side == away.side and self._same(crossing, old) for side, old in distinct):
+                distinct.append((away.side, crossing))
         notes = [f"W^u {note}" for note in self.unstable.notes] + [f"W^s {note}" for note in self.stable.notes]
-        notes += [f"{count} crossings of the drawn curves are not in the list: {why}"
-                  for why, count in self.rejected.items()]  # fmt: skip
-        found = sorted((each for _, each in known), key=lambda each: (len(each.states), abs(each.s[0])))
-        return Crossings(found, tuple(notes), (self.unstable, self.stable))
+        notes += [
+            f"{count} crossings of the drawn curves are not in the list: {why}" for why, count in self.rejected.items()
+        ]
+        ordered = sorted((orbit for _, orbit in distinct), key=lambda orbit: (len(orbit.states), abs(orbit.s[0])))
+        return Crossings(ordered, tuple(notes), (self.unstable, self.stable))
 
     def _passes(self, states: Array, away: _Place, point: Array) -> bool:
         """Whether a known orbit has an impact at a crossing, after as many images."""
@@ -280,14 +285,14 @@ class _Search:
     def _polylines(self) -> list[tuple[_Place, _Place, Array]]:
         """Places of both manifolds at the crossings of their chords, in the order of W^u, and the point."""
         sides = self.unstable.window.sides
-        away, home = (_chords(each, sides) for each in (self.unstable, self.stable))
+        away, home = (_chords(grown, sides) for grown in (self.unstable, self.stable))
         met = meetings((away.start, away.step), (home.start, home.step))
         points = (away.start[met.one] + met.along[:, None] * away.step[met.one]) * sides
-        found = [
+        rows = [
             (away.place(i, along), home.place(j, across), point)
             for i, j, along, across, point in zip(met.one, met.other, met.along, met.across, points, strict=True)
         ]
-        return sorted(found, key=lambda row: (row[0].generation, row[0].side, abs(row[0].s)))
+        return sorted(rows, key=lambda row: (row[0].generation, row[0].side, abs(row[0].s)))
 
     # ---- Newton's method
 
@@ -330,8 +335,19 @@ class _Search:
         error = size + max(self.unstable.error, self.stable.error)
         tau, v = states[index].tolist()
         ends = (float(s[0]), float(s[1]))
-        return Crossing(tau, v, float(angles[index]), angles, states, index, residual, error, ends,
-                        self.unstable.saddle, self.stable.saddle)  # fmt: skip
+        return Crossing(
+            tau,
+            v,
+            float(angles[index]),
+            angles,
+            states,
+            index,
+            residual,
+            error,
+            ends,
+            self.unstable.saddle,
+            self.stable.saddle,
+        )
 
     def _guess(self, away: _Place, home: _Place) -> tuple[Array, Array, int]:
         """States near the orbit, s_u and s_s of its ends, and the index of the state on W^u that `away` began with.
@@ -356,16 +372,16 @@ class _Search:
         count = int(np.ceil(np.log(abs(s) / SETTINGS.ends) / np.log(arc.ratio))) if abs(s) > SETTINGS.ends else 0
         count = min(count, SETTINGS.turns)
         inwards = arc.multiplier if arc.stable else 1 / arc.multiplier
-        found: list[Array] = []
+        added: list[Array] = []
         for turn in range(count):
             # of W^s the turn begins at K(s mu^turn) and its first state is there already; of W^u it ends before K(s)
             states = [arc.points(np.array([s * inwards**turn if arc.stable else s * inwards ** (count - turn)]))]
             for _ in range(int(arc.saddle.n)):
                 states.append(model_step(arc.saddle.oscillator, states[-1]))
-            found += states[1:-1] if arc.stable else states[:-1]
+            added += states[1:-1] if arc.stable else states[:-1]
             if arc.stable:
-                found.append(arc.points(np.array([s * inwards ** (turn + 1)])))
-        return found, s * inwards**count
+                added.append(arc.points(np.array([s * inwards ** (turn + 1)])))
+        return added, s * inwards**count
 
     def _missed(self, states: Array) -> tuple[Array, Array]:
         """G(z_i) - z_{i+1}, whole periods taken off, shape (N, 2), and D G at z_0 ... z_{N-1}."""
@@ -406,8 +422,10 @@ class _Search:
 
     def _distances(self, states: Array) -> Array:
         """Of states from the impacts of both saddles."""
-        both = [np.stack([np.asarray(each.tau, dtype=float), np.asarray(each.v, dtype=float)], axis=1)
-                for each in (self.unstable.saddle, self.stable.saddle)]  # fmt: skip
+        both = [
+            np.stack([np.asarray(each.tau, dtype=float), np.asarray(each.v, dtype=float)], axis=1)
+            for each in (self.unstable.saddle, self.stable.saddle)
+        ]
         away = (states[:, None] - np.vstack(both)) / self.unstable.window.sides
         away[..., 0] -= np.rint(away[..., 0])
         return np.asarray(np.hypot(*away.transpose(2, 0, 1)).min(axis=1))
@@ -439,9 +457,9 @@ def _chords(grown: Manifold, sides: Array) -> _Chords:
     for number, (_, piece) in enumerate(grown.grown):
         points = piece.points / sides
         chord = np.diff(points, axis=0)
-        kept = (piece.points[:-1, 1] <= grown.window.y[1]) & (np.hypot(*chord.T) < SETTINGS.longest)
-        start.append(points[:-1][kept])
-        step.append(chord[kept])
-        s.append(np.stack([piece.s[:-1], piece.s[1:]], axis=1)[kept])
-        owner.append(np.full(int(kept.sum()), number))
+        drawn = (piece.points[:-1, 1] <= grown.window.y[1]) & (np.hypot(*chord.T) < SETTINGS.longest)
+        start.append(points[:-1][drawn])
+        step.append(chord[drawn])
+        s.append(np.stack([piece.s[:-1], piece.s[1:]], axis=1)[drawn])
+        owner.append(np.full(int(drawn.sum()), number))
     return _Chords(np.concatenate(start), np.concatenate(step), np.concatenate(s), np.concatenate(owner), grown.grown)

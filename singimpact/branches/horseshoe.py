@@ -184,7 +184,7 @@ class _Route:
         if not (last.width(home.radii) > a and last.height(home.radii) < a):
             raise Refused("the set round the saddle does not cross itself")
         for i, frame in enumerate(frames):
-            centre = tuple(Fraction(float(part)) for part in self.states[j + i])
+            centre = tuple(Fraction(float(coordinate)) for coordinate in self.states[j + i])
             new = CrossedSet(centre, frame, (Fraction(0), Fraction(0)))  # type: ignore[arg-type]
             seen = self._image(sets[-1], new, 1 if i else self.n)
             width = (
@@ -220,14 +220,14 @@ class _Route:
         import flint
 
         landed = image_of(self.map, one.centre, impacts)
-        off = [part - self.map.balls.rational(centre) for part, centre in zip(landed, other.centre, strict=True)]
+        off = [entry - self.map.balls.rational(centre) for entry, centre in zip(landed, other.centre, strict=True)]
         off[0] -= round(float(off[0].mid()) / self.period) * self.map.period
         (a, b), (c, d) = other.frame
         det = a * d - b * c
         inverse = self._matrix(((d / det, -b / det), (-c / det, a / det)))
-        offset = inverse * flint.arb_mat([[part] for part in off])
+        offset = inverse * flint.arb_mat([[entry] for entry in off])
         M = inverse * derivative_over(self.map, one.centre, one.box, impacts) * self._matrix(one.frame)
-        u, s, m12, m21, m22 = (upper(part) for part in (offset[0, 0], offset[1, 0], M[0, 1], M[1, 0], M[1, 1]))
+        u, s, m12, m21, m22 = (upper(entry) for entry in (offset[0, 0], offset[1, 0], M[0, 1], M[1, 0], M[1, 1]))
         if M[0, 0].contains(0) or not M[0, 0].is_finite():
             raise Refused("a set is not shown to be stretched")
         return _Image(u, s, least(M[0, 0]), m12, m21, m22)

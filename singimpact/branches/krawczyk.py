@@ -84,9 +84,12 @@ class Krawczyk:
     """
 
     def __init__(
-        self, equations: Equations, near: Point, small: Fraction,
+        self,
+        equations: Equations,
+        near: Point,
+        small: Fraction,
         radii: Callable[[Fraction], Radius] = lambda distance: distance,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.radii = radii
         slopes = equations.matrix(equations.slopes(near, radii(KRAWCZYK.first)))
         held = _fastest(slopes) if slopes.nrows() < len(near) else None
@@ -95,8 +98,8 @@ class Krawczyk:
         self.Y = _middles(_middles(self._columns(slopes, self.free)).inv())
         self.tangent = [Fraction(0)] * len(near)
         if held is not None:
-            for index, part in zip(self.free, (self.Y * self._columns(slopes, [held])).entries(), strict=True):
-                self.tangent[index] = -as_rational(part)
+            for index, rate in zip(self.free, (self.Y * self._columns(slopes, [held])).entries(), strict=True):
+                self.tangent[index] = -as_rational(rate)
             self.tangent[held] = Fraction(1)
 
     def moved(self, point: Point, shift: Fraction) -> Point:
@@ -117,8 +120,8 @@ class Krawczyk:
         import flint
 
         assert self.held is not None
-        found = (self.Y * self._columns(matrix, self.free)).solve(self.Y * self._columns(matrix, [self.held])).entries()
-        return [*(-part for part in found[: self.held]), flint.arb(1), *(-part for part in found[self.held :])]
+        rates = (self.Y * self._columns(matrix, self.free)).solve(self.Y * self._columns(matrix, [self.held])).entries()
+        return [*(-rate for rate in rates[: self.held]), flint.arb(1), *(-rate for rate in rates[self.held :])]
 
     @staticmethod
     def _columns(matrix: Any, kept: list[int]) -> Any:
@@ -130,11 +133,11 @@ class Krawczyk:
         """A zero to the digits wanted, by Newton's method with Y: nothing is proved here."""
         balls = self.equations.balls
         for _ in range(KRAWCZYK.rounds):
-            move = [as_rational(part) for part in self.step(point)]
+            move = [as_rational(change) for change in self.step(point)]
             point = list(point)
-            for index, part in zip(self.free, move, strict=True):
-                point[index] = as_rational(balls.rational(point[index] - part))
-            if all(abs(part) < self.small for part in move):
+            for index, change in zip(self.free, move, strict=True):
+                point[index] = as_rational(balls.rational(point[index] - change))
+            if all(abs(change) < self.small for change in move):
                 return point
         raise Refused("Newton's method does not come to the digits")
 
@@ -163,13 +166,13 @@ class Krawczyk:
         size, balls = len(self.free), self.equations.balls
         one = flint.arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
         rest = one - self.Y * self._columns(matrix, self.free)
-        each = [radius] * len(point) if isinstance(radius, Fraction) else list(radius)
-        radii, drift = [each[index] for index in self.free], [flint.arb(0)] * size
-        spreads = (rest * flint.arb_mat([[_round(balls, part)] for part in radii])).entries()
+        widths = [radius] * len(point) if isinstance(radius, Fraction) else list(radius)
+        radii, drift = [widths[index] for index in self.free], [flint.arb(0)] * size
+        spreads = (rest * flint.arb_mat([[_round(balls, entry)] for entry in radii])).entries()
         if self.held is not None and spread:
-            drift = [part * _round(balls, spread) for part in (self.Y * self._columns(matrix, [self.held])).entries()]
+            drift = [entry * _round(balls, spread) for entry in (self.Y * self._columns(matrix, [self.held])).entries()]
         off = [wide + moved - s for s, moved, wide in zip(step, drift, spreads, strict=True)]
-        inside = all(part.is_finite() and abs(part) < balls.rational(r) for part, r in zip(off, radii, strict=True))
+        inside = all(entry.is_finite() and abs(entry) < balls.rational(r) for entry, r in zip(off, radii, strict=True))
         return Image(point, off, slopes) if inside else None
 
     def tight(self, point: Point, step: list[Any], radius: Radius) -> Image:

@@ -218,10 +218,21 @@ def manifold(
     chords = [np.hypot(*(np.diff(piece.points, axis=0) / window.sides).T) for piece in pieces]
     arc = grown.arc
     return Manifold(
-        saddle, bool(stable), arc.multiplier, directions(arc), pieces, tuple(grown.cuts), window,
-        float(sum(each.sum() for each in chords)), float(max(each.max() for each in chords)), arc.error, count.flights,
-        tuple(grown.notes.sentences), arc, tuple(grown.done),
-    )  # fmt: skip
+        saddle,
+        bool(stable),
+        arc.multiplier,
+        directions(arc),
+        pieces,
+        tuple(grown.cuts),
+        window,
+        float(sum(lengths.sum() for lengths in chords)),
+        float(max(lengths.max() for lengths in chords)),
+        arc.error,
+        count.flights,
+        tuple(grown.notes.sentences),
+        arc,
+        tuple(grown.done),
+    )
 
 
 def _highest(saddle: PeriodicOrbit, fastest: float) -> float:
@@ -241,10 +252,14 @@ class _Grown:
         self.cuts: list[Cut] = []
         self._lingered: dict[tuple[int, int], int] = {}  # turns of a side that added little
         self.carried = Carried(
-            window, self.arc.points, self._step, lambda points: points[:, 1] <= 1.2 * window.y[1],
-            lambda points: points[:, 1] <= SETTINGS.reach * window.y[1], SETTINGS.piece,
+            window,
+            self.arc.points,
+            self._step,
+            lambda points: points[:, 1] <= 1.2 * window.y[1],
+            lambda points: points[:, 1] <= SETTINGS.reach * window.y[1],
+            SETTINGS.piece,
             located=True,
-        )  # fmt: skip
+        )
         self._nearby = Nearby(window.sides, SETTINGS.distinct * window.resolution)
 
     def _step(self, points: Array, generation: int) -> Array:
@@ -265,14 +280,14 @@ class _Grown:
             total += sum(self._length(piece) for _, piece in pieces)
             points += sum(len(piece.s) for _, piece in pieces)
             if total > self.longest:
-                told = f"where its length passes {self.longest:g}: it goes on (length=)"
-                self.notes.add(f"ends after {flown} impacts, {told}")
+                reason = f"where its length passes {self.longest:g}: it goes on (length=)"
+                self.notes.add(f"ends after {flown} impacts, {reason}")
                 return
             if points > SETTINGS.points:
                 self.notes.add(f"ends after {flown} impacts, where {SETTINGS.points} points are spent")
                 return
             self._nearby.add([piece.points for _, piece in pieces])
-            pieces = [each for number, piece in pieces for each in self._images(number, piece)]
+            pieces = [image for number, piece in pieces for image in self._images(number, piece)]
             if not pieces:
                 self.notes.add("ends where further images lie within a quarter of the resolution of what is there")
                 return
@@ -285,13 +300,13 @@ class _Grown:
                 f"a piece after {piece.generation + 1} impacts has over {SETTINGS.piece} points: it is not resolved"
             )
         self._note_ends(piece, images)
-        kept = []
+        growing = []
         for image in images:
             if self._at_saddle(image.points) or self._adds(image.points) or self._lingers(number, image):
-                kept.append((number, image))
+                growing.append((number, image))
             elif self._rests(image.points):
                 self.notes.add("states that come to rest in complete chatter lift off together: the curve ends there")
-        return kept
+        return growing
 
     def _at_saddle(self, points: Array) -> bool:
         """Whether a piece has not come away from the orbit yet: the curve there is shorter than the resolution."""
@@ -314,8 +329,8 @@ class _Grown:
         at = (number, piece.generation % self.recurs)
         self._lingered[at] = self._lingered.get(at, 0) + 1
         if self._lingered[at] > SETTINGS.lingering:
-            told = f"turns add less than {SETTINGS.distinct} of the resolution is given up after {SETTINGS.lingering}"
-            self.notes.add(f"a side whose {told} of them")
+            why = f"turns add less than {SETTINGS.distinct} of the resolution is given up after {SETTINGS.lingering}"
+            self.notes.add(f"a side whose {why} of them")
             return False
         return True
 
@@ -389,13 +404,13 @@ class _Grown:
                 open_[number, generation] = chain
         for number, piece in self.done:
             side = self.arc.sides[number]
-            found = open_.pop((number, piece.generation), None) if piece.s[0] == self._inner(number) else None
-            if found is None:
-                found = []
-                chains.append(found)
-            found.append(piece)
+            joined = open_.pop((number, piece.generation), None) if piece.s[0] == self._inner(number) else None
+            if joined is None:
+                joined = []
+                chains.append(joined)
+            joined.append(piece)
             if piece.s[-1] == side:
-                open_[number, piece.generation + self.recurs] = found
+                open_[number, piece.generation + self.recurs] = joined
         return chains
 
 
@@ -408,11 +423,11 @@ def _windowed(points: Array, marks: list[Mark], window: Window) -> Iterator[tupl
     period, count = window.x[1], len(points)
     turns, inside = np.floor(points[:, 0] / period), points[:, 1] <= window.y[1]
     breaks = np.flatnonzero((turns[1:] != turns[:-1]) | (inside[1:] != inside[:-1])) + 1
-    for part in np.split(np.arange(count), breaks):
-        begin, end = max(int(part[0]) - 1, 0), min(int(part[-1]) + 1, count - 1)
-        if not inside[part[0]] or begin == end:
+    for stretch in np.split(np.arange(count), breaks):
+        begin, end = max(int(stretch[0]) - 1, 0), min(int(stretch[-1]) + 1, count - 1)
+        if not inside[stretch[0]] or begin == end:
             continue
         own = {mark.index: mark.name for mark in marks}
         own |= {i: "leaves" for i in (begin, end) if not inside[i]}
-        shift = np.array([turns[part[0]] * period, 0.0])
+        shift = np.array([turns[stretch[0]] * period, 0.0])
         yield points[begin : end + 1] - shift, [Mark(i - begin, own[i]) for i in sorted(own) if begin <= i <= end]

@@ -159,13 +159,13 @@ class OrbitCurve(ABC):
     def _end(self, curve: Curve, here: Point, length: float, after: Point) -> tuple[float, Point] | None:
         """The length of a step, and its point, at which a number is at the end of its interval."""
         which, goal = self._outside(after.at) or (0, 0.0)
-        place = len(here.at) - len(self.ends) + which
-        ends = float(here.at[place] - goal), float(after.at[place] - goal)
+        index = len(here.at) - len(self.ends) + which
+        ends = float(here.at[index] - goal), float(after.at[index] - goal)
         if ends[0] == 0:
             return None
-        crossed = curve.located(here, length, lambda point: float(point.at[place] - goal), ends)
+        crossed = curve.located(here, length, lambda point: float(point.at[index] - goal), ends)
         if crossed is not None and len(self.ends) == 1:  # another branch that begins there has the same double
-            crossed[1].at[place] = goal
+            crossed[1].at[index] = goal
         return crossed
 
     def _again(self, curve: Curve, start: Point, here: Point, after: Point) -> bool:

@@ -96,10 +96,10 @@ class PeriodicOrbit(Result):
 
         if self.kind != "impacts":
             raise InputError(f"{self!r} is not accepted: an orbit with impacts, none of which rests, can be certified")
-        found = enclosed_orbit(self.oscillator, self.tau, self.v, self.k, digits)
-        if isinstance(found, str):
-            raise InputError(f"{self!r} is not certified: {found}")
-        return found
+        enclosure = enclosed_orbit(self.oscillator, self.tau, self.v, self.k, digits)
+        if isinstance(enclosure, str):
+            raise InputError(f"{self!r} is not certified: {enclosure}")
+        return enclosure
 
     def __repr__(self) -> str:
         words = {"chatter": f"(inf, {self.k}) orbit: chatter and rest", "free": "orbit without impact"}.get(
@@ -136,7 +136,7 @@ def same_states(one: PeriodicOrbit, other: PeriodicOrbit, within: float) -> bool
     True
     """
     period = as_float(one.oscillator.period)
-    tau, v, times, speeds = (np.asarray(part, dtype=float) for part in (one.tau, one.v, other.tau, other.v))
+    tau, v, times, speeds = (np.asarray(row, dtype=float) for row in (one.tau, one.v, other.tau, other.v))
     fast = max(float(np.abs(v).max()), float(np.abs(speeds).max()), 1e-12)  # at a graze v is rounding
     for shift in range(len(tau)):
         gaps = (np.roll(tau, shift) - times) / period
@@ -157,9 +157,11 @@ class PeriodicOrbits(Results, list[PeriodicOrbit]):
     called = "orbits"
 
     def __init__(
-        self, orbits: Iterable[PeriodicOrbit] = (), doubts: Sentences | Callable[[], Sentences] = (),
+        self,
+        orbits: Iterable[PeriodicOrbit] = (),
+        doubts: Sentences | Callable[[], Sentences] = (),
         notes: Sentences = (),
-    ) -> None:  # fmt: skip
+    ) -> None:
         super().__init__(orbits)
         self._doubts, self._notes = doubts, notes
 

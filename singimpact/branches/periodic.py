@@ -2,34 +2,40 @@
 
 Orbits of one impact of a linear model are found in closed form. All else by Newton's method on the closing conditions,
 from many starts, grazes among them; for two impacts of a linear model balls show, when they are asked, that none is
-missed.
+missed. Orbits with digits= are these, refined in balls.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
+from math import ceil
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float, constant, rational_near
+from singimpact.algebra.precision import balls_at, digits_at, for_user
+from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
-from singimpact.branches.digits import in_digits
 from singimpact.branches.enclosed_closing import closed_boxes
-from singimpact.branches.one_impact import phases_and_speeds
+from singimpact.branches.krawczyk import Krawczyk
+from singimpact.branches.one_or_two_impacts import phases_and_speeds, two_impacts
 from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits, same_states
 from singimpact.branches.resting import chatter_orbits, free_orbits
 from singimpact.branches.solutions import orbit_at
 from singimpact.branches.starts import closed_from, grid_of_starts
-from singimpact.branches.two_impacts import two_impacts
+from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.status import Status
 
 Array = np.ndarray[Any, Any]
 
@@ -48,6 +54,8 @@ class PeriodicSettings:
 
 SETTINGS = PeriodicSettings()
 SEARCHED = "found from a grid of starts and from grazes: it is not shown that there are no others"
+SPARE = 5
+"""Digits of the states in balls beside those asked for."""
 
 
 def periodic(
@@ -91,10 +99,10 @@ def periodic(
         return free_orbits(osc, k)
     doubts: Any = ("found from the start given",)
     if start is not None:
-        found = _from_start(osc, n, k, start)
+        points = _from_start(osc, n, k, start)
     else:
-        found, doubts = _all(osc, n, k)
-    orbits = _judged(osc, n, k, found)
+        points, doubts = _all(osc, n, k)
+    orbits = _judged(osc, n, k, points)
     if start is None:
         orbits = [orbit for orbit in orbits if orbit.visible]
     elif not orbits:
@@ -132,11 +140,13 @@ def _all(osc: Oscillator, n: int, k: int) -> tuple[list[Array], tuple[str, ...] 
         solutions = phases_and_speeds(osc, k)
         if solutions is not None:
             return [np.array(pair) for pair in zip(*solutions, strict=True)], ()
-        return [], (f"every phase closes after one impact in {k} periods with its own velocity: a continuum of orbits, "
-                    "none is listed",)  # fmt: skip
+        return [], (
+            f"every phase closes after one impact in {k} periods with its own velocity: a continuum of orbits, "
+            "none is listed",
+        )
     closing = Closing(family(osc), n, k)
-    found = closed_from(closing, grid_of_starts(closing))
-    return found, None if n == 2 and linear else (SEARCHED,)
+    points = closed_from(closing, grid_of_starts(closing))
+    return points, None if n == 2 and linear else (SEARCHED,)
 
 
 def _doubts_of_two(osc: Oscillator, k: int, listed: list[PeriodicOrbit]) -> tuple[str, ...]:
@@ -145,8 +155,8 @@ def _doubts_of_two(osc: Oscillator, k: int, listed: list[PeriodicOrbit]) -> tupl
     if proved is None:
         return (SEARCHED, "the free motion is in resonance with the forcing: no formulas for a proof")
     points, boxes = proved
-    doubts = [] if boxes.complete else [
-        f"{len(boxes.undecided)} boxes of phases and flight times, of {boxes.looked_at}, are not decided"]  # fmt: skip
+    undecided = f"{len(boxes.undecided)} boxes of phases and flight times, of {boxes.looked_at}, are not decided"
+    doubts = [] if boxes.complete else [undecided]
     return (*doubts, *_lacking(osc, (2, k), points, listed))
 
 
@@ -158,8 +168,8 @@ def _doubts_in_window(
         points, boxes = closed_boxes(osc, *counts, speeds)
     except InputError as reason:
         return SEARCHED, f"f, g or rho is not analytic: {reason}"
-    doubts = [] if boxes.complete else [
-        f"{len(boxes.undecided)} boxes of phases and velocities, of {boxes.looked_at}, are not decided"]  # fmt: skip
+    undecided = f"{len(boxes.undecided)} boxes of phases and velocities, of {boxes.looked_at}, are not decided"
+    doubts = [] if boxes.complete else [undecided]
     return (*doubts, *_lacking(osc, counts, points, listed))
 
 
@@ -170,11 +180,14 @@ def _lacking(
     closing = Closing(family(osc), *counts)
     refined = [closing.newton(point) for point in points]
     doubts = (
-        ("Newton's method does not arrive at an orbit that exists",) if any(each is None for each in refined) else ()
+        ("Newton's method does not arrive at an orbit that exists",) if any(root is None for root in refined) else ()
     )
-    shown = _judged(osc, *counts, [each[0] for each in refined if each is not None])
-    lacking = [orbit for orbit in shown
-               if orbit.visible and not any(same_states(orbit, other, SETTINGS.apart) for other in listed)]  # fmt: skip
+    shown = _judged(osc, *counts, [root[0] for root in refined if root is not None])
+    lacking = [
+        orbit
+        for orbit in shown
+        if orbit.visible and not any(same_states(orbit, other, SETTINGS.apart) for other in listed)
+    ]
     return (*doubts, *(f"the list lacks {orbit!r}" for orbit in lacking))
 
 
@@ -184,14 +197,14 @@ def _from_start(osc: Oscillator, n: int, k: int, start: Any) -> list[Array]:
     if isinstance(start, PeriodicOrbit):
         start = list(zip(np.asarray(start.tau, dtype=float), np.asarray(start.v, dtype=float), strict=True))
     try:
-        states = np.array([[as_float(constant("start", part)) for part in state] for state in _pairs(start)])
+        states = np.array([[as_float(constant("start", number)) for number in state] for state in _pairs(start)])
     except (TypeError, ValueError):
         raise refuse("start", start, "(tau, v), or n such pairs, or a PeriodicOrbit") from None
     if states.ndim != 2 or states.shape[1:] != (2,) or len(states) not in (1, n):
         raise refuse("start", start, f"(tau, v), or {n} such pairs, or a PeriodicOrbit")
     if len(states) == n:
-        found = closing.newton(np.concatenate(states.T))
-        return [] if found is None else [found[0]]
+        root = closing.newton(np.concatenate(states.T))
+        return [] if root is None else [root[0]]
     return closed_from(closing, grid_of_starts(closing, states[:, 0], states[:, 1]))
 
 
@@ -203,26 +216,62 @@ def _pairs(start: Any) -> list[Any]:
 def _judged(osc: Oscillator, n: int, k: int, points: list[Array]) -> list[PeriodicOrbit]:
     """Orbits of closed points, each once, in the order of the first phase; those that close sooner are left out."""
     closing = Closing(family(osc), n, k)
-    kept: list[PeriodicOrbit] = []
+    distinct: list[PeriodicOrbit] = []
     for point in points:
         if not point[n : 2 * n].max() > SETTINGS.least or point[n : 2 * n].min() < -SETTINGS.least:
             continue
         orbit = orbit_at(closing, point, osc)
-        if not _sooner(orbit, closing) and not any(same_states(orbit, other, SETTINGS.apart) for other in kept):
-            kept.append(orbit)
-    return sorted(kept, key=lambda orbit: (float(orbit.tau[0]), float(orbit.v[0])))
+        if not _sooner(orbit, closing) and not any(same_states(orbit, other, SETTINGS.apart) for other in distinct):
+            distinct.append(orbit)
+    return sorted(distinct, key=lambda orbit: (float(orbit.tau[0]), float(orbit.v[0])))
 
 
 def _sooner(orbit: PeriodicOrbit, closing: Closing) -> bool:
     """Whether an orbit closes after fewer impacts."""
     n, k, period = closing.n, closing.k, closing.family.period({}).value
     fast = max(float(np.max(orbit.v)), 1e-300)
-    for part in range(1, n):
-        if n % part or (k * part) % n:
+    for fewer in range(1, n):
+        if n % fewer or (k * fewer) % n:
             continue
-        gaps = np.abs(np.roll(orbit.tau, -part)[: n - part] - orbit.tau[: n - part] - k * part / n * period)
+        gaps = np.abs(np.roll(orbit.tau, -fewer)[: n - fewer] - orbit.tau[: n - fewer] - k * fewer / n * period)
         if gaps.max(initial=0.0) < SETTINGS.apart * period and (
-            np.abs(np.roll(orbit.v, -part) - orbit.v).max() < SETTINGS.apart * fast
+            np.abs(np.roll(orbit.v, -fewer) - orbit.v).max() < SETTINGS.apart * fast
         ):
             return True
     return False
+
+
+# ---- in many digits, by Newton's method in balls: nothing is proved
+
+
+def in_digits(osc: Oscillator, rough: PeriodicOrbit, digits: int) -> PeriodicOrbit:
+    """The orbit and its multipliers in many digits; `unresolved` where the next impacts are not its own to these."""
+    states = [Fraction(float(number)) for state in zip(rough.tau, rough.v, strict=True) for number in state]
+    small, miss, status = Fraction(1, 10 ** (digits + SPARE)), Fraction(float(rough.miss)), Status.unresolved
+    half: Fraction | None = None
+    product = Fraction(0)
+    bits = ceil((digits + SPARE) * BITS_A_DIGIT) + 64
+    with balls_at(bits):
+        closing = BallClosing(osc, rough.k, digits + SPARE, bits)
+        # refused where the orbit is virtual, or a flight is not shown to be its own: the status says so
+        with suppress(Refused, ZeroDivisionError, ValueError):
+            states = Krawczyk(closing, states, small).solved(states)
+            miss = max(abs(as_rational(residual)) for residual in closing.miss(states).entries())
+            total = return_slope(closing.slopes(states, small))
+            half, product = as_rational((total[0, 0] + total[1, 1]) / 2), as_rational(total.det())
+            closing.first_hits(states, small)
+            status = Status.hit
+    with digits_at(digits + 15) as mp:
+        if half is None:
+            multipliers = [mp.convert(complex(multiplier)) for multiplier in rough.multipliers]
+        else:
+            root = mp.sqrt(mp.mpc(mp.convert(half * half - product)))
+            multipliers = [half + root, half - root]
+        numbers = [mp.convert(state) for state in states]
+        missed = mp.convert(miss)
+    with digits_at(digits):
+        tau, v, sizes = (
+            np.array([for_user(+number) for number in row], dtype=object)
+            for row in (numbers[::2], numbers[1::2], multipliers)
+        )
+        return replace(rough, tau=tau, v=v, multipliers=sizes, miss=for_user(+missed), status=np.int8(status))

@@ -149,8 +149,8 @@ def _rising(model: Oscillator, near: float) -> float:
             break
     before = at - SETTINGS.before * period
     pressed = acceleration(model, np.array([before]))[0] < 0
-    found = release(model, before, 4 * SETTINGS.before * period) if pressed else np.inf
-    return found if np.isfinite(found) else float("nan")
+    phase = release(model, before, 4 * SETTINGS.before * period) if pressed else np.inf
+    return phase if np.isfinite(phase) else float("nan")
 
 
 class _Run:
@@ -188,16 +188,16 @@ class _Run:
             left = chatter_left(self.model, tau, v) if short else None
             short = left is not None
             if left is not None:
-                place = int(np.searchsorted(self.zeros, tau))
-                if tau + left[0] < self.zeros[place]:
-                    return place + 1
+                following = int(np.searchsorted(self.zeros, tau))
+                if tau + left[0] < self.zeros[following]:
+                    return following + 1
             count, near = (SETTINGS.more, 0.0) if short else (block, ENDING.near)
-            found = orbit_segment(self.model, tau, v, count, near)
-            self._add(found.tau, found.v)
-            short, block = short or found.short, min(2 * block, SETTINGS.longest)
-            if found.status:
+            segment = orbit_segment(self.model, tau, v, count, near)
+            self._add(segment.tau, segment.v)
+            short, block = short or segment.short, min(2 * block, SETTINGS.longest)
+            if segment.status:
                 # a graze that a block of flights does not decide, or no impact any more: the map says which
-                last = (float(found.tau[-1]), float(found.v[-1])) if found.tau.size else (tau, v)
+                last = (float(segment.tau[-1]), float(segment.v[-1])) if segment.tau.size else (tau, v)
                 status = self._one(*last)
         if status == Status.sticks:
             return int(np.searchsorted(self.zeros, float(self.times[-1][-1]))) + 1 if self.times else -1

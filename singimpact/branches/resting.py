@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.branches.closing import lowest
-from singimpact.branches.free import FreeClosing
+from singimpact.branches.closing import FreeClosing, lowest
 from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, chatter_orbit
 from singimpact.dynamics.lift_off import turns_between
 from singimpact.dynamics.long_run import lift_offs
@@ -48,7 +47,7 @@ def free_orbits(osc: Oscillator, k: int, lowest_only: bool = False) -> PeriodicO
     """
     moving = family(osc, (CLEARANCE,))
     period = moving.period({CLEARANCE: as_float(osc.clearance)}).value
-    found: list[PeriodicOrbit] = []
+    orbits: list[PeriodicOrbit] = []
     linear = linear_form(osc) is not None
     wall, span = as_float(osc.clearance), k * period
     size = max(abs(wall), 1.0)
@@ -57,13 +56,13 @@ def free_orbits(osc: Oscillator, k: int, lowest_only: bool = False) -> PeriodicO
         state = _closed(moving, start, span, np.inf if linear else FAR * size)
         if state is not None:
             one = _at_its_lowest(moving, osc, state, k)
-            if one is not None and not any(abs(one.x[0] - other.x[0]) < 1e-9 * size for other in found):
-                found.append(one)
-    kept = found if lowest_only else [one for one in found if one.visible]
+            if one is not None and not any(abs(one.x[0] - other.x[0]) < 1e-9 * size for other in orbits):
+                orbits.append(one)
+    listed = orbits if lowest_only else [one for one in orbits if one.visible]
     doubts = () if linear else ("found from a grid of starts: it is not shown that there are no others",)
-    if linear and not found:
+    if linear and not orbits:
         doubts = ("the free motion is in resonance: there is no periodic motion, or a continuum of them",)
-    return PeriodicOrbits(kept, doubts)
+    return PeriodicOrbits(listed, doubts)
 
 
 def _closed(moving: Family, start: tuple[float, float], span: float, far: float) -> tuple[float, float] | None:
@@ -98,10 +97,12 @@ def _at_its_lowest(moving: Family, osc: Oscillator, state: tuple[float, float], 
     multipliers = np.linalg.eigvals(np.stack([across.by_numbers[0] + np.array([1.0, 0.0]), across.by_v], axis=1))
     miss = float(np.abs(across.place - np.array([0.0, end.place[1]])).max())
     order = np.argsort(-np.abs(multipliers))
-    at, speed, place = (np.array([each]) for each in (np.mod(time, period), float(end.place[1]), x + height))
+    at, speed, position = (
+        np.array([coordinate]) for coordinate in (np.mod(time, period), float(end.place[1]), x + height)
+    )
     wall = as_float(osc.clearance)
     seen = height + x >= wall - TOUCHING * max(abs(wall), 1.0)
-    return PeriodicOrbit(at, speed, multipliers[order], miss, np.int8(Status.hit), osc, 0, k, "free", seen, place)
+    return PeriodicOrbit(at, speed, multipliers[order], miss, np.int8(Status.hit), osc, 0, k, "free", seen, position)
 
 
 def free_orbit_at(closing: FreeClosing, point: Array) -> PeriodicOrbit:
@@ -131,8 +132,8 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
     """
     assert osc.period is not None
     phases, notes = list(lift_offs(osc)), Notes()
-    following = [_next_lift_off(osc, phases, place, k, notes) for place in range(len(phases))]
-    found = list[PeriodicOrbit]()
+    following = [_next_lift_off(osc, phases, index, k, notes) for index in range(len(phases))]
+    orbits = list[PeriodicOrbit]()
     for first, phase in enumerate(phases):
         circle, turns, miss, step = [first], 0, 0.0, following[first]
         while step is not None:
@@ -143,8 +144,8 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
             step = following[step.place]
         # of the phases of one circle the first stands for it; a phase that leads into a circle is not on it
         if step is not None and step.place == first == min(circle) and turns == k:
-            found.append(chatter_orbit(osc, phase, k, miss))
-    return PeriodicOrbits(found, tuple(notes.sentences))
+            orbits.append(chatter_orbit(osc, phase, k, miss))
+    return PeriodicOrbits(orbits, tuple(notes.sentences))
 
 
 @dataclass(frozen=True)
@@ -156,10 +157,10 @@ class _Lift:
     miss: float
 
 
-def _next_lift_off(osc: Oscillator, phases: list[float], place: int, k: int, notes: Notes) -> _Lift | None:
+def _next_lift_off(osc: Oscillator, phases: list[float], index: int, k: int, notes: Notes) -> _Lift | None:
     """The lift-off within k periods after the one at phases[place]; None where there is none, or it is open: noted."""
     assert osc.period is not None
-    period, phase = as_float(osc.period), phases[place]
+    period, phase = as_float(osc.period), phases[index]
     end = phase + (k + 1) * period
     # an orbit of k periods is home by then: what an undamped one does later may be undecided in doubles, and slow
     for impacts in (20, 200, FLOWN):

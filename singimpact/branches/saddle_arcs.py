@@ -148,9 +148,13 @@ def checked_saddle(saddle: Any) -> PeriodicOrbit:
         raise refuse("saddle", repr(saddle), "an orbit that does not pass through the wall")
     sizes = np.sort(np.abs(np.asarray(saddle.multipliers, dtype=complex)))
     if not (sizes[0] < 1 - SETTINGS.hyperbolic and sizes[1] > 1 + SETTINGS.hyperbolic and np.isfinite(sizes).all()):
-        told = ", ".join(f"{complex(each).real:.6g}{complex(each).imag:+.6g}i" for each in saddle.multipliers)
-        raise InputError(f"saddle has the multipliers {told}: W^s and W^u belong to one inside and one outside the "
-                         "unit circle")  # fmt: skip
+        multipliers = ", ".join(
+            f"{complex(multiplier).real:.6g}{complex(multiplier).imag:+.6g}i" for multiplier in saddle.multipliers
+        )
+        raise InputError(
+            f"saddle has the multipliers {multipliers}: "
+            "W^s and W^u belong to one inside and one outside the unit circle"
+        )
     return saddle
 
 
@@ -189,8 +193,16 @@ def _fitted(near: Expansion, size: float) -> LocalArc:
     across = np.abs(missed[:, 0] * along[:, 1] - missed[:, 1] * along[:, 0]) / np.hypot(*along.T)
     if not np.hypot(*missed.T).max() <= SETTINGS.along * (size / near.size) * (near.error + SETTINGS.rounding):
         across = np.append(across, np.inf)
-    return LocalArc(near.saddle, near.stable, near.multiplier, near.scales, near.direction, size, coefficients,
-                    near.error + float(across.max()))  # fmt: skip
+    return LocalArc(
+        near.saddle,
+        near.stable,
+        near.multiplier,
+        near.scales,
+        near.direction,
+        size,
+        coefficients,
+        near.error + float(across.max()),
+    )
 
 
 def expansion(saddle: PeriodicOrbit, stable: bool) -> Expansion:

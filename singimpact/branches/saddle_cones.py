@@ -28,7 +28,7 @@ from typing import Any
 
 from singimpact.algebra.balls import as_rational
 from singimpact.algebra.numbers import exact
-from singimpact.branches.enclosed_map import POINT, EnclosedMap
+from singimpact.branches.ball_closing import POINT, EnclosedMap
 from singimpact.branches.enclosed_orbit import EnclosedOrbit, enclosed_orbit
 from singimpact.branches.krawczyk import upper
 from singimpact.branches.orbits import PeriodicOrbit
@@ -110,12 +110,12 @@ class Cones:
 
         spread = self.state(Fraction(0), Fraction(0), (reach, reach))[1]
         M = self._matrix(self.coordinates) * self._derivative(spread) * self._matrix(self.frame)
-        (m11, m12), (m21, m22) = [[abs(part) for part in row] for row in M.table()]
-        far, m12, m21, m22 = flint.arb(m11.lower()), *(flint.arb(part.upper()) for part in (m12, m21, m22))
+        (m11, m12), (m21, m22) = [[abs(entry) for entry in row] for row in M.table()]
+        far, m12, m21, m22 = flint.arb(m11.lower()), *(flint.arb(entry.upper()) for entry in (m12, m21, m22))
         if not far > 1:
             raise Refused("the return map is not shown to stretch next to the saddle")
         least = self.map.balls.rational(Fraction(1, 2**self.map.balls.bits))
-        L_u, L_s = (flint.arb((2 * part / (far - 1) + least).upper()) for part in (m21, m12))
+        L_u, L_s = (flint.arb((2 * entry / (far - 1) + least).upper()) for entry in (m21, m12))
         expansion, contraction = far - L_u * m12, m22 + L_s * m21
         other = far - m12 / L_s
         conditions = {
@@ -190,7 +190,7 @@ def _proved_orbit(saddle: PeriodicOrbit, digits: int) -> EnclosedOrbit:
 
 def _eigenvectors(matrix: Any) -> list[list[Fraction]]:
     """Columns next to the eigenvectors of the multipliers outside and inside the unit circle, of largest entry 1."""
-    a, b, c, d = (part.mid() for part in matrix.entries())
+    a, b, c, d = (entry.mid() for entry in matrix.entries())
     half = (a + d) / 2
     under = half * half - (a * d - b * c)
     if not under > 0:
@@ -202,5 +202,5 @@ def _eigenvectors(matrix: Any) -> list[list[Fraction]]:
         pairs = [(as_rational(a - other), as_rational(c)), (as_rational(b), as_rational(d - other))]
         vector = max(pairs, key=lambda pair: abs(pair[0]) + abs(pair[1]))
         largest = max(map(abs, vector))
-        columns.append([part / largest for part in vector])
+        columns.append([entry / largest for entry in vector])
     return [[columns[0][row], columns[1][row]] for row in (0, 1)]

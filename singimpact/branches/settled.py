@@ -106,8 +106,8 @@ def _multipliers(osc: Oscillator, tau: Array, v: Array) -> Array:
     half = float(np.trace(product)) / 2
     root = np.sqrt(complex(half * half - determinant))
     first = half + root if half > 0 else half - root
-    found = np.array([first, determinant / first if first else 0.0])
-    return found.real if not found.imag.any() else found
+    eigenvalues = np.array([first, determinant / first if first else 0.0])
+    return eigenvalues.real if not eigenvalues.imag.any() else eigenvalues
 
 
 def _with_rest(osc: Oscillator, lifted: Array, period: float) -> PeriodicOrbit | None:

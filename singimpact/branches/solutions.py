@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.branches.closing import Closing
-from singimpact.branches.free import FreeClosing
+from singimpact.branches.closing import Closing, FreeClosing
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.resting import free_orbit_at
 from singimpact.flights.family import family
@@ -41,8 +40,9 @@ def closing_of(osc: Oscillator, n: int, k: int, over: Sequence[str]) -> AnyClosi
     """The closing conditions of n impacts, or of none, in k periods."""
     if n:
         return Closing(family(osc, tuple(over)), n, k)
-    return FreeClosing(family(osc, (CLEARANCE, *(name for name in over if name not in (CLEARANCE, RESTITUTION)))),
-                       tuple(over), k)  # fmt: skip
+    return FreeClosing(
+        family(osc, (CLEARANCE, *(name for name in over if name not in (CLEARANCE, RESTITUTION)))), tuple(over), k
+    )
 
 
 def orbit_of(closing: AnyClosing, point: Array, seen: bool | None = None) -> PeriodicOrbit:
@@ -95,11 +95,11 @@ def visible(closing: Closing, point: Array, osc: Oscillator) -> bool:
     >>> visible(closing, np.array([3 * np.pi / 8, 8 / 15]), osc)
     True
     """
-    tau, _arrival, v, times = (np.array(part) for part in zip(*closing.flights(point), strict=True))
+    tau, _arrival, v, times = (np.array(column) for column in zip(*closing.flights(point), strict=True))
     if not ((v >= 0) & (times > 0)).all():
         return False
-    given = (float(tau[0]), float(v[0])) if tau.size == 1 else (tau, v)  # two floats are faster
-    step = impact_map(osc, *given)
+    launches = (float(tau[0]), float(v[0])) if tau.size == 1 else (tau, v)  # two floats are faster
+    step = impact_map(osc, *launches)
     flown, status = np.atleast_1d(step.flight_time), np.atleast_1d(step.status)
     with np.errstate(invalid="ignore"):
         same = (np.abs(flown - times) <= SETTINGS.near * times) & np.isin(status, (Status.hit, Status.graze))

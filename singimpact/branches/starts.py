@@ -67,7 +67,7 @@ def grid_of_starts(closing: Closing, tau: Any = None, v: Any = None) -> Array:
         phases = np.linspace(0, period, count, endpoint=False)
         fast = float(np.abs(acceleration(osc, phases)).max()) * span / n
         speeds = fast * np.concatenate([SETTINGS.weak, np.geomspace(1e-3, 1, speed_count)])
-        tau, v = (part.ravel() for part in np.meshgrid(phases, speeds))
+        tau, v = (coordinates.ravel() for coordinates in np.meshgrid(phases, speeds))
     else:
         tau, v = np.asarray(tau, dtype=float), np.asarray(v, dtype=float)
     points = np.stack([tau, v], axis=1) if n == 1 else _flown(osc, tau, v, n, span)
@@ -86,25 +86,25 @@ def _flown(osc: Oscillator, tau: Array, v: Array, n: int, span: float) -> Array:
     share = (times[-1] - times[0]) / span
     chosen = (share > SETTINGS.span[0]) & (share < SETTINGS.span[1])
     # the span is met by stretching the flights alike
-    stretched = [times[0] + (each - times[0]) / np.where(chosen, share, 1.0) for each in times[:-1]]
+    stretched = [times[0] + (phases - times[0]) / np.where(chosen, share, 1.0) for phases in times[:-1]]
     return np.stack([*stretched, *speeds[:-1]], axis=1)[chosen]
 
 
 def _grazes(closing: Closing) -> Array:
     """Points of orbits with one impact less, and with an impact of no velocity at the lowest place of a flight."""
-    n, k, found = closing.n, closing.k, list[Array]()
+    n, k, points = closing.n, closing.k, list[Array]()
     if n == 1:
         for orbit in free_orbits(closing.family.osc, k, lowest_only=True):
-            found += [np.array([float(tau), 0.0]) for tau in np.atleast_1d(orbit.tau)]
-        return np.array(found).reshape(-1, 2)
+            points += [np.array([float(tau), 0.0]) for tau in np.atleast_1d(orbit.tau)]
+        return np.array(points).reshape(-1, 2)
     simpler = Closing(closing.family, n - 1, k)
     for point in closed_from(simpler, grid_of_starts(simpler)):
         for i, (time, height) in enumerate(simpler.heights(point)):
             if np.isfinite(height):
                 times = np.insert(point[: n - 1], i + 1, point[i] + time)
                 speeds = np.insert(point[n - 1 :], i + 1, 0.0)
-                found.append(np.concatenate([times, speeds]))
-    return np.array(found).reshape(-1, 2 * n)
+                points.append(np.concatenate([times, speeds]))
+    return np.array(points).reshape(-1, 2 * n)
 
 
 def conditions(closing: Closing, points: Array) -> tuple[Array, Array]:
@@ -112,20 +112,22 @@ def conditions(closing: Closing, points: Array) -> tuple[Array, Array]:
     osc, n, m = closing.family.osc, closing.n, len(points)
     period = closing.family.period({}).value
     times = np.concatenate([points[:, :n], points[:, :1] + closing.k * period], axis=1)
-    launches, spans, speeds = (part.ravel() for part in (times[:, :n], np.diff(times, axis=1), points[:, n:]))
+    launches, spans, speeds = (block.ravel() for block in (times[:, :n], np.diff(times, axis=1), points[:, n:]))
     launches = launches - period * np.floor(launches / period)
     spans = np.where(spans > 0, spans, np.nan)
-    place, speed, bend = ends(osc, launches, speeds, spans)
+    position, speed, bend = ends(osc, launches, speeds, spans)
     by_v, by_v_dot, by_tau, by_tau_dot = variations(osc, launches, speeds, spans).T
     with np.errstate(all="ignore"):
         # the same blocks as `Closing.at`, for many points at once
         factor = rebound_slope(osc, speed)
         miss = np.empty((m, 2 * n))
-        miss[:, ::2] = place.reshape(m, n)
+        miss[:, ::2] = position.reshape(m, n)
         miss[:, 1::2] = evaluate(osc.rho(), {"v": speed}, DOUBLES).reshape(m, n) - np.roll(points[:, n:], -1, axis=1)
     slope = np.zeros((m, 2 * n, 2 * n))
-    parts = [part.reshape(m, n) for part in (by_tau - speed, factor * (by_tau_dot - bend), by_v, factor * by_v_dot,
-                                             speed, factor * bend)]  # fmt: skip
+    parts = [
+        block.reshape(m, n)
+        for block in (by_tau - speed, factor * (by_tau_dot - bend), by_v, factor * by_v_dot, speed, factor * bend)
+    ]
     for i in range(n):
         after = (i + 1) % n
         slope[:, 2 * i, i] += parts[0][:, i]
@@ -141,7 +143,7 @@ def conditions(closing: Closing, points: Array) -> tuple[Array, Array]:
 def closed_from(closing: Closing, points: Array) -> list[Array]:
     """The solutions that Newton's method finds from these points, each once, virtual ones too."""
     n, period = closing.n, closing.family.period({}).value
-    found: list[Array] = []
+    solutions: list[Array] = []
     at = points
     for count in range(SETTINGS.rounds):
         if not len(at):
@@ -160,9 +162,9 @@ def closed_from(closing: Closing, points: Array) -> list[Array]:
         longest = np.abs(step[:, :n]).max(axis=1) / period
         at = at - step * np.minimum(1.0, SETTINGS.longest / np.maximum(longest, 1e-300))[:, None]
         arrived = size < SETTINGS.arrived
-        found += list(at[arrived])
+        solutions += list(at[arrived])
         at = at[~arrived & (size < (1e6 if count < SETTINGS.slow[0] else SETTINGS.slow[1]))]
-    return _distinct(found, n, period)
+    return _distinct(solutions, n, period)
 
 
 def _solved(slope: Array, miss: Array) -> tuple[Array, Array]:

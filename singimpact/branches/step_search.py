@@ -116,8 +116,9 @@ class StepSearch:
         """Every change of sign in the step; `doubts` has functions that touch 0, up to rounding."""
         nodes = [self.node(0.0, self.here, before), self.node(self.length, after, later)]
         self.neutral = all(_neutral(node) for node in nodes)
-        sizes = {key: max(abs(test.value), abs(later[key].value) if key in later else 0.0)
-                 for key, test in before.items()}  # fmt: skip
+        sizes = {
+            key: max(abs(test.value), abs(later[key].value) if key in later else 0.0) for key, test in before.items()
+        }
         i = 0
         while i < len(nodes) - 1:
             one, other = nodes[i : i + 2]
@@ -131,9 +132,9 @@ class StepSearch:
                 i += 1
             else:
                 nodes.insert(i + 1, between)
-        found = [crossing for one, other in pairwise(nodes) for crossing in self._signs(one, other)]
-        self._touching(nodes, sizes, {crossing.kind for crossing in found})
-        return found
+        changes = [crossing for one, other in pairwise(nodes) for crossing in self._signs(one, other)]
+        self._touching(nodes, sizes, {crossing.kind for crossing in changes})
+        return changes
 
     def _touching(self, nodes: list[Node], sizes: dict[Key, float], crossed: set[EventKind]) -> None:
         """Note functions that were computed at an extremum which is 0 up to rounding."""
@@ -240,9 +241,9 @@ class StepSearch:
     def turn(self, crossing: Crossing, along: float, point: Point) -> tuple[float, float] | None:
         """Time and height of the minimum that a crossing is about."""
         low, high = crossing.low.along, crossing.high.along
-        part = (along - low) / (high - low) if high > low else 0.0
+        fraction = (along - low) / (high - low) if high > low else 0.0
         one, other = (test.share for test in crossing.ends)
-        share = one + part * _gap(other - one, not self.tests.closing.n)
+        share = one + fraction * _gap(other - one, not self.tests.closing.n)
         flight = crossing.keys[0][1]
         span = self.tests.closing.span(point.at, flight)
         turns = self.tests.minima(point.at)[flight]
@@ -272,15 +273,15 @@ def turning(before: float, rate: float, after: float, later: float) -> float | N
         return None
     root = sqrt(root)
     far = -square - root if square > 0 else -square + root
-    places = [place for place in ((far / (3 * cube) if cube else -1.0), rate / far if far else -1.0) if 0 < place < 1]
-    values = [before + place * (rate + place * (square + place * cube)) for place in places]
+    places = [along for along in ((far / (3 * cube) if cube else -1.0), rate / far if far else -1.0) if 0 < along < 1]
+    values = [before + along * (rate + along * (square + along * cube)) for along in places]
     size, least = max(abs(before), abs(after)), min(abs(before), abs(after))
-    for place, value in zip(places, values, strict=True):
-        towards = value * (square + 3 * cube * place) > 0
+    for along, value in zip(places, values, strict=True):
+        towards = value * (square + 3 * cube * along) > 0
         if towards and abs(value) < SETTINGS.near * size and abs(value) < SETTINGS.computed * least:
-            return place
+            return along
         if before * after > 0 and value * before < 0:
-            return place
+            return along
     if before * after <= 0 and len(places) == 2 and values[0] * values[1] < 0:
         first = min(zip(places, values, strict=True))
         if first[1] * before < 0 or (before == 0 and first[1] * after > 0):
@@ -290,8 +291,9 @@ def turning(before: float, rate: float, after: float, later: float) -> float | N
 
 def _neutral(node: Node) -> bool:
     """Whether the product of the multipliers is 1 at a point, up to rounding."""
-    return any(key.kind.conserved and not abs(test.value) >= SETTINGS.neutral * test.size
-               for key, test in node.tests.items())  # fmt: skip
+    return any(
+        key.kind.conserved and not abs(test.value) >= SETTINGS.neutral * test.size for key, test in node.tests.items()
+    )
 
 
 def _pairs(one: Tests, other: Tests, around: bool) -> tuple[list[tuple[Key, Key]], list[Key], list[Key]]:
@@ -308,10 +310,14 @@ def _pairs(one: Tests, other: Tests, around: bool) -> tuple[list[tuple[Key, Key]
     minima = [[key for key, test in tests.items() if test.is_minimum] for tests in (one, other)]
     for flight in sorted({key.impact for keys in minima for key in keys}):
         here, there = ([key for key in keys if key.impact == flight] for keys in minima)
-        mates = {key: min(there, key=lambda mate: abs(_gap(one[key].share - other[mate].share, around)), default=None)
-                 for key in here}  # fmt: skip
-        back = {key: min(here, key=lambda mate: abs(_gap(other[key].share - one[mate].share, around)), default=None)
-                for key in there}  # fmt: skip
+        mates = {
+            key: min(there, key=lambda mate: abs(_gap(one[key].share - other[mate].share, around)), default=None)
+            for key in here
+        }
+        back = {
+            key: min(here, key=lambda mate: abs(_gap(other[key].share - one[mate].share, around)), default=None)
+            for key in there
+        }
         same = [(key, mate) for key, mate in mates.items() if mate is not None and back[mate] == key]
         pairs += same
         first += [key for key in here if key not in {pair[0] for pair in same}]

@@ -40,10 +40,10 @@ def without_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
         closing = closing_of(osc, 0, orbit.k, ())
         end = closing.family.end({CLEARANCE: _wall(osc)}, float(times[0]), 0.0, -float(times[0]))
         return orbit_of(closing, np.array([_wall(osc) + end.place[0], end.place[1]]))
-    kept = [(at + 1 + i) % n for i in range(n - 1)]
+    others = [(at + 1 + i) % n for i in range(n - 1)]
     span = orbit.k * orbit_period(orbit)
-    later = [times[i] + (span if i <= at else 0.0) for i in kept]
-    return _closed(orbit, n - 1, np.concatenate([later, speeds[kept]]))
+    later = [times[i] + (span if i <= at else 0.0) for i in others]
+    return _closed(orbit, n - 1, np.concatenate([later, speeds[others]]))
 
 
 def with_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
@@ -52,8 +52,11 @@ def with_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     if n == 0:
         return _closed(orbit, 1, np.array([times[0], 0.0]))
     flight, time = touching_flight(orbit)
-    return _closed(orbit, n + 1, np.concatenate([np.insert(times, flight + 1, times[flight] + time),
-                                                 np.insert(speeds, flight + 1, 0.0)]))  # fmt: skip
+    return _closed(
+        orbit,
+        n + 1,
+        np.concatenate([np.insert(times, flight + 1, times[flight] + time), np.insert(speeds, flight + 1, 0.0)]),
+    )
 
 
 def touching_flight(orbit: PeriodicOrbit) -> tuple[int, float]:
@@ -84,8 +87,8 @@ def doubled(orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicO
     curve = Curve(Equations(twice), scales, 10 * APART)
     tangent = moved / scales
     start = Point(point, tangent / np.linalg.norm(tangent))
-    found = curve.beyond(start, APART)
-    return [] if found is None else [orbit_of(twice, found[0].at)]
+    corrected = curve.beyond(start, APART)
+    return [] if corrected is None else [orbit_of(twice, corrected[0].at)]
 
 
 class Equations:

@@ -81,8 +81,9 @@ class OrbitChange:
     interval: int = 0
 
     def __repr__(self) -> str:
-        told = " and ".join(f"{' and '.join(part) or 'none'} {where}"
-                            for part, where in ((self.below, "below"), (self.above, "above")))  # fmt: skip
+        told = " and ".join(
+            f"{' and '.join(part) or 'none'} {where}" for part, where in ((self.below, "below"), (self.above, "above"))
+        )
         name = f"({self.n}, {self.k}) orbit" if self.n else "orbit without impact"
         return f"<{self.kind} of the {name} at {self.event.over} = {self.value:.12g}: {told}>"
 
@@ -120,16 +121,20 @@ class OrbitTransitions(Transitions):
     branches: tuple[Branch, ...]
     orbit_notes: tuple[str, ...]
 
-    def __new__(cls, found: Transitions, *_: Any) -> OrbitTransitions:
+    def __new__(cls, without_orbits: Transitions, *_: Any) -> OrbitTransitions:
         """The tuple is that of the transitions."""
-        return super().__new__(cls, found)
+        return super().__new__(cls, without_orbits)
 
     def __init__(
-        self, found: Transitions, moved: tuple[Oscillator, str, tuple[float, float]], intervals: tuple[Interval, ...],
-        branches: tuple[Branch, ...], orbit_notes: tuple[str, ...],
-    ) -> None:  # fmt: skip
-        self._proof = found._proof
-        self.notes, (self.oscillator, self.over, self.ends) = found.notes, moved
+        self,
+        without_orbits: Transitions,
+        moved: tuple[Oscillator, str, tuple[float, float]],
+        intervals: tuple[Interval, ...],
+        branches: tuple[Branch, ...],
+        orbit_notes: tuple[str, ...],
+    ) -> None:
+        self._proof = without_orbits._proof
+        self.notes, (self.oscillator, self.over, self.ends) = without_orbits.notes, moved
         self.intervals, self.branches, self.orbit_notes = intervals, branches, orbit_notes
 
     @property
@@ -140,8 +145,11 @@ class OrbitTransitions(Transitions):
     def __repr__(self) -> str:
         lines = []
         for interval in self.intervals:
-            lines += [f"{each.kind} at {self.over} = {each.value:.12g}, tau = {each.tau:.6g}, t = {each.t:.6g}"
-                      for each in self if each.value == interval.low]  # fmt: skip
+            lines += [
+                f"{row.kind} at {self.over} = {row.value:.12g}, tau = {row.tau:.6g}, t = {row.t:.6g}"
+                for row in self
+                if row.value == interval.low
+            ]
             names = [_named(orbit) for orbit in interval.orbits]
             lines.append(
                 f"from {interval.low:.9g} to {interval.high:.9g}: {', '.join(names) or 'none of these orbits'}"
@@ -162,7 +170,7 @@ class OrbitTransitions(Transitions):
         if not -len(self) <= index < len(self):
             raise refuse("index", index, f"one of {len(self)} transitions")
         chosen = self[index]
-        others = [abs(each.value - chosen.value) for each in self if each.value != chosen.value]
+        others = [abs(other.value - chosen.value) for other in self if other.value != chosen.value]
         most = min([SETTINGS.apart[0] * (self.ends[1] - self.ends[0]), *(SETTINGS.apart[1] * gap for gap in others)])
         step = most if apart is None else as_float(constant("apart", apart))
         if not step > 0:
@@ -173,8 +181,8 @@ class OrbitTransitions(Transitions):
         period = as_float(models[0].period)
         speeds = (0.0, largest_push(models[0]) * period / 4) if v is None else window_ends("v", v)
         tau = (chosen.tau - period / 2, chosen.tau + period / 2)
-        found = [basins(model, tau, speeds, whole("size", size, 2, 10_000)) for model in models]
-        return BothSides(chosen, self.over, (models[0], models[1]), (found[0], found[1]))
+        planes = [basins(model, tau, speeds, whole("size", size, 2, 10_000)) for model in models]
+        return BothSides(chosen, self.over, (models[0], models[1]), (planes[0], planes[1]))
 
 
 @dataclass(frozen=True)
@@ -193,9 +201,14 @@ class BothSides:
 
 
 def transitions(
-    osc: Oscillator, over: str = "clearance", between: Any = None, t: Any = None, *, orbits: Any = None,
+    osc: Oscillator,
+    over: str = "clearance",
+    between: Any = None,
+    t: Any = None,
+    *,
+    orbits: Any = None,
     kinds: Any = None,
-) -> Transitions:  # fmt: skip
+) -> Transitions:
     """Where P changes its kind as a number of the model moves, and what happens to periodic orbits on the way.
 
     Parameters
@@ -243,10 +256,10 @@ def transitions(
     pairs = None if orbits is None else _pairs(orbits)
     if pairs is not None and osc.period is None:
         raise InputError("the forcing has no period: periodic orbits need one")
-    found = transitions_of_outline(osc, over, between, default_window(osc)[1] if t is None else t, kinds)
+    changes = transitions_of_outline(osc, over, between, default_window(osc)[1] if t is None else t, kinds)
     if pairs is None:
-        return found
-    return _Search(found, osc, over, window_ends(over, between), pairs).found()
+        return changes
+    return _Search(changes, osc, over, window_ends(over, between), pairs).found()
 
 
 def _pairs(orbits: Any) -> list[tuple[int, int]]:
@@ -280,11 +293,8 @@ class _Search:
     def found(self) -> OrbitTransitions:
         """The transitions with intervals and branches."""
         low, high = self.ends
-        edges = [
-            low,
-            *sorted({each.value for each in self.transitions if low < each.value < high and _parts(each)}),
-            high,
-        ]
+        inner = {change.value for change in self.transitions if low < change.value < high and _parts(change)}
+        edges = [low, *sorted(inner), high]
         middles = [(one + other) / 2 for one, other in pairwise(edges)]
         extra = np.linspace(low, high, SETTINGS.samples + 2)[1:-1].tolist()
         at_middles = {}
@@ -293,13 +303,13 @@ class _Search:
             if value in middles:
                 at_middles[value] = orbits
             for orbit in orbits:
-                if orbit.kind != "chatter" and not any(self._passes(each, orbit, value) for each in self.branches):
+                if orbit.kind != "chatter" and not any(self._passes(curve, orbit, value) for curve in self.branches):
                     self.branches.append(branch(orbit, self.over, self.ends))
         # equal values, of orbits that meet at a graze, may differ by rounding
         changes = sorted(self._changes(), key=lambda change: (float(f"{change.value:.12g}"), change.n, change.k))
         intervals = tuple(
-            Interval(one, other, tuple(at_middles[(one + other) / 2]), tuple(_placed(changes, one, other, place)))
-            for place, (one, other) in enumerate(pairwise(edges))
+            Interval(one, other, tuple(at_middles[(one + other) / 2]), tuple(_placed(changes, one, other, number)))
+            for number, (one, other) in enumerate(pairwise(edges))
         )
         note = (
             f"orbits are looked for at {len(set(middles) | set(extra))} values: those of branches between two of these "

@@ -133,7 +133,7 @@ def certify(result: Any) -> Certificate:
             "for one state, a periodic orbit, or a horseshoe",
         )
     numbers = {name: getattr(impact, name).as_dict() for name in IMPACT}
-    launch = {name: str(part) for name, part in zip(("tau", "v"), impact.launch, strict=True)}
+    launch = {name: str(coordinate) for name, coordinate in zip(("tau", "v"), impact.launch, strict=True)}
     return _sealed("first impact", impact.oscillator, {"launch": launch, **numbers})
 
 
@@ -152,8 +152,13 @@ def _of_orbit(orbit: EnclosedOrbit) -> dict[str, Any]:
     precise = [pair for pair in orbit.multipliers or () if pair[0].digits > 2 * LOST]  # others say next to nothing
     multipliers = [{"real": _wider(real), "imaginary": _wider(imaginary)} for real, imaginary in precise]
     unique = min(orbit.unique_within, max(UNIQUE, 4 * widest))
-    return {"period": str(orbit.oscillator.period), "periods": str(orbit.k), "states": states,
-            "unique_within": str(unique), "multipliers": multipliers}  # fmt: skip
+    return {
+        "period": str(orbit.oscillator.period),
+        "periods": str(orbit.k),
+        "states": states,
+        "unique_within": str(unique),
+        "multipliers": multipliers,
+    }
 
 
 def _narrow(number: Certified) -> Certified:
@@ -169,10 +174,10 @@ def _of_limit(limit: ChatterLimit) -> Certificate:
         )
     if not sign_of(limit.launch[1]):
         raise InputError("a chatter that starts at rest has no certificate: launch with v > 0")
-    launch = {name: str(part) for name, part in zip(("tau", "v"), limit.launch, strict=True)}
+    launch = {name: str(coordinate) for name, coordinate in zip(("tau", "v"), limit.launch, strict=True)}
     ends = "lift-off" if limit.status == Status.lifts_off else "accumulation"
-    told = {"launch": launch, "ends": ends, "tau": limit.certified.as_dict()}
-    return _sealed("chatter limit", limit.oscillator, told)
+    statement = {"launch": launch, "ends": ends, "tau": limit.certified.as_dict()}
+    return _sealed("chatter limit", limit.oscillator, statement)
 
 
 def _of_event(event: EnclosedEvent) -> Certificate:
@@ -184,62 +189,95 @@ def _of_event(event: EnclosedEvent) -> Certificate:
             f"an event over the {event.over} has no certificate as a file: only those over a parameter have"
         )
     states = [{"tau": tau.as_dict(), "v": v.as_dict()} for tau, v in zip(event.tau, event.v, strict=True)]
-    told = {"kind": event.kind, "over": event.over, "period": str(event.oscillator.period), "periods": str(event.k),
-            "parameter": event.parameter.as_dict(), "states": states}  # fmt: skip
+    statement = {
+        "kind": event.kind,
+        "over": event.over,
+        "period": str(event.oscillator.period),
+        "periods": str(event.k),
+        "parameter": event.parameter.as_dict(),
+        "states": states,
+    }
     if event.kind in TOUCHING:
         states[0]["v"] = {"value": "0", "radius": event.tau[0].as_dict()["radius"]}
-        told["unique_within"] = str(min(event.unique_within, UNIQUE))
-    return _sealed("event", event.oscillator, told)
+        statement["unique_within"] = str(min(event.unique_within, UNIQUE))
+    return _sealed("event", event.oscillator, statement)
 
 
 def _of_border(orbit: BorderOrbit) -> Certificate:
     """The certificate of a border orbit; clearance or restitution, where they are varied, are numbers by name."""
     if orbit.certified is None:
         raise InputError(f"the border orbit is not certified: {'; '.join(orbit.notes) or 'ask for digits='}")
-    told = {"over": orbit.over, "parameter": orbit.certified.as_dict(), "release": repr(float(orbit.release)),
-            "end": repr(float(orbit.end)), "impacts": str(orbit.returned.entry), "completes": orbit.side}  # fmt: skip
-    sealed = _sealed("border orbit", orbit.oscillator, told)
+    statement = {
+        "over": orbit.over,
+        "parameter": orbit.certified.as_dict(),
+        "release": repr(float(orbit.release)),
+        "end": repr(float(orbit.end)),
+        "impacts": str(orbit.returned.entry),
+        "completes": orbit.side,
+    }
+    sealed = _sealed("border orbit", orbit.oscillator, statement)
     if orbit.over in orbit.oscillator.parameters:
         return sealed
     model = {**sealed.content["model"], orbit.over: orbit.over}
-    content = {name: part for name, part in sealed.content.items() if name != "digest"} | {"model": model}
+    content = {name: entry for name, entry in sealed.content.items() if name != "digest"} | {"model": model}
     return Certificate({**content, "digest": digest_of(content)})
 
 
-def _of_horseshoe(found: Horseshoe) -> dict[str, Any]:
+def _of_horseshoe(horseshoe: Horseshoe) -> dict[str, Any]:
     """The statement of a certificate of a horseshoe, as text."""
-    sets = [{"centre": [str(x) for x in each.centre], "frame": [[str(x) for x in row] for row in each.frame],
-             "radii": [str(x) for x in each.radii]} for each in found.sets]  # fmt: skip
-    return {"period": str(found.oscillator.period), "loops": [str(n) for n in found.loops], "sets": sets,
-            "entropy": found.entropy.as_dict()}  # fmt: skip
+    sets = [
+        {
+            "centre": [str(x) for x in crossed.centre],
+            "frame": [[str(x) for x in row] for row in crossed.frame],
+            "radii": [str(x) for x in crossed.radii],
+        }
+        for crossed in horseshoe.sets
+    ]
+    return {
+        "period": str(horseshoe.oscillator.period),
+        "loops": [str(n) for n in horseshoe.loops],
+        "sets": sets,
+        "entropy": horseshoe.entropy.as_dict(),
+    }
 
 
-def _of_gamma(found: CertifiedGamma) -> dict[str, Any]:
+def _of_gamma(gamma: CertifiedGamma) -> dict[str, Any]:
     """The statement of a certificate of gamma, as text; bounds leave room for another evaluation of the same lemmas."""
-    loose = FREER if found.fastest else LOOSER
-    boxes = [{"lambda": [str(box.low), str(box.high)], "N": str(box.settings.N), "D": str(box.settings.D),
-              "pieces": str(box.settings.pieces), "eta": f"{float(box.eta):.6g}", "M": f"{float(box.M):.6g}",
-              "series": [_with_room(from_ball(part, SERIES_DIGITS)) for part in box.series],
-              "R": _bound(box.R, loose), "Kl": _bound(box.Kl, LOOSER**2 * loose),
-              "grow": _bound(box.grow, 2 - LOOSER), "tree": box.tree} for box in found.boxes]  # fmt: skip
-    after = found.lost or found.settled
-    told = {
-        "order": str(found.order),
-        "tau": found.tau.as_dict(),
-        "reach": str(found.reach),
-        "restitution": "model" if found.of_model else [str(end) for end in found.restitution or ()],
-        "after": {name: str(part) for name, part in after._asdict().items()} if after else {},
+    loose = FREER if gamma.fastest else LOOSER
+    boxes = [
+        {
+            "lambda": [str(box.low), str(box.high)],
+            "N": str(box.settings.N),
+            "D": str(box.settings.D),
+            "pieces": str(box.settings.pieces),
+            "eta": f"{float(box.eta):.6g}",
+            "M": f"{float(box.M):.6g}",
+            "series": [_with_room(from_ball(number, SERIES_DIGITS)) for number in box.series],
+            "R": _bound(box.R, loose),
+            "Kl": _bound(box.Kl, LOOSER**2 * loose),
+            "grow": _bound(box.grow, 2 - LOOSER),
+            "tree": box.tree,
+        }
+        for box in gamma.boxes
+    ]
+    after = gamma.lost or gamma.settled
+    statement = {
+        "order": str(gamma.order),
+        "tau": gamma.tau.as_dict(),
+        "reach": str(gamma.reach),
+        "restitution": "model" if gamma.of_model else [str(end) for end in gamma.restitution or ()],
+        "after": {name: str(number) for name, number in after._asdict().items()} if after else {},
         "boxes": boxes,
     }
-    if found.fastest:
-        told["fastest"] = f"{0.99 * float(found.fastest.value):.4g}"
-    return {**told, "threshold": _with_room(found.at_reach())} if found.of_model else told
+    if gamma.fastest:
+        statement["fastest"] = f"{0.99 * float(gamma.fastest.value):.4g}"
+    return {**statement, "threshold": _with_room(gamma.at_reach())} if gamma.of_model else statement
 
 
 def _with_room(number: Certified) -> dict[str, str]:
     """A number with a radius that leaves room for another enclosure."""
-    told = number.as_dict()
-    return {"value": told["value"], "radius": f"{1.5 * float(told['radius']):.3g}"}
+    texts = number.as_dict()
+    return {"value": texts["value"], "radius": f"{1.5 * float(texts['radius']):.3g}"}
 
 
 def _bound(ball: Any, factor: float) -> str:
@@ -249,10 +287,10 @@ def _bound(ball: Any, factor: float) -> str:
 
 def _wider(number: Certified) -> dict[str, str]:
     """A multiplier with a radius that leaves room for another enclosure of the derivative."""
-    told = number.as_dict()
-    least = Fraction(max(abs(Fraction(told["value"])), Fraction(1))) / 10 ** (number.digits - LOST)
-    radius = max(LOOSE * Fraction(told["radius"]), least)
-    return {"value": told["value"], "radius": f"{float(radius):.3g}"}
+    texts = number.as_dict()
+    least = Fraction(max(abs(Fraction(texts["value"])), Fraction(1))) / 10 ** (number.digits - LOST)
+    radius = max(LOOSE * Fraction(texts["radius"]), least)
+    return {"value": texts["value"], "radius": f"{float(radius):.3g}"}
 
 
 def read_certificate(path: Any) -> Certificate:
@@ -276,6 +314,6 @@ def read_certificate(path: Any) -> Certificate:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
     except Refused as reason:
         raise InputError(f"{path} is no certificate: {reason}") from None
-    found = Certificate(content if isinstance(content, dict) else {})
-    found.check()
-    return found
+    certificate = Certificate(content if isinstance(content, dict) else {})
+    certificate.check()
+    return certificate

@@ -40,29 +40,29 @@ MODULO, IN_MODEL = "proved modulo", "proved in the model"
 STRONGEST_FIRST = ("proved", MODULO, IN_MODEL, "certified", "argued", "formal", "supported", "cited", "open", "error")
 
 
-def digest_of(told: Mapping[str, Any]) -> str:
+def digest_of(content: Mapping[str, Any]) -> str:
     """A digest of all but itself."""
-    rest = {name: part for name, part in told.items() if name != "digest"}
+    rest = {name: part for name, part in content.items() if name != "digest"}
     return hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
 
 
 STATEMENT = ("title", "printed", "corrected", "verdict", "corrected_kind")
 
 
-def statement_of(told: Mapping[str, Any]) -> str:
+def statement_of(content: Mapping[str, Any]) -> str:
     """A short digest of the words of a claim, as the list has it."""
-    return digest_of({name: told[name] for name in STATEMENT})[:16]
+    return digest_of({name: content[name] for name in STATEMENT})[:16]
 
 
-def check_words(told: dict[str, Any]) -> None:
+def check_words(content: dict[str, Any]) -> None:
     """Nothing where the verdicts of a file agree: the effective one is no stronger than the argument and its theorems.
 
     Raises
     ------
     Refused : they do not, and why.
     """
-    own = told["corrected_kind"] if told["verdict"] == "corrected" else told["verdict"]
-    worth, modulo, below = told["effective"], told.get("modulo", []), told.get("effective_modulo", [])
+    own = content["corrected_kind"] if content["verdict"] == "corrected" else content["verdict"]
+    worth, modulo, below = content["effective"], content.get("modulo", []), content.get("effective_modulo", [])
     need(own in STRONGEST_FIRST and own != IN_MODEL, f"{own!r} is no verdict on an argument")
     need(worth in STRONGEST_FIRST, f"{worth!r} is no effective verdict")
     for names in (modulo, below):
@@ -72,7 +72,7 @@ def check_words(told: dict[str, Any]) -> None:
         need(word != "proved" or not names, f"proved, but modulo {', '.join(names)}")
         need(word != MODULO or names, f"{MODULO} no theorem")
     need(STRONGEST_FIRST.index(worth) >= STRONGEST_FIRST.index(own), f"{worth} is stronger than {own}")
-    in_model = told.get("in_model") and own in ("proved", MODULO)
+    in_model = content.get("in_model") and own in ("proved", MODULO)
     need(not in_model or worth not in ("proved", MODULO), f"an argument about the model is not worth {worth}")
 
 
@@ -83,47 +83,54 @@ TEXTS, LISTS = (
 OTHERS = ("corrected", "corrected_kind", "in_model", "rests_on", "schema", "digest")
 
 
-def check_form(told: Any) -> None:
+def check_form(content: Any) -> None:
     """Nothing where a file has the fields of a claim, and a correction corrects."""
-    need(isinstance(told, dict) and told.get("schema") == SCHEMA, f"only files of schema {SCHEMA!r} are checked here")
-    need(told.get("digest") == digest_of(told), "the digest is not that of the content: the file was changed")
-    fields_are(told, {*TEXTS, *LISTS, *OTHERS})
-    need(all(isinstance(told[name], str) and told[name] for name in TEXTS), "a text that is none")
     need(
-        all(isinstance(told[name], list) for name in LISTS) and type(told["in_model"]) is bool,
+        isinstance(content, dict) and content.get("schema") == SCHEMA,
+        f"only files of schema {SCHEMA!r} are checked here",
+    )
+    need(content.get("digest") == digest_of(content), "the digest is not that of the content: the file was changed")
+    fields_are(content, {*TEXTS, *LISTS, *OTHERS})
+    need(all(isinstance(content[name], str) and content[name] for name in TEXTS), "a text that is none")
+    need(
+        all(isinstance(content[name], list) for name in LISTS) and type(content["in_model"]) is bool,
         "a field of another type",
     )
-    rests_on = told["rests_on"]
+    rests_on = content["rests_on"]
     need(
-        isinstance(rests_on, dict) and all(isinstance(part, str) for part in rests_on.values()), "rests_on is no record"
+        isinstance(rests_on, dict) and all(isinstance(digest, str) for digest in rests_on.values()),
+        "rests_on is no record",
     )
-    corrected = told["verdict"] == "corrected"
+    corrected = content["verdict"] == "corrected"
     for name in ("corrected", "corrected_kind"):
-        text = isinstance(told[name], str) and told[name]
-        need(text if corrected else told[name] is None, f"{name} does not go with the verdict {told['verdict']}")
-    need(told["corrected"] != told["printed"], "the correction is what is printed")
+        text = isinstance(content[name], str) and content[name]
+        need(text if corrected else content[name] is None, f"{name} does not go with the verdict {content['verdict']}")
+    need(content["corrected"] != content["printed"], "the correction is what is printed")
 
 
-def check_supported(told: Mapping[str, Any], below: Mapping[str, Mapping[str, Any]]) -> None:
+def check_supported(content: Mapping[str, Any], below: Mapping[str, Mapping[str, Any]]) -> None:
     """Nothing where what is proved rests on something, and is worth no more than that.
 
     Parameters
     ----------
     below : the files of the claims that it rests on, which hold, by id.
     """
-    own = told["corrected_kind"] or told["verdict"]
+    own = content["corrected_kind"] or content["verdict"]
     needs = own in ("proved", MODULO)
-    need(not needs or told["certificates"] or told["rests_on"], f"{own}, without a certificate and without other files")
-    for name, digest in told["rests_on"].items():
+    need(
+        not needs or content["certificates"] or content["rests_on"],
+        f"{own}, without a certificate and without other files",
+    )
+    for name, digest in content["rests_on"].items():
         need(name in below, f"the file of {name}, on which it rests, is not given")
         need(below[name]["digest"] == digest, f"the file of {name} is another one")
-        worth, other = (STRONGEST_FIRST.index(part["effective"]) for part in (told, below[name]))
-        need(worth >= other, f"{told['effective']} is stronger than {name}, on which it rests")
-        lost = set(below[name]["effective_modulo"]) - set(told["effective_modulo"])
+        worth, other = (STRONGEST_FIRST.index(claim["effective"]) for claim in (content, below[name]))
+        need(worth >= other, f"{content['effective']} is stronger than {name}, on which it rests")
+        lost = set(below[name]["effective_modulo"]) - set(content["effective_modulo"])
         need(not lost, f"a theorem of {name} is missing: {min(lost, default='')}")
 
 
-def check(told: Any, below: Mapping[str, Mapping[str, Any]] | None = None) -> int:
+def check(content: Any, below: Mapping[str, Mapping[str, Any]] | None = None) -> int:
     """The number of certificates of a claim, when all hold, its words agree and so do the files that it rests on.
 
     Raises
@@ -131,21 +138,21 @@ def check(told: Any, below: Mapping[str, Mapping[str, Any]] | None = None) -> in
     Refused : one does not hold, or the file was changed; and why.
     """
     with answered():
-        check_form(told)
-        check_words(told)
+        check_form(content)
+        check_words(content)
         stated = json.loads(STATED.read_text(encoding="utf-8"))["claims"]
-        need(told["id"] in stated, f"{told['id']!r:.60} is no claim of the list")
+        need(content["id"] in stated, f"{content['id']!r:.60} is no claim of the list")
         need(
-            stated[told["id"]] == statement_of(told),
-            f"the words or the verdict of {told['id']} are not those of the list",
+            stated[content["id"]] == statement_of(content),
+            f"the words or the verdict of {content['id']} are not those of the list",
         )
-        check_supported(told, below or {})
-        for n, certificate in enumerate(told["certificates"]):
+        check_supported(content, below or {})
+        for n, certificate in enumerate(content["certificates"]):
             try:
                 check_certificate(certificate)
             except Refused as reason:
                 raise Refused(f"certificate {n}: {reason}") from None
-    return len(told["certificates"])
+    return len(content["certificates"])
 
 
 def read(path: Path) -> Any:
@@ -166,8 +173,9 @@ def read(path: Path) -> Any:
     with path.open("rb") as file:
         data = file.read(BYTES + 1)
     need(len(data) <= BYTES, f"the file has more than {BYTES} bytes")
-    return json.loads(data.decode("utf-8"), parse_int=whole, parse_float=none, parse_constant=none,
-                      object_pairs_hook=once)  # fmt: skip
+    return json.loads(
+        data.decode("utf-8"), parse_int=whole, parse_float=none, parse_constant=none, object_pairs_hook=once
+    )
 
 
 class Folder:
@@ -182,10 +190,10 @@ class Folder:
             try:
                 with answered():
                     need(path not in above and len(above) < 200, "files that rest on one another")
-                    told = read(path)
-                    names = told.get("rests_on") if isinstance(told, dict) else None
+                    content = read(path)
+                    names = content.get("rests_on") if isinstance(content, dict) else None
                     below = {name: self.held(path.with_name(file_of(name)), (*above, path))[0] for name in names or ()}
-                    self.answers[path] = told, check(told, below)
+                    self.answers[path] = content, check(content, below)
             except Refused as reason:
                 self.answers[path] = reason
         answer = self.answers[path]
@@ -205,9 +213,9 @@ def main(paths: Sequence[str]) -> int:
     failed, folder = 0, Folder()
     for path in paths:
         try:
-            told, found = folder.held(Path(path))
-            rest = f"; rests on {', '.join(told['rests_on'])}" if told["rests_on"] else ""
-            print(f"{path}: {f'{found} certificates hold' if found else 'has none of its own'}{rest}")
+            content, count = folder.held(Path(path))
+            rest = f"; rests on {', '.join(content['rests_on'])}" if content["rests_on"] else ""
+            print(f"{path}: {f'{count} certificates hold' if count else 'has none of its own'}{rest}")
         except Refused as reason:
             print(f"{path}: refused: {reason}")
             failed = 1

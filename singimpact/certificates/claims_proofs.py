@@ -87,7 +87,7 @@ class Letters:
         if not signed:
             return "0"
         first = ("-" if signed[0][0] else "") + signed[0][1]
-        return first + "".join(f" {'-' if negative else '+'} {part}" for negative, part in signed[1:])
+        return first + "".join(f" {'-' if negative else '+'} {term}" for negative, term in signed[1:])
 
     def quotient_text(self, pair: Any) -> str:
         above, below = (self.text(self.read(part)) for part in pair)
@@ -127,10 +127,10 @@ class Letters:
             term = self.constant(value)
             for n, power in enumerate(key):
                 over, under = images.get(n, (self.variables[n], self.constant(1)))
-                part = self.times(
+                factor = self.times(
                     self.power(over, power, weights, order), self.power(under, degrees[n] - power, (), None)
                 )
-                term = self.with_degree(self.times(term, part), weights, order)
+                term = self.with_degree(self.times(term, factor), weights, order)
             above += term
         below = self.constant(1)
         for n, (_, under) in images.items():
@@ -163,7 +163,7 @@ def expands(letters: Letters, first: int, poly: Any, box: Any, proof: Any) -> bo
     for n, (low, high) in enumerate(box):
         x = letters.variables[first + n]
         raised, degree = proof["raised"][n], proof["degree"][n]
-        degrees = all(type(part) is int and 0 <= part <= EXPONENT for part in (raised, degree))
+        degrees = all(type(product) is int and 0 <= product <= EXPONENT for product in (raised, degree))
         need(degrees, "a degree that is none")
         above = None if low in ENDS else x - number(low)
         below = None if high in ENDS else number(high) - x
@@ -180,14 +180,14 @@ def expands(letters: Letters, first: int, poly: Any, box: Any, proof: Any) -> bo
         need(len(key) == len(box) and key not in seen and number(value) > 0, "a part of the sum that is not positive")
         need(all(type(n) is int and 0 <= n <= EXPONENT for n in key), "an exponent that is none")
         seen.add(key)
-        part = letters.constant(number(value))
+        product = letters.constant(number(value))
         for power, (above, below, degree) in zip(key, distances, strict=True):
             if above is not None and below is not None:
                 need(power <= degree, "a power above the degree")
-                part = letters.times(part, above**power * below ** (degree - power))
+                product = letters.times(product, above**power * below ** (degree - power))
             else:
-                part = letters.times(part, (above if above is not None else below) ** power)
-        total += part
+                product = letters.times(product, (above if above is not None else below) ** power)
+        total += product
     return bool(seen) and total == left
 
 
@@ -218,19 +218,19 @@ def sign_part(letters: Letters, poly: Any, index: int, at: str) -> Any:
 
 def chain(data: Any, letters: Letters) -> str:
     poly, places = letters.read(data["polynomial"]), data["places"]
-    for place in places:
-        need(place["sign"] in (-1, 1) and type(place["sign"]) is int, "a sign is 1 or -1")
-        value = sign_part(letters, poly, 0, place["at"]) * place["sign"]
-        need(expands(letters, 1, value, data["box"], place), f"the sign at {place['at']} does not follow")
-    ordered = [place_of(place["at"]) for place in places]
+    for point in places:
+        need(point["sign"] in (-1, 1) and type(point["sign"]) is int, "a sign is 1 or -1")
+        value = sign_part(letters, poly, 0, point["at"]) * point["sign"]
+        need(expands(letters, 1, value, data["box"], point), f"the sign at {point['at']} does not follow")
+    ordered = [place_of(point["at"]) for point in places]
     need(all(one < two for one, two in pairwise(ordered)), "the places are not in order")
     gaps = [[one["at"], two["at"]] for one, two in pairwise(places) if one["sign"] != two["sign"]]
     need(gaps == data["roots"], "the signs change elsewhere")
     need(data["all"] is (len(gaps) == letters.degree(poly, 0)), "there may be other roots, or none")
-    told = ", ".join(f"({low}, {high})" for low, high in gaps) or "no gap"
+    brackets = ", ".join(f"({low}, {high})" for low, high in gaps) or "no gap"
     rest = f", for all {box_text(letters.names[1:], data['box'])}" if data["box"] else ""
     others = " and no other" if data["all"] else ""
-    return f"{letters.text(poly)} has a root {letters.names[0]} in each of {told}{others}{rest}"
+    return f"{letters.text(poly)} has a root {letters.names[0]} in each of {brackets}{others}{rest}"
 
 
 def count(data: Any, letters: Letters) -> str:
@@ -256,9 +256,9 @@ def count(data: Any, letters: Letters) -> str:
         return sum(one != two for one, two in pairwise(signs))
 
     at_end = data["high"] not in ENDS and letters.at(parts[0], 0, number(data["high"])) == 0
-    found = changes(data["low"]) - changes(data["high"]) - at_end
-    need(type(data["roots"]) is int and found == data["roots"], f"there are {found} roots")
-    return f"{letters.text(parts[0])} has {found} real roots in ({data['low']}, {data['high']})"
+    roots = changes(data["low"]) - changes(data["high"]) - at_end
+    need(type(data["roots"]) is int and roots == data["roots"], f"there are {roots} roots")
+    return f"{letters.text(parts[0])} has {roots} real roots in ({data['low']}, {data['high']})"
 
 
 def value(data: Any, letters: Letters) -> str:
@@ -269,21 +269,24 @@ def value(data: Any, letters: Letters) -> str:
     pair = letters.quotient_text((data["numerator"], data["denominator"]))
     if at in ENDS:
         more = letters.degree(above, index) - letters.degree(below, index)
-        over, under = (sign_part(letters, part, index, at) if part != 0 else part for part in (above, below))
+        over, under = (
+            sign_part(letters, polynomial, index, at) if polynomial != 0 else polynomial
+            for polynomial in (above, below)
+        )
         over = letters.constant(0) if more < 0 else over
         grows = more > 0
     else:
-        over, under = (letters.at(part, index, number(at)) for part in (above, below))
+        over, under = (letters.at(polynomial, index, number(at)) for polynomial in (above, below))
         grows = under == 0
-    told = f"{letters.names[index]} -> {at}"
+    limit = f"{letters.names[index]} -> {at}"
     if data["value"] == "infinite":
         need(grows and over != 0, "it is bounded, or 0/0")
-        return f"{pair} is unbounded as {told}"
-    stated = [letters.read(part) for part in data["value"]]
+        return f"{pair} is unbounded as {limit}"
+    stated = [letters.read(polynomial) for polynomial in data["value"]]
     need(not grows and under != 0 and stated[1] != 0, "a quotient by 0")
-    need(all(letters.degree(part, index) <= 0 for part in stated), "a value that depends on the variable")
+    need(all(letters.degree(polynomial, index) <= 0 for polynomial in stated), "a value that depends on the variable")
     need(over * stated[1] == under * stated[0], "another value")
-    return f"{pair} -> {letters.quotient_text(data['value'])} as {told}"
+    return f"{pair} -> {letters.quotient_text(data['value'])} as {limit}"
 
 
 def definite(data: Any, letters: Letters) -> str:
@@ -303,19 +306,24 @@ def by_relation(data: Any, letters: Letters, weights: Sequence[int], order: int 
     (above, below), (other, under) = sides
     difference = letters.with_degree(above * under - other * below, weights, order)
     if data["relation"] is None:
-        for part in (below, under):
-            need(letters.with_degree(part, weights, None if order is None else 0) != 0, "a quotient by 0")
+        for polynomial in (below, under):
+            need(letters.with_degree(polynomial, weights, None if order is None else 0) != 0, "a quotient by 0")
         need(difference == 0, "the two sides differ")
         return ""
     multiplier, cofactor, relation = map(letters.read, data["relation"])
     last = len(letters.names) - 1
     need(letters.degree(relation, last) == 2 and letters.degree(multiplier, last) == 0, "no quadratic relation")
     if order is not None:
-        need(all(letters.with_degree(part, weights, 0) == part for part in (multiplier, relation)), "a small relation")
-    for part in (below, under):
-        lowest = letters.with_degree(part, weights, None if order is None else 0)
+        need(
+            all(letters.with_degree(polynomial, weights, 0) == polynomial for polynomial in (multiplier, relation)),
+            "a small relation",
+        )
+    for polynomial in (below, under):
+        lowest = letters.with_degree(polynomial, weights, None if order is None else 0)
         need(lowest != 0 and resultant(letters, lowest, relation, last) != 0, "a quotient by 0")
-    left, right = (letters.with_degree(part, weights, order) for part in (multiplier * difference, cofactor * relation))
+    left, right = (
+        letters.with_degree(polynomial, weights, order) for polynomial in (multiplier * difference, cofactor * relation)
+    )
     need(left == right, "the two sides differ at a root of the relation")
     return f" where {letters.text(relation)} = 0"
 
@@ -384,7 +392,7 @@ def composed(data: Any, letters: Letters) -> str:
                 need(resultant(letters, lowest, zero, len(letters.names) - 1) != 0, "an image by 0")
         pair = tuple(map(letters.read, side["outer"]))
         forms.append(form_of(letters, pair, images))
-        above, below = (letters.put(part, images, weights, order) for part in pair)
+        above, below = (letters.put(polynomial, images, weights, order) for polynomial in pair)
         sides.append((above[0] * below[1], below[0] * above[1]))
         put = ", ".join(f"{letters.names[n]} = {letters.quotient_text(pair)}" for n, pair in side["images"])
         outer = letters.quotient_text(side["outer"])
@@ -397,20 +405,20 @@ def composed(data: Any, letters: Letters) -> str:
 # ---- motions
 
 
-def equation(data: Any, letters: Letters, x: Any, speed: Any, clock: Any, told: str) -> tuple[Any, str]:
+def equation(data: Any, letters: Letters, x: Any, speed: Any, clock: Any, clock_text: str) -> tuple[Any, str]:
     """(a - f + f(c, 0) on a motion, up to the order; the equation as text)."""
     scale = data["weights"], data["order"]
     total, pushed, held, seen = letters.constant(0), [], ["x''"], set()
-    for n, part in enumerate(data["acceleration"]):
-        jet = jet_of(letters, part)
+    for n, coefficients in enumerate(data["acceleration"]):
+        jet = jet_of(letters, coefficients)
         total += jet * letters.power(clock, n, *scale)
-        if part:
-            pushed.append(f"({letters.text(jet)})*({told})**{n}")
-    for (i, k), part in data["force"]:
+        if coefficients:
+            pushed.append(f"({letters.text(jet)})*({clock_text})**{n}")
+    for (i, k), coefficients in data["force"]:
         need(all(type(n) is int and n >= 0 for n in (i, k)) and i + k > 0, "powers that are none")
         need((i, k) not in seen, "powers that occur twice")
         seen.add((i, k))
-        jet = jet_of(letters, part)
+        jet = jet_of(letters, coefficients)
         total -= jet * letters.with_degree(letters.power(x, i, *scale) * letters.power(speed, k, *scale), *scale)
         held.append(f"({letters.text(jet)})*x**{i}*x'**{k}")
     return total, f"{' + '.join(held)} = {' + '.join(pushed) or '0'}"
@@ -430,11 +438,11 @@ def motion(data: Any, letters: Letters) -> str:
     names = letters.names
     x = letters.read(data["height"])
     speed = x.derivative(2)
-    pushed, told = equation(data, letters, x, speed, sigma + t, f"{names[0]} + {names[2]}")
+    pushed, solved = equation(data, letters, x, speed, sigma + t, f"{names[0]} + {names[2]}")
     rest = letters.with_degree(speed.derivative(2) - pushed, weights, None if order is None else order - 1)
     need(rest == 0, "it does not solve the equation")
     need(letters.at(x, 2, 0) == 0 and letters.at(speed, 2, 0) == v, "it starts otherwise")
-    text = f"x = {letters.text(x)} solves {told}"
+    text = f"x = {letters.text(x)} solves {solved}"
     need(data["launch"] is not None or data["landing"] is None, "a landing without a launch")
     if data["launch"] is not None:
         launch = letters.read(data["launch"])
@@ -460,14 +468,14 @@ def flight(data: Any, letters: Letters) -> str:
     names = letters.names
     y = letters.read(data["rise"])
     speed = y.derivative(0)
-    pushed, told = equation(data, letters, t * y, speed, sigma + z * t, f"{names[1]} + {names[0]}*{names[2]}")
+    pushed, solved = equation(data, letters, t * y, speed, sigma + z * t, f"{names[1]} + {names[0]}*{names[2]}")
     need(letters.with_degree(speed.derivative(0) - t * pushed, weights, order) == 0, "it does not solve the equation")
     launch, landing = letters.read(data["launch"]), letters.read(data["landing"])
-    for part, at, stated in ((y, 0, 0), (y, 1, 0), (speed, 0, launch), (speed, 1, landing)):
-        need(letters.with_degree(letters.at(part, 0, at) - stated, weights, order) == 0, "its ends are others")
+    for polynomial, at, stated in ((y, 0, 0), (y, 1, 0), (speed, 0, launch), (speed, 1, landing)):
+        need(letters.with_degree(letters.at(polynomial, 0, at) - stated, weights, order) == 0, "its ends are others")
     return (
-        f"x = {names[2]}*({letters.text(y)}), time {names[0]}*{names[2]}, solves {told}, x = 0 at {names[0]} = 0 with "
-        f"x' = {letters.text(launch)} and at {names[0]} = 1 with x' = {letters.text(landing)}"
+        f"x = {names[2]}*({letters.text(y)}), time {names[0]}*{names[2]}, solves {solved}, x = 0 at {names[0]} = 0 "
+        f"with x' = {letters.text(launch)} and at {names[0]} = 1 with x' = {letters.text(landing)}"
         f"{order_text(letters, weights, order)}"
     )
 
@@ -517,9 +525,9 @@ def check_certificate(data: Any) -> None:
         show, fields = KINDS[data["kind"]]
         fields_are(data, fields | EVERY)
         for name, inner in INNER.items():
-            for part in data.get(name, ()) if name == "places" else [data.get(name)]:
-                if isinstance(part, dict):
-                    fields_are(part, inner)
+            for record in data.get(name, ()) if name == "places" else [data.get(name)]:
+                if isinstance(record, dict):
+                    fields_are(record, inner)
         said = show(data, Letters(data["variables"]))
         need(data["says"] == said, f"the data say: {said}")
 

@@ -53,8 +53,14 @@ class BasinSettings:
 
 
 SETTINGS = BasinSettings()
-KINDS = {OTHER: "not decided", CHAOS: "chaotic", GONE: "never returns", AWAY: "no impact", STUCK: "unresolved",
-         SENSITIVE: "sensitive"}  # fmt: skip
+KINDS = {
+    OTHER: "not decided",
+    CHAOS: "chaotic",
+    GONE: "never returns",
+    AWAY: "no impact",
+    STUCK: "unresolved",
+    SENSITIVE: "sensitive",
+}
 
 
 @dataclass(frozen=True)
@@ -160,9 +166,14 @@ class Basins(Result):
 
 
 def basins(
-    model: Oscillator, tau: Any = None, v: Any = (0, 2), size: int = 600, executor: Any = None,
-    output: Any = None, impacts: int = SETTINGS.impacts,
-) -> Basins:  # fmt: skip
+    model: Oscillator,
+    tau: Any = None,
+    v: Any = (0, 2),
+    size: int = 600,
+    executor: Any = None,
+    output: Any = None,
+    impacts: int = SETTINGS.impacts,
+) -> Basins:
     """Classes of size x size states.
 
     Parameters
@@ -197,17 +208,17 @@ def basins(
     speeds = slow + (np.arange(size) + 0.5) * (fast - slow) / size
     iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
     study = Study(model, lift_offs(model), fast, whole("impacts", impacts, 1, 10**7))
-    tau, v = (part.ravel() for part in np.meshgrid(times, speeds))
+    tau, v = (coordinates.ravel() for coordinates in np.meshgrid(times, speeds))
     with ThreadPool() if executor is None else nullcontext(executor) as pool:
         table = _classes(study, (tau, v), size, pool, output)
     flown, table = table[:, 3], table[:, :3]
     first = table[:, 0] == CHATTER
     doubtful = set[tuple[float, ...]]()
     follows = futures(model, study.phases, partial(_after_lift_off, study, doubtful))
-    for place in range(len(study.phases)):
-        table[first & (table[:, 1] == place)] = settled(follows, place, as_float(model.period))
+    for index in range(len(study.phases)):
+        table[first & (table[:, 1] == index)] = settled(follows, index, as_float(model.period))
     if _several(study, table[settles(table)]):
-        table[[each in doubtful for each in map(tuple, table.tolist())]] = SENSITIVE, 0.0, 0.0
+        table[[row in doubtful for row in map(tuple, table.tolist())]] = SENSITIVE, 0.0, 0.0
     late = _open_to_rounding(study, table, flown)
     table[late[parted(study, tau[late], v[late], flown[late])]] = SENSITIVE, 0.0, 0.0
     attractors, codes = _named(study, table)

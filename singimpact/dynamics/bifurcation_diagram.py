@@ -14,8 +14,7 @@ from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
-from singimpact.dynamics.attractors import apart
-from singimpact.dynamics.nearby_orbit import nearby_orbits
+from singimpact.dynamics.attractors import apart, nearby_orbits
 from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.inputs import refuse, require_memory
 from singimpact.oscillator.model import Oscillator
@@ -98,9 +97,16 @@ class Bifurcation(Result):
 
 
 def bifurcation(
-    model: Oscillator, over: str, between: Any, points: int = 300, start: Any = (0, "0.1"), impacts: int = 200,
-    kept: int = 60, direction: str | None = None, **sweeping: Any,
-) -> Bifurcation:  # fmt: skip
+    model: Oscillator,
+    over: str,
+    between: Any,
+    points: int = 300,
+    start: Any = (0, "0.1"),
+    impacts: int = 200,
+    kept: int = 60,
+    direction: str | None = None,
+    **sweeping: Any,
+) -> Bifurcation:
     """The last events of an orbit for evenly spaced values of a parameter.
 
     Parameters
@@ -140,7 +146,8 @@ def bifurcation(
         if any(value is not None for value in sweeping.values()):
             raise refuse("direction", direction, "it without executor= and output=: its orbits are flown in a row")
         values, periods = (
-            np.concatenate([part[:: 1 if way == "up" else -1] for way in WAYS[direction]]) for part in (values, periods)
+            np.concatenate([column[:: 1 if way == "up" else -1] for way in WAYS[direction]])
+            for column in (values, periods)
         )
         events = _carried(model, over, values, start, (impacts, kept, settle))
         return _made(over, values, events, direction, periods, max(settle, impacts))
@@ -189,35 +196,35 @@ def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, bool]:
     return last, repeats
 
 
-def _is_unresolved(found: Orbit) -> bool:
-    return bool(found.phases) and found.phases[-1][0] == "unresolved"
+def _is_unresolved(flown_orbit: Orbit) -> bool:
+    return bool(flown_orbit.phases) and flown_orbit.phases[-1][0] == "unresolved"
 
 
-def _repeats(found: Orbit) -> bool:
+def _repeats(flown_orbit: Orbit) -> bool:
     """Whether the last events are those of a period before, or no other follows."""
-    if found.phases and found.phases[-1][0] == "no_return":
+    if flown_orbit.phases and flown_orbit.phases[-1][0] == "no_return":
         return True
-    if _is_unresolved(found):
+    if _is_unresolved(flown_orbit):
         return False
-    if found.phases and found.phases[-1][0] == "sticking" and not np.isfinite(found.phases[-1][2]):
+    if flown_orbit.phases and flown_orbit.phases[-1][0] == "sticking" and not np.isfinite(flown_orbit.phases[-1][2]):
         return True
-    shown = np.isin(found.kind, ("impact", "graze", "complete"))
-    tau, v = found.tau[shown], found.v[shown]
-    period, fast = as_float(found.oscillator.period), max(float(v.max(initial=0.0)), 1e-300)  # type: ignore[arg-type]
+    shown = np.isin(flown_orbit.kind, ("impact", "graze", "complete"))
+    tau, v = flown_orbit.tau[shown], flown_orbit.v[shown]
+    period, fast = as_float(flown_orbit.oscillator.period), max(float(v.max(initial=0.0)), 1e-300)  # type: ignore[arg-type]
     for n in range(1, min(SETTINGS.period, tau.size // 2) + 1):
         last, before = slice(-n, None), slice(-2 * n, -n)
         if apart((tau[last], v[last]), (tau[before], v[before]), period, fast).max() < SETTINGS.close:
-            only_impacts = bool((found.kind[shown][-2 * n :] == "impact").all())
-            return not only_impacts or _is_periodic(found, n, period, fast)
+            only_impacts = bool((flown_orbit.kind[shown][-2 * n :] == "impact").all())
+            return not only_impacts or _is_periodic(flown_orbit, n, period, fast)
     return False
 
 
-def _is_periodic(found: Orbit, n: int, period: float, fast: float) -> bool:
+def _is_periodic(flown_orbit: Orbit, n: int, period: float, fast: float) -> bool:
     """Whether the last impact is one of an attracting orbit of n impacts, and not on its way past or towards one."""
-    end, v = found.tau[found.kind == "impact"], found.v[found.kind == "impact"]
+    end, v = flown_orbit.tau[flown_orbit.kind == "impact"], flown_orbit.v[flown_orbit.kind == "impact"]
     turns = np.rint((end[-1:] - end[-1 - n]) / period).astype(np.int64)
     tau = np.mod(end[-1:], period)
-    beside = nearby_orbits(found.oscillator, tau, v[-1:], np.array([n]), turns, fast)
+    beside = nearby_orbits(flown_orbit.oscillator, tau, v[-1:], np.array([n]), turns, fast)
     away = apart((beside.tau, beside.v), (tau, v[-1]), period, fast)
     return bool(np.where(beside.found, away < SETTINGS.close, beside.returned)[0])
 
@@ -249,20 +256,20 @@ def _continued(moved: Oscillator, last: Orbit, impacts: int) -> Orbit:
     if not away:
         return orbit(moved, tau, float(last.v[-1]), impacts)
     # off the wall: the motion without impact is carried on
-    place = last.sample(time)
-    x = max(float(place.x), as_float(moved.clearance))
-    return dropped_orbit(moved, (x, float(place.xdot), tau), impacts)
+    state = last.sample(time)
+    x = max(float(state.x), as_float(moved.clearance))
+    return dropped_orbit(moved, (x, float(state.xdot), tau), impacts)
 
 
-def _last_events(found: Orbit, repeats: bool, flown: tuple[int, int, int]) -> Array:
+def _last_events(flown_orbit: Orbit, repeats: bool, flown: tuple[int, int, int]) -> Array:
     """Impacts, grazes and ends of chatter (1 in the last column) of the end of an orbit, and whether it has settled.
 
     Shape (kept + 1, 3): the first number of the last row is 1 where the events repeat.
     """
-    assert found.oscillator.period is not None
-    shown, kept = np.isin(found.kind, ("impact", "graze", "complete")), flown[1]
-    rows = np.stack([found.tau, found.v, found.kind == "complete"], axis=1)[shown]
-    last = rows[max(flown[0] - kept, 0) :][-kept:]
+    assert flown_orbit.oscillator.period is not None
+    shown, count = np.isin(flown_orbit.kind, ("impact", "graze", "complete")), flown[1]
+    rows = np.stack([flown_orbit.tau, flown_orbit.v, flown_orbit.kind == "complete"], axis=1)[shown]
+    last = rows[max(flown[0] - count, 0) :][-count:]
     events = last if len(last) else rows[-1:]  # one that has come to rest for ever shows only that
-    events[:, 0] = np.mod(events[:, 0], as_float(found.oscillator.period))
-    return np.vstack([events, np.full((kept - len(events), 3), np.nan), [[float(repeats), 0.0, 0.0]]])
+    events[:, 0] = np.mod(events[:, 0], as_float(flown_orbit.oscillator.period))
+    return np.vstack([events, np.full((count - len(events), 3), np.nan), [[float(repeats), 0.0, 0.0]]])

@@ -15,9 +15,8 @@ from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
 from singimpact.contact.contact import Contact
 from singimpact.dynamics import enclosed
-from singimpact.dynamics.fractional_chatter import chatter_completes
-from singimpact.dynamics.gathered import gathered
-from singimpact.dynamics.remaining import remaining
+from singimpact.dynamics.remaining import chatter_completes, remaining
+from singimpact.flights.blocks import gathered
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
@@ -132,15 +131,16 @@ def chatter_limit(
         whole("impacts", impacts, 1, 10**7),
     )
     if states.shape and digits is not None:
-        each = [chatter_limit(osc, *states.given(index), digits=digits, impacts=impacts)
-                for index in range(states.v.size)]  # fmt: skip
-        return gathered(ChatterLimit, each, states.shape)  # type: ignore[no-any-return]
-    found = _in_doubles(osc, states, most)
-    if digits is None or found.status not in (Status.complete, Status.lifts_off):
-        return found
-    if found.status == Status.complete:
+        limits = [
+            chatter_limit(osc, *states.given(index), digits=digits, impacts=impacts) for index in range(states.v.size)
+        ]
+        return gathered(ChatterLimit, limits, states.shape)  # type: ignore[no-any-return]
+    rough = _in_doubles(osc, states, most)
+    if digits is None or rough.status not in (Status.complete, Status.lifts_off):
+        return rough
+    if rough.status == Status.complete:
         require_smooth_rho(osc, "a chatter limit with digits=")
-    return _enclosed(osc, states, checked_digits(digits)) or _precise(osc, states, found, digits)
+    return _enclosed(osc, states, checked_digits(digits)) or _precise(osc, states, rough, digits)
 
 
 def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
@@ -168,7 +168,7 @@ def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
     if not states.shape:
         return ChatterLimit(tau[0], int(impacts[0]), error[0], status[0], cause=cause[0])
     parts = tau, impacts.astype(np.int64), error, status_array(status), np.full(count, None), cause
-    shaped = [part.reshape(states.shape) for part in parts]
+    shaped = [column.reshape(states.shape) for column in parts]
     return ChatterLimit(shaped[0], shaped[1], shaped[2], shaped[3], shaped[4], shaped[5])
 
 
@@ -176,13 +176,13 @@ def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | No
     """The limit in balls, where the model and the state allow it."""
     if not enclosed.enclosable(osc):
         return None
-    found = enclosed.chatter_limit(osc, states, digits)
-    if found is None:
+    enclosure = enclosed.chatter_limit(osc, states, digits)
+    if enclosure is None:
         return None
-    status = Status.lifts_off if found.lost else Status.complete
-    rounded = _rounded(found.tau.value, found.impacts, _covering(found.tau), status, digits)
+    status = Status.lifts_off if enclosure.lost else Status.complete
+    rounded = _rounded(enclosure.tau.value, enclosure.impacts, _covering(enclosure.tau), status, digits)
     launch = states.exact_tau(0), states.exact_v(0)
-    return replace(rounded, certified=found.tau, oscillator=osc, launch=launch)
+    return replace(rounded, certified=enclosure.tau, oscillator=osc, launch=launch)
 
 
 def _covering(found: Certified) -> Any:
@@ -239,7 +239,9 @@ class _Flown:
             if a[0] >= 0 and len(self.times) > 1:
                 return self._ended(tau, 0.0, Status.lifts_off)
             if self.short or (tried and a[0] < 0):
-                left, error = (float(part[0]) for part in remaining(self.osc, np.array([tau]), np.array([v]), a))
+                left, error = (
+                    float(estimate[0]) for estimate in remaining(self.osc, np.array([tau]), np.array([v]), a)
+                )
                 if error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290:
                     return self._ended(tau + left, error, Status.complete)
                 if not np.isfinite(error) and self.short:  # a derivative of a_c leaves the range of doubles
@@ -269,17 +271,17 @@ class _Flown:
 
     def _fly(self, count: int, near: float) -> Status:
         """Fly further impacts; the sequence is cut after the first impact with a_c >= 0."""
-        found = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), near)
-        kept = self._kept(found)
-        self.times += found.tau[:kept].tolist()
-        self.speeds += found.v[:kept].tolist()
-        self.slopes += found.slopes.T[:kept].tolist()
-        if kept != found.tau.size:
+        segment = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), near)
+        length = self._kept(segment)
+        self.times += segment.tau[:length].tolist()
+        self.speeds += segment.v[:length].tolist()
+        self.slopes += segment.slopes.T[:length].tolist()
+        if length != segment.tau.size:
             return Status.hit
-        if found.status and len(self.times) > 1 and acceleration(self.osc, np.array(self.times[-1:]))[0] >= 0:
+        if segment.status and len(self.times) > 1 and acceleration(self.osc, np.array(self.times[-1:]))[0] >= 0:
             return Status.hit  # the mass lifts off here, so the status of the flight after it does not matter
-        self.cause, self.short = Cause(found.cause), self.short or found.short
-        return Status(found.status)
+        self.cause, self.short = Cause(segment.cause), self.short or segment.short
+        return Status(segment.status)
 
     def _kept(self, found: Segment) -> int:
         lifted = np.flatnonzero(found.acceleration[1:] >= 0)
@@ -327,22 +329,22 @@ class _Flown:
         return derivative(self.osc, np.array(self.times[:-1]), np.array(self.speeds[:-1])).matrix.tolist()  # type: ignore[no-any-return]
 
 
-def _precise(osc: Oscillator, states: States, found: ChatterLimit, digits: int) -> ChatterLimit:
+def _precise(osc: Oscillator, states: States, rough: ChatterLimit, digits: int) -> ChatterLimit:
     """A sequence of chatter in many digits, continued until the last term is below them."""
-    amplified = max(float(found.error) / (EPSILON * max(abs(float(found.tau)), 1e-300)), 1.0)
+    amplified = max(float(rough.error) / (EPSILON * max(abs(float(rough.tau)), 1e-300)), 1.0)
     precision = digits + 10 + ceil(log(amplified, 10))
     with digits_at(precision) as mp:
         small = mp.mpf(10) ** (-digits - 1)
         tau, v = states.given(0)
         if not states.rest:
             tau, v = (as_mpf(tree, mp) for tree in (states.exact_tau(0), states.exact_v(0)))
-        count, wanted, r = 0, int(found.impacts), as_mpf(osc.slope_at_rest(), mp)
+        count, wanted, r = 0, int(rough.impacts), as_mpf(osc.slope_at_rest(), mp)
         ring = Multiprecision(mp)
         while True:
             while count < wanted:
                 step = impact_map(osc, tau, v, digits=precision)
                 tau, v, count = mp.convert(step.tau), mp.convert(step.v), count + 1
-            if found.status == Status.lifts_off:
+            if rough.status == Status.lifts_off:
                 return _rounded(tau, count, small * abs(tau), Status.lifts_off, digits)
             rho = {k: value for k, value in series_of_rho(osc, ENDING.many, ring).items() if k > 1}
             contact = Contact.of(osc, tau, 0, ENDING.many, ring)

@@ -112,12 +112,12 @@ def _chatter(flow: AnalyticFlow, tau: Expression, v: Expression, removed: int, d
         if count and not (a > 0 or a < 0):
             return None  # whether contact is lost at this impact is not decided
         if count and a > 0:
-            found = as_certified(time, digits)
-            return None if found is None else EnclosedLimit(found, count, True)
+            end = as_certified(time, digits)
+            return None if end is None else EnclosedLimit(end, count, True)
         if a < 0 and (slow is None or speed < slow) and (left := remaining(flow, time, speed)) is not None:
-            found = as_certified(time + left, digits)
-            if found is not None:
-                return EnclosedLimit(found, count, False)
+            end = as_certified(time + left, digits)
+            if end is not None:
+                return EnclosedLimit(end, count, False)
             if left.rad() < time.rad():
                 return None  # the flights have lost the digits, and further ones do not give them back
             # the width falls like v^2: it is not looked at again until it is nearly small enough
@@ -241,11 +241,11 @@ def searched(
     while True:
         impacts = min(impacts, most)
         reached = max(Fraction(forgotten**impacts), Fraction(1, 10 ** (digits + 3))) / 10
-        found = _secant(partial(missed, impacts), v, v * step, v * reached, balls)
-        if found is None or impacts == most:
-            return found
-        impacts, step = ceil(impacts * ORBITS.stages), max(abs(found - v) / v / 10**4, Fraction(1, 10 ** (2 * digits)))
-        v = found
+        root = _secant(partial(missed, impacts), v, v * step, v * reached, balls)
+        if root is None or impacts == most:
+            return root
+        impacts, step = ceil(impacts * ORBITS.stages), max(abs(root - v) / v / 10**4, Fraction(1, 10 ** (2 * digits)))
+        v = root
 
 
 def _secant(

@@ -102,23 +102,29 @@ class Carried:
         torn: Array = np.asarray(jump & (np.abs(np.diff(s)) <= closest(self.window) * np.ptp(piece.s)))
         if self.located and torn.any():
             s, points, torn = self._located(s, points, np.flatnonzero(torn), generation)
-        known: Array = np.asarray(np.isfinite(points).all(axis=1))
+        finite: Array = np.asarray(np.isfinite(points).all(axis=1))
         with np.errstate(invalid="ignore"):
-            kept: Array = known & self.followed(points)
-        cuts: Array = np.flatnonzero(torn | ~kept[1:] | ~kept[:-1]) + 1
-        parts = [part for part in np.split(np.arange(len(s)), cuts) if len(part) > 1 and kept[part].all()]
+            followed: Array = finite & self.followed(points)
+        cuts: Array = np.flatnonzero(torn | ~followed[1:] | ~followed[:-1]) + 1
+        parts = [
+            indices for indices in np.split(np.arange(len(s)), cuts) if len(indices) > 1 and followed[indices].all()
+        ]
 
         def end(beyond: int, before: str) -> str:
             if not 0 <= beyond < len(s):
                 return before
-            return TORN if kept[beyond] else LEFT if known[beyond] else LOST
+            return TORN if followed[beyond] else LEFT if finite[beyond] else LOST
 
         return [
-            Piece(s[part], points[part], generation,
-                  (end(int(part[0]) - 1, piece.ends[0]), end(int(part[-1]) + 1, piece.ends[1])),
-                  coarse or piece.coarse)
-            for part in parts
-        ]  # fmt: skip
+            Piece(
+                s[indices],
+                points[indices],
+                generation,
+                (end(int(indices[0]) - 1, piece.ends[0]), end(int(indices[-1]) + 1, piece.ends[1])),
+                coarse or piece.coarse,
+            )
+            for indices in parts
+        ]
 
     def _refined(self, s: Array, points: Array, generation: int) -> tuple[Array, Array, bool]:
         """Midpoints put in until chords are short or straight enough for the resolution, or their ends close in s."""
@@ -153,20 +159,20 @@ class Carried:
                 break
             image = np.full(places[0].shape, np.nan)
             image[apart] = self.image(middle[apart], generation)
-            gaps = [np.hypot(*((image - place) / self.window.sides).T) for place in places]
+            gaps = [np.hypot(*((image - end_points) / self.window.sides).T) for end_points in places]
             first = gaps[0] <= gaps[1]  # of nan neither is true
             for end, chosen in ((0, first), (1, gaps[0] > gaps[1])):
                 ends[end][chosen], places[end][chosen] = middle[chosen], image[chosen]
                 more.append((middle[chosen], image[chosen]))
-        s, points = np.concatenate([each[0] for each in more]), np.vstack([each[1] for each in more])
+        s, points = np.concatenate([segment[0] for segment in more]), np.vstack([segment[1] for segment in more])
         order = np.argsort(s, kind="stable") if ends[0][0] < ends[1][0] else np.argsort(-s, kind="stable")
         return s[order], points[order], np.isin(s[order][:-1], ends[0])
 
     def _too_coarse(self, points: Array) -> Array:
         """Chords too long for the resolution, or at a bend beyond it; or with one end that is not known."""
         resolution = self.window.resolution
-        known: Array = np.asarray(np.isfinite(points).all(axis=1))
-        near: Array = np.logical_or(self.shown(points), ~known)
+        finite: Array = np.asarray(np.isfinite(points).all(axis=1))
+        near: Array = np.logical_or(self.shown(points), ~finite)
         step = np.diff(points, axis=0) / self.window.sides
         length = np.hypot(*step.T)
         with np.errstate(all="ignore"):
@@ -176,7 +182,7 @@ class Carried:
         bend[:-1] |= off > SETTINGS.bend * resolution
         bend[1:] |= off > SETTINGS.bend * resolution
         coarse = (length > min(SETTINGS.longest * resolution, 1 / 25)) | (bend & (length > resolution))
-        return np.asarray((near[:-1] | near[1:]) & ((known[:-1] != known[1:]) | (known[:-1] & known[1:] & coarse)))
+        return np.asarray((near[:-1] | near[1:]) & ((finite[:-1] != finite[1:]) | (finite[:-1] & finite[1:] & coarse)))
 
 
 def closest(window: Window) -> float:

@@ -88,21 +88,21 @@ def guided(osc: Oscillator, tau: Expression, v: float, end: ContactZero, digits:
     """
     bits = ceil(digits * 3.33) + 64
     series = _series(osc, end, SETTINGS.terms + digits // SETTINGS.digits, bits)
-    g, j, r = [float(part.mid()) for part in series], end.order, as_float(osc.restitution)
-    found = orbit_segment(osc, as_float(tau), v, SETTINGS.impacts)
+    g, j, r = [float(coefficient.mid()) for coefficient in series], end.order, as_float(osc.restitution)
+    segment = orbit_segment(osc, as_float(tau), v, SETTINGS.impacts)
     wanted, column, sizes, chosen = v * 10.0 ** -(digits + SETTINGS.spare), (0.0, 1.0), [], None
-    rows = zip(found.tau.tolist(), found.v.tolist(), found.slopes.T.tolist(), strict=True)
+    rows = zip(segment.tau.tolist(), segment.v.tolist(), segment.slopes.T.tolist(), strict=True)
     for n, (time, speed, (a, b, c, d)) in enumerate(rows, 1):
         sigma = time - end.tau
         # D G of each impact applied to (0, 1): how the state answers to the first velocity
         column = (1 + a) * column[0] + b * column[1], -r * (c * column[0] + d * column[1])
-        along = sum((j + 1 + i) * part * sigma ** (j + i) for i, part in enumerate(g))
+        along = sum((j + 1 + i) * coefficient * sigma ** (j + i) for i, coefficient in enumerate(g))
         slope = column[1] - along * column[0]
         # beyond this the distance from gamma has grown so far that the doubles of the guide tell nothing
         if not (sigma < 0 < speed and abs(slope) * SETTINGS.rough * v < SETTINGS.drift * speed):
             break
         sizes.append(abs(slope) / speed)
-        cut = max(abs(part * sigma ** (j + 1 + i)) for i, part in enumerate(g[-2:], len(g) - 2))
+        cut = max(abs(coefficient * sigma ** (j + 1 + i)) for i, coefficient in enumerate(g[-2:], len(g) - 2))
         if chosen is None and cut < wanted * abs(slope):
             chosen = n, slope
     if chosen is None or not sizes[-1] > sizes[len(sizes) // 2]:
@@ -153,6 +153,6 @@ def _miss(flow: AnalyticFlow, time: Any, speed: Any, guide: Guide) -> Any | None
             return None
         time, speed = (time + hit.time).mid(), (-flow.r * hit.velocity).mid()
     sigma, total = time - guide.end, flow.number(Fraction(0))
-    for part in reversed(guide.series):
-        total = total * sigma + part
+    for coefficient in reversed(guide.series):
+        total = total * sigma + coefficient
     return speed - total * sigma ** (guide.order + 1)

@@ -78,7 +78,7 @@ def gammas_within(model: Oscillator, window: Window) -> list[Curve]:
     >>> [round(float(curve.points[0, 0]), 3) for curve in curves if curve.marked("foot").size]
     [2.509, 5.65]
     """
-    found: list[Curve] = []
+    curves: list[Curve] = []
     for point in tangency_points(model):
         bent = float(acceleration(model, np.array([point.tau]), 2)[0])
         if point.kind == "foliation" or (point.kind == "degenerate" and bent > 0):
@@ -86,8 +86,8 @@ def gammas_within(model: Oscillator, window: Window) -> list[Curve]:
         for shift in _turns(model, point.tau, window):
             moved = replace(window, x=(window.x[0] - shift, window.x[1] - shift))
             grown = grown_gamma(model, moved, repr(point.tau))
-            found += [replace(curve, points=curve.points + np.array([shift, 0.0])) for curve in grown]
-    return found
+            curves += [replace(curve, points=curve.points + np.array([shift, 0.0])) for curve in grown]
+    return curves
 
 
 def _turns(model: Oscillator, tau: float, window: Window) -> list[float]:
@@ -144,18 +144,18 @@ def model_step(model: Oscillator, points: Array, horizon: float | None = None) -
     """
     from singimpact.flights.impact_map import impact_map
 
-    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
-    at, v_at = points[known].T
+    images, regular = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
+    at, v_at = points[regular].T
     step = impact_map(model, at, v_at, tolerance=SETTINGS.tolerance, horizon=horizon)
     good = np.isin(step.status, (Status.hit, Status.graze))
-    found[known] = np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
-    return found
+    images[regular] = np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
+    return images
 
 
 def before(model: Oscillator, points: Array, horizon: float | None = None) -> Array:
     """The inverse map on points, shape (n, 2); nan where nothing lands there, and where v < 0."""
-    found, known = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
-    at, v_at = points[known].T
+    images, regular = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
+    at, v_at = points[regular].T
     if names_in(model.restitution):
         step = inverse_map(model, at, v_at, horizon=horizon)
         tau, v, status = step.tau, step.v, step.status
@@ -164,8 +164,8 @@ def before(model: Oscillator, points: Array, horizon: float | None = None) -> Ar
         hit = first_hit(backwards(model), -at, speeds, tolerance=SETTINGS.tolerance, horizon=horizon)
         tau, v, status = at - hit.flight_time, -hit.velocity, hit.status
     good = np.isin(status, (Status.hit, Status.graze))
-    found[known] = np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)
-    return found
+    images[regular] = np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)
+    return images
 
 
 def _grown(
@@ -210,5 +210,7 @@ def _joined(pieces: list[Piece], window: Window) -> list[Curve]:
         points = np.vstack([chain[0].points, *(piece.points[1:] for piece in chain[1:])])
         marks = (Mark(0, "foot"),) if n == 0 else ()
         whole = Curve(f"history {chain[0].generation}", points, STATES, marks, first_hits=held(window, points))
-        curves += [replace(part, first_hits=np.ones(len(part), dtype=bool)) for part in whole.parts(whole.visible)]
+        curves += [
+            replace(stretch, first_hits=np.ones(len(stretch), dtype=bool)) for stretch in whole.parts(whole.visible)
+        ]
     return [curve for curve in curves if len(curve) > 1]

@@ -71,18 +71,18 @@ def next_lift_off(phases: tuple[float, ...], tau: Array) -> Array:
 
 def futures(model: Oscillator, phases: tuple[float, ...], classify: Callable[[Array, Array], Array]) -> list[Future]:
     """The motion after each lift-off, by the classes that `classify` gives to the state after the first impact."""
-    found = []
+    rows = []
     for phase in phases:
         lifted = _lifted(model, phase)
         first = orbit(model, lifted, 0, impacts=1)
         if first.kind.tolist() != ["start", "impact"]:
-            found.append(Future((OTHER, 0.0, 0.0), np.nan))
+            rows.append(Future((OTHER, 0.0, 0.0), np.nan))
             continue
         tau, v = float(first.tau[1]), float(first.v[1])
         row = tuple(classify(np.array([tau]), np.array([v]))[0].tolist())
         time = _rest_of(model, lifted) - lifted if row[0] == CHATTER and row[1] >= 0 else np.nan
-        found.append(Future(row, time))
-    return found
+        rows.append(Future(row, time))
+    return rows
 
 
 def _rest_of(model: Oscillator, lifted: float) -> float:
@@ -106,7 +106,7 @@ def _lifted(model: Oscillator, phase: float) -> float:
     return release(model, phase - back)
 
 
-def settled(found: list[Future], start: int, period: float) -> tuple[float, ...]:
+def settled(motions: list[Future], start: int, period: float) -> tuple[float, ...]:
     """The class of what follows a lift-off for ever: (CHATTER, least place of the cycle, its periods) for a cycle.
 
     Examples
@@ -116,7 +116,7 @@ def settled(found: list[Future], start: int, period: float) -> tuple[float, ...]
     """
     path = [start]
     while True:
-        future = found[path[-1]]
+        future = motions[path[-1]]
         if future.row[0] != CHATTER:
             return future.row
         if not np.isfinite(future.time):
@@ -124,7 +124,7 @@ def settled(found: list[Future], start: int, period: float) -> tuple[float, ...]
         following = int(future.row[1])
         if following in path:
             cycle = path[path.index(following) :]
-            return (CHATTER, min(cycle), round(sum(found[place].time for place in cycle) / period))
+            return (CHATTER, min(cycle), round(sum(motions[number].time for number in cycle) / period))
         path.append(following)
 
 
@@ -154,7 +154,7 @@ def chaotic(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
         above[left[mean > np.maximum(SETTINGS.least, error)]] = True
         undecided = (mean <= error) & (mean + error > SETTINGS.least)  # nan where a flight does not come back
         left, growth = left[undecided], growth[:, undecided]
-        first, second = ((each[0][undecided], each[1][undecided]) for each in (first, second))
+        first, second = ((states[0][undecided], states[1][undecided]) for states in (first, second))
     return above
 
 
@@ -165,7 +165,7 @@ def _grown(
 
     Benettin et al. (1980): the distance is measured, then set back along the same direction.
     """
-    ends = [iterate(model, *each, SETTINGS.block) for each in (first, second)]
+    ends = [iterate(model, *states, SETTINGS.block) for states in (first, second)]
     away = np.stack([(ends[1].tau - ends[0].tau) / period, (ends[1].v - ends[0].v) / fast])
     away[0] -= np.rint(away[0])
     with np.errstate(all="ignore"):

@@ -17,11 +17,10 @@ import numpy as np
 from singimpact.algebra.numbers import as_float, compare
 from singimpact.dynamics.attractors import apart
 from singimpact.dynamics.chatter import ENDING, chatter_limit
-from singimpact.dynamics.fractional_chatter import chatter_completes
 from singimpact.dynamics.lift_off import periods_between, release
+from singimpact.dynamics.remaining import chatter_completes
 from singimpact.flights.compiled_model import compiled_model
-from singimpact.flights.derivative import derivative
-from singimpact.flights.determinant import log_determinant
+from singimpact.flights.derivative import derivative, log_determinant
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.rebound_law import rebound_slope
@@ -241,37 +240,37 @@ class _Run:
             if not self.v > 0:
                 done += self._mapped(keep)
                 continue
-            found = orbit_segment(self.osc, self.tau, self.v, min(most - done, block), near)
-            done += self._flew(found, keep)
+            segment = orbit_segment(self.osc, self.tau, self.v, min(most - done, block), near)
+            done += self._flew(segment, keep)
             near, block = self.near, SETTINGS.block
             if done == most:
                 return
-            if found.short:
+            if segment.short:
                 end = chatter_limit(self.osc, self.tau, self.v)
                 if end.status == Status.complete:
                     self._rest(float(end.tau))
                 else:  # contact is lost before the impacts accumulate: they are flown
                     near, block = 0.0, int(end.impacts) + 1
-            elif found.status:
+            elif segment.status:
                 done += self._mapped(keep)
 
-    def _flew(self, found: Segment, keep: bool) -> int:
-        count = found.tau.size
+    def _flew(self, segment: Segment, keep: bool) -> int:
+        count = segment.tau.size
         if not count:
             return 0
-        launches = np.append(self.tau, found.tau[:-1]), np.append(self.v, found.v[:-1])
-        self.tau, self.v, self.first = float(found.tau[-1]), float(found.v[-1]), False
+        launches = np.append(self.tau, segment.tau[:-1]), np.append(self.v, segment.v[:-1])
+        self.tau, self.v, self.first = float(segment.tau[-1]), float(segment.v[-1]), False
         if not keep:
             return count
-        shrunk = log_determinant(self.osc, *launches, found.flight_time, found.velocity)
-        self.sums.add(_matrices(self.osc, found, *launches), found.flight_time, shrunk)
+        shrunk = log_determinant(self.osc, *launches, segment.flight_time, segment.velocity)
+        self.sums.add(_matrices(self.osc, segment, *launches), segment.flight_time, shrunk)
         self.flown += count
         return count
 
     def _mapped(self, keep: bool) -> int:
         """One flight by the impact map, which decides what an orbit leaves open: a rest, a flight near a graze."""
-        given = self.given if self.first else (self.tau, self.v)
-        step = impact_map(self.osc, *given)
+        launch_state = self.given if self.first else (self.tau, self.v)
+        step = impact_map(self.osc, *launch_state)
         self.first = False
         if step.status == Status.sticks:
             self._rest(self.tau)
@@ -310,8 +309,18 @@ class _Run:
             rows = np.array(self.sums.rows)
             exponents, error = _exponents(rows, time)
             converged = _halves_agree(rows)
-        return Lyapunov(exponents, error, self.flown, time, self.start, last, np.int8(self.status), superstable,
-                        self.before, converged)  # fmt: skip
+        return Lyapunov(
+            exponents,
+            error,
+            self.flown,
+            time,
+            self.start,
+            last,
+            np.int8(self.status),
+            superstable,
+            self.before,
+            converged,
+        )
 
 
 def _halves_agree(rows: Array) -> bool:
@@ -323,7 +332,7 @@ def _halves_agree(rows: Array) -> bool:
     middle = len(rows) // 2
     if middle < 2:
         return True
-    halves = [_exponents(part, float(part[:, 1].sum())) for part in (rows[:middle], rows[middle:])]
+    halves = [_exponents(half, float(half[:, 1].sum())) for half in (rows[:middle], rows[middle:])]
     times = rows[:middle, 1].sum(), rows[middle:, 1].sum()
     (one, error), (other, spread) = halves
     allowed = SETTINGS.apart * np.hypot(error[0], spread[0]) + 1 / min(times)
@@ -342,13 +351,13 @@ def _matrices(osc: Oscillator, found: Segment, tau: Array, v: Array) -> Array:
 def _exponents(rows: Array, time: float) -> tuple[Array, Array]:
     """Exponents per unit of time and their standard errors, by groups of stretches of equal number."""
     groups = min(SETTINGS.groups, len(rows))
-    parts = np.array([part.sum(axis=0) for part in np.array_split(rows, groups)])
+    parts = np.array([group.sum(axis=0) for group in np.array_split(rows, groups)])
     growth = np.stack([parts[:, 2], parts[:, 3] - parts[:, 2]], axis=1)
-    found = growth.sum(axis=0) / time
+    exponents = growth.sum(axis=0) / time
     error = np.full(2, np.nan)
     if groups > 1:
         # of a ratio of sums: what the growth of a group differs by from its time at the mean rate
-        off = growth - np.outer(parts[:, 1], found)
+        off = growth - np.outer(parts[:, 1], exponents)
         error = np.sqrt((off**2).sum(axis=0) * groups / (groups - 1)) / time
-    order = np.argsort(-found, kind="stable")
-    return found[order], error[order]
+    order = np.argsort(-exponents, kind="stable")
+    return exponents[order], error[order]

@@ -257,12 +257,12 @@ class _Run:
                 return
             left = self.most - self.flown
             if self.short:
-                found = orbit_segment(self.osc, self.tau, self.v, min(left, self.more))
+                segment = orbit_segment(self.osc, self.tau, self.v, min(left, self.more))
             else:
-                found = orbit_segment(self.osc, self.tau, self.v, min(left, SETTINGS.block), ENDING.near)
-            self._impacts(found.tau, found.v)
-            self.short = not found.status and (self.short or found.short)
-            if not found.status or self.flown == self.most:
+                segment = orbit_segment(self.osc, self.tau, self.v, min(left, SETTINGS.block), ENDING.near)
+            self._impacts(segment.tau, segment.v)
+            self.short = not segment.status and (self.short or segment.short)
+            if not segment.status or self.flown == self.most:
                 return
         self._mapped()
 
@@ -347,18 +347,20 @@ class _Run:
         left = self.most - self.flown
         if not left:  # the chatter before this lift-off was the last flight asked for
             return
-        times, velocities, kinds = (np.concatenate(part[block:]) for part in (self.times, self.velocities, self.kinds))
+        times, velocities, kinds = (
+            np.concatenate(blocks[block:]) for blocks in (self.times, self.velocities, self.kinds)
+        )
         flights = np.count_nonzero(kinds != "release")
         again = -(-left // flights)
         shifts = time * np.arange(1, again + 1)
         counted = np.cumsum(np.tile(kinds != "release", again))
-        kept = int(np.searchsorted(counted, left, side="right"))
-        phases = ([kind for kind, *_ in self.phases[-times.size :]] * again)[:kept]
-        ends = np.add.outer(shifts, times).ravel()[:kept]
+        count = int(np.searchsorted(counted, left, side="right"))
+        phases = ([kind for kind, *_ in self.phases[-times.size :]] * again)[:count]
+        ends = np.add.outer(shifts, times).ravel()[:count]
         self.phases += zip(phases, [self.tau, *ends[:-1].tolist()], ends.tolist(), strict=True)
         self.times.append(ends)
-        self.velocities.append(np.tile(velocities, again)[:kept])
-        self.kinds.append(np.tile(kinds, again)[:kept])
+        self.velocities.append(np.tile(velocities, again)[:count])
+        self.kinds.append(np.tile(kinds, again)[:count])
         self.flown = self.most
 
 

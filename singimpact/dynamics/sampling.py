@@ -71,15 +71,15 @@ def sampled(
     tau, v, kind = events
     out = np.full((times.size, 2), np.nan)
     which = np.searchsorted(tau, times, side="right") - 1
-    known = (which >= 0) & (times <= end)
+    within = (which >= 0) & (times <= end)
     # a phase ends in the event after it; the last event itself is a state, of which a flight of no time is sampled
     flights = np.append((kind[1:] == "impact") | (kind[1:] == "graze"), last in ("", "no_return", "unresolved"))
     sums = np.append(kind[1:] == "complete", False)
-    out[known] = 0.0
-    for at in np.unique(which[known & sums[which]]).tolist():
-        inside = np.flatnonzero(known & (which == at))
+    out[within] = 0.0
+    for at in np.unique(which[within & sums[which]]).tolist():
+        inside = np.flatnonzero(within & (which == at))
         out[inside] = _in_chatter(osc, float(tau[at]), float(v[at]), times[inside], SETTINGS.slow * float(v.max()))
-    flying = np.flatnonzero(known & flights[which])
+    flying = np.flatnonzero(within & flights[which])
     if height > 0:
         first = flying[which[flying] == 0]
         out[first] = dropped(osc, (float(tau[0]), float(v[0]), height), times[first] - tau[0])
@@ -98,13 +98,13 @@ def _in_chatter(osc: Oscillator, tau: float, v: float, times: Array, slow: float
     while done < times.size and v > slow:
         # where r = 1 the speeds fall like a power of the number of impacts
         count = min(SETTINGS.block, ceil(log(v / slow) / rate) + 1) if rate else SETTINGS.block
-        found = orbit_segment(osc, tau, v, count)
-        starts, speeds = np.append(tau, found.tau), np.append(v, found.v)
+        segment = orbit_segment(osc, tau, v, count)
+        starts, speeds = np.append(tau, segment.tau), np.append(v, segment.v)
         inside = np.arange(done, np.searchsorted(times, starts[-1]))
         launch = np.searchsorted(starts, times[inside], side="right") - 1
         out[inside] = along(osc, starts, speeds, launch, times[inside] - starts[launch])
         done += inside.size
-        if found.status or not starts[-1] > tau:  # doubles do not tell the impacts left apart
+        if segment.status or not starts[-1] > tau:  # doubles do not tell the impacts left apart
             break
         tau, v = float(starts[-1]), float(speeds[-1])
     return out

@@ -30,8 +30,8 @@ from singimpact.dynamics.attractors import (
     new_attractors,
 )
 from singimpact.dynamics.attractors import SETTINGS as ATTRACTORS
-from singimpact.dynamics.fractional_chatter import rest_after
 from singimpact.dynamics.long_run import chaotic, next_lift_off
+from singimpact.dynamics.remaining import rest_after
 from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration

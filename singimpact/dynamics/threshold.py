@@ -15,8 +15,8 @@ from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics import enclosed
-from singimpact.dynamics.fractional_chatter import chatter_completes, power_of_gamma, rest_after
-from singimpact.dynamics.gathered import gathered
+from singimpact.dynamics.remaining import chatter_completes, power_of_gamma, rest_after
+from singimpact.flights.blocks import gathered
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
@@ -102,10 +102,10 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     """
     if isinstance(tau, list | tuple | np.ndarray) and np.ndim(tau):
         require_room(("tau", tau))
-        each = [threshold(osc, one, digits=digits, impacts=impacts) for one in np.asarray(tau).ravel().tolist()]
-        return gathered(Threshold, each, np.shape(tau))  # type: ignore[no-any-return]
-    place, most = constant("tau", tau), whole("impacts", impacts, 1, 10**7)
-    if sign_of_acceleration(osc, place) >= 0:
+        thresholds = [threshold(osc, one, digits=digits, impacts=impacts) for one in np.asarray(tau).ravel().tolist()]
+        return gathered(Threshold, thresholds, np.shape(tau))  # type: ignore[no-any-return]
+    phase, most = constant("tau", tau), whole("impacts", impacts, 1, 10**7)
+    if sign_of_acceleration(osc, phase) >= 0:
         raise InputError(
             f"tau = {tau} is not accepted: give a phase with a_c(tau) < 0, at which a mass at rest stays on the wall"
         )
@@ -116,14 +116,14 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
         )
     if digits is not None:
         require_smooth_rho(osc, "a threshold with digits=")
-    ahead = next_zero(osc, place)
+    ahead = next_zero(osc, phase)
     if ahead.zero is None:
         return _without(Status.none if ahead.decided else Status.unresolved)
-    found = _bisected(osc, as_float(place), ahead.zero, most)
-    if digits is None or found.status != Status.complete:
-        return found
-    return _enclosed(osc, place, found, ahead.zero, checked_digits(digits)) or _refined(
-        osc, place, found, ahead.zero, digits
+    rough = _bisected(osc, as_float(phase), ahead.zero, most)
+    if digits is None or rough.status != Status.complete:
+        return rough
+    return _enclosed(osc, phase, rough, ahead.zero, checked_digits(digits)) or _refined(
+        osc, phase, rough, ahead.zero, digits
     )
 
 
@@ -191,8 +191,8 @@ def _bracket(
         return low, high
     series = _series(osc, replace(zero, turns=0)) if model.constant_restitution else (0.0, 1.0, *[0.0] * TERMS_OF_GAMMA)
     settings = SEARCH.short, SEARCH.narrow, float(impacts), SEARCH.coarse, *series
-    found = model.brackets(np.array([tau]), np.array([[low, high, zero.tau - tau]]), settings)
-    return (low, high) if found is None else (float(found[0][0, 0]), float(found[0][0, 1]))
+    brackets = model.brackets(np.array([tau]), np.array([[low, high, zero.tau - tau]]), settings)
+    return (low, high) if brackets is None else (float(brackets[0][0, 0]), float(brackets[0][0, 1]))
 
 
 @lru_cache(maxsize=256)
@@ -233,17 +233,17 @@ def _side(osc: Oscillator, tau: float, v: float, zero: ContactZero, impacts: int
     short = 1 / (SEARCH.part * (zero.order + 1)) if elastic else SEARCH.short
     block, remaining = SEARCH.block, impacts
     while remaining > 0:
-        found = orbit_segment(osc, tau, v, block)
-        if np.any(found.tau >= end):
+        segment = orbit_segment(osc, tau, v, block)
+        if np.any(segment.tau >= end):
             return _Side.above
-        left = rest_after(osc, found.v[:-1], found.acceleration[1:])
-        pressed = found.acceleration[1:] < 0
-        if np.any(pressed & (left < short * (end - found.tau[:-1]))):
+        left = rest_after(osc, segment.v[:-1], segment.acceleration[1:])
+        pressed = segment.acceleration[1:] < 0
+        if np.any(pressed & (left < short * (end - segment.tau[:-1]))):
             return _Side.below
-        if found.tau.size:
-            tau, v = float(found.tau[-1]), float(found.v[-1])
-        if found.status:
-            if found.status != Status.unresolved:
+        if segment.tau.size:
+            tau, v = float(segment.tau[-1]), float(segment.v[-1])
+        if segment.status:
+            if segment.status != Status.unresolved:
                 return _Side.above
             # undecided, or an overflow long after the end: only the motion before the end of gamma matters
             step = impact_map(osc, tau, v, horizon=max(end - tau, EPSILON * abs(end)))
@@ -256,10 +256,10 @@ def _side(osc: Oscillator, tau: float, v: float, zero: ContactZero, impacts: int
     return _Side.exhausted
 
 
-def _refined(osc: Oscillator, place: Any, rough: Threshold, end: ContactZero, digits: int) -> Threshold:
+def _refined(osc: Oscillator, phase: Any, rough: Threshold, end: ContactZero, digits: int) -> Threshold:
     """The threshold in many digits. Gamma repels, so each impact reduces the effect of an error at its end."""
     with digits_at(digits + 20) as mp:
-        tau, v = as_mpf(place, mp), mp.mpf(float(rough.v))
+        tau, v = as_mpf(phase, mp), mp.mpf(float(rough.v))
         goal = _Gamma(osc, end, mp)
         small, change = mp.mpf(10) ** (-digits - 1), mp.inf
         for count in range(SEARCH.first, SEARCH.rounds, SEARCH.more):

@@ -138,13 +138,13 @@ class SwanConfiguration(Result):
         start = self._first_guess()
 
         def miss(unknown: Array) -> Array:
-            place, speed, _ = landed(unknown[0], start[1])
+            phase, speed, _ = landed(unknown[0], start[1])
             launch, velocity, _ = landed(unknown[1], start[3])
-            return np.array([(place - launch) / length, float(rebound(self.model, np.array(speed))) - velocity])
+            return np.array([(phase - launch) / length, float(rebound(self.model, np.array(speed))) - velocity])
 
-        found = _zero(miss, np.array([start[0], start[2]]), length)
-        place, speed, _ = landed(found[0], start[1])
-        return place, float(rebound(self.model, np.array(speed)))
+        root = _zero(miss, np.array([start[0], start[2]]), length)
+        phase, speed, _ = landed(root[0], start[1])
+        return phase, float(rebound(self.model, np.array(speed)))
 
     def _first_guess(self) -> tuple[float, float, float, float]:
         """(tau, t) on the arc AE of Z and on the mirror image of BE, where their images nearly meet."""
@@ -163,17 +163,17 @@ class SwanConfiguration(Result):
         return float(first[0]), float(first[1]), float(second[0]), float(second[1])
 
 
-def _zero(miss: Callable[[Array], Array], place: Array, size: float) -> Array:
+def _zero(miss: Callable[[Array], Array], root: Array, size: float) -> Array:
     """Newton's method in two unknowns, with differences over a millionth of `size`: each step gains six digits."""
     h = 1e-6 * size
     for _ in range(20):
-        value = miss(place)
-        slopes = np.stack([(miss(place + step) - value) / h for step in h * np.eye(2)], axis=1)
+        value = miss(root)
+        slopes = np.stack([(miss(root + step) - value) / h for step in h * np.eye(2)], axis=1)
         move = np.linalg.solve(slopes, -value)
-        place = place + move
-        if not np.abs(move).max() > 4e-16 * (size + np.abs(place).max()):
+        root = root + move
+        if not np.abs(move).max() > 4e-16 * (size + np.abs(root).max()):
             break
-    return place
+    return root
 
 
 def swan_configuration(model: Oscillator, near: Any = None) -> SwanConfiguration:
@@ -203,11 +203,11 @@ def swan_configuration(model: Oscillator, near: Any = None) -> SwanConfiguration
     pairs = list(pairwise(points))
     if not pairs:
         raise InputError("a_c of this model has fewer than two tangency points: there is no unfolded swan")
-    place = None if near is None else as_float(constant("near", near))
+    centre = None if near is None else as_float(constant("near", near))
 
     def distance(pair: Any) -> float:
         (left, _), (right, _) = pair
-        return float(right - left if place is None else abs(left + right - 2 * place))
+        return float(right - left if centre is None else abs(left + right - 2 * centre))
 
     (A, first), (B, _) = min(pairs, key=distance)
     return SwanConfiguration(model, A, B, "negative" if first == "gamma" else "positive")

@@ -1,15 +1,20 @@
-"""Large arrays of states, flown block by block: results are written into arrays made once, or into the caller's."""
+"""Large arrays of states, flown block by block: results are written into arrays made once, or into the caller's.
+
+What is computed one state at a time is put together by `gathered`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from dataclasses import fields as fields_of
 from typing import Any
 
 import numpy as np
 
 from singimpact.flights.results import Flight
 from singimpact.inputs import InputError, require_memory
+from singimpact.status import status_array
 
 Array = np.ndarray[Any, Any]
 SPARSE = ("depth", "bound")
@@ -110,11 +115,11 @@ class _Parts:
         self.later: list[Any] = []
         self.kind: Any = None
 
-    def add(self, part: Any, chosen: slice) -> None:
+    def add(self, block: Any, chosen: slice) -> None:
         """The results of one block."""
         if self.kind is None:
-            self._begin(part)
-        fields = vars(part)
+            self._begin(block)
+        fields = vars(block)
         for name, target in self.arrays.items():
             if target.flags.c_contiguous:
                 target.reshape(self.size, *target.shape[len(self.shape) :])[chosen] = fields[name]
@@ -123,25 +128,25 @@ class _Parts:
         self.notes |= {chosen.start + index: note for index, note in fields.get("notes", {}).items()}
         if SPARSE[0] in fields and self.out is None:
             rows = np.stack([fields[name] for name in SPARSE])
-            known = np.flatnonzero(~np.isnan(rows).all(axis=0))
-            if known.size:
-                self.rare.append((chosen.start + known, rows[:, known]))
+            sparse = np.flatnonzero(~np.isnan(rows).all(axis=0))
+            if sparse.size:
+                self.rare.append((chosen.start + sparse, rows[:, sparse]))
         if "_later" in fields and self.out is None:
             self.later.append(fields["_later"])
 
-    def _begin(self, part: Any) -> None:
-        self.kind = type(part)
-        fields = {name: value for name, value in vars(part).items() if isinstance(value, np.ndarray)}
+    def _begin(self, block: Any) -> None:
+        self.kind = type(block)
+        fields = {name: value for name, value in vars(block).items() if isinstance(value, np.ndarray)}
         for name in SPARSE if self.out is None else ():
             fields.pop(name, None)
         if self.out is not None:
             self._check(fields)
             fields = {name: value for name, value in fields.items() if name in self.out or name in ALWAYS}
         for name, value in fields.items():
-            given = None if self.out is None else self.out.get(name)
-            if given is None:
-                given = np.empty(self.shape + value.shape[1:], value.dtype)
-            self.arrays[name] = given
+            target = None if self.out is None else self.out.get(name)
+            if target is None:
+                target = np.empty(self.shape + value.shape[1:], value.dtype)
+            self.arrays[name] = target
 
     def _check(self, fields: Mapping[str, Array]) -> None:
         assert self.out is not None
@@ -149,10 +154,10 @@ class _Parts:
             if name not in fields:
                 raise InputError(f"out has the name {name!r}: give arrays for {', '.join(fields)}")
             wanted = self.shape + fields[name].shape[1:], fields[name].dtype
-            found = (getattr(target, "shape", None), getattr(target, "dtype", type(target).__name__))
-            if found != wanted or not target.flags.writeable:
+            layout = (getattr(target, "shape", None), getattr(target, "dtype", type(target).__name__))
+            if layout != wanted or not target.flags.writeable:
                 raise InputError(
-                    f"out[{name!r}] has shape {found[0]} and type {found[1]}: give a writable array of shape"
+                    f"out[{name!r}] has shape {layout[0]} and type {layout[1]}: give a writable array of shape"
                     f" {wanted[0]} and type {wanted[1]}"
                 )
 
@@ -187,3 +192,20 @@ class _NotKept:
 
     def __call__(self, name: str) -> dict[str, Any]:
         raise AttributeError(f"{name} was not kept: name it in out=, or leave out= away")
+
+
+def gathered(kind: Any, results: list[Any], shape: tuple[int, ...]) -> Any:
+    """One result whose fields are arrays of a shape; statuses and causes are int8.
+
+    Fields that are not printed say where one result comes from, and are left out.
+    """
+    columns = {}
+    for name in (entry.name for entry in fields_of(kind) if entry.repr):
+        values = [getattr(one, name) for one in results]
+        if name in ("status", "cause"):
+            columns[name] = np.array(values, dtype=np.int8).reshape(shape)
+        else:
+            plain = all(isinstance(value, int | float) for value in values)
+            columns[name] = np.array(values, dtype=None if plain else object).reshape(shape)
+    columns["status"] = status_array(columns["status"])
+    return kind(**columns)

@@ -57,25 +57,25 @@ def explained(osc: Oscillator, tau: float, numbers: Array, cause: Cause, path: A
     tau : of the launch. numbers : time, x', x - c, and which part of f or g is singular next to that, as `march`
         returns them. path : gives (x, x') at an array of times since the launch.
     """
-    place = where(osc, tau, numbers)
+    clock = where(osc, tau, numbers)
     if cause != Cause.domain_left:
-        return cause, f"the flight came to {place}"
+        return cause, f"the flight came to {clock}"
     suspects = recurrence_of(osc).suspects
     index = int(numbers[3])
     if not 1 <= index <= len(suspects):
-        return cause, f"x' grows beyond every bound near {place}"
-    part = suspects[index - 1]
-    crossed = _crossed(osc, part, tau, float(numbers[0]), path)
+        return cause, f"x' grows beyond every bound near {clock}"
+    operation = suspects[index - 1]
+    crossed = _crossed(osc, operation, tau, float(numbers[0]), path)
     if crossed == "touches":
-        return Cause.kink, f"{part} has a kink at {place}"
+        return Cause.kink, f"{operation} has a kink at {clock}"
     if crossed == "steep":
-        return Cause.kink, f"{part} changes within less than a rounding of time at {place}"
-    return cause, f"{part} is singular at {place}"
+        return Cause.kink, f"{operation} changes within less than a rounding of time at {clock}"
+    return cause, f"{operation} is singular at {clock}"
 
 
-def _crossed(osc: Oscillator, part: Expression, tau: float, time: float, path: Any) -> str:
+def _crossed(osc: Oscillator, operation: Expression, tau: float, time: float, path: Any) -> str:
     """The way in which the argument of a root, power or logarithm meets 0: "touches", "crosses"; else "steep"."""
-    match part:
+    match operation:
         case Power(base, _):
             argument: Expression = base
         case Call(name, inner) if name in ("sqrt", "log"):
@@ -84,7 +84,7 @@ def _crossed(osc: Oscillator, part: Expression, tau: float, time: float, path: A
             return "crosses"
         case _:
             return "steep"
-    if not _is_root(part) or time == 0:
+    if not _is_root(operation) or time == 0:
         return "crosses"
     before = 1e-5 * min(time, 1.0) * np.array([1.0, 2.0])
     x, xdot = path(time - before)

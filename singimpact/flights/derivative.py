@@ -1,15 +1,27 @@
-"""The derivative D G of the impact map, from the response of flights to their launches."""
+"""The derivative D G of the impact map, from the response of flights to their launches; and its determinant.
+
+The determinant is the product of Liouville's formula, to full relative accuracy where the entries of D G nearly cancel:
+
+    |det D G| = -rho'(u) (v/|u|) exp(-int_0^T f_v(x, x') dt)
+
+A flight that contracts by e^(-70) leaves two equal columns of D G in doubles; this product knows its determinant.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import names_in
+from singimpact.algebra.derivatives import derivative as formula_of_derivative
+from singimpact.algebra.expressions import evaluate, names_in, substitute
+from singimpact.algebra.numbers import as_float
+from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import allowed, compiled_model
+from singimpact.flights.flight_path import many_paths
 from singimpact.flights.horizons import Allowance, horizon_of, steps_of
 from singimpact.flights.kernels.state import TIME_BY_TAU, VELOCITY_BY_V
 from singimpact.flights.rebound_law import rebound, rebound_slope
@@ -51,15 +63,15 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
     )
     hit, rows = flights_and_rows(osc, model, states)
     status, velocity = np.asarray(hit.status).copy(), hit.velocity
-    known = rows[TIME_BY_TAU : VELOCITY_BY_V + 1]
-    others = np.isnan(known[0]) & (status == Status.hit)
+    columns = rows[TIME_BY_TAU : VELOCITY_BY_V + 1]
+    others = np.isnan(columns[0]) & (status == Status.hit)
     if others.any():
         at = np.flatnonzero(others)
         answers = response(osc, states.tau[at], states.v[at], hit.flight_time[at], velocity[at])
-        known[:, at] = answers.time_by_tau, answers.time_by_v, answers.velocity_by_tau, answers.velocity_by_v
-    known[:, status != Status.hit] = np.nan
+        columns[:, at] = answers.time_by_tau, answers.time_by_v, answers.velocity_by_tau, answers.velocity_by_v
+    columns[:, status != Status.hit] = np.nan
     slope = rebound_slope(osc, velocity)
-    matrix = np.stack([1 + known[0], known[1], slope * known[2], slope * known[3]], axis=-1).reshape(-1, 2, 2)
+    matrix = np.stack([1 + columns[0], columns[1], slope * columns[2], slope * columns[3]], axis=-1).reshape(-1, 2, 2)
     if names_in(osc.restitution):
         dead = (status == Status.hit) & np.isnan(rebound(osc, velocity))
         status[dead], matrix[dead] = Status.no_rebound, np.nan
@@ -85,3 +97,59 @@ def _at_rest(osc: Oscillator, acceleration_there: Array) -> Array:
         delay = np.where(acceleration_there < 0, -2 / acceleration_there, np.inf)
     one = np.ones(delay.shape)
     return np.stack([one, delay, 0 * one, -slope], axis=-1).reshape(-1, 2, 2)
+
+
+# ---- the determinant
+
+
+@dataclass(frozen=True)
+class QuadratureSettings:
+    """Gauss's rule for the integral of a damping that varies along a flight."""
+
+    # nodes of a piece; on a piece of one unit of time 16 nodes are exact to degree 31
+    nodes: int = 16
+    # pieces per period of the forcing, or per unit of time without one
+    pieces: float = 4.0
+
+
+SETTINGS = QuadratureSettings()
+
+
+def log_determinant(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array) -> Array:
+    """ln |det D G| of impacts: flights from (tau, v), v > 0, that hit after `time` with x' = velocity < 0.
+
+    Parameters
+    ----------
+    osc : the model. tau, v, time, velocity : shape (n,).
+
+    Examples
+    --------
+    >>> osc = Oscillator("3*xdot", "-2", 0, "1/2")
+    >>> from singimpact.flights.impact_map import first_hit
+    >>> hit = first_hit(osc, np.zeros(1), np.ones(1))
+    >>> log_determinant(osc, np.zeros(1), np.ones(1), hit.flight_time, hit.velocity).round(9).tolist()
+    [-2.206788838]
+    """
+    loss = _integral_of_damping(osc, tau, v, time)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.log(np.abs(rebound_slope(osc, velocity)) * v / np.abs(velocity)) - loss)
+
+
+def _integral_of_damping(osc: Oscillator, tau: Array, v: Array, time: Array) -> Array:
+    """The integral of f_v along each flight."""
+    slope = formula_of_derivative(osc.f, "xdot")
+    if not names_in(slope) & {"x", "xdot"}:
+        return as_float(substitute(slope, osc.parameters)) * time
+    slope = formula_of_derivative(osc.force(), "xdot")
+    nodes, weights = np.polynomial.legendre.leggauss(SETTINGS.nodes)
+    unit = 1.0 if osc.period is None else as_float(osc.period)
+    counts = np.maximum(1, np.ceil(SETTINGS.pieces * time / unit)).astype(int)
+    widths = time / counts
+    ticks = [
+        ((np.arange(n)[:, None] + (1 + nodes) / 2) * width).ravel() for n, width in zip(counts, widths, strict=True)
+    ]
+    clearance, integrals = as_float(osc.clearance), []
+    for way, width in zip(many_paths(osc, tau, v, ticks), widths, strict=True):
+        values = evaluate(slope, {"x": clearance + way[:, 0], "xdot": way[:, 1]}, DOUBLES) + np.zeros(len(way))
+        integrals.append(width / 2 * (values.reshape(-1, SETTINGS.nodes) @ weights).sum())
+    return np.array(integrals)

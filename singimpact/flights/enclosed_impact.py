@@ -70,24 +70,24 @@ def enclosed_impact(
     >>> [[round(float(part.value), 4) for part in row] for row in found.derivative]
     [[0.7674, 1.2585, -0.1885], [-0.1905, 0.4257, -0.2155]]
     """
-    given = {name: _radius(name, value) for name, value in (radii or {}).items()}
-    _check(osc, given)
+    widths = {name: _radius(name, value) for name, value in (radii or {}).items()}
+    _check(osc, widths)
     places, wanted = (constant("tau", tau), constant("v", v)), checked_digits(digits)
-    names = ("tau", "v", *(name for name in given if name not in ("tau", "v")))
+    names = ("tau", "v", *(name for name in widths if name not in ("tau", "v")))
     if sign_of(places[1]) <= 0:
         raise refuse("v", v, "a velocity above 0, just after an impact")
-    launch = Launch(*places, 1, given)
+    launch = Launch(*places, 1, widths)
     try:
-        found = certified_hit(osc, launch, wanted, Fraction(horizon_of(osc, horizon)), derivative=True)
+        proof = certified_hit(osc, launch, wanted, Fraction(horizon_of(osc, horizon)), derivative=True)
     except NoHit as none:
         return _without(names, Status.no_return, f"proved: {none}")
     except (Refused, ArithmeticError, ValueError) as reason:
         return _without(names, Status.unresolved, str(reason) or type(reason).__name__)
-    if not found.v > 0:
+    if not proof.v > 0:
         return _without(names, Status.unresolved, "the velocity after the impact is not shown positive")
-    numbers = [from_ball(part, wanted) for part in found[:4]]
-    rows = tuple(tuple(from_ball(part, wanted) for part in row) for row in found.derivative)
-    if not all(part.is_finite() for row in found.derivative for part in row):
+    numbers = [from_ball(entry, wanted) for entry in proof[:4]]
+    rows = tuple(tuple(from_ball(entry, wanted) for entry in row) for row in proof.derivative)
+    if not all(entry.is_finite() for row in proof.derivative for entry in row):
         return _without(names, Status.unresolved, "D G is not bounded on the box")
     time, velocity, landed, after = numbers
     return EnclosedImpact(time, velocity, landed, after, rows, names, Status.hit)

@@ -119,11 +119,11 @@ class Family(ABC):
         last = self._last_period
         if last is not None and last[0] == values:
             return last[1]
-        found = self._number(self._period, values)
-        if found.value < 0:
-            found = Number(-found.value, tuple(-slope for slope in found.slopes))
-        self._last_period = dict(values), found
-        return found
+        period = self._number(self._period, values)
+        if period.value < 0:
+            period = Number(-period.value, tuple(-slope for slope in period.slopes))
+        self._last_period = dict(values), period
+        return period
 
     def rebound(self, velocity: float, values: Values) -> tuple[float, float, tuple[float, ...]]:
         """rho at x' before an impact, its derivative, and its derivatives by the numbers."""
@@ -190,8 +190,10 @@ class LinearFamily(Family):
         for wave in form.harmonics:
             trees += [wave.rate, wave.phase, wave.cosine, wave.sine]
         self._trees = [self._tree(tree) for tree in trees]
-        self._known = [self._number(each, {}) if each is not None and not _moves(each[0], over) else None
-                       for each in self._trees]  # fmt: skip
+        self._known = [
+            self._number(entry, {}) if entry is not None and not _moves(entry[0], over) else None
+            for entry in self._trees
+        ]
         self.waves = len(form.harmonics)
         self._last: tuple[Values, list[Number]] | None = None
 
@@ -200,23 +202,25 @@ class LinearFamily(Family):
         last = self._last
         if last is not None and last[0] == values:
             return last[1]
-        numbers = [known or self._number(trees, values)  # type: ignore[arg-type]
-                   for known, trees in zip(self._known, self._trees, strict=True)]  # fmt: skip
+        numbers = [
+            constant or self._number(trees, values)  # type: ignore[arg-type]
+            for constant, trees in zip(self._known, self._trees, strict=True)
+        ]
         self._last = dict(values), numbers
         return numbers
 
     def end(self, values: Values, tau: float, v: float, time: float) -> End:
         p, count = self.numbers(values), len(self.over)
         n = 3 + 2 * self.waves
-        matrix, start = self._matrix([each.value for each in p]), self._start(p, tau, v)
+        matrix, start = self._matrix([number.value for number in p]), self._start(p, tau, v)
         blocks = np.zeros(((1 + count) * n,) * 2)
         for k in range(1 + count):
             blocks[k * n : (k + 1) * n, k * n : (k + 1) * n] = matrix
         for k in range(count):
-            blocks[:n, (k + 1) * n : (k + 2) * n] = self._matrix([each.slopes[k] for each in p], flow=False)
+            blocks[:n, (k + 1) * n : (k + 2) * n] = self._matrix([number.slopes[k] for number in p], flow=False)
         grown = exponential(blocks * time)
         flow = grown[:2, :n]
-        place = flow @ start
+        state = flow @ start
         turned = np.zeros(n)
         for j in range(self.waves):
             rate = p[3 + 4 * j].value
@@ -229,7 +233,7 @@ class LinearFamily(Family):
                 moved[3 + 2 * j], moved[4 + 2 * j] = -angle * start[4 + 2 * j], angle * start[3 + 2 * j]
             by_numbers[k] = grown[:2, (k + 1) * n : (k + 2) * n] @ start + flow @ moved
         bend = matrix[1] @ (grown[:n, :n] @ start)
-        return End(place, np.array([place[1], bend]), flow @ turned, flow[:, 1].copy(), by_numbers)
+        return End(state, np.array([state[1], bend]), flow @ turned, flow[:, 1].copy(), by_numbers)
 
     def flow(self, values: Values, time: float) -> Array:
         """e^{M T}: its first two rows give x - c and x' from v, 1 and the cosines and sines at the launch."""
@@ -301,22 +305,23 @@ class SteppedFamily(Family):
 
     def _end(self, values: Values, tau: float, v: float, time: float) -> End:
         self._moved(values)
-        given = np.array([tau]), np.array([v]), np.array([time])
-        by_v, by_v_dot, by_tau, by_tau_dot = self.models[0].variations(*given)[0]
+        launch = np.array([tau]), np.array([v]), np.array([time])
+        by_v, by_v_dot, by_tau, by_tau_dot = self.models[0].variations(*launch)[0]
         if not np.isfinite(by_v):  # it does not get there
             nothing = np.full(2, np.nan)
             return End(nothing, nothing, nothing, nothing, np.full((len(self.over), 2), np.nan))
-        place = self.models[0].follow(tau, v, np.array([time]))[0]
+        state = self.models[0].follow(tau, v, np.array([time]))[0]
         by_numbers, models = np.zeros((len(self.over), 2)), iter(self.models[1:])
         for k, name in enumerate(self.over):
             if name != RESTITUTION:
-                by_numbers[k] = next(models).variations(*given)[0, 2:]
+                by_numbers[k] = next(models).variations(*launch)[0, 2:]
         clearance = values.get(CLEARANCE, as_float(self.osc.clearance))
-        names = {**values, "x": clearance + place[0], "xdot": place[1], "t": tau + time}
+        names = {**values, "x": clearance + state[0], "xdot": state[1], "t": tau + time}
         with np.errstate(all="ignore"):
             bend = _float(self._forcing, names) - _float(self._force, names)
-        return End(place, np.array([place[1], bend]), np.array([by_tau, by_tau_dot]), np.array([by_v, by_v_dot]),
-                   by_numbers)  # fmt: skip
+        return End(
+            state, np.array([state[1], bend]), np.array([by_tau, by_tau_dot]), np.array([by_v, by_v_dot]), by_numbers
+        )
 
     def path(self, values: Values, tau: float, v: float, time: float) -> Array:
         with self._alone:
@@ -347,8 +352,8 @@ def exponential(matrix: Array) -> Array:
     parts = (_TAYLOR @ powers.reshape(4, -1)).reshape(5, n, n)
     fourth = powers[2] @ powers[2]
     total = parts[4]
-    for part in parts[3::-1]:
-        total = total @ fourth + part
+    for polynomial in parts[3::-1]:
+        total = total @ fourth + polynomial
     for _ in range(halvings):
         total = total @ total
     return np.asarray(total)

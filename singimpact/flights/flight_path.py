@@ -123,8 +123,8 @@ def along(osc: Oscillator, tau: Array, v: Array, which: Array, times: Array) -> 
     phases, pushes, numbers = forcing_phases(osc, launches), acceleration(osc, launches), numbers_of(osc)[0]
     out = np.empty((times.size, 2))
     for begin in range(0, times.size, BLOCKS.states):
-        part = slice(begin, begin + BLOCKS.states)
-        out[part] = places(phases[at[part]], speeds[at[part]], pushes[at[part]], times[part], numbers)
+        rows = slice(begin, begin + BLOCKS.states)
+        out[rows] = places(phases[at[rows]], speeds[at[rows]], pushes[at[rows]], times[rows], numbers)
     return out
 
 
@@ -151,7 +151,7 @@ def dropped(osc: Oscillator, start: tuple[float, float, float], times: Array) ->
 def off_wall_places(osc: Oscillator, tau: Array, v: Array, height: Array, times: Array) -> Array:
     """x - c and x' of a linear model at times[i] after the start i off the wall, shape (n, 2)."""
     numbers = numbers_of(osc)[0]
-    found = places(forcing_phases(osc, tau), v, acceleration(osc, tau), times, numbers)
+    driven = places(forcing_phases(osc, tau), v, acceleration(osc, tau), times, numbers)
     # the free motion from (1, 0) is the derivative of the one from (0, 1), and d times that one
     d, k = numbers[1], numbers[2]
     root = np.sqrt(complex(d * d / 4 - k))
@@ -159,7 +159,7 @@ def off_wall_places(osc: Oscillator, tau: Array, v: Array, height: Array, times:
     with np.errstate(all="ignore"):
         free = pair(a, b, times)
         slope = turning(a, times) + b * free
-        return np.asarray(found + height[:, None] * np.stack([slope.real + d * free.real, -k * free.real], axis=1))
+        return np.asarray(driven + height[:, None] * np.stack([slope.real + d * free.real, -k * free.real], axis=1))
 
 
 def turning(a: Any, t: Any) -> Array:
@@ -188,11 +188,11 @@ def triple(a: complex, b: complex, c: complex, t: Array) -> Array:
         b, c = c, b
     elif bc >= ca:
         a, b = b, a
-    found, far = np.empty(t.shape, dtype=complex), np.abs((a - c) * t) > 0.5
+    differences, far = np.empty(t.shape, dtype=complex), np.abs((a - c) * t) > 0.5
     if far.any():
-        found[far] = (pair(a, b, t[far]) - pair(b, c, t[far])) / (a - c)
-    found[~far] = series((a, b, c), t[~far], 13)
-    return found
+        differences[far] = (pair(a, b, t[far]) - pair(b, c, t[far])) / (a - c)
+    differences[~far] = series((a, b, c), t[~far], 13)
+    return differences
 
 
 def beyond(a: complex, b: complex, rate: complex, t: Array) -> Array:
@@ -264,8 +264,8 @@ def ends(osc: Oscillator, tau: Array, v: Array, times: Array) -> tuple[Array, Ar
         rows = np.full((tau.size, 2), np.nan)
         for i in np.flatnonzero(np.isfinite(times)).tolist():
             rows[i] = model.follow(float(tau[i]), float(v[i]), times[i : i + 1])[0]
-    place, speed = rows.T
+    position, speed = rows.T
     with np.errstate(all="ignore"):
         forcing = evaluate(osc.forcing(), {"t": tau + times}, DOUBLES)
-        force = evaluate(osc.force(), {"x": as_float(osc.clearance) + place, "xdot": speed}, DOUBLES)
-        return place, speed, np.asarray(forcing - force + 0 * place)
+        force = evaluate(osc.force(), {"x": as_float(osc.clearance) + position, "xdot": speed}, DOUBLES)
+        return position, speed, np.asarray(forcing - force + 0 * position)

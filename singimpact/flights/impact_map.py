@@ -38,9 +38,16 @@ NO_NOTES: dict[int, str] = {}
 
 
 def first_hit(
-    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
-    steps: int | None = None, out: Mapping[str, Array] | None = None,
-) -> Flight:  # fmt: skip
+    osc: Oscillator,
+    tau: Any,
+    v: Any,
+    *,
+    digits: int | None = None,
+    tolerance: Any = None,
+    horizon: Any = None,
+    steps: int | None = None,
+    out: Mapping[str, Array] | None = None,
+) -> Flight:
     """The first hit of the obstacle by the flight from (tau, v).
 
     Parameters
@@ -82,9 +89,16 @@ def first_hit(
 
 
 def impact_map(
-    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, tolerance: Any = None, horizon: Any = None,
-    steps: int | None = None, out: Mapping[str, Array] | None = None,
-) -> Step:  # fmt: skip
+    osc: Oscillator,
+    tau: Any,
+    v: Any,
+    *,
+    digits: int | None = None,
+    tolerance: Any = None,
+    horizon: Any = None,
+    steps: int | None = None,
+    out: Mapping[str, Array] | None = None,
+) -> Step:
     """The impact map G(tau, v) = (tau + T, -r x'(T)); parameters as in `first_hit`.
 
     Notes
@@ -147,8 +161,15 @@ def _quickly(model: CompiledModel, tau: float, v: float) -> tuple[dict[str, Any]
         code, hit = model.quick()(tau, v, float(acceleration(model.osc, np.array([tau]))[0]))
     if code != 0:
         return None, (np.array([code], np.int8), np.array(hit).reshape(10, 1))
-    fields = {"flight_time": hit[0], "velocity": hit[1], "status": SCALAR_STATUS[0], "depth": np.nan, "bound": np.nan,
-              "cause": NONE, "notes": NO_NOTES}  # fmt: skip
+    fields = {
+        "flight_time": hit[0],
+        "velocity": hit[1],
+        "status": SCALAR_STATUS[0],
+        "depth": np.nan,
+        "bound": np.nan,
+        "cause": NONE,
+        "notes": NO_NOTES,
+    }
     if not model.linear:
         return fields | {"later": undecided.Judge(model, tau, v, ())}, None
     fields["condition"], fields["velocity_condition"], fields["time_error"], fields["velocity_error"] = hit[2:6]
@@ -247,7 +268,10 @@ def shaped(flight: Flight, shape: tuple[int, ...]) -> Flight:
     if len(shape) == 1:
         flight.__dict__["status"] = status_array(flight.status)
         return flight
-    fields = {name: value if name == "notes" else np.asarray(value).reshape(shape)[()]
-              for name, value in vars(flight).items() if name != "_later"}  # fmt: skip
+    fields = {
+        name: value if name == "notes" else np.asarray(value).reshape(shape)[()]
+        for name, value in vars(flight).items()
+        if name != "_later"
+    }
     fields["status"] = status_array(fields["status"])
     return type(flight).made(None if later is None else undecided.Shaped(later, shape), **fields)

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import inf, nan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.certified import from_ball
+from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import as_mpf, sign_of
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights import undecided
 from singimpact.flights.causes import decoded
-from singimpact.flights.certified_flights import Proof, proof
 from singimpact.flights.compiled_model import allowed
+from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, ProvedImpact, certified_hit
+from singimpact.flights.enclosures.equation import NoHit, Refused
 from singimpact.flights.horizons import Allowance
 from singimpact.flights.multiprecision import found
 from singimpact.flights.rebound_law import rebound_in_digits
-from singimpact.flights.results import Flight, Step
+from singimpact.flights.results import CertifiedImpact, Flight, Step
 from singimpact.flights.states import States
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status
@@ -35,11 +38,11 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     if isinstance(first, Flight):
         return first
     size = states.v.size
-    known, budgets, roughs, kappas = _known_in_doubles(osc, states, allowance)
+    lost, budgets, roughs, kappas = _known_in_doubles(osc, states, allowance)
     codes, rows = np.zeros(size, dtype=np.int8), np.full((10, size), np.nan)
     fields = [np.empty(size, dtype=object) for _ in range(4)]
     certified, reasons = np.full(size, None, dtype=object), {}
-    at_hand = np.array([index not in known for index in range(size)], dtype=bool)
+    at_hand = np.array([index not in lost for index in range(size)], dtype=bool)
     in_doubles = at_hand & (states.v > 0) & (roughs[0] > 0) & (roughs[1] < 0)  # from rest the rows are not filled
     roughs = np.where(in_doubles, roughs[:2], np.nan)
     open_ones = in_doubles & np.isnan(kappas).any(axis=0)
@@ -47,30 +50,30 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
         kappas = np.where(open_ones, undecided.conditions(osc, states, open_ones, roughs[0], roughs[1])[:2], kappas)
     for index in range(size):
         limit = float(allowance.until(states.v[index]))
-        proved = first or _proof(osc, states, index, digits, limit, known, (*roughs[:2], kappas[1]))
+        proved = first or _proof(osc, states, index, digits, limit, lost, (*roughs[:2], kappas[1]))
         certified[index] = proved.impact
         if proved.reason:
             reasons[index] = proved.reason
         if proved.flight_time is not None:
             codes[index] = Status.hit
-            numbers: Any = *(from_ball(part, digits).value for part in proved[:2]), nan, nan
-            known.pop(index, None)
-        elif index in known:
-            codes[index], numbers = known[index][0], (nan,) * 4
-            rows[:4, index] = known[index][1]
+            numbers: Any = *(from_ball(number, digits).value for number in proved[:2]), nan, nan
+            lost.pop(index, None)
+        elif index in lost:
+            codes[index], numbers = lost[index][0], (nan,) * 4
+            rows[:4, index] = lost[index][1]
         elif proved.missed:
             codes[index], numbers = Status.no_return, (inf, nan, nan, nan)
         else:
             codes[index], numbers = found(osc, states, index, digits, limit, int(budgets[index]))
-        if index not in known:
-            rows[:4, index] = [float(part) for part in numbers]
+        if index not in lost:
+            rows[:4, index] = [float(number) for number in numbers]
         status = int(codes[index]) if codes[index] < 20 else int(Status.unresolved)
         numbers = numbers if codes[index] < 20 else (nan,) * 4
         with digits_at(digits) as mp:
             for field, value in zip(fields, _shown(status, numbers), strict=True):
                 field[index] = for_user(+mp.convert(value))
     fates = undecided.Fates(*decoded(codes), rows)
-    for index, (_, _, cause) in known.items():
+    for index, (_, _, cause) in lost.items():
         fates.cause[index] = cause
     notes = dict(undecided.notes_of(osc, states, fates))
     for index, reason in reasons.items():
@@ -81,9 +84,20 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     kappas = np.where(fates.status == Status.hit, kappas, np.nan)
     error = np.where(fates.status == Status.hit, 10.0 ** -min(digits, 300), np.nan)
     time, velocity, depth, bound = fields
-    return Flight.made(flight_time=time, velocity=velocity, status=fates.status, depth=depth, bound=bound,
-                       condition=kappas[0], velocity_condition=kappas[1], time_error=error, velocity_error=error.copy(),
-                       cause=fates.cause, notes=notes, certified=certified)  # fmt: skip
+    return Flight.made(
+        flight_time=time,
+        velocity=velocity,
+        status=fates.status,
+        depth=depth,
+        bound=bound,
+        condition=kappas[0],
+        velocity_condition=kappas[1],
+        time_error=error,
+        velocity_error=error.copy(),
+        cause=fates.cause,
+        notes=notes,
+        certified=certified,
+    )
 
 
 def _plain_hit(osc: Oscillator, states: States, digits: int, allowance: Allowance) -> Flight | Proof | None:
@@ -102,28 +116,43 @@ def _plain_hit(osc: Oscillator, states: States, digits: int, allowance: Allowanc
     if proved.impact is None:
         return proved
     with digits_at(digits) as mp:
-        numbers = [for_user(+mp.convert(part.value)) for part in (proved.impact.flight_time, proved.impact.velocity)]
+        numbers = [for_user(+mp.convert(entry.value)) for entry in (proved.impact.flight_time, proved.impact.velocity)]
     time, velocity, certified = np.array([[*numbers, proved.impact]], dtype=object).T
     nothing, error = np.array([np.nan]), np.array([10.0 ** -min(digits, 300)])
-    return Flight.made(flight_time=time, velocity=velocity, status=np.zeros(1, np.int8), depth=nothing,
-                       bound=nothing.copy(), condition=kappas[:1], velocity_condition=kappas[1:], time_error=error,
-                       velocity_error=error.copy(), cause=np.zeros(1, np.int8), notes={},
-                       certified=certified)  # fmt: skip
+    return Flight.made(
+        flight_time=time,
+        velocity=velocity,
+        status=np.zeros(1, np.int8),
+        depth=nothing,
+        bound=nothing.copy(),
+        condition=kappas[:1],
+        velocity_condition=kappas[1:],
+        time_error=error,
+        velocity_error=error.copy(),
+        cause=np.zeros(1, np.int8),
+        notes={},
+        certified=certified,
+    )
 
 
 def _proof(
-    osc: Oscillator, states: States, index: int, digits: int, horizon: float,
-    known: dict[int, tuple[int, Array, int]], roughs: tuple[Array, Array, Array],
-) -> Proof:  # fmt: skip
+    osc: Oscillator,
+    states: States,
+    index: int,
+    digits: int,
+    horizon: float,
+    lost: dict[int, tuple[int, Array, int]],
+    roughs: tuple[Array, Array, Array],
+) -> Proof:
     """The proof of a flight in balls; one that is proved in doubles never to return needs no other.
 
     Towards a point where f or g is not analytic the steps in balls shorten without end: such a flight is not tried.
     """
-    if index in known and known[index][0] == Status.escaped:
+    if index in lost and lost[index][0] == Status.escaped:
         return Proof(None, None, None, "there is no hit: the flight is proved never to return")
-    if index in known and known[index][2] in (Cause.kink, Cause.domain_left):
+    if index in lost and lost[index][2] in (Cause.kink, Cause.domain_left):
         return Proof(None, None, None, "f or g is not analytic where the flight goes")
-    rough = None if index in known else (float(roughs[0][index]), float(roughs[2][index]))
+    rough = None if index in lost else (float(roughs[0][index]), float(roughs[2][index]))
     return proof(osc, states, index, digits, horizon, rough)
 
 
@@ -146,11 +175,11 @@ def _known_in_doubles(
     undecided.escapes(osc, model, states, fates)
     over = fates.lost | (fates.status == Status.no_return) | (fates.status == Status.escaped)
     over[tiny] = False
-    known = {int(i): (int(fates.status[i]), fates.rows[:4, i], int(fates.cause[i])) for i in np.flatnonzero(over)}
+    lost = {int(i): (int(fates.status[i]), fates.rows[:4, i], int(fates.cause[i])) for i in np.flatnonzero(over)}
     judge.hits[tiny] = False
     steps, kappas = judge.steps()
     budgets = np.where(np.isnan(steps), allowance.steps, 2 * np.nan_to_num(steps) + 100).astype(int)
-    return known, budgets, fates.rows, kappas
+    return lost, budgets, fates.rows, kappas
 
 
 def _shown(status: int, numbers: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, Any, Any]:
@@ -186,3 +215,72 @@ def step(osc: Oscillator, states: States, hit: Flight, digits: int) -> Step:
     shape = states.shape
     fields = vars(hit) | {"status": status.reshape(shape)[()]}
     return Step.made(**fields, tau=tau.reshape(shape)[()], v=v.reshape(shape)[()])
+
+
+# ---- the proof of one flight in balls
+
+
+class Proof(NamedTuple):
+    """Balls of the flight time and of x' at the first hit and what they certify; or None for all, and why.
+
+    `impact` is None beside a hit whose rebound is not shown positive. `missed` : proved, no hit before the horizon.
+    """
+
+    flight_time: Any
+    velocity: Any
+    impact: CertifiedImpact | None
+    reason: str = ""
+    missed: bool = False
+
+
+def proof(
+    osc: Oscillator, states: States, index: int, digits: int, horizon: float, rough: tuple[float, float] | None
+) -> Proof:
+    """The proof of a flight in balls.
+
+    Parameters
+    ----------
+    horizon : no hit is looked for beyond. rough : flight time and condition number of the velocity in doubles, None
+        where they find no hit; they choose the first precision.
+
+    Examples
+    --------
+    >>> osc = Oscillator("x + x**3", "cos(1.7*t)", "0.3", "1/2")
+    >>> print(proof(osc, States.of(osc, "1.4", "0.6"), 0, 20, 60.0, None).impact.tau)
+    2.2817511466168335788
+    """
+    rest, launch = states.rest.get(index), (states.exact_tau(index), states.exact_v(index))
+    standing = rest is not None and sign_of(launch[1]) == 0
+    if standing and rest is not None and rest.sign <= 0:
+        return Proof(None, None, None, "the mass is at rest and does not leave the wall")
+    removed = rest.order + 2 if standing and rest is not None else 1
+    try:
+        hit = certified_hit(
+            osc,
+            Launch(*launch, removed),
+            digits,
+            Fraction(horizon),
+            steps=ENCLOSURE.idle_steps if rough is None else ENCLOSURE.steps,
+            expected=_expected(rough),
+        )
+    except NoHit as none:
+        return Proof(None, None, None, f"proved: {none}", missed=True)
+    except (Refused, ArithmeticError, ValueError, TypeError) as reason:  # a ball that left the domain of a function
+        return Proof(None, None, None, str(reason) or type(reason).__name__)
+    return _certified(hit, digits, osc, launch)
+
+
+def _expected(rough: tuple[float, float] | None) -> tuple[float, float]:
+    """Flight time and condition number of a hit from double precision, where it decides the flight."""
+    if rough is None:
+        return inf, 1.0
+    time, condition = rough
+    return (time, condition if condition > 1 else 1.0) if time > 0 else (0.0, 1.0)
+
+
+def _certified(hit: ProvedImpact, digits: int, osc: Oscillator, launch: tuple[Expression, Expression]) -> Proof:
+    """The proof of a hit, with the model and the launch, which a certificate names."""
+    if not hit.v > 0:
+        return Proof(hit.flight_time, hit.velocity, None, "the velocity after the impact is not shown positive")
+    time, velocity, tau, v = (from_ball(ball, digits) for ball in (hit.flight_time, hit.velocity, hit.tau, hit.v))
+    return Proof(hit.flight_time, hit.velocity, CertifiedImpact(time, velocity, tau, v, osc, launch))

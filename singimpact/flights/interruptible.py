@@ -13,12 +13,12 @@ LOOK = 0.1
 """Seconds between two looks of the main thread, where the system does not wake it up."""
 
 
-def interruptible(call: Callable[..., int], arguments: tuple[Any, ...], kept: tuple[Any, ...]) -> int:
+def interruptible(call: Callable[..., int], arguments: tuple[Any, ...], buffers: tuple[Any, ...]) -> int:
     """The value of a call that releases Python's lock and raises nothing.
 
     Parameters
     ----------
-    kept : what the call writes into. An interrupted call goes on in its thread to its end, and this must live as long.
+    buffers : what the call writes into. An interrupted call goes on in its thread to its end, and they live as long.
 
     Examples
     --------
@@ -27,13 +27,13 @@ def interruptible(call: Callable[..., int], arguments: tuple[Any, ...], kept: tu
     """
     if current_thread() is not main_thread():
         return call(*arguments)
-    found: list[int] = []
+    values: list[int] = []
 
-    def work(_kept: tuple[Any, ...] = kept) -> None:
-        found.append(call(*arguments))
+    def work(_kept: tuple[Any, ...] = buffers) -> None:
+        values.append(call(*arguments))
 
     thread = Thread(target=work, name=NAME, daemon=True)
     thread.start()
     while thread.is_alive():
         thread.join(LOOK)
-    return found[0]
+    return values[0]

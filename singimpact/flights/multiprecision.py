@@ -1,4 +1,4 @@
-"""One flight in many digits by the kernel on numbers of mpmath, where balls do not prove the hit (`certified_flights`).
+"""One flight in many digits by the kernel on numbers of mpmath, where balls do not prove the hit (`in_digits.proof`).
 
 Two runs at different precision must agree to the digits asked for, else the precision grows: half of the digits go in a
 square root at a graze, and no formula is trusted to know how near it is.
@@ -7,18 +7,19 @@ square root at a graze, and no formula is trusted to know how near it is.
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
 from functools import lru_cache
-from math import nan
+from math import factorial, isqrt, lcm, nan, sqrt
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.numbers import as_mpf
+from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power
+from singimpact.algebra.numbers import as_float, as_fraction, as_mpf, sign_of
 from singimpact.algebra.precision import balls_at, bits_at, digits_at
 from singimpact.codegen.over_lists import FUNCTIONS
 from singimpact.flights.bind import over_lists, over_mpmath
-from singimpact.flights.closing import common_period, touches_again
 from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.state import Rules
 from singimpact.flights.limits import LIMITS, degree_for
@@ -26,8 +27,9 @@ from singimpact.flights.model_numbers import constants_of, linear_numbers, linea
 from singimpact.flights.no_return.linear import never_returns
 from singimpact.flights.no_return.polynomial import never_turns
 from singimpact.flights.states import States
-from singimpact.oscillator.linear import linear_form
+from singimpact.oscillator.linear import LinearForm, linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import Zero, acceleration
 from singimpact.status import Status
 
 Outcome = tuple[int, tuple[Any, Any, Any, Any]]
@@ -88,8 +90,11 @@ def _escaping(osc: Oscillator, states: States, index: int, outcome: Outcome) -> 
     """`escaped` in place of `no_return` where it is proved; doubles are enough for that."""
     form, numbers = linear_form(osc), outcome[1]
     time, speed, place = (np.array([float(value)]) for value in numbers[:3])
-    proved = (never_turns(osc, place, speed) if form is None
-              else never_returns(osc, form, states.tau[[index]], time, place, speed))  # fmt: skip
+    proved = (
+        never_turns(osc, place, speed)
+        if form is None
+        else never_returns(osc, form, states.tau[[index]], time, place, speed)
+    )
     return (int(Status.escaped), numbers) if proved[0] else outcome
 
 
@@ -221,3 +226,77 @@ def forcing_phases(osc: Oscillator, states: States, index: int, mp: Any) -> list
             return [tau - period * mp.nint(tau / period)]
         angles = [as_mpf(w.rate, mp) * tau + as_mpf(w.phase, mp) for w in linear_waves(osc)]
         return [value for angle in angles for value in (mp.cos(angle), mp.sin(angle))]
+
+
+# ---- undamped linear models that come back to their launch at rest after the common period of all motions
+# There the flight touches the obstacle as it left it: a graze of any order. No number of digits tells it from a near
+# miss; the common period does.
+
+
+def touches_again(osc: Oscillator, rest: Zero, time: float) -> Expression | None:
+    """The time at which a flight launched at rest touches the obstacle again as it left it.
+
+    Parameters
+    ----------
+    osc : the model. rest : the launch. time : the flight was seen above the obstacle until then, and not decided there.
+
+    Returns
+    -------
+    Expression or None : the common period, where x - c is proved positive from `time` up to it.
+
+    Examples
+    --------
+    >>> osc = Oscillator("x", "cos(2*t)", -1, "1/2")
+    >>> print(touches_again(osc, Zero(multiply(number(Fraction(1, 2)), Pi()), 2, 1), 6.2831))
+    2*pi
+    """
+    form, period = linear_form(osc), common_period(osc)
+    if form is None or period is None or rest.sign <= 0 or rest.order % 2:
+        return None
+    gap = abs(as_float(period) - time)
+    order = rest.order + 2
+    leading = float(acceleration(osc, np.array([as_float(rest.tau)]), rest.order)[0])
+    # backwards from the touch: x - c >= leading s^order/order! - bound s^(order + 1)/(order + 1)!
+    bound = _largest_derivative(form, as_float(osc.clearance), order + 1)
+    return period if 2 * bound * gap < leading * factorial(order + 1) / factorial(order) else None
+
+
+@lru_cache(maxsize=256)
+def common_period(osc: Oscillator) -> Expression | None:
+    """The least common period of free motion and forcing of an undamped linear model; None when there is none.
+
+    Examples
+    --------
+    >>> print(common_period(Oscillator("x", "cos(2.8*t)", 0, 1)))
+    10*pi
+    >>> print(common_period(Oscillator("x + 0.1*xdot", "cos(2.8*t)", 0, 1)))
+    None
+    """
+    form = linear_form(osc)
+    if form is None or sign_of(form.damping) or sign_of(form.stiffness) <= 0:
+        return None
+    turns, stiffness = 1, as_fraction(form.stiffness)
+    for wave in form.harmonics:
+        rate = as_fraction(wave.rate)
+        ratio = None if rate is None or not stiffness else _rational_root(rate * rate / stiffness)
+        if ratio is None or ratio == 1:
+            return None  # no common period, or resonance
+        turns = lcm(turns, ratio.denominator)
+    root = None if not stiffness else _rational_root(stiffness)
+    slowness = power(form.stiffness, Number(Fraction(-1, 2))) if root is None else number(1 / root)
+    return multiply(number(2 * turns), Pi(), slowness)
+
+
+def _rational_root(value: Fraction) -> Fraction | None:
+    root = Fraction(isqrt(value.numerator), isqrt(value.denominator))
+    return root if root * root == value else None
+
+
+def _largest_derivative(form: LinearForm, clearance: float, order: int) -> float:
+    """A bound, for all times, of a derivative of a flight launched at rest."""
+    stiffness = as_float(form.stiffness)
+    rate, offset = sqrt(stiffness), as_float(form.constant) / stiffness
+    waves = [(as_float(wave.rate), np.hypot(as_float(wave.cosine), as_float(wave.sine))) for wave in form.harmonics]
+    answers = [(abs(speed), size / abs(stiffness - speed * speed)) for speed, size in waves]
+    free = abs(clearance - offset) + sum(size * (1 + speed / rate) for speed, size in answers)
+    return float(free * rate**order + sum(size * speed**order for speed, size in answers))

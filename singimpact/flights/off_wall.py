@@ -76,8 +76,10 @@ class Launched(Result):
         """The outcome of each flight: a text, or an array of texts of the shape of `status`."""
         pairs = zip(np.ravel(self.status).tolist(), np.ravel(self.cause).tolist(), strict=True)
         causes = {cause: Cause(cause).sentence.partition(":")[0] for cause in np.unique(self.cause).tolist()}
-        texts = [f"{self.notes[at]}; {causes[cause]}" if cause else Status(status).sentence
-                 for at, (status, cause) in enumerate(pairs)]  # fmt: skip
+        texts = [
+            f"{self.notes[at]}; {causes[cause]}" if cause else Status(status).sentence
+            for at, (status, cause) in enumerate(pairs)
+        ]
         return np.array([*texts, None], dtype=object)[:-1].reshape(np.shape(self.status))[()]
 
 
@@ -109,7 +111,7 @@ def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -
     try:
         places, speeds, times = np.broadcast_arrays(*parts)
     except ValueError:
-        shapes = ", ".join(str(part.shape) for part in parts)
+        shapes = ", ".join(str(column.shape) for column in parts)
         raise InputError(f"x, xdot and t have shapes {shapes}: give shapes that broadcast") from None
     shape = places.shape
     u, starts = float_array("xdot", speeds.ravel()), States.read(times.ravel(), 0.0).in_period(osc)
@@ -141,7 +143,7 @@ def _heights(osc: Oscillator, places: Array) -> Array:
         low = as_float(subtract(osc.clearance, Number(Fraction(high))))
         heights = (values - high) - low
     else:
-        heights = np.array([as_float(subtract(constant("x", each), osc.clearance)) for each in places.tolist()])
+        heights = np.array([as_float(subtract(constant("x", position), osc.clearance)) for position in places.tolist()])
     if heights.size and heights.min() < 0:
         raise refuse("x", places[heights < 0][0], f"places at or above the wall, x >= {osc.clearance}")
     return heights
@@ -174,7 +176,9 @@ class _Flown:
         codes, rows = model.drops(model.near(tau), u, heights[at])
         fates = Fates(*decoded(codes), rows)
         for index in np.flatnonzero(fates.cause == Cause.near_graze)[: LIMITS.settled].tolist():
-            exact = [constant(name, part[at[index]]) for name, part in zip(("t", "xdot", "x"), written, strict=True)]
+            exact = [
+                constant(name, column[at[index]]) for name, column in zip(("t", "xdot", "x"), written, strict=True)
+            ]
             self._settle(fates, index, exact, model.allowance.horizon)
         escapes(self.osc, model, States(tau, u, tau.shape, (tau, u)), fates)
         hit = fates.status == Status.hit
@@ -187,10 +191,12 @@ class _Flown:
         self.velocity[at] = np.where(hit, rows[1], np.where(graze, 0.0, np.nan))
         self._rebound(at)
         for index in np.flatnonzero(fates.cause).tolist():
-            told = f"the flight comes to within {rows[2, index]:.3g} of the wall {rows[0, index]:.12g} after its start"
+            approach = (
+                f"the flight comes to within {rows[2, index]:.3g} of the wall {rows[0, index]:.12g} after its start"
+            )
             near = fates.cause[index] == Cause.near_graze
-            place = told if near else f"the flight came to {where(self.osc, tau[index], rows[:4, index])}"
-            self.notes[int(at[index])] = place
+            note = approach if near else f"the flight came to {where(self.osc, tau[index], rows[:4, index])}"
+            self.notes[int(at[index])] = note
 
     def _place(self, rows: Array, starts: tuple[Array, Array, Array], hit: Array) -> None:
         """One Newton step of the closed form at hits."""

@@ -72,10 +72,11 @@ def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, near_end: f
     rows, code = model.segment(start, v, count, near_end)
     if code == Status.no_rebound:  # the last impact leaves no velocity
         rows = rows[:-1]
-    ended, cause = (int(part[0]) for part in decoded(np.array([0 if code == PRESSED else code])))
+    ended, cause = (int(codes[0]) for codes in decoded(np.array([0 if code == PRESSED else code])))
     since, speed, time, velocity, acceleration, condition, error = rows.T[:7]
-    return Segment(tau + since, speed, time, velocity, acceleration, condition, error, rows.T[7:], ended, cause,
-                   code == PRESSED)  # fmt: skip
+    return Segment(
+        tau + since, speed, time, velocity, acceleration, condition, error, rows.T[7:], ended, cause, code == PRESSED
+    )
 
 
 @dataclass(frozen=True, repr=False)
@@ -126,7 +127,7 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
     over = _completed(osc, times, speeds, codes)
     codes[over], speeds[over] = Status.complete, 0.0
     parts = times + (states.tau - start + states.turns), speeds, decoded(codes)[0]
-    return Ends(*(part.reshape(states.shape)[()] for part in parts))
+    return Ends(*(column.reshape(states.shape)[()] for column in parts))
 
 
 def _completed(osc: Oscillator, tau: Array, v: Array, codes: Array) -> Array:
@@ -146,16 +147,16 @@ def _completed(osc: Oscillator, tau: Array, v: Array, codes: Array) -> Array:
 def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool) -> Ends:
     """`iterate`, with the states after every impact along a first axis when they are kept."""
     if not keep:
-        found = iterate(osc, tau, v, impacts)
-        return Ends(found.tau, found.v, status_array(found.status))
+        ends = iterate(osc, tau, v, impacts)
+        return Ends(ends.tau, ends.v, status_array(ends.status))
     states = States.read(tau, v).in_period(osc)
     require_memory("iterates kept", (impacts + 1, *states.shape), 2 * LEAST)  # rows, and rows put together
     start = compiled_model(osc).near(states.tau)
     rows = [Ends(start, states.v, np.zeros(states.v.size, np.int8))]
     for _ in range(impacts):
         last = rows[-1]
-        found = iterate(osc, last.tau, last.v, 1)
-        rows.append(Ends(found.tau, found.v, np.where(last.status != 0, last.status, found.status)))
+        ends = iterate(osc, last.tau, last.v, 1)
+        rows.append(Ends(ends.tau, ends.v, np.where(last.status != 0, last.status, ends.status)))
     times, speeds = np.stack([row.tau for row in rows]), np.stack([row.v for row in rows])
     times += states.tau - start + states.turns
     shape = (impacts + 1, *states.shape)

@@ -99,8 +99,8 @@ def speed_before(osc: Oscillator, v: Array) -> Array:
     miss = np.abs(np.where(np.isfinite(value), value - v, np.inf))
     best = np.argmin(miss, axis=0)[None]
     close = (np.take_along_axis(miss, best, 0) <= np.take_along_axis(allowed, best, 0))[0]
-    found = np.where(v == 0, 0.0, np.where(close, np.take_along_axis(ends, best, 0)[0], np.nan))
-    return _decided(osc, v, found)
+    speed = np.where(v == 0, 0.0, np.where(close, np.take_along_axis(ends, best, 0)[0], np.nan))
+    return _decided(osc, v, speed)
 
 
 def _decided(osc: Oscillator, v: Array, speed: Array) -> Array:
@@ -137,14 +137,14 @@ def sharpened(osc: Oscillator, v: Expression, speed: float, digits: int) -> Any:
     v : an exact number. speed : U as a double.
     """
     with digits_at(2 * digits + SPARE) as mp:
-        place, after, ring = mp.mpf(-speed), as_mpf(v, mp), Multiprecision(mp)
+        speed_in_digits, after, ring = mp.mpf(-speed), as_mpf(v, mp), Multiprecision(mp)
         small = mp.mpf(10) ** (-digits - 5)
         for _ in range(4 * digits + STEPS):
-            slope = rebound_slope(osc, place, ring)
+            slope = rebound_slope(osc, speed_in_digits, ring)
             if not slope < 0:
                 return None
-            change = (rebound_in_digits(osc, place, mp) - after) / slope
-            place -= change
-            if abs(change) <= small * abs(place):
-                return for_user(-place)
+            change = (rebound_in_digits(osc, speed_in_digits, mp) - after) / slope
+            speed_in_digits -= change
+            if abs(change) <= small * abs(speed_in_digits):
+                return for_user(-speed_in_digits)
     return None

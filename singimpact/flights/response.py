@@ -86,8 +86,12 @@ def _response(parts: Any, velocity: Any, acceleration_there: Any) -> Response:
     by_v, by_v_dot, by_tau, by_tau_dot = parts
     with np.errstate(all="ignore"):
         time_by_tau, time_by_v = -by_tau / velocity, -by_v / velocity
-        return Response(time_by_tau, time_by_v, by_tau_dot + acceleration_there * time_by_tau,
-                        by_v_dot + acceleration_there * time_by_v)  # fmt: skip
+        return Response(
+            time_by_tau,
+            time_by_v,
+            by_tau_dot + acceleration_there * time_by_tau,
+            by_v_dot + acceleration_there * time_by_v,
+        )
 
 
 def _acceleration(osc: Oscillator, tau: Array, time: Array, velocity: Array) -> Array:
@@ -96,11 +100,11 @@ def _acceleration(osc: Oscillator, tau: Array, time: Array, velocity: Array) -> 
     with np.errstate(all="ignore"):
         forcing = evaluate(osc.forcing(), {"t": start + time}, DOUBLES) + 0 * velocity
         force = evaluate(osc.force(), {"x": as_float(osc.clearance), "xdot": velocity}, DOUBLES)
-        found = np.asarray(forcing - force)
+        difference = np.asarray(forcing - force)
         # where g and f nearly cancel, doubles keep too few digits of x''
-        for index in np.flatnonzero(np.abs(found) < LIMITS.cancelled * np.abs(forcing)):
-            found[index] = _cancelled(osc, start[index] + time[index], velocity[index])
-    return found
+        for index in np.flatnonzero(np.abs(difference) < LIMITS.cancelled * np.abs(forcing)):
+            difference[index] = _cancelled(osc, start[index] + time[index], velocity[index])
+    return difference
 
 
 def _cancelled(osc: Oscillator, at: float, velocity: float) -> float:

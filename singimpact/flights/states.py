@@ -89,8 +89,8 @@ class States:
             ) from None
         shape = written[0].shape
         times, speeds = (
-            np.broadcast_to(float_array(name, part), shape).ravel()
-            for name, part in zip(("tau", "v"), raw, strict=True)
+            np.broadcast_to(float_array(name, values), shape).ravel()
+            for name, values in zip(("tau", "v"), raw, strict=True)
         )
         if speeds.size and speeds.min() < 0:
             raise refuse("v", float(speeds[speeds < 0][0]), "velocities >= 0, just after an impact")

@@ -86,24 +86,24 @@ def rest_flights(osc: Oscillator, clearance: Array, tau: Array, lane: Array, tim
     functions = {name: getattr(np, _NUMPY.get(name, name)) for name in FUNCTIONS}
     coefficients = plain(_unshared(flow.source), functions)["coefficients"]
     numbers = numbers_of_flow(osc, flow).tolist()
-    found = np.full((times.size, 4), np.nan)
+    table = np.full((times.size, 4), np.nan)
     ends = np.zeros(tau.size)
     np.maximum.at(ends, lane, np.abs(times))
     ahead = np.ones(tau.size)
     ahead[lane[times < 0]] = -1
-    found[times == 0] = 0, 0, 0, 1
+    table[times == 0] = 0, 0, 0, 1
     z, u = np.zeros(tau.size, dtype=complex), np.full(tau.size, TINY * 1j)
     gone, active, bend = np.zeros(tau.size), np.flatnonzero(ends > 0), np.full(tau.size, np.nan)
     for _ in range(SETTINGS.steps):
         if not active.size:
-            return found
+            return table
         work = _Work([0] * (order + 2), [[0] * (order + 2) for _ in range(flow.rows)])
         start = ahead[active] * gone[active]
         with np.errstate(all="ignore"):
             coefficients(
                 [tau[active]], start, z[active], u[active], 0.0, order, [clearance[active], *numbers[1:]], work
             )
-            X = [np.broadcast_to(part, active.shape) for part in work.X[: order + 1]]
+            X = [np.broadcast_to(coefficient, active.shape) for coefficient in work.X[: order + 1]]
             X[0] = z[active]
             h = np.minimum(_wished(X, order, ends[active]), ends[active] - gone[active])
         _check(bend[active], X)
@@ -112,8 +112,8 @@ def rest_flights(osc: Oscillator, clearance: Array, tau: Array, lane: Array, tim
         rows = np.flatnonzero((here[lane] >= 0) & (np.abs(times) > gone[lane]))
         rows = rows[np.abs(times[rows]) <= (gone[lane] + np.append(h, 0.0)[here[lane]])[rows]]
         at = here[lane[rows]]
-        place, speed, _ = _values(X, at, times[rows] - (ahead * gone)[lane[rows]])
-        found[rows] = np.stack([place.real, speed.real, place.imag / TINY, speed.imag / TINY], axis=1)
+        position, speed, _ = _values(X, at, times[rows] - (ahead * gone)[lane[rows]])
+        table[rows] = np.stack([position.real, speed.real, position.imag / TINY, speed.imag / TINY], axis=1)
         z[active], u[active], curve = _values(X, np.arange(active.size), ahead[active] * h)
         bend[active] = curve.real
         last = h >= ends[active] - gone[active]
@@ -185,15 +185,15 @@ class Meeting:
 
     def rest_flights(self, clearance: float, tau: Array, lane: Array, times: Array) -> Array:
         """`rest_flights` of one model, flown with those of all other threads."""
-        asked = _Request(clearance, tau, lane, times)
+        request = _Request(clearance, tau, lane, times)
         with self._changed:
-            self._waiting.append(asked)
+            self._waiting.append(request)
             self._fly()
-            while asked.answer is None:
+            while request.answer is None:
                 self._changed.wait()
-        if isinstance(asked.answer, Exception):
-            raise asked.answer
-        return np.asarray(asked.answer)
+        if isinstance(request.answer, Exception):
+            raise request.answer
+        return np.asarray(request.answer)
 
     def leave(self) -> None:
         """A thread needs no more flights."""
@@ -204,21 +204,21 @@ class Meeting:
     def _fly(self) -> None:
         if not self._waiting or len(self._waiting) < self.threads:
             return
-        asked, self._waiting = self._waiting, []
-        starts = np.cumsum([0, *(each.tau.size for each in asked)])
+        requests, self._waiting = self._waiting, []
+        starts = np.cumsum([0, *(request.tau.size for request in requests)])
         try:
-            made = rest_flights(
+            states = rest_flights(
                 self.osc,
-                np.repeat([each.clearance for each in asked], np.diff(starts)),
-                np.concatenate([each.tau for each in asked]),
-                np.concatenate([each.lane + start for each, start in zip(asked, starts[:-1], strict=True)]),
-                np.concatenate([each.times for each in asked]),
+                np.repeat([request.clearance for request in requests], np.diff(starts)),
+                np.concatenate([request.tau for request in requests]),
+                np.concatenate([request.lane + start for request, start in zip(requests, starts[:-1], strict=True)]),
+                np.concatenate([request.times for request in requests]),
             )
-            parts: list[Any] = np.split(made, np.cumsum([each.times.size for each in asked])[:-1])
+            parts: list[Any] = np.split(states, np.cumsum([request.times.size for request in requests])[:-1])
         except Exception as error:  # each thread raises it in its own place
-            parts = [error] * len(asked)
-        for each, part in zip(asked, parts, strict=True):
-            each.answer = part
+            parts = [error] * len(requests)
+        for request, answer in zip(requests, parts, strict=True):
+            request.answer = answer
         self._changed.notify_all()
 
 
@@ -250,7 +250,9 @@ def in_step(osc: Oscillator, tasks: Sequence[Callable[[Meeting | None], Any]]) -
         thread.start()
     for thread in threads:
         thread.join()
-    return [tasks[n](None) if isinstance(made, NotTogether) else _sound(made) for n, made in enumerate(results)]
+    return [
+        tasks[n](None) if isinstance(outcome, NotTogether) else _sound(outcome) for n, outcome in enumerate(results)
+    ]
 
 
 def _sound(made: Any) -> Any:

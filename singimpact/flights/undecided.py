@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.precision import balls_at
 from singimpact.flights.causes import decoded, explained
 from singimpact.flights.compiled_model import EPSILON, CompiledModel
 from singimpact.flights.flight_path import path
@@ -20,6 +25,7 @@ from singimpact.flights.phase import reduced
 from singimpact.flights.response import response, usual_errors
 from singimpact.flights.results import JUDGED, Flight
 from singimpact.flights.states import States
+from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Cause, Status
@@ -27,6 +33,10 @@ from singimpact.status import Cause, Status
 Array = np.ndarray[Any, Any]
 Flown = tuple[Array, Array]
 """Codes and columns of hits, as `CompiledModel.hits` returns them."""
+NEAR = Fraction(1, 10**7)
+"""Of its size: so far a hit in doubles is from the true one at most, where it is isolated."""
+STEPS = 6
+"""Of Halley's method at most: next to a graze the first ones are not short."""
 
 
 @dataclass(frozen=True)
@@ -98,27 +108,27 @@ class Shaped:
         return {each: np.asarray(value).reshape(self.shape)[()] for each, value in self.later(name).items()}
 
 
-def flights(osc: Oscillator, model: CompiledModel, states: States, known: Flown | None = None) -> Flight:
+def flights(osc: Oscillator, model: CompiledModel, states: States, hits: Flown | None = None) -> Flight:
     """First hits in doubles, flat.
 
     Parameters
     ----------
-    known : of states with v > 0 that have been flown.
+    hits : of states with v > 0 that have been flown.
     """
-    return flights_and_rows(osc, model, states, known)[0]
+    return flights_and_rows(osc, model, states, hits)[0]
 
 
 def flights_and_rows(
-    osc: Oscillator, model: CompiledModel, states: States, known: Flown | None = None
+    osc: Oscillator, model: CompiledModel, states: States, hits: Flown | None = None
 ) -> tuple[Flight, Array]:
     """First hits in doubles, flat; and the columns of `kernels.state`, nan where they are not known."""
     if model.linear:
-        codes, rows = known or model.hits(model.near(states.tau), states.v)
+        codes, rows = hits or model.hits(model.near(states.tau), states.v)
         if not codes.any():
             return plain(codes, rows), rows
         fates, judge = decided(osc, model, states, codes, rows), None
     else:
-        fates, judge = flown(osc, model, states, known)
+        fates, judge = flown(osc, model, states, hits)
     # first: a flight that left the range of doubles would be followed again in many digits
     escapes(osc, model, states, fates)
     settled = _settled(osc, model, states, fates)
@@ -129,10 +139,10 @@ def flights_and_rows(
     return result(osc, states, fates, judge, settled), fates.rows
 
 
-def flown(osc: Oscillator, model: CompiledModel, states: States, known: Flown | None = None) -> tuple[Fates, Judge]:
+def flown(osc: Oscillator, model: CompiledModel, states: States, hits: Flown | None = None) -> tuple[Fates, Judge]:
     """Flights of a Taylor flow, and what judges them."""
     tau = model.near(states.tau)
-    codes, rows = known or model.hits(tau, states.v)
+    codes, rows = hits or model.hits(tau, states.v)
     rows[4:] = np.nan
     open_ones = np.flatnonzero(codes == CANCELS)
     if open_ones.size:  # a_c at the launch has lost digits: flown with the exact one
@@ -164,9 +174,19 @@ def decided(osc: Oscillator, model: CompiledModel, states: States, codes: Array,
 def plain(codes: Array, rows: Array) -> Flight:
     """Hits and nothing else."""
     nothing = np.full(codes.size, np.nan)
-    return Flight.made(flight_time=rows[0], velocity=rows[1], status=codes, depth=nothing, bound=nothing.copy(),
-                       condition=rows[2], velocity_condition=rows[3], time_error=rows[4], velocity_error=rows[5],
-                       cause=np.zeros(codes.size, np.int8), notes={})  # fmt: skip
+    return Flight.made(
+        flight_time=rows[0],
+        velocity=rows[1],
+        status=codes,
+        depth=nothing,
+        bound=nothing.copy(),
+        condition=rows[2],
+        velocity_condition=rows[3],
+        time_error=rows[4],
+        velocity_error=rows[5],
+        cause=np.zeros(codes.size, np.int8),
+        notes={},
+    )
 
 
 def _decided_at_launch(osc: Oscillator, model: CompiledModel, states: States, fates: Fates) -> None:
@@ -187,17 +207,16 @@ def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array
     if not wanted:
         return
     from singimpact.flights.multiprecision import settle  # 8 ms that few calls need
-    from singimpact.flights.refined_hit import refined_hit
 
     for index in wanted:
         fates.status[index] = Status.hit
-        found = refined_hit(osc, states, index, float(fates.rows[0, index]))
-        if found is None and left:
+        hit = refined_hit(osc, states, index, float(fates.rows[0, index]))
+        if hit is None and left:
             left -= 1
             settled = settle(osc, states, index, float(model.allowance.until(states.v[index])))
-            found = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
-        if found is not None:
-            fates.rows[:2, index] = found
+            hit = settled[1][:2] if settled is not None and settled[0] == Status.hit else None
+        if hit is not None:
+            fates.rows[:2, index] = hit
             fates.rows[4:6, index] = np.minimum(fates.rows[4:6, index], (4 * EPSILON, 64 * EPSILON))
 
 
@@ -208,9 +227,12 @@ def escapes(osc: Oscillator, model: CompiledModel, states: States, fates: Fates)
     singular = (fates.cause == Cause.domain_left) & (numbers[:, 3] > 0)
     gone = np.flatnonzero(((fates.status == Status.no_return) | (fates.lost & ~singular)) & (numbers[:, 0] > 0))
     if gone.size:
-        time, speed, place, _ = numbers[gone].T
-        proved = (never_turns(osc, place, speed) if model.form is None
-                  else never_returns(osc, model.form, states.tau[gone], time, place, speed))  # fmt: skip
+        time, speed, position, _ = numbers[gone].T
+        proved = (
+            never_turns(osc, position, speed)
+            if model.form is None
+            else never_returns(osc, model.form, states.tau[gone], time, position, speed)
+        )
         fates.status[gone[proved]], fates.cause[gone[proved]] = Status.escaped, Cause.decided
 
 
@@ -238,10 +260,17 @@ def result(osc: Oscillator, states: States, fates: Fates, judge: Judge | None, s
     time[gone], velocity[gone | unknown], time[unknown] = np.inf, np.nan, np.nan
     rests = status == Status.sticks
     velocity[graze | rests], time[rests] = 0.0, 0.0
-    known = (unknown & ~fates.lost) | graze
-    depth, bound = np.where(known, rows[2], np.nan), np.where(known, rows[3], np.nan)
-    fields = {"flight_time": time, "velocity": velocity, "status": status, "depth": depth, "bound": bound,
-              "cause": fates.cause, "notes": notes}  # fmt: skip
+    bounded = (unknown & ~fates.lost) | graze
+    depth, bound = np.where(bounded, rows[2], np.nan), np.where(bounded, rows[3], np.nan)
+    fields = {
+        "flight_time": time,
+        "velocity": velocity,
+        "status": status,
+        "depth": depth,
+        "bound": bound,
+        "cause": fates.cause,
+        "notes": notes,
+    }
     if judge is not None:
         return Flight.made(judge, **fields)
     judged = np.where(hit, rows[2:6], np.nan)
@@ -275,6 +304,80 @@ def notes_of(osc: Oscillator, states: States, fates: Fates) -> dict[int, str]:
         def way(times: Array, at: int = index) -> Any:
             return path(osc, states.tau[at], states.v[at], times)
 
-        found = explained(osc, tau, fates.numbers[index], Cause(int(fates.cause[index])), way)
-        fates.cause[index], notes[index] = found
+        explanation = explained(osc, tau, fates.numbers[index], Cause(int(fates.cause[index])), way)
+        fates.cause[index], notes[index] = explanation
     return notes
+
+
+# ---- a hit of a linear model, placed to the last bit where double-double arithmetic does not place it
+# The model with its waves is one linear system, whose exponential has no small divisors: resonance needs no care.
+
+
+class LinearSystem(NamedTuple):
+    """The matrix of (z, z', 1, cosine and sine of each wave), and rate and phase of each wave; balls."""
+
+    matrix: Any
+    waves: tuple[tuple[Any, Any], ...]
+
+
+@lru_cache(maxsize=64)
+def _system(osc: Oscillator, bits: int) -> LinearSystem:
+    """The system of a linear model in balls of so many bits."""
+    import flint
+
+    form, balls = linear_form(osc), Balls(bits)
+    assert form is not None
+    with balls_at(bits):
+        damping, stiffness, rest = (
+            evaluate(tree, {}, balls) for tree in (form.damping, form.stiffness, at_rest(form, osc.clearance))
+        )
+        size = 3 + 2 * len(form.harmonics)
+        rows, waves = [[flint.arb(0)] * size for _ in range(size)], []
+        rows[0][1], rows[1][0], rows[1][1], rows[1][2] = flint.arb(1), -stiffness, -damping, rest
+        for n, wave in enumerate(form.harmonics):
+            rate, phase, cosine, sine = (
+                evaluate(tree, {}, balls) for tree in (wave.rate, wave.phase, wave.cosine, wave.sine)
+            )
+            at = 3 + 2 * n
+            rows[1][at], rows[1][at + 1], rows[at][at + 1], rows[at + 1][at] = cosine, sine, -rate, rate
+            waves.append((rate, phase))
+        return LinearSystem(flint.arb_mat(rows), tuple(waves))
+
+
+def refined_hit(osc: Oscillator, states: States, index: int, time: float) -> list[float] | None:
+    """Flight time and velocity of a hit of a linear model, correctly rounded up to a unit.
+
+    Which root is the first has been decided; here it is only placed. None where balls do not confirm it.
+    """
+    balls = Balls(LIMITS.refine_bits)
+    system = _system(osc, balls.bits)
+    with balls_at(balls.bits):
+        tau, v = (evaluate(tree, {}, balls) for tree in (states.exact_tau(index), states.exact_v(index)))
+        try:
+            hit = _halley(system, tau, v, balls.rational(Fraction(time)))
+        except (ArithmeticError, ValueError, TypeError):  # a ball that left the domain of log or a root
+            return None
+        return None if hit is None else [float(ball.mid()) for ball in hit]
+
+
+def _halley(system: LinearSystem, tau: Any, v: Any, time: Any) -> tuple[Any, Any] | None:
+    """Time and velocity of the hit next to a time, one step of Halley's method away; None when no step is small."""
+    import flint
+
+    angles = [(rate * tau + phase).sin_cos() for rate, phase in system.waves]
+    start = flint.arb_mat([[0], [v], [1], *([value] for sine, cosine in angles for value in (cosine, sine))])
+    for _ in range(STEPS):
+        state = (system.matrix * time).exp() * start
+        height, speed = state[0, 0], state[1, 0]
+        change = system.matrix * state
+        curve, jerk = change[1, 0], (system.matrix * change)[1, 0]
+        if not abs(height) < abs(speed * time) * NEAR.numerator / NEAR.denominator:
+            return None
+        step = -height / speed
+        # next to a graze the step is not short beside speed/curve; the error left is of third order in the step
+        near_enough = bool(abs(step * curve) < abs(speed) / 10**9)
+        step *= 1 - step * curve / (2 * speed)
+        if near_enough:
+            return time + step, speed + step * (curve + step * jerk / 2)
+        time = (time + step).mid()
+    return None

@@ -19,9 +19,8 @@ from singimpact.algebra.analytic import Recorder
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import ZERO, Expression, Name, add, multiply, names_in, substitute, subtract
 from singimpact.flights.enclosures.equation import Equation, programs_of
-from singimpact.flights.enclosures.first_root import narrowed
 from singimpact.flights.enclosures.motion import CarriedMotion, Met, Pair, Start, added
-from singimpact.flights.enclosures.tube import Tube, ball, centre, upper
+from singimpact.flights.enclosures.tube import Tube, ball, centre, narrowed, upper
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
 

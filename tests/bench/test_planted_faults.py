@@ -110,7 +110,7 @@ def orbits_twice():
     def wrong(true):
         return lambda *given: tuple(2 * least for least in true(*given))
 
-    return "dynamics.nearby_orbit._least", wrong
+    return "dynamics.attractors._least", wrong
 
 
 def sign_in_the_derivative():

@@ -118,19 +118,21 @@ class Event(Result):
         touches = self.described.touches
         if not self.described.proof:
             *names, last = (kind.name for kind in KINDS if kind.proof)
-            raise InputError(f"{self!r} is not certified: no proof covers a {self.kind}, only a {', '.join(names)} or "
-                             f"{last}{self._instead()}")  # fmt: skip
+            raise InputError(
+                f"{self!r} is not certified: no proof covers a {self.kind}, only a {', '.join(names)} or "
+                f"{last}{self._instead()}"
+            )
         if not (touches or self.orbit.n):
             raise InputError(f"{self!r} is not accepted: of orbits without impact a graze alone can be certified")
         rests = not touches or (self.orbit.n and self.described.at_impact)
         at = self.orbit if rests else self.others()[0]
-        found = enclosed_event(self.kind, at, self.over, self.parameter, checked_digits(digits))
-        if isinstance(found, str):
+        enclosure = enclosed_event(self.kind, at, self.over, self.parameter, checked_digits(digits))
+        if isinstance(enclosure, str):
             virtual = "" if self.orbit.visible else "its orbit is virtual: "
-            raise InputError(f"{self!r} is not certified: {virtual}{found}")
-        if not abs(found.parameter.value - self.parameter) <= NEAR * max(1.0, abs(self.parameter)):
-            raise InputError(f"{self!r} is not certified: Newton's method leaves for {found.parameter}")
-        return found
+            raise InputError(f"{self!r} is not certified: {virtual}{enclosure}")
+        if not abs(enclosure.parameter.value - self.parameter) <= NEAR * max(1.0, abs(self.parameter)):
+            raise InputError(f"{self!r} is not certified: Newton's method leaves for {enclosure.parameter}")
+        return enclosure
 
     def _instead(self) -> str:
         half = self.other

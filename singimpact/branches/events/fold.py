@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.branches.events.kind import CurveLook
+from singimpact.branches.events.kind import CurveLook, MultiplierKind
 from singimpact.branches.events.orbit_state import OrbitState
-from singimpact.branches.events.return_map import MultiplierKind
 
 
 class Fold(MultiplierKind):

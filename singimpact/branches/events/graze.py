@@ -1,4 +1,7 @@
-"""Grazes: an impact of the orbit has no velocity, or an orbit without impact touches the wall."""
+"""Grazes: an impact of the orbit has no velocity, or an orbit without impact touches the wall.
+
+`TouchingKind` and `heights` serve interior grazes too, at which a flight touches the wall between impacts.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from singimpact.branches.events.kind import CurveLook, Indexed, grazes
+from singimpact.branches.events.kind import CurveLook, EventKind, Indexed, grazes
 from singimpact.branches.events.orbit_state import OrbitState, Test
-from singimpact.branches.events.touching import TouchingKind, heights
 
 if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
@@ -17,6 +19,38 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, Any]
 DEGENERATE = 1e-6
 """a_c at the graze, of the largest a_c in a period, below which the graze is called degenerate."""
+
+
+class TouchingKind(EventKind):
+    """A kind at which the orbit touches the wall; a zero of smooth equations, which Krawczyk's operator proves."""
+
+    touches = True
+    proof = "an orbit that touches the wall in the point tau[0], where a_c > 0, and is above it between its impacts"
+
+    def others(self, orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:  # noqa: ARG002
+        """The orbit with an impact where it touches the wall."""
+        from singimpact.branches.switching import with_impact
+
+        return [with_impact(orbit)]
+
+    def graze_time(self, orbit: PeriodicOrbit) -> float:
+        """The time of the lowest place, of an orbit without impact; else of the flight that touches the wall."""
+        from singimpact.branches.switching import touching_flight
+
+        times = np.asarray(orbit.tau, dtype=float)
+        if not orbit.n:
+            return float(times[0])
+        flight, time = touching_flight(orbit)
+        return float(times[flight] + time)
+
+
+def heights(state: OrbitState) -> Indexed:
+    """x - c at the local minima of each flight."""
+    for i, turns in enumerate(state.turns):
+        span = state.closing.span(state.at, i)
+        for j, (time, height) in enumerate(turn for turn in turns if np.isfinite(turn[1])):
+            rate = state.closing.rise(state.at, state.direction, i, time)
+            yield i, j, Test(height, rate, time / span)
 
 
 class Graze(TouchingKind):

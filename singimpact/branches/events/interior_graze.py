@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from singimpact.branches.events.graze import TouchingKind, heights
 from singimpact.branches.events.kind import CurveLook, Indexed
 from singimpact.branches.events.orbit_state import OrbitState
-from singimpact.branches.events.touching import TouchingKind, heights
 
 if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from singimpact.branches.events.kind import EventKind
+from singimpact.branches.events.kind import EventKind, ReturnMapKind
 from singimpact.branches.events.orbit_state import OrbitState
-from singimpact.branches.events.return_map import ReturnMapKind
 
 if TYPE_CHECKING:
     from singimpact.branches.solutions import AnyClosing

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from singimpact.branches.events.kind import ReturnMapKind, rate_of_determinant, trace
 from singimpact.branches.events.orbit_state import OrbitState
-from singimpact.branches.events.return_map import ReturnMapKind, rate_of_determinant, trace
 
 if TYPE_CHECKING:
     from singimpact.branches.closing import Loop

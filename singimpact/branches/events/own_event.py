@@ -53,8 +53,10 @@ class OwnEvent(EventKind):
         try:
             number = float(self.function(orbit))
         except Exception as error:  # whatever a function of a user raises is reported with the orbit
-            raise InputError(f"{self._at(state)} raises {type(error).__name__}: {error}; give a function that has a "
-                             f"finite value for {orbit!r}") from error  # fmt: skip
+            raise InputError(
+                f"{self._at(state)} raises {type(error).__name__}: {error}; give a function that has a "
+                f"finite value for {orbit!r}"
+            ) from error
         if not isfinite(number):
             raise InputError(f"{self._at(state)} is {number}; give a function that has a finite value for {orbit!r}")
         return number

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from singimpact.branches.events.kind import CurveLook
+from singimpact.branches.events.kind import CurveLook, MultiplierKind
 from singimpact.branches.events.orbit_state import OrbitState
-from singimpact.branches.events.return_map import MultiplierKind
 
 if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit

@@ -12,8 +12,15 @@ from singimpact.branches.events.own_event import OwnEvent
 from singimpact.branches.events.period_doubling import PERIOD_DOUBLING
 
 KINDS: tuple[EventKind, ...] = (
-    FOLD, PERIOD_DOUBLING, NEIMARK_SACKER, BRANCH_POINT, GRAZE, INTERIOR_GRAZE, PITCHFORK, TRANSCRITICAL,
-)  # fmt: skip
+    FOLD,
+    PERIOD_DOUBLING,
+    NEIMARK_SACKER,
+    BRANCH_POINT,
+    GRAZE,
+    INTERIOR_GRAZE,
+    PITCHFORK,
+    TRANSCRITICAL,
+)
 _BY_NAME = {kind.name: kind for kind in KINDS}
 
 

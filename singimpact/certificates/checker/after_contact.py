@@ -23,13 +23,13 @@ PIECES, LAUNCHES, DEEP = 64, 16, 7
 COARSE = 2.0**-16
 
 
-def require_after(o: Gravity, told: dict[str, Any], r: Any) -> None:
+def require_after(o: Gravity, content: dict[str, Any], r: Any) -> None:
     """Refuse what the certificate says of the time after tau, unless it says nothing."""
-    after = told["after"]
+    after = content["after"]
     if not after:
         return
     numbers = {name: ball(Fraction(text)) for name, text in after.items()}
-    reached = Fraction(after["near" if o.j % 2 else "launch"]) <= Fraction(told["reach"])
+    reached = Fraction(after["near" if o.j % 2 else "launch"]) <= Fraction(content["reach"])
     need("reached", reached, "what comes after tau is said of launches beyond the reach")
     if o.j % 2:
         require_lost(o, numbers["near"], numbers["time"])
@@ -86,8 +86,9 @@ def require_settled(o: Gravity, numbers: dict[str, Any], r: Any) -> None:
         S = (launch * n / LAUNCHES).union(launch * (n + 1) / LAUNCHES)
         landed = speed * (first + S) < right + first * moment(o, -S, 1) + moment(o, -S, 2)
         need("landed", landed, "that the first flight after tau lands in time is not shown", Refused)
-    ratios = [arb(series(o, (end * n / PIECES).union(end * (n + 1) / PIECES), lambda _: 1).lower())
-              for n in range(PIECES)]  # fmt: skip
+    ratios = [
+        arb(series(o, (end * n / PIECES).union(end * (n + 1) / PIECES), lambda _: 1).lower()) for n in range(PIECES)
+    ]
     todo, half = [(0, 0, 0)], arb(1) / 2
     while todo:
         a, c, n = todo.pop()

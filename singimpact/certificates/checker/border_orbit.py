@@ -24,19 +24,22 @@ COMPLETES, PASSES = "chatter completes", "a flight passes"
 SIDES = {"above": [PASSES, COMPLETES], "below": [COMPLETES, PASSES]}
 
 
-def border_orbit(_model: Model, told: dict[str, Any], bits: int) -> None:
+def border_orbit(_model: Model, content: dict[str, Any], bits: int) -> None:
     """Check that a border orbit exists within the radius of the number, and on which side chatter completes."""
-    value, radius = (Fraction(told["parameter"][part]) for part in ("value", "radius"))
-    came_back(Model(told["model"], told["over"], read(told["parameter"])), told, bits)
-    ends = [fate(Model(told["model"], told["over"], ball(end)), told, bits) for end in (value - radius, value + radius)]
-    need("fates", ends == SIDES[told["completes"]], f"at the ends of the radius {ends[0]} and {ends[1]}")
+    value, radius = (Fraction(content["parameter"][part]) for part in ("value", "radius"))
+    came_back(Model(content["model"], content["over"], read(content["parameter"])), content, bits)
+    ends = [
+        fate(Model(content["model"], content["over"], ball(end)), content, bits)
+        for end in (value - radius, value + radius)
+    ]
+    need("fates", ends == SIDES[content["completes"]], f"at the ends of the radius {ends[0]} and {ends[1]}")
 
 
-def came_back(model: Model, told: dict[str, Any], bits: int) -> tuple[Any, Any, Any]:
-    """The state after the impact that is told, and the zero of a_c up to which a_c < 0 then."""
-    tau, end = (rising_zero(model, Fraction(told[name])) for name in ("release", "end"))
+def came_back(model: Model, content: dict[str, Any], bits: int) -> tuple[Any, Any, Any]:
+    """The state after the last impact that is counted, and the zero of a_c up to which a_c < 0 then."""
+    tau, end = (rising_zero(model, Fraction(content[name])) for name in ("release", "end"))
     v, removed = arb(0), 3
-    for _ in range(int(told["impacts"])):
+    for _ in range(int(content["impacts"])):
         time, velocity, _ = Flight(model, tau, v, bits, removed=removed).first_hit()
         tau, v, removed = tau + time, model.rebound(velocity), 0
     need("back", tau < end, "that the orbit comes back before the end is not shown", Refused)
@@ -76,9 +79,9 @@ def require_pressing(model: Model, tau: Any, end: Any) -> None:
     raise Refused("a_c < 0 up to the end is not shown")
 
 
-def fate(model: Model, told: dict[str, Any], bits: int) -> str:
+def fate(model: Model, content: dict[str, Any], bits: int) -> str:
     """The fate of the orbit of one value before the later zero."""
-    (tau, v, end), r = came_back(model, told, bits), model.ratio()
+    (tau, v, end), r = came_back(model, content, bits), model.ratio()
     for _ in range(IMPACTS):
         left = rest(model, tau, v, model.push(tau, v * 0), r)
         if left is not None and tau + left < end:

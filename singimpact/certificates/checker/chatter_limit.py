@@ -18,31 +18,31 @@ from .told import compared, launched, lies_within, read
 IMPACTS = 200_000  # at most
 
 
-def chatter_limit(model: Model, told: dict[str, Any], bits: int) -> None:
+def chatter_limit(model: Model, content: dict[str, Any], bits: int) -> None:
     """Check that the impacts from the launch accumulate at tau, or that a_c > 0 first at the impact at tau."""
-    (tau, v), written = launched(told, moving=True), read(told["tau"])
+    (tau, v), written = launched(content, moving=True), read(content["tau"])
     r = model.ratio()
     for count in range(IMPACTS):
         a = model.push(tau, v * 0)
         if count and a > 0:
-            require(told, "lift-off")
-            return compared({"tau": (tau, told["tau"])})
+            require(content, "lift-off")
+            return compared({"tau": (tau, content["tau"])})
         if count and not a < 0:
             raise Refused("whether an impact lifts off is not decided")
         left = rest(model, tau, v, a, r) if a < 0 else None
         if left is not None:
-            require(told, "accumulation")
-            if lies_within(tau + left, told["tau"]):
+            require(content, "accumulation")
+            if lies_within(tau + left, content["tau"]):
                 return None
             if not written.overlaps(tau + left) or tau.rad() > written.rad():  # more impacts make it no narrower
-                return compared({"tau": (tau + left, told["tau"])})
+                return compared({"tau": (tau + left, content["tau"])})
         tau, v = next_state(model, tau, v, bits)
     raise Refused(f"{IMPACTS} impacts do not come to an end")
 
 
-def require(told: dict[str, Any], ends: str) -> None:
+def require(content: dict[str, Any], ends: str) -> None:
     """Refuse another end than the one that is shown."""
-    need("ends", told["ends"] == ends, f"the chatter ends in {ends}")
+    need("ends", content["ends"] == ends, f"the chatter ends in {ends}")
 
 
 def rest(model: Model, tau: Any, v: Any, a: Any, r: Any) -> Any:

@@ -31,26 +31,26 @@ PART = 512  # of the radii: half of the interval of the held unknown
 ROUNDS = 12  # of Newton's method and of secants
 
 
-def event(model: Model, told: dict[str, Any], bits: int) -> None:
+def event(model: Model, content: dict[str, Any], bits: int) -> None:
     """Check that an event exists whose number and orbit lie within the radii."""
-    kind, over, touches = told["kind"], told["over"], told["kind"] in TOUCHING
+    kind, over, touches = content["kind"], content["over"], content["kind"] in TOUCHING
     others = {name: text for name, text in model.g.parameters.items() if name != over}
     free = len(others) < len(model.g.parameters) and over not in model.c.names()
     need("over", free, f"{over} is no parameter of the model, or moves the wall")
-    require_period(Formula(model.g.text, others), told["period"])  # whatever the number is
-    numbers = [state[name] for state in told["states"] for name in ("tau", "v")] + [told["parameter"]]
-    point, radii = ([ball(Fraction(each[part])) for each in numbers] for part in ("value", "radius"))
-    family = Model(told["model"], over, point[-1])
-    span, held = Formula(told["period"], others)() * int(told["periods"]), -1 if kind in CURVED[1:] else 1
+    require_period(Formula(model.g.text, others), content["period"])  # whatever the number is
+    numbers = [state[name] for state in content["states"] for name in ("tau", "v")] + [content["parameter"]]
+    point, radii = ([ball(Fraction(number[field])) for number in numbers] for field in ("value", "radius"))
+    family = Model(content["model"], over, point[-1])
+    span, held = Formula(content["period"], others)() * int(content["periods"]), -1 if kind in CURVED[1:] else 1
     orbits = Orbits(family, span, bits, held % len(point), touches)
     if touches:
-        near = [ball(Fraction(told["unique_within"]))] * len(point)
+        near = [ball(Fraction(content["unique_within"]))] * len(point)
         near[1] = radii[1] = arb(0)
         orbits.alone(point, [near, radii])
         return
-    require_shortest(point[:-1], radii, span, int(told["periods"]))
-    found = Curve(orbits, kind).event(point, radii)
-    compared({f"number {k + 1}": pair for k, pair in enumerate(zip(found, numbers, strict=True))})
+    require_shortest(point[:-1], radii, span, int(content["periods"]))
+    enclosures = Curve(orbits, kind).event(point, radii)
+    compared({f"number {k + 1}": pair for k, pair in enumerate(zip(enclosures, numbers, strict=True))})
 
 
 class Curve:
@@ -108,7 +108,7 @@ class Curve:
             centre = [arb(x.mid()) for x in box]
             slopes, image = self.orbits.krawczyk(centre, [arb(x.rad()) for x in box])
             test = self.test(slopes)
-            narrower = [x.intersection(middle + part) for x, middle, part in zip(box, centre, image, strict=True)]
+            narrower = [x.intersection(middle + offset) for x, middle, offset in zip(box, centre, image, strict=True)]
             if test > 0 or test < 0 or not any(a.rad() * 2 < b.rad() for a, b in zip(narrower, box, strict=True)):
                 return 1 if test > 0 else -1 if test < 0 else 0
             box = narrower
@@ -126,4 +126,4 @@ class Curve:
         signs = [self.sign(self.moved(point, side * half), narrow) for side in (-1, 1)]
         error = Wrong if abs(sum(signs)) == 2 else Refused
         need("change of sign", sorted(signs) == [-1, 1], "the test is not shown to change its sign", error)
-        return [x + part for x, part in zip(point, image, strict=True)]
+        return [x + offset for x, offset in zip(point, image, strict=True)]

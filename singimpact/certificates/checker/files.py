@@ -38,13 +38,13 @@ STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
 """What shows each statement at so many bits."""
 
 
-def digest_of(told: dict[str, Any]) -> str:
+def digest_of(content: dict[str, Any]) -> str:
     """A digest of all but itself: a larger radius would be true as well, but nobody has certified it."""
-    rest = {name: part for name, part in told.items() if name != "digest"}
+    rest = {name: part for name, part in content.items() if name != "digest"}
     return hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
 
 
-def check(told: dict[str, Any], seconds: float = SECONDS) -> None:
+def check(content: dict[str, Any], seconds: float = SECONDS) -> None:
     """Nothing where the certificate holds.
 
     Raises
@@ -54,29 +54,29 @@ def check(told: dict[str, Any], seconds: float = SECONDS) -> None:
     before = ctx.prec, ctx.cap
     with answered():
         try:
-            require_statement(told)
-            if told.get("digest") != digest_of(told):
+            require_statement(content)
+            if content.get("digest") != digest_of(content):
                 raise Refused("the digest is not that of the content: the file was changed")
-            require_form(told)
-            numbers = list(balls_of(told))
+            require_form(content)
+            numbers = list(balls_of(content))
             narrowest = min(
-                Fraction(each["radius"]) / max(abs(Fraction(each["value"])), Fraction(1)) for each in numbers
+                Fraction(number["radius"]) / max(abs(Fraction(number["value"])), Fraction(1)) for number in numbers
             )
             wanted = max(narrowest.denominator.bit_length() - narrowest.numerator.bit_length() + 16, LEAST)
             Clock.start(seconds * max(1.0, wanted / ORDINARY) ** 2)
-            decide(told, wanted)
+            decide(content, wanted)
         finally:
             Clock.stop()
             ctx.prec, ctx.cap = before
 
 
-def decide(told: dict[str, Any], wanted: int) -> None:
+def decide(content: dict[str, Any], wanted: int) -> None:
     """Try with more and more bits: what is wrong in its first digits is refused by few."""
     why = Refused()
     for bits in (*(LEAST * 4**k for k in range(4) if LEAST * 4**k * 2 < wanted), wanted, 2 * wanted, 4 * wanted):
         ctx.prec, ctx.cap = bits + 32, TERMS
         try:
-            STATEMENTS[told["statement"]](Model(told["model"]), told, bits)
+            STATEMENTS[content["statement"]](Model(content["model"]), content, bits)
         except Wrong:
             raise
         except Refused as reason:
@@ -104,8 +104,8 @@ def main(arguments: Sequence[str]) -> int:
     for path in paths:
         try:
             with answered():
-                told = read(path)
-            check(told, seconds)
+                content = read(path)
+            check(content, seconds)
             print(f"{path}: holds")
         except Refused as reason:
             print(f"{path}: refused: {reason}")

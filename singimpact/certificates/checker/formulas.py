@@ -89,10 +89,14 @@ def applied(name: str, x: Any) -> Any:
     if isinstance(x, Dual):
         y, at = applied(name, x.value), x.value
         slope = {
-            "sin": lambda: applied("cos", at), "cos": lambda: applied("sin", at) * -1, "exp": lambda: y,
-            "log": lambda: reciprocal(at), "sqrt": lambda: reciprocal(y * 2), "atan": lambda: reciprocal(at * at + 1),
-        }[name]()  # fmt: skip
-        return Dual(y, [slope * each for each in x.slopes])
+            "sin": lambda: applied("cos", at),
+            "cos": lambda: applied("sin", at) * -1,
+            "exp": lambda: y,
+            "log": lambda: reciprocal(at),
+            "sqrt": lambda: reciprocal(y * 2),
+            "atan": lambda: reciprocal(at * at + 1),
+        }[name]()
+        return Dual(y, [slope * rate for rate in x.slopes])
     if isinstance(x, acb) and (
         (name in ("log", "sqrt") and not x.real > 0) or (name == "atan" and not abs(x.imag) < 1)
     ):
@@ -137,15 +141,19 @@ class Formula:
             case ast.BinOp(left, op, right):
                 one, other = self.exact(left), self.exact(right)
                 if one is not None and other is not None and not (isinstance(op, ast.Div) and not other):
-                    made = {ast.Add: Fraction.__add__, ast.Sub: Fraction.__sub__, ast.Mult: Fraction.__mul__,
-                            ast.Div: Fraction.__truediv__}.get(type(op))  # fmt: skip
-                    return None if made is None else made(one, other)
+                    operation = {
+                        ast.Add: Fraction.__add__,
+                        ast.Sub: Fraction.__sub__,
+                        ast.Mult: Fraction.__mul__,
+                        ast.Div: Fraction.__truediv__,
+                    }.get(type(op))
+                    return None if operation is None else operation(one, other)
         return None
 
     def _at(self, node: ast.expr, values: dict[str, Any]) -> Any:
-        known = self.exact(node)
-        if known is not None:
-            return ball(known)
+        constant = self.exact(node)
+        if constant is not None:
+            return ball(constant)
         minus = ball(Fraction(-1))
         match node:
             case ast.Name(name) if name in values:
@@ -153,8 +161,8 @@ class Formula:
             case ast.Name("pi"):
                 return arb.pi()
             case ast.Name(name) if name in self.parameters:
-                given = self.parameters[name]
-                return given if isinstance(given, arb) else Formula(given, {})()
+                parameter = self.parameters[name]
+                return parameter if isinstance(parameter, arb) else Formula(parameter, {})()
             case ast.UnaryOp(ast.USub(), part):
                 return self._at(part, values) * minus
             case ast.BinOp(left, ast.Add(), right):

@@ -53,8 +53,8 @@ def affine(f: Formula, node: ast.expr) -> tuple[Any, Any, Any]:
     raise Wrong(f"f = {f.text} is not linear")
 
 
-def contact(model: Model, told: dict[str, str], j: int) -> Any:
-    """A ball of the zero of a_c of order j in [told]: simple, or at the clearance for which it has this order.
+def contact(model: Model, written: dict[str, str], j: int) -> Any:
+    """A ball of the zero of a_c of order j in the written one: simple, or at the clearance for which it has this order.
 
     Newton's method shows it: with no zero in the ball, an end of the ball is an end of all that follows.  For j > 1 no
     number of digits shows that a_c vanishes: what is shown holds for the clearance at which it does.
@@ -62,10 +62,10 @@ def contact(model: Model, told: dict[str, str], j: int) -> Any:
     force, why = model.f(x=model.c(), xdot=arb(0)), "that tau is a zero of a_c of its order is not shown"
 
     def jet(at: Any) -> list[Any]:
-        found = model.g(t=arb_series([at, 1], prec=j + 1)) - force
-        return [found[k] for k in range(j + 1)]
+        series = model.g(t=arb_series([at, 1], prec=j + 1)) - force
+        return [series[k] for k in range(j + 1)]
 
-    whole, inner = read(told), {**told, "radius": Fraction(told["radius"]) * 99 / 100}
+    whole, inner = read(written), {**written, "radius": Fraction(written["radius"]) * 99 / 100}
     for _ in range(6):
         middle = arb(whole.mid())
         closer = middle - jet(middle)[j - 1] / (j * jet(whole)[j])
@@ -73,7 +73,7 @@ def contact(model: Model, told: dict[str, str], j: int) -> Any:
             raise Refused(why)
         whole = whole.intersection(closer)
     need("zero of a_c", lies_within(whole, inner), why, Refused)
-    vanishes = all(part.contains(0) for part in jet(whole)[: j - 1])
+    vanishes = all(coefficient.contains(0) for coefficient in jet(whole)[: j - 1])
     need("order", vanishes, "a_c does not vanish at tau to the order that is written")
     return whole
 
@@ -110,7 +110,7 @@ class Gravity:
 
     def discs(self, rest: Any) -> list[tuple[Any, Any]]:
         """(M, R): |A| <= M for |s| <= R, where |t| <= atanh(sqrt|w| R)/sqrt|w|."""
-        found, w = [], size(self.square)
+        pairs, w = [], size(self.square)
         root = w.sqrt()
         for n in range(24):
             R = arb((self.s0 * arb(1.2) ** (n + 1)).mid())
@@ -121,8 +121,8 @@ class Gravity:
             push = abs(self.model.g(t=acb(self.tau + within(T), within(T))) + rest)
             M = size(size(push) * (abs(self.damping) * T).exp() / (left * left.sqrt()))
             if M.is_finite():
-                found.append((M, R))
-        return found
+                pairs.append((M, R))
+        return pairs
 
     def tail(self, power: int) -> Any:
         """A bound of sum k |b_k| x^(k - power) over k > K."""

@@ -32,10 +32,10 @@ COARSE = 64  # bits of the flights of a set
 class Set:
     """A parallelogram of states."""
 
-    def __init__(self, told: dict[str, Any]) -> None:
-        self.centre = [ball(Fraction(part)) for part in told["centre"]]
-        self.frame = arb_mat([[ball(Fraction(part)) for part in row] for row in told["frame"]])
-        self.radii = [ball(Fraction(part)) for part in told["radii"]]
+    def __init__(self, content: dict[str, Any]) -> None:
+        self.centre = [ball(Fraction(part)) for part in content["centre"]]
+        self.frame = arb_mat([[ball(Fraction(part)) for part in row] for row in content["frame"]])
+        self.radii = [ball(Fraction(part)) for part in content["radii"]]
         self.inverse = self.frame.inv()
 
     def pieces(self, count: int) -> list[list[Any]]:
@@ -58,21 +58,25 @@ def column(parts: Any) -> Any:
     return arb_mat([[part] for part in parts])
 
 
-def horseshoe(model: Model, told: dict[str, Any], bits: int) -> None:
+def horseshoe(model: Model, content: dict[str, Any], bits: int) -> None:
     """Check that the sets are crossed as the loops say, and that the entropy follows from them."""
-    require_period(model.g, told["period"])
-    period = Formula(told["period"], model.g.parameters)()
-    (short, long), (home, *way) = map(int, told["loops"]), map(Set, told["sets"])
+    require_period(model.g, content["period"])
+    period = Formula(content["period"], model.g.parameters)()
+    (short, long), (home, *way) = map(int, content["loops"]), map(Set, content["sets"])
     need("loops", long == short + len(way), "the loops are not those of the sets")
     x = [
-        (ball(Fraction(told["entropy"]["value"])) + k * ball(Fraction(told["entropy"]["radius"]))).exp()
+        (ball(Fraction(content["entropy"]["value"])) + k * ball(Fraction(content["entropy"]["radius"]))).exp()
         for k in (-1, 1)
     ]
     between = x[0] ** -short + x[0] ** -long > 1 > x[1] ** -short + x[1] ** -long
     need("entropy", between, "the entropy is not shown to be that of the loops", Refused)
     require_apart(way[0], home, period)
-    for one, other, impacts in ((home, home, short), (home, way[0], short), *((*pair, 1) for pair in pairwise(way)),
-                                (way[-1], home, 1)):  # fmt: skip
+    for one, other, impacts in (
+        (home, home, short),
+        (home, way[0], short),
+        *((*pair, 1) for pair in pairwise(way)),
+        (way[-1], home, 1),
+    ):
         require_crossed(model, (one, other), impacts, period, bits)
 
 
@@ -110,7 +114,7 @@ def require_crossed(model: Model, pair: tuple[Set, Set], impacts: int, period: A
         except Refused as reason:
             why = str(reason)
             continue
-        D = arb_mat([[joined(each[i, k] for each in over) for k in (0, 1)] for i in (0, 1)])
+        D = arb_mat([[joined(matrix[i, k] for matrix in over) for k in (0, 1)] for i in (0, 1)])
         (m11, m12), (m21, m22) = (other.inverse * D * one.frame).table()
         width, height = abs(m11) * a - abs(m12) * b - abs(u), abs(s) + abs(m21) * a + abs(m22) * b
         try:
@@ -135,11 +139,11 @@ def derivative(model: Model, box: list[Any], impacts: int, bits: int) -> Any:
     """Of the images of a box under so many impacts, over all of it."""
     total = arb_mat([[1, 0], [0, 1]])
     for n in range(impacts):
-        centre = [arb(part.mid()) for part in box]
+        centre = [arb(coordinate.mid()) for coordinate in box]
         slope = arb_mat(impact(model, box[0], box[1], bits, (centre[0], centre[1])))
         total = slope * total
         if n + 1 < impacts:
-            off = column([part - x for part, x in zip(box, centre, strict=True)])
+            off = column([coordinate - x for coordinate, x in zip(box, centre, strict=True)])
             landed = next_state(model, centre[0], centre[1], bits)
-            box = [x + part for x, part in zip(landed, (slope * off).entries(), strict=True)]
+            box = [x + coordinate for x, coordinate in zip(landed, (slope * off).entries(), strict=True)]
     return total

@@ -34,10 +34,10 @@ class Beside(Flight):
         x, speed = self.x, self.speed
         bend = self.model.push(self.tau + self.passed, speed[0], x[0])
         narrowed = []
-        for part, rate, own in ((x, speed[0], self.centre.x[0]), (speed, bend, self.centre.speed[0])):
+        for component, rate, own in ((x, speed[0], self.centre.x[0]), (speed, bend, self.centre.speed[0])):
             # a later launch is, at its own time, later along the motion, and less by v and by x'' at the start
-            by_tau = rate - self.v * part[1] - self.push * part[2]
-            narrowed.append(part[0].intersection(own + by_tau * self.off[0] + part[2] * self.off[1]))
+            by_tau = rate - self.v * component[1] - self.push * component[2]
+            narrowed.append(component[0].intersection(own + by_tau * self.off[0] + component[2] * self.off[1]))
         x[0], speed[0] = narrowed
 
 
@@ -57,9 +57,9 @@ def impact(model: Model, tau: Any, v: Any, bits: int, centre: tuple[Any, Any] | 
     rebound = model.rebound(Dual(speed, [1, 0]), **model.moved(0, 1))
     end = model.push(tau + time, speed)
     late = [-x / speed for x, _ in by_launch(model, tau, v, columns)]
-    faster = [w + end * part for (_, w), part in zip(by_launch(model, tau, v, columns), late, strict=True)]
-    after = [rebound.slopes[0] * part for part in faster]
-    return [late, [*after[:2], *(part + rebound.slopes[1] for part in after[2:])]]
+    faster = [w + end * shift for (_, w), shift in zip(by_launch(model, tau, v, columns), late, strict=True)]
+    after = [rebound.slopes[0] * shift for shift in faster]
+    return [late, [*after[:2], *(shift + rebound.slopes[1] for shift in after[2:])]]
 
 
 def touching(model: Model, launch: tuple[Any, Any], time: Any, bits: int, columns: int) -> list[tuple[Any, Any]]:

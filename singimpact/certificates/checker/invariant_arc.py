@@ -46,8 +46,11 @@ class Folded:
 
     def __call__(self, *parts: Any) -> Part:
         """The element with these coefficients of powers of d."""
-        return Part(self, [part if isinstance(part, arb_poly) else arb_poly([part]) for part in parts]
-                    + [arb_poly([0])] * (self.m + 1 - len(parts)))  # fmt: skip
+        return Part(
+            self,
+            [part if isinstance(part, arb_poly) else arb_poly([part]) for part in parts]
+            + [arb_poly([0])] * (self.m + 1 - len(parts)),
+        )
 
     def folded(self, p: Any) -> Any:
         c = p.coeffs()
@@ -79,7 +82,7 @@ class Part:
 
     def __mul__(self, other: Any) -> Part:
         if not isinstance(other, Part):
-            return Part(self.ring, [part * other for part in self.parts])
+            return Part(self.ring, [polynomial * other for polynomial in self.parts])
         ring = self.ring
         parts = [arb_poly([0]) for _ in range(2 * ring.m + 1)]
         for a, left in enumerate(self.parts):
@@ -87,7 +90,7 @@ class Part:
                 parts[a + b] = parts[a + b] + left * right
         for k in range(ring.m + 1, 2 * ring.m + 1):
             parts[ring.m] = parts[ring.m] + parts[k] * ring.d[k - ring.m]
-        return Part(ring, [ring.folded(part) for part in parts[: ring.m + 1]])
+        return Part(ring, [ring.folded(polynomial) for polynomial in parts[: ring.m + 1]])
 
     __radd__, __rmul__ = __add__, __mul__
 
@@ -126,12 +129,12 @@ def restitution(j: int, x: Any) -> Any:
 class Box:
     """The series for all lambda of a box."""
 
-    def __init__(self, o: Gravity | Flights, told: dict[str, Any], r: Any) -> None:
-        self.o, self.told, j = o, told, o.j
-        self.N, D, self.pieces = (int(told[name]) for name in ("N", "D", "pieces"))
-        low, high = (ball(Fraction(end)) for end in told["lambda"])
+    def __init__(self, o: Gravity | Flights, content: dict[str, Any], r: Any) -> None:
+        self.o, self.content, j = o, content, o.j
+        self.N, D, self.pieces = (int(content[name]) for name in ("N", "D", "pieces"))
+        low, high = (ball(Fraction(end)) for end in content["lambda"])
         need("orders", self.N < D <= o.K - j, "N < D is asked of a box, and D within the series of the flights")
-        self.high, self.eta, self.slope = high, *(ball(Fraction(told[name])) for name in ("eta", "M"))
+        self.high, self.eta, self.slope = high, *(ball(Fraction(content[name])) for name in ("eta", "M"))
         centre = arb(((low + high) / 2).mid())
         h, m = size((low - centre).union(high - centre)), 0 if r is not None else 2
         rings = [Folded(n + 1, o.s0, h, m) for n in range(self.N)] + [Folded(D, o.s0, h, m)]
@@ -146,11 +149,11 @@ class Box:
         L = [lam]
         for n in range(1, self.N):
             factor = powers[j] * gap * P * (j + 1) + powers[j + 1 + n] * Q * -1 + ratio * (gap * dQ + Q * -1) * -1
-            left = make(*(part[n] for part in rings[n].residual(o, L, ratio).parts))
+            left = make(*(polynomial[n] for polynomial in rings[n].residual(o, L, ratio).parts))
             L.append(left * (factor * lead).inverse() * -1)
         self.take(rings[-1], L, ratio, gap.inverse())
         self.r = r if r is not None else ratio.over()[0]
-        self.require_series(told["series"])
+        self.require_series(content["series"])
 
     def take(self, ring: Folded, L: list[Part], ratio: Part, inverse: Part) -> None:
         """L, (1 - L)/(1 - lambda) and the residual over the box, whose coefficients below N are 0: L is made so."""
@@ -159,11 +162,11 @@ class Box:
         self.L: Any = arb_poly([part.over()[0] for part in L])
         self.gap = arb_poly([1, *(-(part * inverse).over()[0] for part in L[1:])])
 
-    def require_series(self, told: list[dict[str, str]]) -> None:
+    def require_series(self, series: list[dict[str, str]]) -> None:
         """Refuse a series that is not the one of the box."""
-        need("series", len(told) == self.N, "the series has another length")
-        for n, part in enumerate(told[: self.N]):
-            need("L", lies_within(self.L[n], part), f"L_{n} is {self.L[n].str(20)}")
+        need("series", len(series) == self.N, "the series has another length")
+        for n, coefficient in enumerate(series[: self.N]):
+            need("L", lies_within(self.L[n], coefficient), f"L_{n} is {self.L[n].str(20)}")
 
     def steps(self) -> list[tuple[Any, Any]]:
         """Pieces of [0, s0]."""
@@ -188,7 +191,7 @@ class Box:
     def least_drift(self) -> Any:
         """Lemma 1 on the boxes that the certificate names."""
         least, half, todo = arb(9), arb(1) / 2, [(0, 0, 0, 0)]
-        for letter in self.told["tree"]:
+        for letter in self.content["tree"]:
             if not todo:
                 raise Wrong("the boxes of lemma 1 do not fit together")
             Clock.look()
@@ -201,9 +204,9 @@ class Box:
                 todo += [(a, n, 2 * e + 1, k + 1), (a, n, 2 * e, k + 1)]
             else:
                 S = (a * half**n).union((a + 1) * half**n) * self.o.s0
-                found = self.drift(S, (e * half**k).union((e + 1) * half**k))
-                need("lemma 1", found > 0, "lemma 1 is not shown on a box", Refused)
-                least = least.min(arb(found.lower()))
+                drift = self.drift(S, (e * half**k).union((e + 1) * half**k))
+                need("lemma 1", drift > 0, "lemma 1 is not shown on a box", Refused)
+                least = least.min(arb(drift.lower()))
         need("covered", not todo, "the boxes of lemma 1 do not cover the square")
         return least
 
@@ -238,26 +241,26 @@ class Box:
 
     def require(self) -> None:
         """Refuse the box unless the three lemmas hold with its numbers."""
-        R, Kl, grow = (ball(Fraction(self.told[name])) for name in ("R", "Kl", "grow"))
+        R, Kl, grow = (ball(Fraction(self.content[name])) for name in ("R", "Kl", "grow"))
         for a, b in self.steps():
             E, S = arb(0), a.union(b)
-            for part in reversed(self.E):
-                E = E * S + part
+            for coefficient in reversed(self.E):
+                E = E * S + coefficient
             error = Refused if abs(E).overlaps(R) else Wrong
             need("residual", abs(E) <= R, f"the residual is not shown to be below {R.str(8)}", error)
         least = self.least_drift()
         bounds = [self.cones(a, b) for a, b in self.steps()]
-        high = -lowest(-each[2] for each in bounds)
+        high = -lowest(-bound[2] for bound in bounds)
         push = lowest(lowest([rate]) * lowest([U]) * lowest([G]) for rate, U, G, _ in bounds)
         bounded = push > 0 and R * high / (least * push) <= Kl
         need("Kl", bounded, "Kl is not shown to bound the distance from the series")
         need("wide", Kl * self.o.s0**self.N < self.eta, "the strip is narrower than the bound")
-        grown = lowest(each[3] for each in bounds) >= grow
+        grown = lowest(bound[3] for bound in bounds) >= grow
         need("grow", grown, "that distances grow as fast as is written is not shown")
 
     def threshold(self, S: Any) -> Any:
         """The speed on gamma at S, as of y'."""
-        x = self.L(S) + within(ball(Fraction(self.told["Kl"])) * S**self.N)
+        x = self.L(S) + within(ball(Fraction(self.content["Kl"])) * S**self.N)
         return S ** (self.o.j + 1) * (1 - x) * self.o.speeds(S, x)[0]
 
 
@@ -268,28 +271,28 @@ def lowest(parts: Any) -> Any:
     return found
 
 
-def invariant_arc(model: Model, told: dict[str, Any], bits: int) -> None:  # noqa: ARG001
+def invariant_arc(model: Model, content: dict[str, Any], bits: int) -> None:  # noqa: ARG001
     """Check that gamma is as the certificate says, for the r of the model or for all r of an interval."""
-    j, reach = int(told["order"]), ball(Fraction(told["reach"]))
-    tau = contact(model, told["tau"], j)
-    o = Flights(model, tau, j, reach) if "fastest" in told else Gravity(model, tau, j, reach)
+    j, reach = int(content["order"]), ball(Fraction(content["reach"]))
+    tau = contact(model, content["tau"], j)
+    o = Flights(model, tau, j, reach) if "fastest" in content else Gravity(model, tau, j, reach)
     if isinstance(o, Flights):
-        fastest = ball(Fraction(told["fastest"]))
+        fastest = ball(Fraction(content["fastest"]))
         need("slow", o.launched < fastest, "the launch speeds do not go beyond those of the flights that are enclosed")
         need("fastest", fastest <= o.fastest, "the launch speeds go beyond what is shown")
-    cuts = [[Fraction(end) for end in box["lambda"]] for box in told["boxes"]]
-    single = told["restitution"] == "model"
+    cuts = [[Fraction(end) for end in box["lambda"]] for box in content["boxes"]]
+    single = content["restitution"] == "model"
     r = model.ratio() if single else None
-    ends: list[Any] = [r, r] if single else [ball(Fraction(end)) for end in told["restitution"]]
+    ends: list[Any] = [r, r] if single else [ball(Fraction(end)) for end in content["restitution"]]
     if not all(0 < end < 1 for end in ends) or (single and len(cuts) != 1):
         raise Wrong("r must lie in (0, 1), and a model has one box")
     need("touch", all(one[1] == other[0] for one, other in pairwise(cuts)), "the boxes of lambda do not touch")
     all_in = restitution(j, ball(cuts[0][0])) <= ends[0] and ends[-1] <= restitution(j, ball(cuts[-1][1]))
     need("lambda", all_in, "the boxes of lambda do not contain the lambda of every r")
-    boxes = [Box(o, each, r) for each in told["boxes"]]
+    boxes = [Box(o, numbers, r) for numbers in content["boxes"]]
     for box in boxes:
         box.require()
     if single:
-        compared({"threshold": (boxes[0].threshold(reach) * o.factor(reach), told["threshold"])})
+        compared({"threshold": (boxes[0].threshold(reach) * o.factor(reach), content["threshold"])})
     if isinstance(o, Gravity):  # of others nothing may be said of the time after tau: see `schema`
-        require_after(o, told, size(ends[-1]))
+        require_after(o, content, size(ends[-1]))

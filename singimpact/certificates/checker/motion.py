@@ -31,17 +31,17 @@ HORIZON = 1e4  # of a flight
 class Model:
     """x'' + f(x, x') = g(t), x >= c, and what an impact makes of a velocity; a parameter `over` may be a ball."""
 
-    def __init__(self, told: dict[str, Any], over: str | None = None, value: Any = None) -> None:
-        self.told, self.over, self.value = told, over, value
-        given = dict(told.get("parameters") or {}) | ({over: value} if over else {})
-        self.f, self.g, self.c = (Formula(told[name], given) for name in ("f", "g", "clearance"))
-        self._law = Formula(told["restitution"], given)
-        if not self._law.names() - {"pi", *FUNCTIONS, *given}:
+    def __init__(self, content: dict[str, Any], over: str | None = None, value: Any = None) -> None:
+        self.content, self.over, self.value = content, over, value
+        parameters = dict(content.get("parameters") or {}) | ({over: value} if over else {})
+        self.f, self.g, self.c = (Formula(content[name], parameters) for name in ("f", "g", "clearance"))
+        self._law = Formula(content["restitution"], parameters)
+        if not self._law.names() - {"pi", *FUNCTIONS, *parameters}:
             need("restitution", 0 <= self._law() <= 1, "the restitution is not shown to be in [0, 1]")
 
     def at(self, value: Any) -> Model:
         """The model with another number."""
-        return Model(self.told, self.over, value) if self.over else self
+        return Model(self.content, self.over, value) if self.over else self
 
     def ratio(self) -> Any:
         """r, where the restitution is a number."""
@@ -98,15 +98,18 @@ def derived(X: Sequence[Any]) -> list[Any]:
 
 def taylor(model: Model, time: Any, x: Sequence[Any], v: Sequence[Any], n: int) -> list[list[Any]]:
     """The coefficients 0, ..., n of all components of the motion, one after the other."""
-    forcing, X = [coefficients(part, n) for part in model.forcing(arb_series([time, 1], prec=n), len(x))], [x[0], v[0]]
+    forcing, X = (
+        [coefficients(series, n) for series in model.forcing(arb_series([time, 1], prec=n), len(x))],
+        [x[0], v[0]],
+    )
     for k in range(n - 1):
         f = model.f(x=arb_series(X, prec=k + 1), xdot=arb_series(derived(X), prec=k + 1))
         X.append((forcing[0][k] - coefficients(f, k + 1)[k]) / ((k + 1) * (k + 2)))
-    found, count = [X], n - 1
+    rows, count = [X], n - 1
     if x[1:]:
         units = [[arb_series([int(i == k)], prec=count) for k in range(len(x) - 1)] for i in (0, 1)]
-        place = [[arb_series(part, prec=count), *unit] for part, unit in zip((X, derived(X)), units, strict=True)]
-        by_x, by_v, *by_number = (coefficients(part, count) for part in model.field(*place)[1:])
+        state = [[arb_series(series, prec=count), *unit] for series, unit in zip((X, derived(X)), units, strict=True)]
+        by_x, by_v, *by_number = (coefficients(series, count) for series in model.field(*state)[1:])
     for i, start in enumerate(zip(x[1:], v[1:], strict=True)):
         psi, rate = list(start), [start[1]]
         for k in range(n - 1):
@@ -114,8 +117,8 @@ def taylor(model: Model, time: Any, x: Sequence[Any], v: Sequence[Any], n: int) 
             pull += by_number[0][k] - forcing[3][k] if i == 2 else 0
             psi.append(-pull / ((k + 1) * (k + 2)))
             rate.append((k + 2) * psi[-1])
-        found.append(psi)
-    return found
+        rows.append(psi)
+    return rows
 
 
 def spread(X: list[Any]) -> list[Any]:
@@ -127,14 +130,16 @@ def spread(X: list[Any]) -> list[Any]:
 
 def defect(model: Model, time: Any, X: list[list[Any]], R: Any) -> Any:
     """A bound of |P'' + f(P, P') - g| on |s| <= R; None where f or g is not shown to be analytic on the image."""
-    bounds = [[bound(R) for bound in spread(part)] for part in X]
-    places = [[acb(part[i] + within(bound[i]), within(bound[i])) for part, bound in zip(X, bounds, strict=True)]
-              for i in (0, 1)]  # fmt: skip
+    bounds = [[bound(R) for bound in spread(series)] for series in X]
+    places = [
+        [acb(series[i] + within(bound[i]), within(bound[i])) for series, bound in zip(X, bounds, strict=True)]
+        for i in (0, 1)
+    ]
     forcing = model.forcing(acb(time + within(R), within(R)), len(X))
-    found = [acb(part) - acb(pull) for part, pull in zip(model.field(*places), forcing, strict=True)]
-    if not all(part.is_finite() for part in found):
+    misses = [acb(series) - acb(pull) for series, pull in zip(model.field(*places), forcing, strict=True)]
+    if not all(series.is_finite() for series in misses):
         return None
-    return largest(size(part) + bound[2] for part, bound in zip(found, bounds, strict=True))
+    return largest(size(series) + bound[2] for series, bound in zip(misses, bounds, strict=True))
 
 
 def largest(numbers: Iterable[Any]) -> Any:
@@ -144,12 +149,17 @@ def largest(numbers: Iterable[Any]) -> Any:
 
 def lipschitz(model: Model, X: list[list[Any]], length: Any, slack: Any) -> tuple[Any, Any]:
     """The largest sums of |derivatives by x, psi| and of |those by x', psi'| of a component of f, next to a step."""
-    m, sums = len(X), [spread(part) for part in X]
+    m, sums = len(X), [spread(series) for series in X]
     slopes = [[int(i == k) for k in range(2 * m)] for i in range(2 * m)]
-    places = [[Dual(part[i] + within(bound[i](length) + slack), slopes[i * m + k])
-               for k, (part, bound) in enumerate(zip(X, sums, strict=True))] for i in (0, 1)]  # fmt: skip
-    rows = [part.slopes if isinstance(part, Dual) else [0] * (2 * m) for part in model.field(*places)]
-    A, B = (largest(sum((size(arb(each)) for each in row[i : i + m]), arb(0)) for row in rows) for i in (0, m))
+    places = [
+        [
+            Dual(series[i] + within(bound[i](length) + slack), slopes[i * m + k])
+            for k, (series, bound) in enumerate(zip(X, sums, strict=True))
+        ]
+        for i in (0, 1)
+    ]
+    rows = [series.slopes if isinstance(series, Dual) else [0] * (2 * m) for series in model.field(*places)]
+    A, B = (largest(sum((size(arb(slope)) for slope in row[i : i + m]), arb(0)) for row in rows) for i in (0, m))
     return A, B
 
 
@@ -157,10 +167,10 @@ def step(model: Model, time: Any, x: Sequence[Any], v: Sequence[Any], bits: int)
     """The polynomials of one step, its length h, and K."""
     n = max(16, int(0.55 * bits))
     X = taylor(model, time, x, v, n)
-    if not all(a.is_finite() for part in X for a in part):
+    if not all(a.is_finite() for series in X for a in series):
         raise Refused("f or g is singular on the way")
-    unit = sum((size(part[1]) + size(part[2]) / 8 for part in X), arb(0))
-    rate = max(float(size(part[k]) / unit) ** (1 / k) for part in X for k in (n - 2, n - 1, n))
+    unit = sum((size(series[1]) + size(series[2]) / 8 for series in X), arb(0))
+    rate = max(float(size(series[k]) / unit) ** (1 / k) for series in X for k in (n - 2, n - 1, n))
     radius, best = min(1.3 / rate, 8.0) if rate > 0 else 8.0, (0.0, 0.0, arb(0))
     for _ in range(60):
         M = defect(model, time, X, arb(radius))

@@ -75,11 +75,11 @@ class Flights:
             raise Refused("that gamma ends at tau is not shown: a_c has no coefficient of the right sign")
         boxes = [(a, b, *self.slopes(a, b)) for a in SIDES for b in SIDES]
         radii = [R for R in (arb((4 * reach * (arb(5) / 6) ** n).mid()) for n in range(24)) if reach < R]
-        known = [(R, Z) for R in radii for Z in self.bounds(R, boxes)]
+        discs = [(R, Z) for R in radii for Z in self.bounds(R, boxes)]
         here = self.bounds(reach, boxes)
-        if not known or not here:
+        if not discs or not here:
             raise Refused("that the flights are analytic far enough is not shown")
-        self.R, self.Z = min(known, key=lambda disc: float(disc[1]) * float(reach / disc[0]) ** TERMS)
+        self.R, self.Z = min(discs, key=lambda disc: float(disc[1]) * float(reach / disc[0]) ** TERMS)
         self.fastest = self.fast(boxes)
         self.launched = reach ** (j + 1) * min(here, key=float) / 2
         self.rest = within(self.tail(0, TERMS).max(self.tail(1, TERMS)).max(4 * self.tail(0, TERMS)))
@@ -87,9 +87,9 @@ class Flights:
     def series(self) -> None:
         """W and U by powers of S, polynomials in l."""
         j, model = self.j, self.model
-        plane, c, known = Plane(TERMS + j + 4), model.c(), (list[Any](), list[Any]())
+        plane, c, heights = Plane(TERMS + j + 4), model.c(), (list[Any](), list[Any]())
         pressed = model.g(t=arb_series([self.tau, -1], prec=TERMS + j + 1)) - model.f(x=c, xdot=arb(0))
-        force = model.f(x=late(c, known[0], j + 2), xdot=late(arb(0), known[1], j + 1))
+        force = model.f(x=late(c, heights[0], j + 2), xdot=late(arb(0), heights[1], j + 1))
         self.W, self.U = [], []
         for n in range(TERMS + 1):
             right = arb_poly([1, -1]) ** (j + n) * pressed[j + n]
@@ -98,29 +98,31 @@ class Flights:
             Q = plane.twice_integrated(right)
             end, slope = plane.at_d(Q), plane.at_d(plane.derivative(Q))
             launch = -lowered(end, 1)
-            known[0].append(Q + plane.of_d(launch) * arb_poly([0, 1]))
-            known[1].append(plane.derivative(known[0][-1]))
+            heights[0].append(Q + plane.of_d(launch) * arb_poly([0, 1]))
+            heights[1].append(plane.derivative(heights[0][-1]))
             self.W.append(lowered(launch, 1)(arb_poly([1, -1])))
             self.U.append(lowered(-slope - launch, 1)(arb_poly([1, -1])))
 
     def slopes(self, a: Any, b: Any) -> tuple[Any, Any]:
         """Bounds of |f_x| and |f_v| for complex |x - c| <= a, |v| <= b."""
-        found = self.model.f(x=Dual(round_about(self.model.c(), a), [acb(1), acb(0)]),
-                             xdot=Dual(round_about(arb(0), b), [acb(0), acb(1)]))  # fmt: skip
+        found = self.model.f(
+            x=Dual(round_about(self.model.c(), a), [acb(1), acb(0)]),
+            xdot=Dual(round_about(arb(0), b), [acb(0), acb(1)]),
+        )
         by_x, by_v = found.slopes if isinstance(found, Dual) else (arb(0), arb(0))
         return size(by_x), size(by_v)
 
     def bounds(self, R: Any, boxes: list[Any]) -> list[Any]:
         """Z on |S| <= R, of the boxes where there is one."""
-        j, found = self.j, []
+        j, accepted = self.j, []
         push = self.model.g(t=round_about(self.tau, R * WIDE)) - self.model.f(x=self.model.c(), xdot=arb(0))
         for a, b, A, B in boxes:
             q = (R * MOST) ** 2 * A / 8 + R * MOST * B / 2
             if q < 1:
                 Z = size(size(push) / R**j / (1 - q))
                 if R ** (j + 2) * MOST**2 * Z / 8 < a and R ** (j + 1) * MOST * Z / 2 < b:
-                    found.append(Z)
-        return found
+                    accepted.append(Z)
+        return accepted
 
     def fast(self, boxes: list[Any]) -> Any:
         """A launch speed up to which flights stay until tau in a box where no two of them join the same two impacts."""
@@ -143,8 +145,8 @@ class Flights:
         value, by_S, by_x = [], [], []
         for series in (self.W, self.U):
             P, PS = arb_poly([0]), arb_poly([0])
-            for part in reversed(series):
-                PS, P = PS * S + P, P * S + part
+            for coefficient in reversed(series):
+                PS, P = PS * S + P, P * S + coefficient
             value.append(P(x) + self.rest)
             by_S.append(PS(x) + self.rest)
             by_x.append(P.derivative()(x) + self.rest)
@@ -163,8 +165,10 @@ class Flights:
             power = power * S if n else power
             while len(powers) <= max(self.W[n].degree(), self.U[n].degree()):
                 powers.append(x * powers[-1])
-            W, U = (power * sum(map(mul, powers, part.coeffs())) + value for value, part in
-                    ((W, self.W[n]), (U, self.U[n])))  # fmt: skip
+            W, U = (
+                power * sum(map(mul, powers, coefficient.coeffs())) + value
+                for value, coefficient in ((W, self.W[n]), (U, self.U[n]))
+            )
         last = ring(arb_poly([0] * ring.D + [within(self.tail(0, ring.D, ring.D))]))
         return W + last, U + last
 

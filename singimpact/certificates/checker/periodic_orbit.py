@@ -37,7 +37,7 @@ class Orbits(NamedTuple):
         """D G of the flights over a box, D F, and F at its centre."""
         bits, n = self.bits, len(point) // 2
         box = [x + within(r) for x, r in zip(point, radii, strict=True)]
-        wide, exact = (self.model.at(*each[2 * n :] or [None]) for each in (box, point))
+        wide, exact = (self.model.at(*states[2 * n :] or [None]) for states in (box, point))
         missed: list[Any] = []
         D, slopes = arb_mat(2 * n, len(point)), []
         for i in range(n):
@@ -58,24 +58,26 @@ class Orbits(NamedTuple):
             rows = rows or impact(wide, tau, v, bits)
             slopes.append(arb_mat([row[:2] for row in rows]))
             for a in (0, 1):
-                for column, part in zip((2 * i, 2 * i + 1, 2 * n), rows[a], strict=False):
-                    D[2 * i + a, column] += part
+                for column, entry in zip((2 * i, 2 * i + 1, 2 * n), rows[a], strict=False):
+                    D[2 * i + a, column] += entry
         return slopes, D, missed
 
     def krawczyk(self, point: list[Any], radii: list[Any], half: Any = None) -> tuple[list[Any], list[Any]]:
         """D G over a box, and what Krawczyk's operator makes of the box less its centre."""
         slopes, D, missed = self.linearised(point, radii)
         free = [k for k in range(len(point)) if k != self.held]
-        square, moved = arb_mat([[row[k] for k in free] for row in D.table()]), [[part] for part in missed]
+        square, moved = arb_mat([[row[k] for k in free] for row in D.table()]), [[component] for component in missed]
         if half is not None:
-            moved = [[part + row[self.held] * within(half)] for part, row in zip(missed, D.table(), strict=True)]
+            moved = [
+                [component + row[self.held] * within(half)] for component, row in zip(missed, D.table(), strict=True)
+            ]
         Y = middles(middles(square).inv())
         one = arb_mat([[int(i == j) for j in free] for i in free])
         spread_out = (one - Y * square) * arb_mat([[within(radii[k])] for k in free])
-        found = (spread_out - Y * arb_mat(moved)).entries()
+        image = (spread_out - Y * arb_mat(moved)).entries()
         if self.held is not None:
-            found.insert(self.held, arb(0) if half is None else within(half))
-        return slopes, found
+            image.insert(self.held, arb(0) if half is None else within(half))
+        return slopes, image
 
     def alone(self, point: list[Any], boxes: list[list[Any]]) -> list[Any]:
         """D G over the last of some boxes round a point, in each of which one zero is shown."""
@@ -112,20 +114,20 @@ def require_shortest(point: list[Any], radii: list[Any], span: Any, periods: int
         need("shortest", apart, f"a shorter orbit, {times} times, is not shown to be another one")
 
 
-def periodic_orbit(model: Model, told: dict[str, Any], bits: int) -> None:
+def periodic_orbit(model: Model, content: dict[str, Any], bits: int) -> None:
     """Check that one orbit has its states in the balls that are written, that no other is near, and its multipliers."""
-    states, k = told["states"], int(told["periods"])
-    require_period(model.g, told["period"])
+    states, k = content["states"], int(content["periods"])
+    require_period(model.g, content["period"])
     numbers = [state[name] for state in states for name in ("tau", "v")]
-    point, radii = ([ball(Fraction(each[part])) for each in numbers] for part in ("value", "radius"))
-    orbits = Orbits(model, Formula(told["period"], model.g.parameters)() * k, bits)
-    near = ball(Fraction(told["unique_within"]))
+    point, radii = ([ball(Fraction(number[field])) for number in numbers] for field in ("value", "radius"))
+    orbits = Orbits(model, Formula(content["period"], model.g.parameters)() * k, bits)
+    near = ball(Fraction(content["unique_within"]))
     require_shortest(point, radii, orbits.span, k)
     total = return_map(orbits.alone(point, [[near] * len(point), radii]))
-    if told["multipliers"]:  # two, or none is said of them
-        wanted = [each[part] for each in told["multipliers"] for part in ("real", "imaginary")]
-        for found, written in zip(eigenvalues(total), wanted, strict=True):
-            compared({"a multiplier": (found, written)})
+    if content["multipliers"]:  # two, or none is said of them
+        wanted = [number[field] for number in content["multipliers"] for field in ("real", "imaginary")]
+        for multiplier, written in zip(eigenvalues(total), wanted, strict=True):
+            compared({"a multiplier": (multiplier, written)})
 
 
 def eigenvalues(matrix: Any) -> list[Any]:

@@ -19,27 +19,27 @@ def require_period(g: Formula, period: str) -> None:
             case ast.Name("t"):
                 return False
             case ast.Call(ast.Name("sin" | "cos" | "tan"), [argument]) if "t" in g.names(argument):
-                found = rate(g, argument)
-                if found is None or turn is None or found[1] + turn[1] != 1:
+                frequency = rate(g, argument)
+                if frequency is None or turn is None or frequency[1] + turn[1] != 1:
                     return False
-                return (found[0] * turn[0] / 2).denominator == 1
-        return all(seen(part) for part in ast.iter_child_nodes(node))
+                return (frequency[0] * turn[0] / 2).denominator == 1
+        return all(seen(child) for child in ast.iter_child_nodes(node))
 
     need("period", seen(g.tree), f"g = {g.text} is not shown to have the period {period}")
 
 
 def monomial(formula: Formula, node: ast.expr) -> tuple[Fraction, int] | None:
     """(q, k) of a part that is q pi^k, q rational."""
-    if (known := formula.exact(node)) is not None:
-        return known, 0
+    if (rational := formula.exact(node)) is not None:
+        return rational, 0
     match node:
         case ast.Name("pi"):
             return Fraction(1), 1
         case ast.Name(name) if name in formula.parameters:
             inner = Formula(formula.parameters[name], {})
             return monomial(inner, inner.tree)
-        case ast.UnaryOp(ast.USub(), part) if (found := monomial(formula, part)) is not None:
-            return -found[0], found[1]
+        case ast.UnaryOp(ast.USub(), part) if (power := monomial(formula, part)) is not None:
+            return -power[0], power[1]
         case ast.BinOp(left, ast.Mult() | ast.Div() as op, right):
             one, other = monomial(formula, left), monomial(formula, right)
             if one is not None and other is not None and other[0]:
@@ -55,8 +55,8 @@ def rate(formula: Formula, node: ast.expr) -> tuple[Fraction, int] | None:
     match node:
         case ast.Name():
             return Fraction(1), 0
-        case ast.UnaryOp(ast.USub(), part) if (found := rate(formula, part)) is not None:
-            return -found[0], found[1]
+        case ast.UnaryOp(ast.USub(), part) if (slope := rate(formula, part)) is not None:
+            return -slope[0], slope[1]
         case ast.BinOp(left, ast.Add() | ast.Sub() as op, right):
             one, other = rate(formula, left), rate(formula, right)
             if one is None or other is None or (one[0] and other[0]):

@@ -47,8 +47,13 @@ def read(path: str) -> Any:
         data = file.read(BYTES + 1)
     expect(len(data) <= BYTES, f"the file has more than {BYTES} bytes")
     try:
-        return json.loads(data.decode("utf-8"), parse_constant=refuse_number, parse_int=refuse_number,
-                          parse_float=refuse_number, object_pairs_hook=once)  # fmt: skip
+        return json.loads(
+            data.decode("utf-8"),
+            parse_constant=refuse_number,
+            parse_int=refuse_number,
+            parse_float=refuse_number,
+            object_pairs_hook=once,
+        )
     except UnicodeDecodeError:
         raise Refused("it is not text in UTF-8") from None
     except RecursionError:
@@ -74,15 +79,15 @@ def require(form: Form, value: Any, where: str = "the file") -> None:
         unknown, missing = set(value) - names, {name for name in form if not name.endswith("?")} - set(value)
         need("unknown", not unknown, f"{where} has the unknown field {min(unknown, default='')!r:.60}")
         expect(not missing, f"{where} has no {min(missing, default='')!r}")
-        for name, part in form.items():
+        for name, entry in form.items():
             if name.rstrip("?") in value:
-                require(part, value[name.rstrip("?")], f"{where}.{name.rstrip('?')}".removeprefix("the file."))
+                require(entry, value[name.rstrip("?")], f"{where}.{name.rstrip('?')}".removeprefix("the file."))
     elif isinstance(form, list):
         inner, least, most = form
         expect(isinstance(value, list), f"{where} is no list")
         expect(least <= len(value) <= most, f"{where} has {len(value)} entries: {least} to {most} are accepted")
-        for n, part in enumerate(value):
-            require(inner, part, f"{where}[{n}]")
+        for n, entry in enumerate(value):
+            require(inner, entry, f"{where}[{n}]")
     else:
         form(value, where)
 
@@ -138,11 +143,13 @@ def one_of(*words: str) -> Callable[[Any, str], None]:
 def ball(sign: int = 0, *, exact: bool = False) -> Callable[[Any, str], None]:
     """A number with its radius; with a sign, all numbers of the ball have it; `exact` : the value is 0."""
 
-    def form(told: Any, where: str) -> None:
-        require({"value": number(), "radius": number(low=0)}, told, where)
-        value, radius = Fraction(told["value"]), Fraction(told["radius"])
+    def form(written: Any, where: str) -> None:
+        require({"value": number(), "radius": number(low=0)}, written, where)
+        value, radius = Fraction(written["value"]), Fraction(written["radius"])
         size = sign * value if sign else max(abs(value), Fraction(1))
-        need("rough", radius * ROUGH <= size, f"{where} = {told['value']:.40} has the radius {told['radius']:.40}")
+        need(
+            "rough", radius * ROUGH <= size, f"{where} = {written['value']:.40} has the radius {written['radius']:.40}"
+        )
         expect(not exact or value == 0, f"{where} is not 0")
 
     return form
@@ -164,21 +171,23 @@ def digest(value: Any, where: str) -> None:
     text(value, where, DIGEST_TEXT, 64)
 
 
-def touching(told: dict[str, Any]) -> Form:
+def touching(content: dict[str, Any]) -> Form:
     """Of an orbit that touches the wall in its first state; a hidden impact is one between impacts."""
 
     def form(states: Any, where: str) -> None:
         expect(isinstance(states, list) and states, f"{where} has no state")
         require(TOUCH, states[0], f"{where}[0]")
-        require([STATE, int(told["kind"] == "hidden impact"), 999], states[1:], f"{where} after the first")
+        require([STATE, int(content["kind"] == "hidden impact"), 999], states[1:], f"{where} after the first")
 
     return form
 
 
-def after(told: dict[str, Any]) -> Form:
+def after(content: dict[str, Any]) -> Form:
     """Keys and types of the statement after a contact point; none where a certificate names the fastest launch."""
-    names = ("near", "time") if str(told.get("order"))[-1:] in tuple("13579") else ("launch", "speed", "first", "end")
-    return dict.fromkeys(names if told.get("after") and "fastest" not in told else (), SIZE)
+    names = (
+        ("near", "time") if str(content.get("order"))[-1:] in tuple("13579") else ("launch", "speed", "first", "end")
+    )
+    return dict.fromkeys(names if content.get("after") and "fastest" not in content else (), SIZE)
 
 
 def parameters(value: Any, where: str) -> None:
@@ -192,59 +201,96 @@ def parameters(value: Any, where: str) -> None:
 STATE = {"tau": ball(), "v": ball(1)}
 TOUCH = {"tau": ball(), "v": {"value": one_of("0"), "radius": number(low=0)}}
 SIZE = number(low=0, high=10**9)
-MODEL = {"f": formula, "g": formula, "clearance": formula, "restitution": formula, "parameters?": parameters,
-         "period?": formula}  # fmt: skip
+MODEL = {
+    "f": formula,
+    "g": formula,
+    "clearance": formula,
+    "restitution": formula,
+    "parameters?": parameters,
+    "period?": formula,
+}
 LAUNCH = {"tau": formula, "v": formula}
 ORBIT = {"period": formula, "periods": whole(1, 1000)}
 EVENT = {"kind": one_of(*KINDS), "over": name, "parameter": ball(), **ORBIT}
 BOX = {
-    "lambda": interval(0, 1), "N": whole(2, 200), "D": whole(3, 400), "pieces": whole(1, 20_000), "eta": SIZE,
-    "M": SIZE, "R": number(least=0), "Kl": number(least=0), "grow": number(low=1), "series": [ball(), 2, 200],
+    "lambda": interval(0, 1),
+    "N": whole(2, 200),
+    "D": whole(3, 400),
+    "pieces": whole(1, 20_000),
+    "eta": SIZE,
+    "M": SIZE,
+    "R": number(least=0),
+    "Kl": number(least=0),
+    "grow": number(low=1),
+    "series": [ball(), 2, 200],
     "tree": lambda value, where: text(value, where, re.compile("[Sl.]+"), 10**6),
-}  # fmt: skip
+}
 STATEMENTS: dict[str, Callable[[dict[str, Any]], Form]] = {
     "first impact": lambda _: {
-        "launch": LAUNCH, "flight_time": ball(1), "velocity": ball(-1), "tau": ball(), "v": ball(1)
+        "launch": LAUNCH,
+        "flight_time": ball(1),
+        "velocity": ball(-1),
+        "tau": ball(),
+        "v": ball(1),
     },
     "periodic orbit": lambda _: {
-        **ORBIT, "states": [STATE, 1, 1000], "unique_within": number(0, 1),
+        **ORBIT,
+        "states": [STATE, 1, 1000],
+        "unique_within": number(0, 1),
         "multipliers": [{"real": ball(), "imaginary": ball()}, 0, 2],
     },
     "chatter limit": lambda _: {"launch": LAUNCH, "ends": one_of("accumulation", "lift-off"), "tau": ball()},
     "horseshoe": lambda _: {
-        "period": formula, "loops": [whole(1, 1000), 2, 2], "entropy": ball(1),
+        "period": formula,
+        "loops": [whole(1, 1000), 2, 2],
+        "entropy": ball(1),
         "sets": [{"centre": [number(), 2, 2], "frame": [[number(), 2, 2], 2, 2], "radii": [SIZE, 2, 2]}, 2, 1000],
     },
-    "event": lambda told: EVENT | (
-        {"states": touching(told), "unique_within": number(0, 1)} if told.get("kind") in TOUCHING
-        else {"states": [STATE, 1, 1000]}
+    "event": lambda content: (
+        EVENT
+        | (
+            {"states": touching(content), "unique_within": number(0, 1)}
+            if content.get("kind") in TOUCHING
+            else {"states": [STATE, 1, 1000]}
+        )
     ),
     "border orbit": lambda _: {
-        "over": name, "parameter": ball(), "release": number(), "end": number(), "impacts": whole(1, 10_000),
+        "over": name,
+        "parameter": ball(),
+        "release": number(),
+        "end": number(),
+        "impacts": whole(1, 10_000),
         "completes": one_of("above", "below"),
     },
-    "invariant arc": lambda told: {
-        "order": whole(1, 12), "tau": ball(), "reach": SIZE, "after": after(told), "boxes": [BOX, 1, 2000],
-        **({"fastest": SIZE} if "fastest" in told else {}),
-        **({"restitution": one_of("model"), "threshold": ball(1)} if told.get("restitution") == "model"
-           else {"restitution": interval(0, 1)}),
+    "invariant arc": lambda content: {
+        "order": whole(1, 12),
+        "tau": ball(),
+        "reach": SIZE,
+        "after": after(content),
+        "boxes": [BOX, 1, 2000],
+        **({"fastest": SIZE} if "fastest" in content else {}),
+        **(
+            {"restitution": one_of("model"), "threshold": ball(1)}
+            if content.get("restitution") == "model"
+            else {"restitution": interval(0, 1)}
+        ),
     },
-}  # fmt: skip
+}
 """What the file of each statement says beside its schema, statement, model and digest."""
 
 
-def require_statement(told: Any) -> None:
+def require_statement(content: Any) -> None:
     """Refuse a file that is none of these statements."""
     only = f"only certificates {SCHEMA!r} of these are checked here: {', '.join(STATEMENTS)}"
-    expect(isinstance(told, dict) and told.get("schema") == SCHEMA, only)
-    expect(isinstance(told.get("statement"), str) and told["statement"] in STATEMENTS, only)
+    expect(isinstance(content, dict) and content.get("schema") == SCHEMA, only)
+    expect(isinstance(content.get("statement"), str) and content["statement"] in STATEMENTS, only)
 
 
-def require_form(told: dict[str, Any]) -> None:
+def require_form(content: dict[str, Any]) -> None:
     """Refuse a file that is not of the form of its statement."""
     head = {"schema": one_of(SCHEMA), "statement": one_of(*STATEMENTS), "model": MODEL, "digest": digest}
-    require(head | STATEMENTS[told["statement"]](told), told)
-    model = told["model"]
+    require(head | STATEMENTS[content["statement"]](content), content)
+    model = content["model"]
     used = re.findall(r"[A-Za-z_]\w*", " ".join(model[part] for part in ("f", "g", "clearance", "restitution")))
     unused = set(model.get("parameters", ())) - set(used)
     expect(not unused, f"model has the parameter {min(unused, default='')!r}, which it does not use")

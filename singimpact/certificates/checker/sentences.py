@@ -6,71 +6,76 @@ from fractions import Fraction
 from typing import Any
 
 
-def number(told: dict[str, str]) -> str:
+def number(written: dict[str, str]) -> str:
     """A number with its radius."""
-    return f"{told['value']} +- {told['radius']}"
+    return f"{written['value']} +- {written['radius']}"
 
 
-def below(told: dict[str, str], digits: int = 12) -> str:
+def below(written: dict[str, str], digits: int = 12) -> str:
     """A decimal that is no larger than any number of a ball."""
-    least = (Fraction(told["value"]) - Fraction(told["radius"])) * 10**digits // 1
+    least = (Fraction(written["value"]) - Fraction(written["radius"])) * 10**digits // 1
     return f"{least // 10**digits}.{least % 10**digits:0{digits}d}"
 
 
-def sentence(told: dict[str, Any]) -> str:
+def sentence(content: dict[str, Any]) -> str:
     """The statement of a certificate as a sentence."""
-    return SENTENCES[told["statement"]](told)
+    return SENTENCES[content["statement"]](content)
 
 
-def states(told: dict[str, Any]) -> str:
-    shown = ", ".join(f"({number(each['tau'])}, {number(each['v'])})" for each in told["states"])
+def states(content: dict[str, Any]) -> str:
+    shown = ", ".join(f"({number(each['tau'])}, {number(each['v'])})" for each in content["states"])
     return f"(tau, v) = {shown}"
 
 
-def launch(told: dict[str, Any]) -> str:
-    return f"({told['launch']['tau']}, {told['launch']['v']})"
+def launch(content: dict[str, Any]) -> str:
+    return f"({content['launch']['tau']}, {content['launch']['v']})"
 
 
-def first_impact(told: dict[str, Any]) -> str:
-    return f"the first impact from {launch(told)}: tau = {number(told['tau'])}, v = {number(told['v'])}"
+def first_impact(content: dict[str, Any]) -> str:
+    return f"the first impact from {launch(content)}: tau = {number(content['tau'])}, v = {number(content['v'])}"
 
 
-def periodic_orbit(told: dict[str, Any]) -> str:
-    which = f"({len(told['states'])}, {told['periods']})"
-    return f"the {which} periodic orbit, alone within {told['unique_within']}: {states(told)}"
+def periodic_orbit(content: dict[str, Any]) -> str:
+    which = f"({len(content['states'])}, {content['periods']})"
+    return f"the {which} periodic orbit, alone within {content['unique_within']}: {states(content)}"
 
 
-def chatter_limit(told: dict[str, Any]) -> str:
-    return f"the chatter limit from {launch(told)}: {told['ends']} at tau = {number(told['tau'])}"
+def chatter_limit(content: dict[str, Any]) -> str:
+    return f"the chatter limit from {launch(content)}: {content['ends']} at tau = {number(content['tau'])}"
 
 
-def horseshoe(told: dict[str, Any]) -> str:
-    short, long = told["loops"]
-    return f"a horseshoe: loops of {short} and {long} impacts, entropy >= {below(told['entropy'])}"
+def horseshoe(content: dict[str, Any]) -> str:
+    short, long = content["loops"]
+    return f"a horseshoe: loops of {short} and {long} impacts, entropy >= {below(content['entropy'])}"
 
 
-def event(told: dict[str, Any]) -> str:
+def event(content: dict[str, Any]) -> str:
     """The impacts of an orbit that touches the wall do not count the touch."""
-    impacts = len(told["states"]) - ("unique_within" in told)
-    alone = f", alone within {told['unique_within']}" if "unique_within" in told else ""
-    number_of = f"{told['over']} = {number(told['parameter'])}"
-    return f"a {told['kind']}: {number_of}, of an orbit of {impacts} impacts in {told['periods']} periods{alone}"
+    impacts = len(content["states"]) - ("unique_within" in content)
+    alone = f", alone within {content['unique_within']}" if "unique_within" in content else ""
+    number_of = f"{content['over']} = {number(content['parameter'])}"
+    return f"a {content['kind']}: {number_of}, of an orbit of {impacts} impacts in {content['periods']} periods{alone}"
 
 
-def border_orbit(told: dict[str, Any]) -> str:
+def border_orbit(content: dict[str, Any]) -> str:
     return (
-        f"a border orbit: {told['over']} = {number(told['parameter'])}, from tau = {told['release']} to {told['end']}, "
-        f"chatter completes {told['completes']}"
+        f"a border orbit: {content['over']} = {number(content['parameter'])}, "
+        f"from tau = {content['release']} to {content['end']}, chatter completes {content['completes']}"
     )
 
 
-def invariant_arc(told: dict[str, Any]) -> str:
-    model = told["restitution"] == "model"
-    which = f"r = {told['model']['restitution']}" if model else f"all r in {told['restitution']}"
-    return f"gamma before tau_* = {number(told['tau'])}: {which}, S <= {told['reach']}"
+def invariant_arc(content: dict[str, Any]) -> str:
+    model = content["restitution"] == "model"
+    which = f"r = {content['model']['restitution']}" if model else f"all r in {content['restitution']}"
+    return f"gamma before tau_* = {number(content['tau'])}: {which}, S <= {content['reach']}"
 
 
 SENTENCES = {
-    "first impact": first_impact, "periodic orbit": periodic_orbit, "chatter limit": chatter_limit,
-    "horseshoe": horseshoe, "event": event, "border orbit": border_orbit, "invariant arc": invariant_arc,
-}  # fmt: skip
+    "first impact": first_impact,
+    "periodic orbit": periodic_orbit,
+    "chatter limit": chatter_limit,
+    "horseshoe": horseshoe,
+    "event": event,
+    "border orbit": border_orbit,
+    "invariant arc": invariant_arc,
+}

@@ -10,36 +10,38 @@ from .formulas import Formula, Refused, Wrong, ball, need
 from .motion import within
 
 
-def lies_within(found: Any, told: dict[str, Any]) -> bool:
+def lies_within(enclosure: Any, written: dict[str, Any]) -> bool:
     """Whether a ball lies within the one that is written, as rationals."""
-    value, radius = Fraction(told["value"]), Fraction(told["radius"])
-    ends = [Fraction(int(m)) * Fraction(2) ** int(e) for m, e in (found.lower().man_exp(), found.upper().man_exp())]
+    value, radius = Fraction(written["value"]), Fraction(written["radius"])
+    ends = [
+        Fraction(int(m)) * Fraction(2) ** int(e) for m, e in (enclosure.lower().man_exp(), enclosure.upper().man_exp())
+    ]
     return value - radius <= ends[0] and ends[1] <= value + radius
 
 
-def balls_of(told: Any) -> Iterable[dict[str, str]]:
+def balls_of(content: Any) -> Iterable[dict[str, str]]:
     """All numbers with a radius."""
-    if isinstance(told, dict) and set(told) == {"value", "radius"}:
-        yield told
-    elif isinstance(told, dict | list):
-        for part in told.values() if isinstance(told, dict) else told:
-            yield from balls_of(part)
+    if isinstance(content, dict) and set(content) == {"value", "radius"}:
+        yield content
+    elif isinstance(content, dict | list):
+        for entry in content.values() if isinstance(content, dict) else content:
+            yield from balls_of(entry)
 
 
-def compared(found: dict[str, tuple[Any, dict[str, str]]]) -> None:
+def compared(pairs: dict[str, tuple[Any, dict[str, str]]]) -> None:
     """Refuse the first ball that does not lie within the one that is written."""
-    for name, (ball_found, told) in found.items():
-        error = Refused if ball_found.overlaps(read(told)) else Wrong
-        need("compared", lies_within(ball_found, told), f"{name} is {ball_found.str(30)}", error)
+    for name, (enclosure, written) in pairs.items():
+        error = Refused if enclosure.overlaps(read(written)) else Wrong
+        need("compared", lies_within(enclosure, written), f"{name} is {enclosure.str(30)}", error)
 
 
-def read(told: dict[str, str]) -> Any:
+def read(written: dict[str, str]) -> Any:
     """A number with its radius as a ball."""
-    return ball(Fraction(told["value"])) + within(ball(Fraction(told["radius"])))
+    return ball(Fraction(written["value"])) + within(ball(Fraction(written["radius"])))
 
 
-def launched(told: dict[str, Any], moving: bool = False) -> tuple[Any, Any]:
+def launched(content: dict[str, Any], moving: bool = False) -> tuple[Any, Any]:
     """tau and v of a launch: from the wall, not into it."""
-    tau, v = (Formula(told["launch"][name], {})() for name in ("tau", "v"))
+    tau, v = (Formula(content["launch"][name], {})() for name in ("tau", "v"))
     need("launch", v > 0 or (v == 0 and not moving), "the launch velocity is not shown to be positive")
     return tau, v

@@ -2,7 +2,7 @@
 
 Not here: its series in (tau, v) (`theory.gamma_series`), single thresholds (`dynamics.threshold`), the certificate
 as a file and its check (`certificates`).
-Files: `gravity` (the model as a ball under gravity: power series with a bound of its tail), `gauge` (times and places),
+Files: `gravity` (the model as a ball under gravity: power series with a bound of its tail; times and places),
 `folded` (Taylor models in S and lambda), `relation` (launch and landing speeds, in balls), `nonlinear` (the same from
 the series of v_c, with a bound of the rest), `lemmas` (drift, residual
 and cones, for a box of lambda), `after` (what comes after the contact point), `proof` (`certified_gamma`).

@@ -18,8 +18,7 @@ from typing import Any, NamedTuple
 from flint import arb
 
 from singimpact.dynamics.gamma_proof.folded import between, symmetric
-from singimpact.dynamics.gamma_proof.gauge import time_of
-from singimpact.dynamics.gamma_proof.gravity import Gravity, LinearNumbers
+from singimpact.dynamics.gamma_proof.gravity import Gravity, LinearNumbers, time_of
 from singimpact.dynamics.gamma_proof.lemmas import rational, short
 
 PIECES = 64  # of an interval on which a sign is shown
@@ -215,5 +214,5 @@ def flight_bound(speed: Any, e: Any, alpha: Any) -> Any:
             high = d
         else:
             low = d
-    found = arb(high * 1.001)
-    return found if alpha * found * (e * e / 2 + e * found / 3 + found * found / 12) >= speed else None
+    length = arb(high * 1.001)
+    return length if alpha * length * (e * e / 2 + e * length / 3 + length * length / 12) >= speed else None

@@ -103,13 +103,13 @@ class Models:
         first = 1 / row[0]
         if not self.order:
             return [first]
-        v = [part * first for part in row[1:]]
+        v = [coefficient * first for coefficient in row[1:]]
         flat, d = self.value(v), symmetric(self.h)
-        found = self._narrow([arb(1), *(-part for part in v)])
+        linear = self._narrow([arb(1), *(-coefficient for coefficient in v)])
         square = self._narrow(list((arb_poly(v) * arb_poly(v)).coeffs()) or [arb(0)])
         rest = d * flat**3 / (1 + d * flat)
         bent = self._narrow([arb(0), arb(0), square[0] - rest, *square[1:]])
-        return [(a + b) * first for a, b in zip(found, bent, strict=True)]
+        return [(a + b) * first for a, b in zip(linear, bent, strict=True)]
 
     def compose(self, rows: list[Any], q: Any) -> Any:
         """sum of p_i(d) q^i; the p_i are models that do not contain S."""

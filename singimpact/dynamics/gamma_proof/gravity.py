@@ -12,10 +12,13 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from flint import arb, arb_series
+
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression, evaluate
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.contact.zero_ahead import ContactZero
+from singimpact.dynamics.gamma_proof.folded import symmetric
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
@@ -81,8 +84,13 @@ def numbers_of(osc: Oscillator, zero: ContactZero, bits: int) -> LinearNumbers:
 
     time, b = zero.moved(bits), ball(form.damping) / 2
     waves = tuple(
-        (ball(each.rate), ball(each.rate) * time + ball(each.phase), ball(each.cosine), ball(each.sine))
-        for each in form.harmonics
+        (
+            ball(harmonic.rate),
+            ball(harmonic.rate) * time + ball(harmonic.phase),
+            ball(harmonic.cosine),
+            ball(harmonic.sine),
+        )
+        for harmonic in form.harmonics
     )
     return LinearNumbers(b, ball(form.stiffness) - b * b, ball(at_rest(form, osc.clearance)), waves)
 
@@ -116,16 +124,14 @@ def gravity(osc: Oscillator, zero: ContactZero, reach: Fraction, bits: int, smal
             raise InputError(f"S <= {reach} is not accepted: the series in S converges up to 1/omega_d only")
         for K in range(40, MOST + 1, 8):  # folded models take at least D + j terms
             size, radius = min(discs, key=lambda disc: float((disc[0] * (s0 / disc[1]) ** K).upper()))
-            found = Gravity(zero.order, reach, tuple(b[: K + 1]), size, radius, bits)
-            if found.tail(zero.order + 1) < small * b[zero.order]:
+            series = Gravity(zero.order, reach, tuple(b[: K + 1]), size, radius, bits)
+            if series.tail(zero.order + 1) < small * b[zero.order]:
                 break
-        return found
+        return series
 
 
 def _coefficients(numbers: LinearNumbers, j: int, K: int) -> list[Any]:
     """b_0, ..., b_K: the first j are 0 by the contact order."""
-    from flint import arb, arb_series
-
     with series_of_any_length():
         prec, w = K + 1, numbers.square
         time = arb_series([0] + [(-w) ** (k // 2) / (k + 1) if k % 2 == 0 else 0 for k in range(K)], prec=prec)
@@ -135,15 +141,13 @@ def _coefficients(numbers: LinearNumbers, j: int, K: int) -> list[Any]:
             angle = rate * time + arb_series([phase], prec=prec)
             pressed += cosine * angle.cos() + sine * angle.sin()
         whole = (numbers.damping * time).exp() * pressed / (spread * spread.sqrt())
-        found = [-((-1) ** k) * whole[k] for k in range(K + 1)]
-    return [arb(0)] * j + found[j:]
+        coefficients = [-((-1) ** k) * whole[k] for k in range(K + 1)]
+    return [arb(0)] * j + coefficients[j:]
 
 
 def _discs(numbers: LinearNumbers, s0: Any) -> list[tuple[Any, Any]]:
     """Bounds of |A| on discs |s| <= R with R > reach: |t| <= atanh(sqrt|w| R)/sqrt|w| and |cos z| <= cosh |z| there."""
-    from flint import arb
-
-    w, found = abs(numbers.square), []
+    w, discs = abs(numbers.square), []
     root = arb(w.upper()).sqrt()
     widest = 1 / root if root > 0 else 64 * s0
     widest = arb((19 * widest / 20).min(64 * s0).lower())
@@ -159,5 +163,46 @@ def _discs(numbers: LinearNumbers, s0: Any) -> list[tuple[Any, Any]]:
             push = push + size * (shifted[0] + shifted[1])
         left = 1 - w * R * R  # |C^-2| is at least this
         size = (abs(numbers.damping) * time).exp() / (left * left.sqrt())
-        found.append((arb((size * push).upper()), R))
-    return found
+        discs.append((arb((size * push).upper()), R))
+    return discs
+
+
+# ---- the time T before a contact point and the coordinate S = tan(sqrt(w) T)/sqrt(w), each as a function of the other
+
+
+def clock_of(osc: Oscillator, zero: ContactZero, bits: int) -> LinearNumbers:
+    """The numbers by which S and time are exchanged: those of a linear model; S is the time for others."""
+    if linear_form(osc) is None:
+        return LinearNumbers(arb(0), arb(0), arb(0), ())
+    return numbers_of(osc, zero, bits)
+
+
+def time_of(w: Any, S: Any) -> Any:
+    """T = atan(sqrt(w) S)/sqrt(w), by atanh for w < 0.
+
+    Examples
+    --------
+    >>> print(time_of(arb(1), arb(1)).str(10, radius=False))
+    0.7853981634
+    """
+    if w > 0:
+        return (w.sqrt() * S).atan() / w.sqrt()
+    if w < 0:
+        return ((-w).sqrt() * S).atanh() / (-w).sqrt()
+    root = arb(abs(w).upper()).sqrt()  # w may be 0: the distance from T = S is at most that for w = -|w|
+    return S + symmetric((root * S).atanh() / root - S) if root > 0 else S
+
+
+def place_of(w: Any, T: Any) -> Any:
+    """S = tan(sqrt(w) T)/sqrt(w), by tanh for w < 0."""
+    if w > 0:
+        return (w.sqrt() * T).tan() / w.sqrt()
+    if w < 0:
+        return ((-w).sqrt() * T).tanh() / (-w).sqrt()
+    root = arb(abs(w).upper()).sqrt()
+    return T + symmetric((root * T).tan() / root - T) if root > 0 else T
+
+
+def speed_factor(numbers: LinearNumbers, S: Any) -> Any:
+    """v/y' at an impact S before the contact point: e^(b T) sqrt(1 + w S^2)."""
+    return (numbers.damping * time_of(numbers.square, S)).exp() * (1 + numbers.square * S * S).sqrt()

@@ -112,9 +112,14 @@ def grown(relation: Flights, low: Any, high: Any, settings: ProofSettings, exact
     powers = [constant(arb(1))]
     for _ in range(j + N + 1):
         powers.append(make.mul(powers[-1], lam))
-    P, Q, slope = (sum((c * p for c, p in zip(parts, powers, strict=False)), constant(arb(0)))
-                   for parts in ([j + 1 - i for i in range(j + 1)], [i + 1 for i in range(j + 1)],
-                                 [(i + 1) * i for i in range(1, j + 1)]))  # fmt: skip
+    P, Q, slope = (
+        sum((c * p for c, p in zip(parts, powers, strict=False)), constant(arb(0)))
+        for parts in (
+            [j + 1 - i for i in range(j + 1)],
+            [i + 1 for i in range(j + 1)],
+            [(i + 1) * i for i in range(1, j + 1)],
+        )
+    )
     r = make.mul(make.mul(powers[j + 1], P), make.model([make.reciprocal(make.row(Q, 0))]))
     if exact is not None and not order:
         r = constant(exact)
@@ -122,15 +127,20 @@ def grown(relation: Flights, low: Any, high: Any, settings: ProofSettings, exact
     for n in range(1, N):
         factor = (j + 1) * make.mul(make.mul(powers[j], one), P) - make.mul(powers[j + 1 + n], Q)
         factor = f * (factor - make.mul(r, make.mul(one, slope) - Q))
-        found = residual(relation, models[n], L, r)
-        L.append(-make.mul(make.model([models[n].row(found, n)]), make.model([make.reciprocal(make.row(factor, 0))])))
+        missed = residual(relation, models[n], L, r)
+        L.append(-make.mul(make.model([models[n].row(missed, n)]), make.model([make.reciprocal(make.row(factor, 0))])))
     last = models[-1]
-    found = residual(relation, last, L, r)
+    missed = residual(relation, last, L, r)
     inverse = make.model([make.reciprocal(make.row(one, 0))])
-    gap = [arb(1), *(-make.range(make.mul(part, inverse), 0) for part in L[1:])]
-    coefficients = [last.range(found, i) for i in range(settings.D + 1)]
-    return BoxSeries(arb_poly([between(low, high), *(make.range(part, 0) for part in L[1:])]), make.range(r, 0),
-                     arb_poly(gap), coefficients[N:], coefficients[:N])  # fmt: skip
+    gap = [arb(1), *(-make.range(make.mul(coefficient, inverse), 0) for coefficient in L[1:])]
+    coefficients = [last.range(missed, i) for i in range(settings.D + 1)]
+    return BoxSeries(
+        arb_poly([between(low, high), *(make.range(coefficient, 0) for coefficient in L[1:])]),
+        make.range(r, 0),
+        arb_poly(gap),
+        coefficients[N:],
+        coefficients[:N],
+    )
 
 
 def rational(value: Fraction) -> Any:
@@ -143,8 +153,13 @@ def short(value: Any) -> Fraction:
     return Fraction(f"{float(value.mid()):.6g}")
 
 
-def prove_box(relation: Flights, ends: tuple[Fraction, Fraction], settings: ProofSettings, exact: Any = None,
-              series: BoxSeries | None = None) -> BoxProof:  # fmt: skip
+def prove_box(
+    relation: Flights,
+    ends: tuple[Fraction, Fraction],
+    settings: ProofSettings,
+    exact: Any = None,
+    series: BoxSeries | None = None,
+) -> BoxProof:
     """All three lemmas for all lambda between the ends.
 
     Parameters
@@ -156,24 +171,36 @@ def prove_box(relation: Flights, ends: tuple[Fraction, Fraction], settings: Proo
     Undecided : a lemma is not decided, or is false.
     """
     low, high = map(rational, ends)
-    made = series or grown(relation, low, high, settings, exact)
-    s0, N, L = relation.s0, settings.N, made.L
+    grown_series = series or grown(relation, low, high, settings, exact)
+    s0, N, L = relation.s0, settings.N, grown_series.L
     eta, M = short((1 - high) / settings.thin), short(settings.steep * s0 / (1 - high))
-    if not all(part.contains(0) for part in made.low):
+    if not all(coefficient.contains(0) for coefficient in grown_series.low):
         raise Undecided("the series does not annul the residual")
     steps = [s0 * i / settings.pieces for i in range(settings.pieces + 1)]
-    R = _largest(abs(_horner(made.residual, between(a, b))) for a, b in pairwise(steps))
-    _require_agreement(relation, made, R * s0**N)
-    least, tree = drift_bound(relation, made, settings)
+    R = _largest(abs(_horner(grown_series.residual, between(a, b))) for a, b in pairwise(steps))
+    _require_agreement(relation, grown_series, R * s0**N)
+    least, tree = drift_bound(relation, grown_series, settings)
     cone = (rational(eta), rational(M))
-    bounds = [_cones(relation, made, (a, b), cone, settings) for a, b in pairwise(steps)]
-    slope, U0 = _least(each.rate for each in bounds) * least, _least(each.U for each in bounds)
+    bounds = [_cones(relation, grown_series, (a, b), cone, settings) for a, b in pairwise(steps)]
+    slope, U0 = _least(strip.rate for strip in bounds) * least, _least(strip.U for strip in bounds)
     Kl = arb((R / (U0 * slope)).upper())
     if not WIDE * Kl * s0**N < cone[0]:
         raise Undecided("lemma 2: the bound of |l - L| is wider than the strip")
-    Kw = arb((Kl * _largest(each.V for each in bounds)).upper())
-    return BoxProof(*ends, tuple(L[i] for i in range(N)), made.r, settings, eta, M, R, Kl, Kw, least,
-                    _least(each.grow for each in bounds), tree)  # fmt: skip
+    Kw = arb((Kl * _largest(strip.V for strip in bounds)).upper())
+    return BoxProof(
+        *ends,
+        tuple(L[i] for i in range(N)),
+        grown_series.r,
+        settings,
+        eta,
+        M,
+        R,
+        Kl,
+        Kw,
+        least,
+        _least(strip.grow for strip in bounds),
+        tree,
+    )
 
 
 def _horner(coefficients: list[Any], x: Any) -> Any:
@@ -198,24 +225,24 @@ def _least(balls: Any) -> Any:
     return found
 
 
-def _require_agreement(relation: Flights, made: BoxSeries, size: Any) -> None:
+def _require_agreement(relation: Flights, series: BoxSeries, size: Any) -> None:
     """Refuse balls and Taylor models that differ at s0, and W^ that does not fit dW/dl = -V."""
-    if not (size.is_finite() and all(part.is_finite() for part in made.L.coeffs())):
+    if not (size.is_finite() and all(coefficient.is_finite() for coefficient in series.L.coeffs())):
         raise Undecided("the series, or its residual, is enclosed too widely")
-    L, j, s0 = made.L, relation.j, relation.s0
+    L, j, s0 = series.L, relation.j, relation.s0
     ell = L(s0)
     l1 = L(ell * s0)
     if not (0 < ell < 1 and 0 < l1 < 1):
         raise Undecided("the series leaves 0 < l < 1")
     after, before = relation.hats(ell * s0, l1), relation.hats(s0, ell)
-    direct = ell ** (j + 1) * (1 - l1) * after.W - made.r * (1 - ell) * before.U
+    direct = ell ** (j + 1) * (1 - l1) * after.W - series.r * (1 - ell) * before.U
     if not ((1 - l1) * after.Wl - after.W + after.V).contains(0) or not direct.overlaps(symmetric(size)):
         raise Undecided("W^ and U^ in balls and in Taylor models differ")
 
 
-def drift(relation: Flights, made: BoxSeries, slopes: Any, S: Any, ell: Any) -> Any:
+def drift(relation: Flights, series: BoxSeries, slopes: Any, S: Any, ell: Any) -> Any:
     """Lemma 1: l d/dl ln(H + r); None where a sign is not decided."""
-    j, gap = relation.j, made.gap
+    j, gap = relation.j, series.gap
     S1 = ell * S
     inverse = 1 / gap(S)
     K, Kl = gap(S1) * inverse, S * slopes(S1) * inverse
@@ -229,14 +256,14 @@ def drift(relation: Flights, made: BoxSeries, slopes: Any, S: Any, ell: Any) -> 
     return (j + 1) + ell * (Kl / K + (to.WS * S + to.Wl * (K - (1 - ell) * Kl)) / to.W - at.Ul / at.U)
 
 
-def drift_bound(relation: Flights, made: BoxSeries, settings: ProofSettings) -> tuple[Any, str]:
+def drift_bound(relation: Flights, series: BoxSeries, settings: ProofSettings) -> tuple[Any, str]:
     """Lemma 1 by bisection of [0, s0] x [0, 1]: the least value, and the bisection as text."""
-    slopes, least, tree = made.gap.derivative(), arb(9), []
+    slopes, least, tree = series.gap.derivative(), arb(9), []
     todo, half = [(0, 0, 0, 0)], arb(1) / 2  # (index, level) of the piece of S and of that of l
     while todo:
         a, n, e, k = todo.pop()
         S = between(a * half**n, (a + 1) * half**n) * relation.s0
-        z = drift(relation, made, slopes, S, between(e * half**k, (e + 1) * half**k))
+        z = drift(relation, series, slopes, S, between(e * half**k, (e + 1) * half**k))
         if z is not None and z > settings.least:
             least = least.min(arb(z.lower()))
             tree.append(".")
@@ -261,10 +288,11 @@ class Strip(NamedTuple):
     grow: Any
 
 
-def _cones(relation: Flights, made: BoxSeries, piece: tuple[Any, Any], cone: tuple[Any, Any],
-           settings: ProofSettings) -> Strip:  # fmt: skip
+def _cones(
+    relation: Flights, series: BoxSeries, piece: tuple[Any, Any], cone: tuple[Any, Any], settings: ProofSettings
+) -> Strip:
     """Lemma 3 on a piece of [0, s0]."""
-    j, s0, L = relation.j, relation.s0, made.L
+    j, s0, L = relation.j, relation.s0, series.L
     (eta, M), (a, b) = cone, piece
     more = 2 * M * eta  # two points of a cone lie that close in S
     S = between((a - more).max(arb(0)), (b + more).min(s0))
@@ -277,15 +305,15 @@ def _cones(relation: Flights, made: BoxSeries, piece: tuple[Any, Any], cone: tup
     if not (ell > 0 and ell < 1 and l1 > 0 and l1 < 1 and settings.N * (1 - centre) + S * dS > 0):
         raise Undecided("the strip leaves 0 < l < 1")
     to, at = relation.hats(S1, l1), relation.hats(S, ell)
-    K = made.gap(S1) / made.gap(S)
+    K = series.gap(S1) / series.gap(S)
     m = 1 - (1 - ell) * K
     if not (m > -1 and m < 1):
         raise Undecided("the strip leaves 0 < l < 1")
     rate = ell**j * K * relation.hats(S1, m).W / at.U
     shifted = (1 - l1) * to.WS - to.V * d1  # d/dS1 of W(S1, L(S1) + y1)
     F1 = -(ell ** (j + 1)) * to.V
-    Fy = (j + 1) * ell**j * (1 - l1) * to.W + ell ** (j + 1) * S * shifted - made.r * ((1 - ell) * at.Ul - at.U)
-    FS = ell ** (j + 2) * shifted - made.r * (1 - ell) * at.US + Fy * dS
+    Fy = (j + 1) * ell**j * (1 - l1) * to.W + ell ** (j + 1) * S * shifted - series.r * ((1 - ell) * at.Ul - at.U)
+    FS = ell ** (j + 2) * shifted - series.r * (1 - ell) * at.US + Fy * dS
     d, g, e = -Fy / F1, -FS / F1, ell + S * dS
     up = d - abs(g) * M
     if not (at.U > 0 and to.V > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0):

@@ -78,26 +78,26 @@ class NonlinearRelation:
         parts = []
         for series, slopes in zip((self.launch, self.landing), self.slopes, strict=True):
             value, by_S, by_l = arb_poly([0]), arb_poly([0]), arb_poly([0])
-            for part, slope in zip(reversed(series), reversed(slopes), strict=True):
+            for coefficient, slope in zip(reversed(series), reversed(slopes), strict=True):
                 by_S = by_S * S + value
-                value, by_l = value * S + part, by_l * S + slope
+                value, by_l = value * S + coefficient, by_l * S + slope
             parts += [poly(ell) + self.tail for poly in (value, by_S, by_l)]
         W, WS, Wl, U, US, Ul = parts
         return Hats(W, WS, Wl, U, US, Ul, W - (1 - ell) * Wl)
 
     def modelled(self, models: Models, S: Any, ell: Any) -> tuple[Any, Any]:
         """W^ and U^ of Taylor models of S and l."""
-        D, powers, found = models.D, [arb_poly([1])], [arb_poly([0]), arb_poly([0])]
+        D, powers, sums = models.D, [arb_poly([1])], [arb_poly([0]), arb_poly([0])]
         Sk = powers[0]
         for n in range(min(D + 1, len(self.launch))):
             Sk = models.mul(Sk, S) if n else Sk
-            for k, part in enumerate((self.launch[n], self.landing[n])):
-                while len(powers) <= part.degree():
+            for k, polynomial in enumerate((self.launch[n], self.landing[n])):
+                while len(powers) <= polynomial.degree():
                     powers.append(models.mul(powers[-1], ell))
-                value = sum((c * p for c, p in zip(part.coeffs(), powers, strict=False)), arb_poly([0]))
-                found[k] = found[k] + models.mul(Sk, value)
+                value = sum((c * p for c, p in zip(polynomial.coeffs(), powers, strict=False)), arb_poly([0]))
+                sums[k] = sums[k] + models.mul(Sk, value)
         last = models.folded_last(symmetric(self.beyond(min(D, len(self.launch) - 1), 0, D)))
-        return found[0] + last, found[1] + last
+        return sums[0] + last, sums[1] + last
 
 
 @lru_cache(maxsize=64)
@@ -139,14 +139,14 @@ def _series(osc: Oscillator, zero: ContactZero, order: int) -> tuple[list[Any], 
     """W^_n and U^_n: launch and landing velocity at sigma = -S, t = S (1 - l), by powers of S, over 1 - l."""
     ring, j = Balls(BITS), zero.order
     with balls_at(BITS):
-        made = sheet(Contact.of(osc, zero.moved(BITS), j, order, ring), order)
-        found: tuple[list[Any], list[Any]] = [], []
-        for jet, parts, sign in zip((made.v, made.xdot), found, (1, -1), strict=True):
+        jets = sheet(Contact.of(osc, zero.moved(BITS), j, order, ring), order)
+        columns: tuple[list[Any], list[Any]] = [], []
+        for jet, parts, sign in zip((jets.v, jets.xdot), columns, (1, -1), strict=True):
             rows = [[arb(0)] * order for _ in range(order - j)]
             for (i, k), value in jet.terms.items():
                 rows[i + k - j - 1][k - 1] = sign * (-1) ** i * value
             parts += [arb_poly(row)(arb_poly([1, -1])) for row in rows]
-    return found
+    return columns
 
 
 class _Bounds:
@@ -160,27 +160,27 @@ class _Bounds:
     def least(self, R: Any) -> Any | None:
         """The least bound, or None where no box has one."""
         wide = 1 + _ball(BESIDE)
-        most, found = 1 + wide, []
+        most, bounds = 1 + wide, []
         B = arb(abs(self.pressed(t=_around(self.tau, R * wide))).upper()) / R**self.j
         for box in self.boxes:
-            part = (R * most) ** 2 * box.by_x / 8 + R * most * box.by_v / 2
-            z = arb((B / (1 - part)).upper()) if part < 1 else arb.nan()
+            share = (R * most) ** 2 * box.by_x / 8 + R * most * box.by_v / 2
+            z = arb((B / (1 - share)).upper()) if share < 1 else arb.nan()
             if R ** (self.j + 2) * most**2 * z / 8 < box.x and R ** (self.j + 1) * most * z / 2 < box.v:
-                found.append(z)
-        return min(found, key=float, default=None)
+                bounds.append(z)
+        return min(bounds, key=float, default=None)
 
 
 def _disc(bounds: _Bounds, s0: Any) -> Disc:
     """The disc for which what the series leave out is least."""
-    found = []
+    discs = []
     for n in range(RADII):
         R = arb((4 * s0 * (arb(5) / 6) ** n).mid())
         size = bounds.least(R) if s0 < R else None
         if size is not None:
-            found.append(Disc(R, size))
-    if not found:
+            discs.append(Disc(R, size))
+    if not discs:
         raise InputError(f"S <= {float(s0):.4g}: f and g are not shown to be analytic on a disc that is large enough")
-    return min(found, key=lambda disc: float(disc.size) * float(s0 / disc.radius) ** TERMS)
+    return min(discs, key=lambda disc: float(disc.size) * float(s0 / disc.radius) ** TERMS)
 
 
 def _fastest(osc: Oscillator, zero: ContactZero, s0: Any) -> Any:

@@ -19,8 +19,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics.gamma_proof.after import PIECES, Lost, Settled, lost_contact, settled
 from singimpact.dynamics.gamma_proof.folded import between
-from singimpact.dynamics.gamma_proof.gauge import clock_of, place_of, speed_factor, time_of
-from singimpact.dynamics.gamma_proof.gravity import gravity, numbers_of
+from singimpact.dynamics.gamma_proof.gravity import clock_of, gravity, numbers_of, place_of, speed_factor, time_of
 from singimpact.dynamics.gamma_proof.lemmas import BoxProof, ProofSettings, Undecided, prove_box, rational
 from singimpact.dynamics.gamma_proof.nonlinear import NonlinearRelation, nonlinear_relation
 from singimpact.dynamics.gamma_proof.relation import Flights, Relation, restitution_at
@@ -32,8 +31,10 @@ from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 BITS = 96  # of the balls
 DIGITS = 20  # that bounds and places are printed with
 PHASES = 64  # of a period, tried for a start with a_c < 0
-REACHES = tuple(Fraction(*part) for part in ((1, 2), (3, 8), (1, 4), (3, 16), (1, 8), (1, 12), (1, 16), (1, 24),
-                                             (1, 32), (1, 64), (1, 128)))  # fmt: skip
+REACHES = tuple(
+    Fraction(*part)
+    for part in ((1, 2), (3, 8), (1, 4), (3, 16), (1, 8), (1, 12), (1, 16), (1, 24), (1, 32), (1, 64), (1, 128))
+)
 """Reaches that are tried where none is given, in units of 1/omega_d or of the fastest forcing."""
 TRIED = (
     ProofSettings(),
@@ -118,10 +119,10 @@ class CertifiedGamma:
         ------
         InputError : tau is not in the interval, or the proof is one for an interval of r.
         """
-        box, place = self._one(), constant("tau", tau)
+        box, phase = self._one(), constant("tau", tau)
         with balls_at(BITS):
             square = clock_of(self.oscillator, self.zero, BITS).square
-            T = self.zero.moved(BITS) - evaluate(place, {}, Balls(BITS))
+            T = self.zero.moved(BITS) - evaluate(phase, {}, Balls(BITS))
             flights = flights_before(self.oscillator, self.zero, self.reach)
             S = place_of(square, T) if T > 0 and time_of(square, flights.s0) >= T else None
             if S is None or not S > 0:
@@ -187,12 +188,12 @@ def certified_gamma(
     """
     zero = _zero_ahead(osc, tau)
     ends = _ends(osc, restitution)
-    asked = None if reach is None else _rational("reach", reach)
-    if asked is not None and not 0 < asked <= 1000:
+    wanted = None if reach is None else _rational("reach", reach)
+    if wanted is not None and not 0 < wanted <= 1000:
         raise refuse("reach", reach, "a rational number > 0")
     with balls_at(BITS):
         why, tried = "", []
-        for s0 in _reaches(asked, osc, zero):
+        for s0 in _reaches(wanted, osc, zero):
             try:
                 relation = flights_before(osc, zero, s0)
                 _require_pressed(relation)
@@ -201,7 +202,7 @@ def certified_gamma(
                 why = f"S <= {s0}: {reason}"
                 tried.append(why)
                 continue
-            return _found(osc, zero, (s0, asked), ends, boxes, tried)
+            return _found(osc, zero, (s0, wanted), ends, boxes, tried)
     raise InputError(f"gamma is not certified before tau_* = {zero.tau:.12g}: {why}")
 
 
@@ -234,7 +235,7 @@ def _ends(osc: Oscillator, restitution: tuple[Any, Any] | None) -> _Ends:
         return _Ends(exact, exact, osc.restitution)
     if not isinstance(restitution, tuple | list) or len(restitution) != 2:
         raise refuse("restitution", restitution, "two rational numbers (low, high), 0 < low < high < 1")
-    low, high = (_rational("restitution", part) for part in restitution)
+    low, high = (_rational("restitution", end) for end in restitution)
     if not 0 < low < high < 1:
         raise refuse("restitution", restitution, "two rational numbers (low, high), 0 < low < high < 1")
     return _Ends(low, high, None)
@@ -254,15 +255,17 @@ def _zero_ahead(osc: Oscillator, tau: Any) -> ContactZero:
         start = None
     if start is None:
         raise InputError(
-            f"tau = {tau} is not accepted: give a phase with a_c(tau) < 0" if tau is not None
+            f"tau = {tau} is not accepted: give a phase with a_c(tau) < 0"
+            if tau is not None
             else "a_c < 0 at no phase of a period: no gamma ends anywhere, or give tau"
-        )  # fmt: skip
+        )
     ahead = next_zero(osc, start)
     if ahead.zero is None:
         raise InputError(
-            f"after tau = {start} a_c has no zero: no gamma lies ahead" if ahead.decided
+            f"after tau = {start} a_c has no zero: no gamma lies ahead"
+            if ahead.decided
             else f"the next zero of a_c after tau = {start}, or its order, is not decided"
-        )  # fmt: skip
+        )
     return ahead.zero
 
 
@@ -275,19 +278,20 @@ def phase_below(osc: Oscillator) -> Expression | None:
     return next((phase for phase in phases if sign_of_acceleration(osc, phase) < 0), None)
 
 
-def _reaches(asked: Fraction | None, osc: Oscillator, zero: ContactZero) -> Iterator[Fraction]:
+def _reaches(wanted: Fraction | None, osc: Oscillator, zero: ContactZero) -> Iterator[Fraction]:
     """The reaches that are tried, from the largest."""
-    if asked is not None:
-        yield from (asked / 2**k for k in range(7))
+    if wanted is not None:
+        yield from (wanted / 2**k for k in range(7))
         return
     if linear_form(osc) is None:
         yield from REACHES
         return
     numbers = numbers_of(osc, zero, BITS)
-    fastest = max([1e-6, abs(float(numbers.square.mid())) ** 0.5, *(abs(float(wave[0].mid())) / 4
-                                                                   for wave in numbers.waves)])  # fmt: skip
+    fastest = max(
+        [1e-6, abs(float(numbers.square.mid())) ** 0.5, *(abs(float(wave[0].mid())) / 4 for wave in numbers.waves)]
+    )
     unit = 1 / Fraction(fastest).limit_denominator(64) if fastest > 1 / 32 else Fraction(1 / fastest)
-    yield from (unit * part for part in REACHES)
+    yield from (unit * share for share in REACHES)
 
 
 def _require_pressed(relation: Flights) -> None:
@@ -304,12 +308,12 @@ def _covered(relation: Flights, ends: _Ends) -> tuple[BoxProof, ...]:
         return (_tried(relation, ratio(relation.j, r, FINE), r),)
     x = ratio(relation.j, Balls(BITS).rational(ends.low), CUT)[0]
     end = ratio(relation.j, Balls(BITS).rational(ends.high), CUT)[1]
-    found, width = [], WIDEST
+    proofs, width = [], WIDEST
     while x < end:
         while True:
             y = min(Fraction(f"{float(x) + width * min(float(x), 1 - float(x)):.{CUT}f}"), end)
             try:
-                found.append(_tried(relation, (x, y), None, width < WIDEST / 4))
+                proofs.append(_tried(relation, (x, y), None, width < WIDEST / 4))
                 break
             except Undecided as reason:
                 width = width / 2
@@ -317,7 +321,7 @@ def _covered(relation: Flights, ends: _Ends) -> tuple[BoxProof, ...]:
                     r = float(restitution_at(relation.j, rational(x)).mid())
                     raise Undecided(f"r = {r:.4g}: {reason}") from None
         x, width = y, width * GROWTH
-    return tuple(found)
+    return tuple(proofs)
 
 
 def _tried(relation: Flights, box: tuple[Fraction, Fraction], r: Any, patient: bool = True) -> BoxProof:
@@ -342,8 +346,8 @@ def ratio(j: int, r: Any, digits: int) -> tuple[Fraction, Fraction]:
     """
     low, high = Fraction(0), Fraction(1)
     for _ in range(4 * digits):
-        for part in (Fraction(1, 2), Fraction(3, 7)):  # next to lambda itself nothing is decided
-            middle = low + part * (high - low)
+        for share in (Fraction(1, 2), Fraction(3, 7)):  # next to lambda itself nothing is decided
+            middle = low + share * (high - low)
             value = restitution_at(j, rational(middle))
             if value < r or value > r:
                 low, high = (middle, high) if value < r else (low, middle)
@@ -352,28 +356,44 @@ def ratio(j: int, r: Any, digits: int) -> tuple[Fraction, Fraction]:
     return Fraction(floor(low * unit) - 1, unit), Fraction(ceil(high * unit) + 1, unit)
 
 
-def _found(osc: Oscillator, zero: ContactZero, reaches: tuple[Fraction, Fraction | None], ends: _Ends,
-           boxes: tuple[BoxProof, ...], tried: list[str]) -> CertifiedGamma:  # fmt: skip
+def _found(
+    osc: Oscillator,
+    zero: ContactZero,
+    reaches: tuple[Fraction, Fraction | None],
+    ends: _Ends,
+    boxes: tuple[BoxProof, ...],
+    tried: list[str],
+) -> CertifiedGamma:
     """The result, with what comes after tau_*."""
-    s0, asked = reaches
+    s0, wanted = reaches
     flights, notes = flights_before(osc, zero, s0), {}
     if tried:
         notes["reach"] = "; ".join(tried)
-    told: dict[str, Any] = {"lost": None, "settled": None}
+    outcome: dict[str, Any] = {"lost": None, "settled": None}
     if isinstance(flights, NonlinearRelation):
-        told["fastest"] = from_ball(flights.fastest, DIGITS)
+        outcome["fastest"] = from_ball(flights.fastest, DIGITS)
         notes["after"] = "what comes after tau_* is proved for linear models alone"
     elif zero.order % 2:
-        told["lost"] = _lost(osc, zero, s0)
-        if told["lost"] is None:
+        outcome["lost"] = _lost(osc, zero, s0)
+        if outcome["lost"] is None:
             notes["after"] = "that contact is lost after tau_* is not decided"
     else:
-        told["settled"] = _settled(osc, zero, s0, boxes)
-        if told["settled"] is None:
+        outcome["settled"] = _settled(osc, zero, s0, boxes)
+        if outcome["settled"] is None:
             notes["after"] = f"that chatter completes after tau_* is not decided for r = {float(boxes[-1].r.mid()):.4g}"
     duration = time_of(clock_of(osc, zero, BITS).square, flights.s0)
-    return CertifiedGamma(osc, zero, s0, asked, ends.told, boxes, from_ball(zero.moved(BITS), DIGITS),
-                          from_ball(duration, DIGITS), notes=notes, **told)  # fmt: skip
+    return CertifiedGamma(
+        osc,
+        zero,
+        s0,
+        wanted,
+        ends.told,
+        boxes,
+        from_ball(zero.moved(BITS), DIGITS),
+        from_ball(duration, DIGITS),
+        notes=notes,
+        **outcome,
+    )
 
 
 def _lost(osc: Oscillator, zero: ContactZero, s0: Fraction) -> Lost | None:
@@ -382,16 +402,16 @@ def _lost(osc: Oscillator, zero: ContactZero, s0: Fraction) -> Lost | None:
     for near in (s0, s0 / 4, s0 / 16):
         o = gravity(osc, zero, near, BITS)
         start = zero.moved(BITS) + time_of(numbers.square, o.s0()) / 2
-        place = number(Fraction(float(start.mid())))
-        if sign_of_acceleration(osc, place) <= 0:
+        phase = number(Fraction(float(start.mid())))
+        if sign_of_acceleration(osc, phase) <= 0:
             continue
-        ahead = next_zero(osc, place)
+        ahead = next_zero(osc, phase)
         until = FAR if ahead.zero is None else MARGIN * (ahead.zero.tau - zero.tau)
         if numbers.square > 0:  # the gauge ends at a quarter turn
             until = min(until, MARGIN * pi / 2 / float(numbers.square) ** 0.5)
-        found = lost_contact(o, numbers, near, Fraction(f"{until:.6g}"))
-        if found is not None:
-            return found
+        lost = lost_contact(o, numbers, near, Fraction(f"{until:.6g}"))
+        if lost is not None:
+            return lost
     return None
 
 
@@ -403,14 +423,14 @@ def _settled(osc: Oscillator, zero: ContactZero, s0: Fraction, boxes: tuple[BoxP
     relation, r = Relation(gravity(osc, zero, s0, BITS)), arb(boxes[-1].r.upper())
     for k in range(LAUNCHES):
         launch, best = s0 / 2**k, None
-        for part in AFTER:
+        for share in AFTER:
             try:
-                o = gravity(osc, zero, max(widest * part, launch), BITS, COARSE)
+                o = gravity(osc, zero, max(widest * share, launch), BITS, COARSE)
             except InputError:
                 continue
-            found = settled(o, launch, r, widest * part)
-            if found is not None and (best is None or found.speed > best.speed):
-                best = found
+            bound = settled(o, launch, r, widest * share)
+            if bound is not None and (best is None or bound.speed > best.speed):
+                best = bound
         if best is not None and rational(best.speed) > _gauged(boxes[0], relation, rational(launch)):
             return best
     return None

@@ -1,4 +1,7 @@
-"""First hits enclosed to `digits` digits: the precision of the balls grows until their radii are small enough."""
+"""First hits enclosed to `digits` digits: the precision of the balls grows until their radii are small enough.
+
+`first_hit` follows a flight in balls of one precision to its hit, `certified_hit` raises the precision.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +10,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil, floor, log2
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
 from singimpact.algebra.expressions import Expression, evaluate, names_in
 from singimpact.algebra.precision import Ladder, balls_at, series_of_any_length
-from singimpact.flights.enclosures.ball_flight import BallHit, first_hit
 from singimpact.flights.enclosures.equation import (
     Equation,
     NoHit,
@@ -23,8 +25,14 @@ from singimpact.flights.enclosures.equation import (
     programs_of,
 )
 from singimpact.flights.enclosures.motion import CarriedMotion, Start
+from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, centre, divided, first_root
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import common_period
+
+SHORTER = 0.93
+"""Factor of a step at whose end the root may lie."""
+SHORTEST = 0.05
+"""Of a step: where the sign at its end is still open, the ball of the state is too wide for any step."""
 
 
 @dataclass(frozen=True)
@@ -94,9 +102,15 @@ class ProvedImpact(NamedTuple):
 
 
 def certified_hit(
-    osc: Oscillator, launch: Launch, digits: int, horizon: Fraction, *, derivative: bool = False,
-    steps: int = ENCLOSURE.steps, expected: tuple[float, float] = (0.0, 1.0),
-) -> ProvedImpact:  # fmt: skip
+    osc: Oscillator,
+    launch: Launch,
+    digits: int,
+    horizon: Fraction,
+    *,
+    derivative: bool = False,
+    steps: int = ENCLOSURE.steps,
+    expected: tuple[float, float] = (0.0, 1.0),
+) -> ProvedImpact:
     """The first impact of a flight in balls, with so many digits where the launch is a point.
 
     Parameters
@@ -137,10 +151,10 @@ def certified_hit(
             with working_at(bits + ENCLOSURE.guard):
                 begun = motion_from(osc, launch, bits, coarse, derivative, framed, expected[0])
                 hit = first_hit(begun, Balls(bits).rational(horizon), steps)
-                found = _impact(osc, launch, hit, bits)
-                lack = 0 if box else _lack(found, wanted + 1)
+                impact = _impact(osc, launch, hit, bits)
+                lack = 0 if box else _lack(impact, wanted + 1)
                 if lack <= 0:
-                    return found
+                    return impact
                 why, ladder.lack, flown = f"{lack} bits of the result are lacking", lack + 6, hit.steps
         except (NoHit, TooLong):
             raise
@@ -255,16 +269,17 @@ def _period_moves(osc: Oscillator, names: tuple[str, ...]) -> bool:
 def _impact(osc: Oscillator, launch: Launch, hit: BallHit, bits: int) -> ProvedImpact:
     """The state after a hit, and D G."""
     names = launch.names
-    law = programs_of(osc, names).rho.prepared({name: _ball(_number(osc, name), bits) + _radius(launch.radii[name])
-                                               for name in names})  # fmt: skip
+    law = programs_of(osc, names).rho.prepared(
+        {name: _ball(_number(osc, name), bits) + _radius(launch.radii[name]) for name in names}
+    )
     v, slope, *by_law = law({"v": hit.velocity})
     tau = _ball(launch.tau, bits) + _radius(launch.radii.get("tau", Fraction(0))) + hit.flight_time
     rows: list[list[Any]] = []
     if hit.derivatives:
         first = [delay + (1 if k == 0 else 0) for k, (delay, _) in enumerate(hit.derivatives)]
         second = [slope * change for _, change in hit.derivatives]
-        for k, part in enumerate(by_law):
-            second[2 + k] += part
+        for k, slope_by_number in enumerate(by_law):
+            second[2 + k] += slope_by_number
         rows = [first, second]
     return ProvedImpact(hit.flight_time, hit.velocity, tau, v, rows, hit.steps, bits)
 
@@ -275,3 +290,74 @@ def _lack(found: ProvedImpact, wanted: int) -> int:
     if found.tau != 0:
         parts.append(found.tau)
     return int(max(wanted - part.rel_accuracy_bits() for part in parts))
+
+
+# ---- a flight in balls, followed to its first hit
+
+
+class Motion(Protocol):
+    """A set of states that is carried from step to step."""
+
+    time: Any
+    bits: int
+    removed: int
+    flown: int
+
+    @property
+    def launched(self) -> bool: ...
+    def tubes(self, most: Any = None) -> tuple[Tube, Tube, Any]: ...
+    def advance(self, length: Any) -> None: ...
+    def at_hit(self, root: Any, velocity: Any, rate: Any) -> tuple[Any, Any, list[tuple[Any, Any]]]: ...
+
+
+class BallHit(NamedTuple):
+    """Flight time and velocity of the first hit, their derivatives (tau, v, names), and the steps."""
+
+    flight_time: Any
+    velocity: Any
+    derivatives: list[tuple[Any, Any]]
+    steps: int
+
+
+def first_hit(motion: Motion, horizon: Any, steps: int) -> BallHit:
+    """The first hit of every member of a set of states.
+
+    Raises
+    ------
+    NoHit : proved that none comes before the horizon. Refused : these bits, or so many steps, do not decide it.
+    """
+    for count in range(1, steps + 1):
+        motion.flown = count
+        value, slope, length = motion.tubes()
+        first = motion.launched
+        if first:
+            inner = divided(value, slope, motion.removed)
+            if not inner[0].polynomial[0] > 0:
+                raise Refused("the launch velocity is not shown positive")
+        else:
+            inner = value, slope
+        shorter = length
+        while True:
+            try:
+                root = first_root(*inner, shorter, motion.bits)
+                break
+            except RootAtEnd:
+                shorter = centre(shorter * SHORTER)
+                if not shorter > length * SHORTEST:
+                    raise Refused("the ball of a state grew too wide to tell the sign of x - c") from None
+            except NearGraze as graze:
+                after = float((motion.time + graze.at).mid())
+                raise Refused(f"x - c and x' both vanish {after:.6g} after the launch, as far as balls tell") from None
+        if root is not None:
+            rate = inner[1](root)
+            velocity = slope(root)
+            if first:
+                velocity = velocity.intersection(root**motion.removed * rate)
+            time, velocity, derivatives = motion.at_hit(root, velocity, rate)
+            if time > horizon:
+                raise NoHit(f"no hit comes before {float(horizon.mid()):.6g}")
+            return BallHit(time, velocity, derivatives, count)
+        if motion.time + shorter > horizon:
+            raise NoHit(f"no hit comes before {float(horizon.mid()):.6g}")
+        motion.advance(shorter)
+    raise TooLong(f"no hit comes before {float(motion.time.mid()):.6g}, and {steps} steps in balls do not go further")

@@ -87,7 +87,7 @@ def programs_of(osc: Oscillator, names: tuple[str, ...]) -> Programs:
     by_x, by_v = force.derivative(f, "x"), force.derivative(f, "xdot")
     by_names = [force.derivative(f, name) for name in names]
     second = [force.derivative(by_x, "x"), force.derivative(by_x, "xdot"), force.derivative(by_v, "xdot")]
-    mixed = [force.derivative(part, name) for part in by_names for name in ("x", "xdot")]
+    mixed = [force.derivative(slope, name) for slope in by_names for name in ("x", "xdot")]
     slopes = force.program([by_x, by_v])
     return Programs(
         names,

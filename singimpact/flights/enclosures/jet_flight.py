@@ -2,39 +2,34 @@
 
 The flight from (tau + eps_1, v + eps_2) of the model with the number p + eps_3 is a motion z(s) with values in the jets
 of order 2, s the time since the launch, and solves the equation of the model: its coefficients are the derivatives of
-the flight. Jets are a Banach algebra, so the bounds of `taylor_step` hold with the norm of jets as size:
+the flight. The bounds of `taylor_step` hold with the norm of jets as size:
 
     |z' - P'| <= K s^n,   |z - P| <= K s^(n+1)/(n+1),   K = M R^(1-n) e^(B h + A h^2/2)/n,
 
 M a bound of the norm of the defect on |s| <= R, A and B of those of f_x and f_v next to the step. The time of the hit
 is the jet that solves z(T) = 0.
+
+Jets of order 2 are numbers with their Taylor coefficients by the launch time, the launch velocity and the number p:
+
+    c_0 + sum c_i eps_i + sum c_ij eps_i eps_j,     products of three eps are 0.
+
+With |c| the sum of the sizes of the coefficients |a b| <= |a| |b|: jets are a Banach algebra. An analytic function is
+defined on them by its Taylor series, which ends. Coefficients are balls, complex balls or series of balls.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
+from math import factorial
 from typing import Any
 
 from singimpact.algebra.analytic import Place, Program, Recorder
 from singimpact.algebra.precision import balls_at
-from singimpact.flights.enclosures.ball_flight import SHORTER, SHORTEST
-from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, box_of, working_at
+from singimpact.flights.enclosures.certified_hit import ENCLOSURE, SHORTER, SHORTEST, Launch, box_of, working_at
 from singimpact.flights.enclosures.equation import Equation, NotAnalytic, Programs, Refused, programs_of, recorded
-from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
-from singimpact.flights.enclosures.jets import (
-    MONOMIALS,
-    Jet,
-    composed,
-    jet,
-    norm,
-    orders,
-    product,
-    quotient,
-    scaled,
-    total,
-)
 from singimpact.flights.enclosures.taylor_step import (
     STEP,
     around,
@@ -45,8 +40,116 @@ from singimpact.flights.enclosures.taylor_step import (
     sums_of,
     widest_disc,
 )
-from singimpact.flights.enclosures.tube import Tube, ball, centre, divided, height, speed, upper
+from singimpact.flights.enclosures.tube import (
+    NearGraze,
+    RootAtEnd,
+    Tube,
+    ball,
+    centre,
+    divided,
+    first_root,
+    height,
+    speed,
+    upper,
+)
 from singimpact.oscillator.model import Oscillator
+
+Jet = list[Any]
+FIRST = ((0,), (1,), (2,))
+"""Monomials of degree 1: tau, v, p."""
+SECOND = tuple((i, j) for i in range(3) for j in range(i, 3))
+MONOMIALS: tuple[tuple[int, ...], ...] = ((), *FIRST, *SECOND)
+PLACES = {monomial: place for place, monomial in enumerate(MONOMIALS)}
+PRODUCTS = tuple(
+    (i, j, PLACES[tuple(sorted(a + b))])
+    for i, a in enumerate(MONOMIALS)
+    for j, b in enumerate(MONOMIALS)
+    if len(a + b) <= 2
+)
+"""Which coefficients of two factors are multiplied, and the coefficient to which the product belongs."""
+Partials = Mapping[tuple[int, ...], Any]
+"""Values of the partial derivatives of a function by its arguments, by the orders of each."""
+
+
+@cache
+def orders(arguments: int, most: int) -> tuple[tuple[int, ...], ...]:
+    """The orders of the partial derivatives of at most a total order.
+
+    Examples
+    --------
+    >>> orders(2, 1)
+    ((0, 0), (0, 1), (1, 0))
+    """
+    if not arguments:
+        return ((),)
+    return tuple((k, *rest) for k in range(most + 1) for rest in orders(arguments - 1, most - k))
+
+
+def jet(values: Mapping[int, Any], zero: Any) -> Jet:
+    """The jet with coefficients at some places, and 0 elsewhere."""
+    return [values.get(place, zero) for place in range(len(MONOMIALS))]
+
+
+def product(one: Sequence[Any], other: Sequence[Any]) -> Jet:
+    """The product of two jets."""
+    found: list[Any] = [0] * len(MONOMIALS)
+    for i, j, place in PRODUCTS:
+        if _counts(one[i]) and _counts(other[j]):
+            found[place] = found[place] + one[i] * other[j]
+    return found
+
+
+def _counts(part: Any) -> bool:
+    return not (isinstance(part, int) and part == 0)
+
+
+def scaled(one: Sequence[Any], factor: Any) -> Jet:
+    """A jet times a number."""
+    return [part * factor for part in one]
+
+
+def total(*jets: Sequence[Any]) -> Jet:
+    """The sum of jets."""
+    return [sum(parts[1:], parts[0]) for parts in zip(*jets, strict=True)]
+
+
+def composed(partials: Partials, small: Sequence[Sequence[Any]], at: tuple[int, ...] | None = None) -> Jet:
+    """A function of jets, by its partial derivatives at their values.
+
+    Parameters
+    ----------
+    partials : up to order 2, or 2 beyond `at`. small : each argument less its value. at : the derivative of the
+        function by its arguments whose jet is wanted; the function itself where it is left out.
+    """
+    base = at or (0,) * len(small)
+    zero = partials[base] * 0
+    image = jet({0: partials[base]}, zero)
+    for powers in orders(len(small), 2):
+        if any(powers):
+            term: Jet = jet({0: partials[tuple(a + b for a, b in zip(base, powers, strict=True))]}, 0)
+            for n, count in enumerate(powers):
+                for _ in range(count):
+                    term = product(term, small[n])
+                term = [
+                    coefficient / factorial(count) if count > 1 and _counts(coefficient) else coefficient
+                    for coefficient in term
+                ]
+            image = total(image, term)
+    return image
+
+
+def norm(one: Sequence[Any]) -> Any:
+    """An upper bound of the sum of the sizes of the coefficients."""
+    return upper(sum((upper(part) for part in one[1:]), upper(one[0])))
+
+
+def quotient(one: Sequence[Any], other: Sequence[Any]) -> Jet:
+    """The quotient of two jets."""
+    small = [0, *(part / other[0] for part in other[1:])]
+    inverse = total(
+        jet({0: 1 / other[0]}, other[0] * 0), scaled(small, -1 / other[0]), scaled(product(small, small), 1 / other[0])
+    )
+    return product(one, inverse)
 
 
 @dataclass(frozen=True)
@@ -102,8 +205,10 @@ class JetHit:
 
     def along(self, direction: tuple[Any, Any, Any]) -> list[list[Any]]:
         """The derivative of `slopes`, columns tau and v alone, in a direction of (tau, v, number)."""
-        return [[sum((self._second(each, i, j) * part for j, part in enumerate(direction)), each[0] * 0)
-                 for i in (0, 1)] for each in self.jets]  # fmt: skip
+        return [
+            [sum((self._second(each, i, j) * part for j, part in enumerate(direction)), each[0] * 0) for i in (0, 1)]
+            for each in self.jets
+        ]
 
     @staticmethod
     def _second(each: Jet, i: int, j: int) -> Any:
@@ -181,24 +286,24 @@ class _JetFlight:
         if not X[-1].is_finite():
             raise NotAnalytic("f or g has no power series where the flight goes")
         zero = arb_series([0], prec=count)
-        forced = [listed(part, count) for part in self._forcing(arb_series([time, 1], prec=count))]
-        found = [X, *([[arb(0)]] * (len(MONOMIALS) - 1))]
-        V = [(k + 1) * part for k, part in enumerate(X[1:])]
+        forced = [listed(series, count) for series in self._forcing(arb_series([time, 1], prec=count))]
+        rows = [X, *([[arb(0)]] * (len(MONOMIALS) - 1))]
+        V = [(k + 1) * coefficient for k, coefficient in enumerate(X[1:])]
         partials = self._run("near", 3, 2, x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
-        partials = {key: part + zero for key, part in partials.items()}
+        partials = {key: partial + zero for key, partial in partials.items()}
         by_x, by_v = (listed(partials[key], count) for key in ((1, 0, 0), (0, 1, 0)))
         z, v = jet({}, zero), jet({}, zero)  # without the coefficients that are not known yet
         for degree in (1, 2):
             f = composed(partials, (z, v, jet({3: 1}, 0)))
-            for place, monomial in enumerate(MONOMIALS):
+            for index, monomial in enumerate(MONOMIALS):
                 if len(monomial) == degree:
-                    pull = listed(f[place], count)
-                    driven = [a - b for a, b in zip(forced[place], pull, strict=True)]
-                    P = response(by_x, by_v, driven, (self.z[place], self.v[place]))
-                    found[place] = P
-                    z[place] = arb_series(P, prec=count)
-                    v[place] = arb_series([(k + 1) * part for k, part in enumerate(P[1:])], prec=count)
-        return found
+                    pull = listed(f[index], count)
+                    driven = [a - b for a, b in zip(forced[index], pull, strict=True)]
+                    P = response(by_x, by_v, driven, (self.z[index], self.v[index]))
+                    rows[index] = P
+                    z[index] = arb_series(P, prec=count)
+                    v[index] = arb_series([(k + 1) * coefficient for k, coefficient in enumerate(P[1:])], prec=count)
+        return rows
 
     def _defect(self, series: list[list[Any]], sums: list[Any], R: Any) -> list[Any] | None:
         """A bound of the norm of the defect on a disc; None where f or g is not shown analytic on its image."""
@@ -218,13 +323,15 @@ class _JetFlight:
         series = self._series()
         n = len(series[0]) - 1
         with balls_at(STEP.disc_bits):
-            sums = [sums_of(part) for part in series]
+            sums = [sums_of(column) for column in series]
             length, R, (M,) = widest_disc(series[0], lambda R: self._defect(series, sums, R), self.bits, self.last)
             self.last = R
             slack = arb(2) ** (-self.bits // 2)
             for _ in range(STEP.boxes):
-                z, v = ([P[order] + ball(part[order](length) + slack) for P, part in zip(series, sums, strict=True)]
-                        for order in (0, 1))  # fmt: skip
+                z, v = (
+                    [P[order] + ball(column[order](length) + slack) for P, column in zip(series, sums, strict=True)]
+                    for order in (0, 1)
+                )
                 A, B = (norm(self._force(z, v, "far", at)) for at in ((1, 0, 0), (0, 1, 0)))
                 if A.is_finite() and B.is_finite():
                     K = upper(M * R ** (1 - n) * (B * length + A * length**2 / 2).exp() / n)
@@ -248,7 +355,7 @@ class _JetFlight:
             root, length = self._root(inner, length)
             tubes = [(height(P, K), speed(P, K)) for P in series]
             at = length if root is None else root
-            self.z, self.v = [part(at) for part, _ in tubes], [rate(at) for _, rate in tubes]
+            self.z, self.v = [height_tube(at) for height_tube, _ in tubes], [rate(at) for _, rate in tubes]
             self.time = self.time + at
             if root is not None:
                 return self._landed()

@@ -20,9 +20,8 @@ from typing import Any, NamedTuple
 
 from singimpact.algebra.precision import balls_at
 from singimpact.flights.enclosures.equation import Equation, Refused
-from singimpact.flights.enclosures.first_root import narrowed
 from singimpact.flights.enclosures.taylor_step import Column, Step, step
-from singimpact.flights.enclosures.tube import Tube, ball, centre, divided, height, speed, upper
+from singimpact.flights.enclosures.tube import Tube, ball, centre, divided, height, narrowed, speed, upper
 
 Pair = tuple[Any, Any]
 

@@ -85,9 +85,15 @@ def degree_at(bits: int, expected: float = 0.0) -> int:
 
 
 def step(
-    equation: Equation, state: tuple[Any, Any, Any], columns: Sequence[Column], bits: int, most: Any = None,
-    removed: int = 1, expected: float = 0.0, last: Step | None = None,
-) -> Step:  # fmt: skip
+    equation: Equation,
+    state: tuple[Any, Any, Any],
+    columns: Sequence[Column],
+    bits: int,
+    most: Any = None,
+    removed: int = 1,
+    expected: float = 0.0,
+    last: Step | None = None,
+) -> Step:
     """A step from (t, z, z'), each a ball.
 
     Parameters
@@ -104,23 +110,29 @@ def step(
     try:
         return _made(equation, state, columns, bits, most, removed, degree_at(bits, expected), last)
     except (NotAnalytic, ValueError, ZeroDivisionError) as reason:  # flint raises where a series has no inverse
-        if any(part.rad() > 2.0 ** (-bits / 4) for part in state):
+        if any(component.rad() > 2.0 ** (-bits / 4) for component in state):
             raise Refused("the ball of a state grew too wide on the way") from None
         raise NotAnalytic(str(reason)) from None
 
 
 def _made(
-    equation: Equation, state: tuple[Any, Any, Any], columns: Sequence[Column], bits: int, most: Any, removed: int,
-    degree: int, last: Step | None,
-) -> Step:  # fmt: skip
+    equation: Equation,
+    state: tuple[Any, Any, Any],
+    columns: Sequence[Column],
+    bits: int,
+    most: Any,
+    removed: int,
+    degree: int,
+    last: Step | None,
+) -> Step:
     """The step of a degree."""
     X = coefficients(equation, state, degree, removed)
     if not X[-1].is_finite():
         raise NotAnalytic("f or g has no power series where the flight goes")
-    psi = [column(equation, state[0], X, each, degree) for each in columns]
+    psi = [column(equation, state[0], X, start, degree) for start in columns]
     with balls_at(STEP.disc_bits):
-        sums = [sums_of(part) for part in (X, *psi)]
-        drives = [each.drive for each in columns]
+        sums = [sums_of(polynomial) for polynomial in (X, *psi)]
+        drives = [start.drive for start in columns]
 
         def defects(R: Any) -> list[Any] | None:
             return _defects(equation, state[0], X, psi, drives, sums, R)
@@ -149,10 +161,10 @@ def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, r
         # Newton's method on series doubles the number of right coefficients (Brent and Kung 1978)
         count = min(2 * m, degree - 1)
         f, by_x, by_v = (
-            listed(part, count)
-            for part in equation.run("force", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
+            listed(series, count)
+            for series in equation.run("force", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
         )
-        constant = all(part.is_zero() for part in by_v[1:])
+        constant = all(coefficient.is_zero() for coefficient in by_v[1:])
         for k in range(m - 1, count):
             rest = g[k] - f[k] - sum(map(arb.__mul__, by_x, X[k:m:-1]), arb(0))
             if not constant:
@@ -195,11 +207,11 @@ def column(equation: Equation, t: Any, X: list[Any], launch: Column, degree: int
     """Taylor coefficients of a column along the polynomial with coefficients X."""
     from flint import arb, arb_series
 
-    V = [(k + 1) * part for k, part in enumerate(X[1:])]
+    V = [(k + 1) * coefficient for k, coefficient in enumerate(X[1:])]
     count = degree - 1
     _, by_x, by_v, *by_names = (
-        listed(part, count)
-        for part in equation.run("disc", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
+        listed(series, count)
+        for series in equation.run("disc", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
     )
     driven = [arb(0)] * count
     if launch.drive >= 0:
@@ -213,7 +225,7 @@ def response(by_x: list[Any], by_v: list[Any], driven: list[Any], start: tuple[A
     """Taylor coefficients of the psi with psi'' + by_x psi + by_v psi' = driven, all lists, from (psi, psi')."""
     from flint import arb
 
-    constant = all(part.is_zero() for part in by_v[1:])
+    constant = all(coefficient.is_zero() for coefficient in by_v[1:])
     P, Q = [arb(start[0]), arb(start[1])], [arb(start[1])]
     for k in range(len(driven)):
         rest = driven[k] - sum(map(arb.__mul__, by_x, P[k::-1]), arb(0))
@@ -294,14 +306,14 @@ def _defects(
     """Bounds of the defects of z and of the columns on a disc; None where f or g is not shown analytic on its image."""
     from flint import acb
 
-    def at(P: list[Any], part: tuple[Any, Any, Any], order: int) -> Any:
-        return around(P[order], part[order](R))
+    def at(P: list[Any], totals: tuple[Any, Any, Any], order: int) -> Any:
+        return around(P[order], totals[order](R))
 
     f, by_x, by_v, *by_names = equation.run("disc", x=at(X, sums[0], 0), xdot=at(X, sums[0], 1))
     g, *forced = equation.run("forcing", t=around(t, R))
     inside = [f - g]
-    for P, part, drive in zip(psi, sums[1:], drives, strict=True):
-        value = by_x * at(P, part, 0) + by_v * at(P, part, 1)
+    for P, totals, drive in zip(psi, sums[1:], drives, strict=True):
+        value = by_x * at(P, totals, 0) + by_v * at(P, totals, 1)
         if drive >= 0:
             value -= forced[drive]
         if drive > 0:
@@ -309,13 +321,17 @@ def _defects(
         inside.append(value)
     if not all(acb(value).is_finite() for value in inside):
         return None
-    return [upper(part[2](R)) + upper(value) for part, value in zip(sums, inside, strict=True)]
+    return [upper(totals[2](R)) + upper(value) for totals, value in zip(sums, inside, strict=True)]
 
 
 def _bounded(
-    equation: Equation, series: tuple[list[Any], list[list[Any]]], drives: list[int], sums: list[Any],
-    disc: tuple[Any, Any, list[Any]], bits: int,
-) -> Step:  # fmt: skip
+    equation: Equation,
+    series: tuple[list[Any], list[list[Any]]],
+    drives: list[int],
+    sums: list[Any],
+    disc: tuple[Any, Any, list[Any]],
+    bits: int,
+) -> Step:
     """The step on which the bounds are shown to hold, shortened until they do."""
     from flint import arb
 
@@ -323,16 +339,18 @@ def _bounded(
     slack = arb(2) ** (-bits // 2)
     power = R ** (1 - n)
     for _ in range(STEP.boxes):
-        place = {name: X[order] + ball(sums[0][order](length) + slack) for order, name in enumerate(("x", "xdot"))}
-        by_x, by_v, *others = equation.run("box", **place)
+        names = {name: X[order] + ball(sums[0][order](length) + slack) for order, name in enumerate(("x", "xdot"))}
+        by_x, by_v, *others = equation.run("box", **names)
         A, B = upper(arb(by_x)), upper(arb(by_v))
         if A.is_finite() and B.is_finite():
             grown = (B * length + A * length**2 / 2).exp() / n
             bound = upper(defects[0] * power * grown)
             if bound * length**n * (1 + length) < slack:
                 second, mixed = _second_derivatives(others)
-                bends = [_bend(P, part, second, mixed, drive, bound, length)
-                         for P, part, drive in zip(psi, sums[1:], drives, strict=True)]  # fmt: skip
+                bends = [
+                    _bend(P, totals, second, mixed, drive, bound, length)
+                    for P, totals, drive in zip(psi, sums[1:], drives, strict=True)
+                ]
                 if all(bend.is_finite() for bend in bends):
                     bounds = [upper((M * power + bend) * grown) for M, bend in zip(defects[1:], bends, strict=True)]
                     return Step(X, bound, psi, bounds, length, R)

@@ -14,9 +14,8 @@ from singimpact.algebra.balls import BITS_A_DIGIT
 from singimpact.algebra.precision import Ladder
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, bits_of_a_set, motion_from, working_at
 from singimpact.flights.enclosures.equation import Refused
-from singimpact.flights.enclosures.first_root import NearGraze, RootAtEnd, first_root
 from singimpact.flights.enclosures.motion import CarriedMotion, Pair
-from singimpact.flights.enclosures.tube import Tube, centre, divided
+from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, centre, divided, first_root
 from singimpact.oscillator.model import Oscillator
 
 
@@ -75,9 +74,9 @@ def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, der
     for bits in Ladder(first, most, lambda before: min(int(before * ENCLOSURE.more), most)):
         why = "the digits are not reached"
         try:
-            found = _flown(osc, launch, time, bits, derivative)
-            if box or all(part.rad() < float(small) for part in (found.height, found.velocity)):
-                return found
+            arrival = _flown(osc, launch, time, bits, derivative)
+            if box or all(component.rad() < float(small) for component in (arrival.height, arrival.velocity)):
+                return arrival
         except Refused as reason:
             if box:
                 raise
@@ -103,9 +102,9 @@ def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int, *, cr
             left = time - motion.time
             if _reaches(length, left):
                 return _touches_in_step(motion, inner, left, crosses)
-            part = _piece(length, left)
-            _above(motion, inner, part, crosses)
-            motion.advance(part)
+            piece = _piece(length, left)
+            _above(motion, inner, piece, crosses)
+            motion.advance(piece)
 
 
 def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any, crosses: bool) -> None:
@@ -136,7 +135,7 @@ def _flown(osc: Oscillator, launch: Launch, time: Any, bits: int, derivative: bo
             _, length = _step(motion)
             left = time - motion.time
             if _reaches(length, left):
-                z, v = (part(left) for part in motion.members)
+                z, v = (member(left) for member in motion.members)
                 columns = motion.columns_at(left) if derivative else []
                 return Arrival(z, v, _acceleration(motion, left), columns)
             motion.advance(_piece(length, left))

@@ -207,7 +207,7 @@ def response(launch: Any, v: float, time: float, p: Any) -> Any:
 
 
 def response_of_differences(launch: Any, time: float, p: Any) -> Any:
-    """The four derivatives of `response` from divided differences, which have no exceptions and cost five times more."""
+    """The four derivatives of `response` from divided differences: they have no exceptions and cost five times more."""
     root = complex_sqrt(complex(p.damping * p.damping / 4 - p.stiffness))
     a, b = -p.damping / 2 + root, -p.damping / 2 - root
     free = pair(a, b, time)

@@ -82,12 +82,12 @@ def fastest_kept(osc: Oscillator) -> float:
     extremes = extremes_of_forcing(osc)
     if extremes is None:
         return 0.0
-    low, high = (float(part.mid()) for part in extremes)
+    low, high = (float(extreme.mid()) for extreme in extremes)
     if not low - at_rest > 0:
         return 0.0
-    part = np.linspace(0, 1, SEARCH.grid) ** 2
+    grid = np.linspace(0, 1, SEARCH.grid) ** 2
     for height in (2.0**k for k in SEARCH.heights):
-        z = height * part
+        z = height * grid
         if not high - force(z[-1:], nothing)[0] < 0:
             continue
         below = [s for s in _slopes() if left.spend() and np.all(low - force(z, -s * z) - s * s * z > 0)]
@@ -128,13 +128,13 @@ def _proved(osc: Oscillator, extremes: tuple[Any, Any], barriers: tuple[float, f
     z = Name("z")
     top, slope, bar = (number(Fraction(value)) for value in barriers)
     rest = add(top, multiply(number(-1), z))
-    place = add(osc.clearance, z)
+    position = add(osc.clearance, z)
     lower = add(
-        multiply(number(-1), substitute(osc.force(), {"x": place, "xdot": multiply(number(-1), slope, z)})),
+        multiply(number(-1), substitute(osc.force(), {"x": position, "xdot": multiply(number(-1), slope, z)})),
         multiply(number(-1), slope, slope, z),
     )
     upper = add(
-        multiply(number(-1), substitute(osc.force(), {"x": place, "xdot": multiply(bar, rest)})),
+        multiply(number(-1), substitute(osc.force(), {"x": position, "xdot": multiply(bar, rest)})),
         multiply(bar, bar, rest),
     )
 

@@ -46,7 +46,7 @@ def never_returns(osc: Oscillator, form: LinearForm, tau: Array, time: Array, z:
     """
     damping, stiffness = as_float(form.damping), as_float(form.stiffness)
     h = as_float(at_rest(form, osc.clearance))
-    place, speed, bound = np.zeros(z.shape), np.zeros(z.shape), 0.0
+    position, speed, bound = np.zeros(z.shape), np.zeros(z.shape), 0.0
     with np.errstate(all="ignore"):
         for wave in form.harmonics:
             rate = as_float(wave.rate)
@@ -56,8 +56,10 @@ def never_returns(osc: Oscillator, form: LinearForm, tau: Array, time: Array, z:
                 return np.zeros(z.shape, bool)  # resonance: the forced motion grows without a bound
             answer = (as_float(wave.cosine) - 1j * as_float(wave.sine)) / reply
             turned = answer * np.exp(1j * angle)
-            place, speed, bound = place + turned.real, speed + (1j * rate * turned).real, bound + abs(answer)
-        low, size = _lowest(sign_of(form.stiffness), sign_of(form.damping), stiffness, damping, h, z - place, u - speed)
+            position, speed, bound = position + turned.real, speed + (1j * rate * turned).real, bound + abs(answer)
+        low, size = _lowest(
+            sign_of(form.stiffness), sign_of(form.damping), stiffness, damping, h, z - position, u - speed
+        )
         return np.asarray(low - bound > MARGIN.part * (size + bound + np.abs(z)))
 
 

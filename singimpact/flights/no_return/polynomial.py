@@ -60,8 +60,10 @@ def never_turns(osc: Oscillator, z: Array, u: Array) -> Array:
     if degree is None or extremes is None:
         return np.zeros(z.shape, dtype=bool)
     least = extremes[0]
-    return np.array([a > 0 and b > 0 and _rises(osc, degree, least, float(a), float(b))
-                     for a, b in zip(z, u, strict=True)], dtype=bool)  # fmt: skip
+    return np.array(
+        [a > 0 and b > 0 and _rises(osc, degree, least, float(a), float(b)) for a, b in zip(z, u, strict=True)],
+        dtype=bool,
+    )
 
 
 def degree_of(tree: Expression) -> int | None:
@@ -78,10 +80,10 @@ def degree_of(tree: Expression) -> int | None:
             return 1
         case Sum(terms):
             parts = [degree_of(term) for term in terms]
-            return None if None in parts else max(part for part in parts if part is not None)
+            return None if None in parts else max(degree for degree in parts if degree is not None)
         case Product(factors):
             parts = [degree_of(factor) for factor in factors]
-            return None if None in parts else sum(part for part in parts if part is not None)
+            return None if None in parts else sum(degree for degree in parts if degree is not None)
         case Power(base, Number(exponent)) if exponent.denominator == 1 and exponent > 0 and names_in(base):
             inner = degree_of(base)
             return None if inner is None else inner * int(exponent)
@@ -124,15 +126,15 @@ def extremes_of_forcing(osc: Oscillator) -> tuple[Any, Any] | None:
     """Numbers below and above g at all times, from its enclosures over a period; None where there are none."""
     balls, forcing = Balls(PROOF.bits), osc.forcing()
     if "t" not in names_in(forcing):
-        found = [balls.evaluate(forcing, {})]
+        enclosures = [balls.evaluate(forcing, {})]
     elif osc.period is None:
         return None
     else:
         period = balls.evaluate(osc.period, {})
         with balls_at(balls.bits):
             ends = [period * piece / PROOF.pieces for piece in range(PROOF.pieces + 1)]
-            found = [balls.evaluate(forcing, {"t": low.union(high)}) for low, high in pairwise(ends)]
-    if not all(value.is_finite() for value in found):
+            enclosures = [balls.evaluate(forcing, {"t": low.union(high)}) for low, high in pairwise(ends)]
+    if not all(value.is_finite() for value in enclosures):
         return None
     with balls_at(balls.bits):
-        return min(value.lower() for value in found), max(value.upper() for value in found)
+        return min(value.lower() for value in enclosures), max(value.upper() for value in enclosures)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from singimpact.dynamics.fractional_chatter import rest_after
+from singimpact.dynamics.remaining import rest_after
 from singimpact.flights.orbits import orbit_segment
 from singimpact.oscillator.model import Oscillator
 

@@ -104,7 +104,7 @@ def test_bounds_that_do_not_close_are_none():
 @pytest.mark.parametrize(
     ("condition", "instead", "change"),
     [
-        ('lies_within(tau + left, told["tau"])', "True", {"tau": {"value": "1.3220", "radius": "1e-9"}}),
+        ('lies_within(tau + left, content["tau"])', "True", {"tau": {"value": "1.3220", "radius": "1e-9"}}),
         ("2 * v / (low * (1 - r * q))", "2 * v / (high * (1 - r / q))", {}),
     ],
 )

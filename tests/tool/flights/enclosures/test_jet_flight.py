@@ -11,7 +11,7 @@ import pytest
 import singimpact as si
 from singimpact.algebra import Balls, balls_at, constant
 from singimpact.flights import Launch, Refused, certified_hit, jet_hit
-from singimpact.flights.enclosures import jet_flight, jets
+from singimpact.flights.enclosures import jet_flight
 
 HORIZON = Fraction(100)
 STEP = Fraction(1, 10**8)
@@ -99,7 +99,7 @@ def test_a_narrow_box_lies_in_a_wide_one():
 @pytest.mark.parametrize(
     ("room", "name", "wrong"),
     [
-        (jets, "factorial", lambda _: 1),
+        (jet_flight, "factorial", lambda _: 1),
         (jet_flight, "response", lambda by_x, by_v, driven, start: _free(by_x, by_v, driven, start)),
         (jet_flight, "quotient", lambda one, other: [part / other[0] for part in one]),
     ],
