@@ -49,6 +49,7 @@ class ImpactOscillator(Oscillator):
         horizon: Any = None,
         steps: int | None = None,
         out: Mapping[str, Any] | None = None,
+        threads: int | None = None,
     ) -> Flight:
         """The first hit F of the wall for flights from (tau, v).
 
@@ -59,7 +60,7 @@ class ImpactOscillator(Oscillator):
         digits : decimal digits of the result, which then holds mpmath numbers. horizon : flight time at which the
             search ends; without it 1000 periods of the forcing, or more where the motion is slow beside it.
         tolerance : relative error of a step of a nonlinear flight. steps : Taylor steps at most. out : arrays
-            to write the results to, by field.
+            to write the results to, by field. threads : that share out an array, two without it.
 
         Returns
         -------
@@ -74,7 +75,12 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.impact_map import first_hit
 
-        return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+        if threads is None:
+            return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+        from singimpact.flights.interruptible import on_threads
+
+        with on_threads(threads):
+            return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
     def impact_map(
         self,
@@ -86,12 +92,13 @@ class ImpactOscillator(Oscillator):
         horizon: Any = None,
         steps: int | None = None,
         out: Mapping[str, Any] | None = None,
+        threads: int | None = None,
     ) -> Step:
         """The impact map G: the next impact of flights from (tau, v), and the velocity after it.
 
         Parameters
         ----------
-        tau, v, digits, tolerance, horizon, steps, out : as for `first_hit`.
+        tau, v, digits, tolerance, horizon, steps, out, threads : as for `first_hit`.
 
         Returns
         -------
@@ -106,7 +113,12 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.impact_map import impact_map
 
-        return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+        if threads is None:
+            return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+        from singimpact.flights.interruptible import on_threads
+
+        with on_threads(threads):
+            return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
     def enclosed_impact(
         self, tau: Any, v: Any, *, radii: Mapping[str, Any] | None = None, digits: int = 30, horizon: Any = None
@@ -169,13 +181,15 @@ class ImpactOscillator(Oscillator):
                 values[index] = at_exactly(self, states.exact_tau(index), order)
         return values.reshape(states.shape)[()]
 
-    def iterate(self, tau: Any, v: Any, impacts: int = 100, *, keep: bool = False) -> Iterates:
+    def iterate(
+        self, tau: Any, v: Any, impacts: int = 100, *, keep: bool = False, threads: int | None = None
+    ) -> Iterates:
         """Many impacts of each of many states: iterates of the impact map G.
 
         Parameters
         ----------
         tau, v : states that broadcast. impacts : for each state. keep : return all states, with a first axis of
-            length impacts + 1.
+            length impacts + 1. threads : as for `first_hit`.
 
         Returns
         -------
@@ -188,9 +202,11 @@ class ImpactOscillator(Oscillator):
         >>> ends.tau.shape, ends.status.tolist()
         ((2,), [0, 0])
         """
+        from singimpact.flights.interruptible import on_threads
         from singimpact.flights.orbits import iterates
 
-        return iterates(self, tau, v, whole("impacts", impacts, 0, 10**7), keep)
+        with on_threads(threads):
+            return iterates(self, tau, v, whole("impacts", impacts, 0, 10**7), keep)
 
     def derivative(self, tau: Any, v: Any, *, horizon: Any = None) -> Derivative:
         """D G, the derivative of the impact map, from the variational equation.

@@ -27,6 +27,7 @@ _FILES = {
     "impact_map": "first_hit",
     "in_digits": "proof",
     "interpreted": "listed",
+    "interruptible": "on_threads shared_out threads_now",
     "inverse_map": "backwards",
     "kernels.entries": "FOLLOW HITS ITERATE JUDGE PREPARE PREPARE_BATCH RELEASES SEGMENT VARIATIONS",
     "kernels.gamma": "REACH SERIES TERMS_OF_GAMMA",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from math import frexp, ldexp
 from threading import Lock
 from time import perf_counter
@@ -22,7 +22,7 @@ from singimpact.flights import flight_count
 from singimpact.flights.bind import LAW, Emitted
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
-from singimpact.flights.interruptible import LONG, interruptible
+from singimpact.flights.interruptible import LONG, interruptible, shared_out, threads_now
 from singimpact.flights.kernels import entries, layout
 from singimpact.flights.kernels.chatter import NO_ROOM
 from singimpact.flights.kernels.hits import UNIT
@@ -68,7 +68,9 @@ class TableSettings:
     bits: int = 24
     # states of one call into compiled code, which hears no interruption: 0.05 s
     block: int = 65_536
-    # the same when flights are interpreted
+    # states that are worth a thread of their own, which costs 0.1 ms
+    shared: int = 4096
+    # states of one call when flights are interpreted
     interpreted: int = 64
     # impacts of a chatter that scratch has rows for: at first, and of a state that needs more
     chatter: tuple[int, int] = (4096, 2**20)
@@ -157,10 +159,10 @@ class CompiledModel:
             flat[scalars + 8], flat[scalars + 9] = _step(TABLES.reach, rate), _step(TABLES.batch_reach, rate)
             model = layout.linear_model(flat, sizes)
             phases = phases_of(osc)
-            for part, values, phase in ((model.numbers, numbers, phases[0]), (model.rest, rest, phases[1])):
+            for numbers_of_waves, values, phase in ((model.numbers, numbers, phases[0]), (model.rest, rest, phases[1])):
                 for j in range(waves):
                     rate, cosine, sine = values[5 + 3 * j : 8 + 3 * j]
-                    part.waves[j] = rate, phase[j], cosine, sine
+                    numbers_of_waves.waves[j] = rate, phase[j], cosine, sine
             turn = flat.size - 3
             flat[turn:] = batch_turn_of(osc)
         else:
@@ -209,7 +211,7 @@ class CompiledModel:
         return entry
 
     def _call(
-        self, entry: Callable[..., int], job: tuple[int, int, int], given: tuple[Array, ...] = (),
+        self, entry: Callable[..., int], job: tuple[int, int, int], arrays: tuple[Array, ...] = (),
         out: Array | None = None, status: Array | None = None, flat: Array | None = None, trace: Array | None = None,
     ) -> int:  # fmt: skip
         """One call of an entry.
@@ -221,19 +223,19 @@ class CompiledModel:
         units = max(job[1], 1) * (max(job[2], 1) if job[0] == entries.ITERATE else 1)
         sizes = _SIZES(*self._sizes)
         sizes[layout.KIND], sizes[layout.COUNT], sizes[layout.IMPACTS] = job
-        addresses = [_address(part) for part in given] + [_NOWHERE] * (3 - len(given))
-        addresses += [_NOWHERE if part is None else _address(part) for part in (out, status)]
+        addresses = [_address(array) for array in arrays] + [_NOWHERE] * (3 - len(arrays))
+        addresses += [_NOWHERE if array is None else _address(array) for array in (out, status)]
         model = self._flat_address if flat is None else _address(flat)
         if trace is not None:
-            return self._timed(entry, (sizes, model, _address(trace), *addresses), units, (trace, given, out, status))
+            return self._timed(entry, (sizes, model, _address(trace), *addresses), units, (trace, arrays, out, status))
         # scratch is lent to one call at a time, so that threads do not meet in it; an interrupted call keeps it
         try:
             scratch, at = self._spare.pop()
         except IndexError:
             scratch, at = _addressed(self._new_scratch())
-        found = self._timed(entry, (sizes, model, at, *addresses), units, (scratch, given, out, status, flat))
+        result = self._timed(entry, (sizes, model, at, *addresses), units, (scratch, arrays, out, status, flat))
         self._spare.append((scratch, at))
-        return found
+        return result
 
     def _timed(self, entry: Callable[..., int], arguments: tuple[Any, ...], units: int, kept: tuple[Any, ...]) -> int:
         """A call of an entry; one that is expected to be long hears Ctrl-C."""
@@ -252,12 +254,12 @@ class CompiledModel:
         ----------
         law : what the work calls beside.
         """
-        found = self._entry(name)
-        if found is None:
+        entry = self._entry(name)
+        if entry is None:
             self.machine.interpreted(seconds, name)
-            found = self._entry(name)
-        missing = [each for each in self._called(law) if not each.is_bound(seconds)]
-        return None if missing else found
+            entry = self._entry(name)
+        missing = [text for text in self._called(law) if not text.is_bound(seconds)]
+        return None if missing else entry
 
     def _for_orbits(self, name: str, seconds: float) -> Callable[..., int] | None:
         """The entry for work that calls rho; waited for after long interpreted flights, unless its compiler dies."""
@@ -308,18 +310,20 @@ class CompiledModel:
         flight_count.add(int(np.count_nonzero(v)))
         status, out = np.empty(tau.size, np.int8), np.empty((10, tau.size))
         if self.linear:
-            given: tuple[Array, ...] = (tau, v)
+            states: tuple[Array, ...] = (tau, v)
         else:
             out[4:] = np.nan
-            given = tau, v, np.full(tau.size, np.nan) if pushes is None else pushes
+            states = tau, v, np.full(tau.size, np.nan) if pushes is None else pushes
         begin = 0
         while begin < tau.size:
             entry = self._compiled(self.main, self.price * (tau.size - begin))
-            end = min(begin + (TABLES.block if entry else TABLES.interpreted), tau.size)
             if entry is None:
-                self._interpreted_hits(given, (out, status), slice(begin, end))
+                end = min(begin + TABLES.interpreted, tau.size)
+                self._interpreted_hits(states, (out, status), slice(begin, end))
             else:
-                self._compiled_hits(entry, given, (out, status), slice(begin, end))
+                end = min(begin + TABLES.block * threads_now(), tau.size)
+                fly = partial(self._compiled_hits, entry, states, (out, status))
+                shared_out(fly, begin, end, TABLES.shared)
             begin = end
         return status, out
 
@@ -333,18 +337,18 @@ class CompiledModel:
         self._call(entry, (entries.HITS, rows.shape[1], 0), blocks, rows, status[part])
         out[:, part] = rows
 
-    def _interpreted_hits(self, given: Any, found: Any, part: slice) -> None:
-        out, status = found
-        rows = np.empty((10, part.stop - part.start))
+    def _interpreted_hits(self, states: Any, results: Any, chosen: slice) -> None:
+        out, status = results
+        rows = np.empty((10, chosen.stop - chosen.start))
         try:
-            self.interpreter.hits(tuple(each[part] for each in given), rows, status[part])
-            out[:, part] = rows
+            self.interpreter.hits(tuple(column[chosen] for column in states), rows, status[chosen])
+            out[:, chosen] = rows
         except LEFT_OPEN:
             if rows.shape[1] == 1:
-                self._compiled_hits(self._here(self.main), given, found, part)
+                self._compiled_hits(self._here(self.main), states, results, chosen)
                 return
-            for index in range(part.start, part.stop):
-                self._interpreted_hits(given, found, slice(index, index + 1))
+            for index in range(chosen.start, chosen.stop):
+                self._interpreted_hits(states, results, slice(index, index + 1))
 
     def quick(self) -> Callable[..., Any]:
         """A function (tau, v) -> (code, list of the columns of a hit) of two floats, v > 0, with the least overhead.
@@ -352,11 +356,11 @@ class CompiledModel:
         A third number is a_c at the launch of a Taylor flow, nan where it is not known.
         """
         if self._quick is None:
-            found = self.machine.entry(self.main)
-            if found is None or (self.recurrence and not self.recurrence.is_bound()):
+            entry = self.machine.entry(self.main)
+            if entry is None or (self.recurrence and not self.recurrence.is_bound()):
                 return self._one
-            self._ready(self.main, found[0])
-            self._quick = self._bound(found[1])
+            self._ready(self.main, entry[0])
+            self._quick = self._bound(entry[1])
         return self._quick
 
     def _one(self, tau: float, v: float, push: float = np.nan) -> tuple[int, list[float]]:
@@ -370,7 +374,7 @@ class CompiledModel:
         state, out, status = (ctypes.c_double * 3)(0, 0, np.nan), (ctypes.c_double * 10)(), (ctypes.c_int8 * 1)()
         at = ctypes.addressof(state)
         addresses = [ctypes.c_void_p(address) for address in (
-            *(part.ctypes.data for part in (sizes, self.flat, scratch)), at, at + 8, at + 16, ctypes.addressof(out),
+            *(array.ctypes.data for array in (sizes, self.flat, scratch)), at, at + 8, at + 16, ctypes.addressof(out),
             ctypes.addressof(status))]  # fmt: skip
         count, alone = flight_count.add, Lock()
 
@@ -427,8 +431,8 @@ class CompiledModel:
                 return out[:flown], code
             except LEFT_OPEN:
                 entry = self._here(self.main, self.law)
-        given = np.array([tau]), np.array([v]), np.concatenate([[near], self.rho])
-        flown = self._call(entry, (entries.SEGMENT, count, 0), given, out, status)
+        states = np.array([tau]), np.array([v]), np.concatenate([[near], self.rho])
+        flown = self._call(entry, (entries.SEGMENT, count, 0), states, out, status)
         flight_count.add(flown)
         return out[:flown], int(status[0])
 
@@ -441,25 +445,34 @@ class CompiledModel:
         name = "batch_entry" if self.linear else self.main
         entry, begin = self._compiled(name, 0.0, self.law), 0
         while begin < size:
-            block = LANES if entry is None else max(LANES, TABLES.block // max(impacts, 1) // LANES * LANES)
-            part = slice(begin, begin + block)
-            codes = status[part]
+            few = slice(begin, min(begin + LANES, size))
             if entry is None:
-                entry = self._for_orbits(name, self.price * codes.size * impacts)
+                entry = self._for_orbits(name, self.price * (few.stop - begin) * impacts)
             if entry is None:
-                self.interpreter.iterate(times[part], speeds[part], impacts, self.rho, codes)
-            else:
-                given = times[part], speeds[part], self.rho
-                self._call(entry, (entries.ITERATE, codes.size, impacts), given, status=codes)
-            begin += block
+                self.interpreter.iterate(times[few], speeds[few], impacts, self.rho, status[few])
+                begin = few.stop
+                continue
+            block = max(LANES, TABLES.block // max(impacts, 1) // LANES * LANES)
+            end = min(begin + block * threads_now(), size)
+
+            def fly(lanes: slice, entry: Callable[..., int] = entry) -> None:
+                """Orbits of whole batches."""
+                chosen = slice(lanes.start * LANES, min(lanes.stop * LANES, size)) if self.linear else lanes
+                codes = status[chosen]
+                states = times[chosen], speeds[chosen], self.rho
+                self._call(entry, (entries.ITERATE, codes.size, impacts), states, status=codes)
+
+            lanes = LANES if self.linear else 1
+            shared_out(fly, begin // lanes, -(-end // lanes), max(1, TABLES.shared // max(impacts, 1) // lanes))
+            begin = end
         return times[: tau.size], speeds[: tau.size], status[: tau.size]
 
-    def brackets(self, tau: Array, given: Array, settings: tuple[float, ...]) -> tuple[Array, Array] | None:
+    def brackets(self, tau: Array, velocities: Array, settings: tuple[float, ...]) -> tuple[Array, Array] | None:
         """Brackets of gamma, shape (n, 2), and codes; None where no compiled entry of a linear model is there.
 
         Parameters
         ----------
-        given : velocities below and above gamma, and times to its end, shape (n, 3). settings : see
+        velocities : velocities below and above gamma, and times to its end, shape (n, 3). settings : see
             `kernels.gamma.bracket_gamma`.
         """
         entry = self._search(0.05 * tau.size)
@@ -467,7 +480,7 @@ class CompiledModel:
             return None
         out, status = np.empty((tau.size, 2)), np.empty(tau.size, np.int8)
         numbers = np.concatenate([settings, self.rho])
-        rows = np.ascontiguousarray(given, dtype=float)
+        rows = np.ascontiguousarray(velocities, dtype=float)
         self._call(entry, (entries.BRACKET, tau.size, 0), (tau, rows, numbers), out, status)
         return out, status
 
@@ -491,18 +504,18 @@ class CompiledModel:
         numbers, begin, many = np.concatenate([settings, self.rho]), 0, 4
         scratch, room = self._new_scratch(3 * TABLES.chatter[0] // 2), TABLES.chatter[0]
         while begin < tau.size:
-            part = slice(begin, begin + many)
-            rows, codes = np.empty((3, tau[part].size)), status[part]
-            given = tau[part], v[part], numbers
-            self._call(entry, (entries.LIMIT, codes.size, room), given, rows, codes, trace=scratch)
+            chosen = slice(begin, begin + many)
+            rows, codes = np.empty((3, tau[chosen].size)), status[chosen]
+            states = tau[chosen], v[chosen], numbers
+            self._call(entry, (entries.LIMIT, codes.size, room), states, rows, codes, trace=scratch)
             for index in np.flatnonzero(codes == NO_ROOM).tolist():
                 one, last = slice(begin + index, begin + index + 1), TABLES.chatter[1]
                 end = np.empty((3, 1))
-                given = tau[one], v[one], numbers
+                states = tau[one], v[one], numbers
                 more = self._new_scratch(3 * last // 2)
-                self._call(entry, (entries.LIMIT, 1, last), given, end, codes[index : index + 1], trace=more)
+                self._call(entry, (entries.LIMIT, 1, last), states, end, codes[index : index + 1], trace=more)
                 rows[:, index : index + 1] = end
-            out[:, part] = rows
+            out[:, chosen] = rows
             begin += codes.size
             flown = int(rows[2].sum())
             flight_count.add(flown)
@@ -538,8 +551,8 @@ class CompiledModel:
                 return out
             except LEFT_OPEN:
                 entry = self._here("judge_entry")
-        given = np.array([tau]), np.array([v, height]), times
-        self._call(entry, (entries.FOLLOW, times.size, 0), given, out)
+        states = np.array([tau]), np.array([v, height]), times
+        self._call(entry, (entries.FOLLOW, times.size, 0), states, out)
         return out
 
     def judged(self, tau: Array, v: Array, removed: Array) -> Array:

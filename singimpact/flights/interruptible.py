@@ -1,10 +1,17 @@
-"""Long calls of compiled code that Ctrl-C ends at once: another thread makes the call while the main one waits."""
+"""Long calls of compiled code in other threads: Ctrl-C ends the wait for one at once, and two share out an array."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import lru_cache
+from itertools import pairwise
 from threading import Thread, current_thread, main_thread
 from typing import Any
+
+from singimpact.inputs import refuse
 
 LONG = 0.05
 """Seconds; a thread costs 0.0001."""
@@ -37,3 +44,77 @@ def interruptible(call: Callable[..., int], arguments: tuple[Any, ...], buffers:
     while thread.is_alive():
         thread.join(LOOK)
     return values[0]
+
+
+USUAL = 2
+"""Threads that share out an array unless a call says otherwise; never more than there are processors."""
+_ASKED: ContextVar[int | None] = ContextVar("threads", default=None)
+
+
+@contextmanager
+def on_threads(threads: Any) -> Iterator[None]:
+    """Within it so many threads share out an array; None for `USUAL`.
+
+    Raises
+    ------
+    InputError : it is no number of threads.
+
+    Examples
+    --------
+    >>> with on_threads(1):
+    ...     threads_now()
+    1
+    """
+    if threads is not None and (type(threads) is not int or not 1 <= threads <= 256):
+        raise refuse("threads", threads, "a whole number from 1 to 256, or None")
+    before = _ASKED.set(threads)
+    try:
+        yield
+    finally:
+        _ASKED.reset(before)
+
+
+def threads_now() -> int:
+    """How many threads share out an array in this call."""
+    return _ASKED.get() or min(USUAL, _processors())
+
+
+@lru_cache(maxsize=1)
+def _processors() -> int:
+    """Processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def shared_out(work: Callable[[slice], None], begin: int, end: int, least: int) -> None:
+    """Call `work` for slices that make up begin:end, in threads, of at least so many elements each.
+
+    Examples
+    --------
+    >>> parts = []
+    >>> with on_threads(2):
+    ...     shared_out(parts.append, 0, 100, 30)
+    >>> sorted((part.start, part.stop) for part in parts)
+    [(0, 50), (50, 100)]
+    """
+    count = max(1, min(threads_now(), (end - begin) // least))
+    ends = [begin + (end - begin) * at // count for at in range(count + 1)]
+    slices = [slice(*ends_of_one) for ends_of_one in pairwise(ends)]
+    errors: list[BaseException] = []
+
+    def run(chosen: slice) -> None:
+        try:
+            work(chosen)
+        except BaseException as error:
+            errors.append(error)
+
+    threads = [Thread(target=run, args=(chosen,), name=NAME, daemon=True) for chosen in slices[1:]]
+    for thread in threads:
+        thread.start()
+    work(slices[0])
+    for thread in threads:
+        while thread.is_alive():
+            thread.join(LOOK)
+    if errors:
+        raise errors[0]
