@@ -70,14 +70,14 @@ def recall(file: Path) -> bytes | None:
         with os.fdopen(
             os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)), "rb"
         ) as f:
-            found = f.read()
+            record = f.read()
     except FileNotFoundError:
         return None
     except OSError as error:
         damaged(file, error.strerror or str(error))
         return None
-    content = unsealed(file, found)
-    if content is None and not found.startswith(OLD_SEAL):
+    content = unsealed(file, record)
+    if content is None and not record.startswith(OLD_SEAL):
         damaged(file, "its content is not what was written under this name")
     return content
 

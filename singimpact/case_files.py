@@ -248,8 +248,8 @@ class ZarrStore(InMemory):
                 raise ValueError(f"cases of shape {cases.shape} and type {cases.dtype}")
             _check(group["result"].shape, self.dtype, chunks, len(cases))
         except Exception as error:
-            told = f"output = {shown(str(self.path))} is not a store of results ({error}): name another"
-            raise InputError(told) from None
+            message = f"output = {shown(str(self.path))} is not a store of results ({error}): name another"
+            raise InputError(message) from None
         if key != self.key:
             raise self.refuse_others()
         for (start, count), case in zip(chunks.tolist(), cases, strict=True):

@@ -405,7 +405,9 @@ class _Digest:
         self._dropped(value, state, depth)
         state = {} if state is None else state  # of an object whose attributes are not computed yet
         if isinstance(state, dict) and all(isinstance(name, str) for name in state):
-            self._named({name: each for name, each in state.items() if not _is_cached(type(value), name)}, depth)
+            self._named(
+                {name: attribute for name, attribute in state.items() if not _is_cached(type(value), name)}, depth
+            )
         else:
             self.value(state, depth)
         # iterators of the elements of lists and dicts

@@ -77,7 +77,7 @@ def claims_room(verdicts=VERDICTS):
                 raise unknown("claim", name, known)
         return [claim for claim in CLAIMS if ids is None or claim.id in ids]
 
-    def run(claims, on_start=None, on_end=None, kept=False):  # noqa: ARG001
+    def run(claims, on_start=None, on_end=None, cached=False):  # noqa: ARG001
         for at, claim in enumerate(claims, 1):
             if on_start:
                 on_start(claim, at, len(claims))

@@ -214,8 +214,8 @@ def plotted(measured: Measured) -> Any:
     heights = [SHEET.height] * rows + ([SHEET.bar * len(bars) + 1] if bars else [])
     figure = Figure(figsize=(SHEET.width * max(columns, 1 + bool(bars)), sum(heights) + 0.6), layout="constrained")
     places = figure.add_gridspec(len(heights), columns, height_ratios=heights)
-    for at, (case, part) in enumerate(drawn.items()):
-        _panel(figure.add_subplot(places[at // columns, at % columns]), case, part, names)
+    for at, (case, panel) in enumerate(drawn.items()):
+        _panel(figure.add_subplot(places[at // columns, at % columns]), case, panel, names)
     if bars:
         _bars(figure.add_subplot(places[len(heights) - 1, :]), bars)
     if names:

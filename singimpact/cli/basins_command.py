@@ -69,13 +69,13 @@ def command(
         return draw(result).figure, {"classes": values["classes"], "first_chatter_completes": first}
 
     if keep is None:
-        told = save_once(("basins", model, tau, v, size, impacts, layer), output, make)
+        summary = save_once(("basins", model, tau, v, size, impacts, layer), output, make)
     else:
-        figure, told = make()
+        figure, summary = make()
         save(figure, output)
     if as_json:
-        click.echo(as_json_text({"model": model.to_dict(), "output": output} | told))
+        click.echo(as_json_text({"model": model.to_dict(), "output": output} | summary))
     else:
-        rows = [[str(item["class"]), f"{item['share']:.4f}"] for item in told["classes"]]
+        rows = [[str(item["class"]), f"{item['share']:.4f}"] for item in summary["classes"]]
         click.echo(columns(["class", "share"], rows))
-        click.echo(f"first chatter completes  {told['first_chatter_completes']:.4f}")
+        click.echo(f"first chatter completes  {summary['first_chatter_completes']:.4f}")

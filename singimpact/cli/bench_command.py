@@ -104,7 +104,7 @@ def command(
     directory = None if plots is None else folder(plots)
     tables = _measured([group for group in chosen if group != "states"], effort)
     values = {"quick": quick, **_joined(tables)}
-    texts = _page(tables, directory, picture, output) if form == "page" else [_text(each, form) for each in tables]
+    texts = _page(tables, directory, picture, output) if form == "page" else [_text(table, form) for table in tables]
     wrong = False
     if "states" in chosen and family == "steep":
         steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs, smooth_pairs), not quick)

@@ -23,6 +23,7 @@ from singimpact.store import require_writable
 )
 @click.option(
     "--kept",
+    "last_events",
     type=click.IntRange(1, 100_000),
     default=60,
     show_default=True,
@@ -52,7 +53,7 @@ def command(
     points: int,
     start: tuple[str, str],
     impacts: int,
-    kept: int,
+    last_events: int,
     direction: str | None,
     follow: tuple[tuple[int, int], ...],
     workers: int | None,
@@ -76,10 +77,12 @@ def command(
     from singimpact.scenes.branch_picture import bifurcation_sheet
 
     if direction is not None:
-        diagram = bifurcation(model, over, (low, high), points, start, impacts, kept, direction, output=keep)
+        diagram = bifurcation(model, over, (low, high), points, start, impacts, last_events, direction, output=keep)
     else:
         with nullcontext() if workers is None else WorkerPool(workers) as pool:
-            diagram = bifurcation(model, over, (low, high), points, start, impacts, kept, executor=pool, output=keep)
+            diagram = bifurcation(
+                model, over, (low, high), points, start, impacts, last_events, executor=pool, output=keep
+            )
     branches = [
         branch for n, k in follow for branch in take_branches(take_orbits(model, (n, k), None), over, (low, high), 2000)
     ]
@@ -92,4 +95,4 @@ def command(
     else:
         left = int((~diagram.settled).sum())
         open_ = f"; {left} of them without a period seen in at most {diagram.settle} impacts" if left else ""
-        click.echo(f"{output}: {points} values of {over}, {kept} events of each{open_}")
+        click.echo(f"{output}: {points} values of {over}, {last_events} events of each{open_}")

@@ -39,7 +39,7 @@ def show(name: str, as_json: bool, output: str | None) -> None:
     from singimpact.paper.claims.index import dependants
 
     index = INDEX | BEYOND
-    verdict = run(select([name]), kept=True)[-1]
+    verdict = run(select([name]), cached=True)[-1]
     data: dict[str, Any] = verdict.as_dict() | {
         "mutants": len(CLAIMS[name].mutants),
         "rested_on_by": [other for other, entry in index.items() if name in entry.rests_on],
@@ -85,7 +85,7 @@ def graph(svg: bool, as_json: bool, output: str | None) -> None:
 def _kinds() -> dict[str, str]:
     from singimpact.paper.claims import run, select
 
-    return {v.id: v.in_words if v.corrected else v.worth for v in run(select(), kept=True)}
+    return {v.id: v.in_words if v.corrected else v.worth for v in run(select(), cached=True)}
 
 
 @command.command()

@@ -8,15 +8,15 @@ from singimpact.cli.output import as_json_text, columns, emit, output_options
 
 
 @click.command()
-@click.argument("place", metavar="tangency|swan", type=click.Choice(["tangency", "swan"]))
+@click.argument("contact", metavar="tangency|swan", type=click.Choice(["tangency", "swan"]))
 @click.option("--r", "restitution", metavar="NUMBER", required=True, help="Restitution, a rational in (0, 1).")
 @click.option("--digits", type=int, default=50, show_default=True, help="Significant digits.")
 @output_options
-def command(place: str, restitution: str, digits: int, as_json: bool, output: str | None) -> None:
+def command(contact: str, restitution: str, digits: int, as_json: bool, output: str | None) -> None:
     """Fixed points at a tangency or at a swan, each with a radius within which the true value lies."""
     from singimpact.theory import fixed_points
 
-    points = getattr(fixed_points, place)(restitution, digits)
+    points = getattr(fixed_points, contact)(restitution, digits)
     enclosures = points.as_dict()
     if as_json:
         emit(as_json_text(enclosures), output)

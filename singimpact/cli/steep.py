@@ -130,12 +130,12 @@ def _total(name: str, rows: Sequence[Row]) -> list[str]:
 
     fields = ("wrong", "unresolved", "unresolved_steep", "undecided")
     states, worst = total("states"), max(row.worst_error for row in rows)
-    seconds = [1e6 * sum(getattr(row, part) * row.states for row in rows) / states for part in TIMES]
-    part = f"{total('crossed') / states:.2f}" if rows[0].steep else "-"
+    seconds = [1e6 * sum(getattr(row, field) * row.states for row in rows) / states for field in TIMES]
+    crossed_share = f"{total('crossed') / states:.2f}" if rows[0].steep else "-"
     return [
         name,
         str(states),
-        part,
+        crossed_share,
         *(str(total(field)) for field in fields),
         f"{worst:.1e}",
         *(f"{figure:.0f}" for figure in seconds),

@@ -12,7 +12,7 @@ from singimpact.progress import ProgressLine
 
 @click.command()
 @click.argument("functions", metavar="[FUNCTION]...", nargs=-1)
-@click.option("--place", metavar="PLACE", help="One row of the table alone, such as 'a -> 0'.")
+@click.option("--place", "limit", metavar="PLACE", help="One row of the table alone, such as 'a -> 0'.")
 @click.option("--quick", is_flag=True, help="Fewer points in every sequence.")
 @click.option(
     "--format",
@@ -24,7 +24,7 @@ from singimpact.progress import ProgressLine
 )
 @output_options
 def command(
-    functions: tuple[str, ...], place: str | None, quick: bool, form: str, as_json: bool, output: str | None
+    functions: tuple[str, ...], limit: str | None, quick: bool, form: str, as_json: bool, output: str | None
 ) -> None:
     """The largest error of every public numerical function near its singular points, compared with 60 digits.
 
@@ -33,7 +33,7 @@ def command(
     from singimpact.bench.page import stress_page
     from singimpact.bench.stress.table import NOTE, POINTS, QUICK, as_data, chosen, stressed, table, worst_states
 
-    pairs = chosen(functions, place)
+    pairs = chosen(functions, limit)
     with ProgressLine() as line:
         cells = stressed(pairs, QUICK if quick else POINTS, lambda done, text: line.show(done, len(pairs), text))
     laid_out = columns if form == "text" else markdown

@@ -55,7 +55,7 @@ def function_source(
         c_2 = (a) / 3
         return (t * (c_1 + t * c_2))
     """
-    arguments = ", ".join(f"{each}: Any" for each in [*variables, *parameters])
+    arguments = ", ".join(f"{letter}: Any" for letter in [*variables, *parameters])
     lines = [f"def {name}({arguments}) -> Any:", f'    """{says}"""']
     rows: dict[int, dict[Exponents, Coefficient]] = {}
     for key, coefficient in terms.items():

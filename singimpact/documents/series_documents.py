@@ -383,7 +383,7 @@ def sympy_source(title: str, command: str, expressions: Mapping[str, Any]) -> st
         name: str(printer.doprint(sympy.sympify(expression)))  # type: ignore[no-untyped-call]
         for name, expression in expressions.items()
     }
-    letters = sorted({str(symbol) for each in expressions.values() for symbol in sympy.sympify(each).free_symbols})
+    letters = sorted({str(symbol) for value in expressions.values() for symbol in sympy.sympify(value).free_symbols})
     own = {_letter(name) for name in letters}
     words = {word for text in texts.values() for word in re.findall(r"[A-Za-z_]\w*", text)}
     names = {"S", "Symbol"} | {word for word in words - own if hasattr(sympy, word)}

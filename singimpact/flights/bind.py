@@ -122,16 +122,16 @@ def over_lists(flow: str, rho: str = "", exact_restart: bool = True) -> Callable
     emitted = [compile(nested(ast.parse(text)), "<emitted>", "exec") for text in (flow, rho) if text]
 
     def space(functions: dict[str, Any]) -> dict[str, Any]:
-        made: dict[str, Any] = {**constants(), **functions}
+        namespace: dict[str, Any] = {**constants(), **functions}
         for code in codes:
-            exec(code, made)
+            exec(code, namespace)
         for code in emitted:
-            exec(code, made)
+            exec(code, namespace)
         if flow or not exact_restart:
-            made |= {"restart": made["state_kept"], "quiet": made["quiet_in_steps"]}
+            namespace |= {"restart": namespace["state_kept"], "quiet": namespace["quiet_in_steps"]}
         if flow:
-            made |= {name: made[other] for name, other in IN_STEPS.items()}
-        return made
+            namespace |= {name: namespace[other] for name, other in IN_STEPS.items()}
+        return namespace
 
     return space
 
@@ -139,15 +139,15 @@ def over_lists(flow: str, rho: str = "", exact_restart: bool = True) -> Callable
 @lru_cache(maxsize=1)
 def floats_of() -> dict[str, Any]:
     """Functions of Python's floats that return inf and nan where compiled ones do, and raise nothing."""
-    found: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
-    found["exp"] = lambda x: math.exp(x) if not x > 709.78 else math.inf
-    found["log"] = lambda x: math.log(x) if x > 0 else math.nan
-    found["log1p"] = lambda x: math.log1p(x) if x > -1 else math.nan
-    found["expm1"] = lambda x: math.expm1(x) if not x > 709.78 else math.inf
-    found["sinh"] = lambda x: math.sinh(x) if abs(x) < 710.47 else x * math.inf
+    functions: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
+    functions["exp"] = lambda x: math.exp(x) if not x > 709.78 else math.inf
+    functions["log"] = lambda x: math.log(x) if x > 0 else math.nan
+    functions["log1p"] = lambda x: math.log1p(x) if x > -1 else math.nan
+    functions["expm1"] = lambda x: math.expm1(x) if not x > 709.78 else math.inf
+    functions["sinh"] = lambda x: math.sinh(x) if abs(x) < 710.47 else x * math.inf
     for name in ("sin", "cos", "tan"):
-        found[name] = partial(_circular, found[name])
-    return found
+        functions[name] = partial(_circular, functions[name])
+    return functions
 
 
 def _circular(function: Callable[[float], float], x: float) -> float:

@@ -122,8 +122,8 @@ def _waves(tree: Expression, factor: Expression | None = None) -> tuple[Expressi
     if isinstance(tree, Sum):
         return _summed([_waves(term, factor) for term in tree.terms])
     if isinstance(tree, Product):
-        moving = [part for part in tree.factors if "t" in names_in(part)]
-        rest = [part for part in tree.factors if part is not moving[0]]
+        moving = [operand for operand in tree.factors if "t" in names_in(operand)]
+        rest = [operand for operand in tree.factors if operand is not moving[0]]
         return _waves(moving[0], multiply(factor, *rest)) if len(moving) == 1 else None
     if isinstance(tree, Call) and tree.function in ("sin", "cos"):
         return _wave(tree, factor)

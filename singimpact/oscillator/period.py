@@ -58,13 +58,13 @@ def _frequencies(tree: Expression) -> list[Expression] | None:
             return [multiply(number(2), inner[0]) if tree.function == "tan" else inner[0]]
     if isinstance(tree, Name):
         return None
-    found: list[Expression] = []
+    frequencies: list[Expression] = []
     for child in children(tree):
         rates = _frequencies(child)
         if rates is None:
             return None
-        found.extend(rates)
-    return found
+        frequencies.extend(rates)
+    return frequencies
 
 
 def _split(rate: Expression) -> tuple[Fraction, Expression]:

@@ -123,10 +123,10 @@ def shaken_wall(
         terms = derivative(speed, "t"), multiply(form.stiffness, wall_tree), multiply(form.damping, speed)
         force, forcing = trees["f"], minus(trees["g"], add(*terms))
     law = tree_of(restitution, ("v", *names), "restitution") if isinstance(restitution, str) else number(1)
-    given, used = set().union(*map(names_in, trees.values()), names_in(law)), names_in(force) | names_in(forcing)
+    symbols, used = set().union(*map(names_in, trees.values()), names_in(law)), names_in(force) | names_in(forcing)
     for name in names:
-        if name not in given:
-            raise unknown("parameter", name, sorted(given - {*STATE, "t", "v"}))
+        if name not in symbols:
+            raise unknown("parameter", name, sorted(symbols - {*STATE, "t", "v"}))
     used_parameters = {name: value for name, value in (parameters or {}).items() if name in used | names_in(law)}
     model = kind(force, forcing, 0, restitution, used_parameters, period)
     return ShakenWall(

@@ -206,7 +206,7 @@ def zero_beside(osc: Oscillator, tau: float, bits: int) -> Zero | None:
         lower = [_derivative(osc, zero, zero, below, bits) for below in range(order - 1)]
     except NotSmooth:
         return None
-    if any(abs(part) > Balls(bits).rational(Fraction(1, 2 ** (bits // 2))) for part in lower):
+    if any(abs(coefficient) > Balls(bits).rational(Fraction(1, 2 ** (bits // 2))) for coefficient in lower):
         return None
     return Zero(Number(zero), order, 1 if leading > 0 else -1)
 

@@ -45,11 +45,11 @@ def class_colors(several: Sequence[Basins]) -> list[list[str]]:
     >>> class_colors([])
     []
     """
-    used, shades, found = dict.fromkeys(("orbit", "chatter"), 0), dict[Any, str](), []
-    for each in several:
+    used, shades, colorings = dict.fromkeys(("orbit", "chatter"), 0), dict[Any, str](), []
+    for basins in several:
         colors, names = [], list[Any]()
-        for code, _, _ in each.classes:
-            attractor = each.attractors[code]
+        for code, _, _ in basins.classes:
+            attractor = basins.attractors[code]
             kind, name = attractor.kind, (attractor.kind, attractor.n, attractor.k)
             names.append(name)
             key = (*name, names.count(name))  # the second of two equal (n, k)
@@ -59,8 +59,8 @@ def class_colors(several: Sequence[Basins]) -> list[list[str]]:
                 if kind in used:
                     used[kind] += 1
             colors.append(shades[key])
-        found.append(colors)
-    return found
+        colorings.append(colors)
+    return colorings
 
 
 def draw_first_chatter(found: Basins, axes: Any = None) -> Any:
@@ -106,7 +106,7 @@ FAINT = 0.45
 """Opacity of basins below curves."""
 
 
-def draw_both_sides(found: BothSides, axes: Any) -> Any:
+def draw_both_sides(sides: BothSides, axes: Any) -> Any:
     """Draw both planes; returns the two axes.
 
     Parameters
@@ -116,15 +116,15 @@ def draw_both_sides(found: BothSides, axes: Any) -> Any:
     pair = np.ravel(axes)
     if pair.size != 2:
         raise refuse("axes", f"{pair.size} of them", "two: those before and after the transition")
-    for one, model, side, colors in zip(pair, found.models, found.basins, class_colors(found.basins), strict=True):
+    for one, model, side, colors in zip(pair, sides.models, sides.basins, class_colors(sides.basins), strict=True):
         _draw(one, model, side, colors)
-        value = value_of(with_number(model, found.over), found.over)
-        one.set_title(f"{found.over} = {value:.6g}")
-    first = min(side.tau[0] for side in found.basins)
+        value = value_of(with_number(model, sides.over), sides.over)
+        one.set_title(f"{sides.over} = {value:.6g}")
+    first = min(side.tau[0] for side in sides.basins)
     for one in pair:
-        phase = first + np.mod(found.transition.tau - first, np.ptp(found.basins[0].tau))
+        phase = first + np.mod(sides.transition.tau - first, np.ptp(sides.basins[0].tau))
         one.plot(phase, 0.0, "^", color=BLACK, markerfacecolor="white", markersize=7, clip_on=False, zorder=8)
-        one.set_xlabel(rf"launch phase $\tau$; {found.transition.kind} at the triangle")
+        one.set_xlabel(rf"launch phase $\tau$; {sides.transition.kind} at the triangle")
     pair[1].set_ylabel("")
     return pair
 

@@ -81,7 +81,7 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
 
 def _curves(curves: Sequence[Curve], axes: Any) -> Any:
     """Pieces of one curve share their line in the legend."""
-    planes = sorted({each.axes for each in curves})
+    planes = sorted({piece.axes for piece in curves})
     if len(planes) > 1:
         raise refuse("curves to plot", " and ".join(map(str, planes)), "curves of one plane")
     for curve in curves:

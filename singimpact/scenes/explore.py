@@ -127,8 +127,8 @@ def explore_page(film: ClearanceFilm) -> str:
         "style": (PARTS / "page.css").read_text(encoding="utf-8"),
         "script": _script(film),
     }
-    for name, part in filled.items():
-        page = page.replace(f"@{name}@", part)
+    for name, content in filled.items():
+        page = page.replace(f"@{name}@", content)
     return page
 
 

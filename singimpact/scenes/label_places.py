@@ -59,7 +59,7 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
     inside: list[tuple[float, float, str]] = []
     for x, y, name in labels:
         spot = axes.transData.transform((x, y))
-        gaps = [axes.transData.transform(each[:2]) - spot for each in inside if each[2] == name]
+        gaps = [axes.transData.transform(label[:2]) - spot for label in inside if label[2] == name]
         if _within(spot, box) and not any(np.hypot(*gap) < SETTINGS.together * pixel for gap in gaps):
             inside.append((x, y, name))
     obstacles = [_curve_points(axes, SETTINGS.sample * pixel)]

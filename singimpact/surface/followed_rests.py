@@ -219,7 +219,9 @@ def _at_conjugates(d: Array, rows: Array, faster: Array) -> Array:
     for one, path in zip(by_speed, rows, strict=True):
         at = np.flatnonzero(one[:-1] * one[1:] < 0)
         share = one[at] / (one[at] - one[at + 1])
-        values = [part[at] + share * (part[at + 1] - part[at]) for part in (d, path[:, 0], path[:, 1])]
+        values = [
+            coordinate[at] + share * (coordinate[at + 1] - coordinate[at]) for coordinate in (d, path[:, 0], path[:, 1])
+        ]
         crossings.append(np.stack(values))
     least = min(crossing.shape[1] for crossing in crossings)
     return np.stack([crossing[:, :least] for crossing in crossings], axis=2)

@@ -189,18 +189,18 @@ def _with_more_rests(
     family: Family, times: tuple[float, float], ends: tuple[float, float], wanted: frozenset[str]
 ) -> list[Transition]:
     """Tacnodes, triple points and periodic grazes."""
-    met = [each for each in met_rests(family, ends, times, wanted) if ends[0] <= each.value <= ends[1]]
+    met = [meeting for meeting in met_rests(family, ends, times, wanted) if ends[0] <= meeting.value <= ends[1]]
     events = []
-    for each in met:
-        gap, kind = each.gaps[-1], each.kind
+    for meeting in met:
+        gap, kind = meeting.gaps[-1], meeting.kind
         if kind == "tacnode":
-            flights = RestFlights(family.at(each.value))
-            back = flights.by_speed(np.array([each.first]), np.array([gap]))[0, 1]
+            flights = RestFlights(family.at(meeting.value))
+            back = flights.by_speed(np.array([meeting.first]), np.array([gap]))[0, 1]
             kind = "tacnode, opposite" if back < 0 else "tacnode, same"
-        first = _reduced(each.first, family.at(each.value))
-        rests = (first, *(first + part for part in each.gaps))
+        first = _reduced(meeting.first, family.at(meeting.value))
+        rests = (first, *(first + offset for offset in meeting.gaps))
         if any(low <= sign * gap <= high for sign in (1, -1) for low, high in [_widened(times)]):
-            events.append(Transition(kind, each.value, first, gap, rests))
+            events.append(Transition(kind, meeting.value, first, gap, rests))
     return _each_once(events, ends)
 
 

@@ -145,9 +145,11 @@ def symbolic_completion(order: int) -> SymbolicCompletion:
     numerators: list[_Numerator] = []
     for power in range(1, order + 1):
         total = jets.one if power == 1 else jets.zero
-        for n, known in enumerate(numerators, 1):  # Horner: what stands for c_n is divided by the gaps up to n alone
+        for n, coefficient in enumerate(
+            numerators, 1
+        ):  # Horner: what stands for c_n is divided by the gaps up to n alone
             total = total * jets.gap(n) if n > 1 else total
-            total = total + known.later(power) - known.value * jets.launch[n][power]
+            total = total + coefficient.later(power) - coefficient.value * jets.launch[n][power]
         numerators.append(_Numerator(jets, power, total * (-2) ** power))  # v_c(0, t) = -t/2 + ... in units of a
     coefficients = {n: jets.over_gaps(numerator.value, n) for n, numerator in enumerate(numerators, 1)}
     return SymbolicCompletion(order, jets.names, coefficients)

@@ -381,8 +381,8 @@ def curve_at(where: Place, order: int, ring: Any) -> InvariantCurve:
     bits = ring.bits if isinstance(ring, Balls) else 64
     with precision_of(ring):
         require_smooth_rho(where.model, TASK)
-        found = multiplier(where.j, where.model.slope_at_rest(), bits)
-        lambda_ = found if isinstance(ring, Balls) else float(found.mid())
+        ball = multiplier(where.j, where.model.slope_at_rest(), bits)
+        lambda_ = ball if isinstance(ring, Balls) else float(ball.mid())
         r = where.restitution_in(ring)
         return invariant_curve(where.contact(order, ring), lambda_, order, where.rho(order, ring), r)
 
@@ -405,7 +405,7 @@ def _exact_curve(where: Place, order: int, name: str) -> dict[int, Any] | None:
 
 
 def _through_symbols(
-    contact: Contact, lambda_: Fraction, order: int, part: str, rho: Mapping[int, Any]
+    contact: Contact, lambda_: Fraction, order: int, quantity: str, rho: Mapping[int, Any]
 ) -> dict[int, Any]:
     """The curve for symbols in units of a_j, then the constants put in: a polynomial a_j has no inverse."""
     import sympy
@@ -422,8 +422,8 @@ def _through_symbols(
         values[sympy.Symbol(f"f_{i}{k}")] = shown
     for name in rho_names(j, order):
         values[sympy.Symbol(name)] = _shown(rho.get(int(name[4:]), Fraction(0))) * length ** (int(name[4:]) - 1)
-    scale = length if part == "graph" else 1
-    return {n: sympy.expand(ring.to_sympy(value).subs(values) * scale) for n, value in getattr(curve, part).items()}
+    scale = length if quantity == "graph" else 1
+    return {n: sympy.expand(ring.to_sympy(value).subs(values) * scale) for n, value in getattr(curve, quantity).items()}
 
 
 def _shown(value: Any) -> Any:

@@ -140,7 +140,7 @@ def _unit(j: int, names: tuple[str, ...]) -> Unit:
 
 def _factored(terms: Mapping[Exponents, tuple[Any, Any]]) -> dict[Exponents, Factored]:
     """Numerator over denominator, each an fmpq_poly in lambda, by factors that begin with a positive number."""
-    found = {}
+    products = {}
     for key, (above, below) in terms.items():
         content, factors = Fraction(1), {}
         for poly, sign in ((above, 1), (below, -1)):
@@ -151,5 +151,5 @@ def _factored(terms: Mapping[Exponents, tuple[Any, Any]]) -> dict[Exponents, Fac
                 if whole[0] < 0:
                     whole, content = tuple(-c for c in whole), content * (-1) ** power
                 factors[whole] = sign * int(power)
-        found[tuple(map(int, key))] = Factored(content, factors)
-    return found
+        products[tuple(map(int, key))] = Factored(content, factors)
+    return products

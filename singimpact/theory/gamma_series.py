@@ -169,12 +169,12 @@ class _Solver:
                 if k in self.a:
                     total = total + self.a[k] * (self.tau_powers[q][level - (k - j)] * comb(k, q))
             coefficients.append(total)
-        found = self.polys.poly(coefficients)
+        polynomial = self.polys.poly(coefficients)
         for (i, k), value in self.force.items():
             shift = self._shift(i, k)
             if shift <= level:
-                found = found + self._product(i, k, level - shift) * value
-        return found
+                polynomial = polynomial + self._product(i, k, level - shift) * value
+        return polynomial
 
     def _product(self, i: int, k: int, level: int) -> Any:
         """One level of (tau y)^i y'^k."""

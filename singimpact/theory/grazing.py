@@ -124,7 +124,7 @@ class GrazingMap:
         arguments = ["h"]
         if self.names:
             lines.append(f"    unit = {lead} / {factorial(self.j)}")
-            arguments += [each if not (w := _weight(each)) else f"{each} * unit**{w}" for each in self.names]
+            arguments += [jet if not (w := _weight(jet)) else f"{jet} * unit**{w}" for jet in self.names]
         unit = "unit * " if self.names else ""
         lines.append(f"    return {unit}_x({', '.join(arguments)}), {unit}_xdot({', '.join(arguments)})\n")
         nothing: Any = {(0,): {(0,) * len(self.names): Fraction(0)}}  # x begins with h^2
@@ -209,7 +209,7 @@ def _generic(j: int, order: int) -> GrazingMap:
     contact = Contact.generic(j, order, unit=True, more=more)
     ring = contact.ring
     rho = {int(name[4:]): ring.symbol(name) for name in more[:-1]}
-    found = _expanded(contact, order, ring.symbol("r"), rho)
+    expansions = _expanded(contact, order, ring.symbol("r"), rho)
     names = ring.names[:-1]
     r, lambda_ = sympy.Symbol("r"), sympy.Symbol("lambda")
 
@@ -225,13 +225,16 @@ def _generic(j: int, order: int) -> GrazingMap:
         polynomials = RationalCoefficients({key: (flint.fmpq_poly(row), one) for key, row in sorted(terms.items())})
         return in_length(polynomials, names, j, LENGTHS[name]).xreplace({lambda_: r})
 
-    series = {part: {n: shown(part, value) for n, value in values.items()} for part, values in found.items()}
+    series = {
+        coordinate: {n: shown(coordinate, value) for n, value in values.items()}
+        for coordinate, values in expansions.items()
+    }
     written = {
-        part: {
+        coordinate: {
             (n,): {key: Fraction(int(c.p), int(c.q)) for key, c in value.to_dict().items()}
             for n, value in values.items()
         }
-        for part, values in found.items()
+        for coordinate, values in expansions.items()
     }
     return _made(j, order, series, sympy.Symbol(derivative_name(j)), written, ring.names)
 

@@ -71,7 +71,7 @@ def _curve() -> Counted:
     """1, and the largest relative distance from the closed form of the doublings."""
     ball = ImpactOscillator("1", "G*cos(t)", 0, "0.5", {"G": "1.5"})
     orbits = [branch(orbit, "G", (1.4, 1.7)) for orbit in ball.periodic(1, 1)]
-    (event,) = (event for each in orbits for event in each.events if event.kind == PERIOD_DOUBLING.name)
+    (event,) = (event for family in orbits for event in family.events if event.kind == PERIOD_DOUBLING.name)
     curve = event_curve(event, ("G", "restitution"), ((0.5, 3.5), (0.1, 0.95)), step=0.012)
     off = 1.0
     for G, r in curve.parameters.tolist():

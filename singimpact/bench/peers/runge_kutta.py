@@ -68,9 +68,9 @@ def varied(tolerance: float = 1e-9) -> Any:
         event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
         span = (problem.tau, problem.tau + LONGEST)
         start = [problem.clearance, problem.v, 0.0, 1.0, 0.0, 0.0]
-        found = solve_ivp(field, span, start, method="DOP853", rtol=tolerance, atol=tolerance, events=event)
-        if found.status != 1:
+        solution = solve_ivp(field, span, start, method="DOP853", rtol=tolerance, atol=tolerance, events=event)
+        if solution.status != 1:
             return [float("nan")] * 4
-        return derivative_of_map(problem, float(found.t[-1]), found.y[1:, -1].tolist())
+        return derivative_of_map(problem, float(solution.t[-1]), solution.y[1:, -1].tolist())
 
     return fly

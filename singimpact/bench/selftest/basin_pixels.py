@@ -181,10 +181,10 @@ class Follower:
         """Whether an orbit and a neighbour part within so many impacts."""
         one, other = state, (state[0] + distance * self.period, state[1] * (1 + distance))
         for _ in range(impacts):
-            ends = [self.plain.impacts(*each, 1, True) for each in (one, other)]
+            ends = [self.plain.impacts(*start, 1, True) for start in (one, other)]
             if None in ends:
                 return ends[0] is not ends[1]
-            (t, v), (s, u) = ((each[0] + end[0], end[1]) for each, end in zip((one, other), ends, strict=True) if end)
+            (t, v), (s, u) = ((start[0] + end[0], end[1]) for start, end in zip((one, other), ends, strict=True) if end)
             if abs(t - s) > FOLLOWED.parted * self.period or abs(v - u) > FOLLOWED.parted * self.fast:
                 return True
             turns = t // self.period * self.period
@@ -193,9 +193,9 @@ class Follower:
 
 
 @lru_cache(maxsize=64)
-def _after_lift_off(follower: Follower, place: int) -> tuple[Fate, float]:
+def _after_lift_off(follower: Follower, index: int) -> tuple[Fate, float]:
     """The behaviour after a lift-off, and the time to the next one where a chatter completes."""
-    lifted = follower.plain.lift_offs[place]
+    lifted = follower.plain.lift_offs[index]
     hit = follower.plain.lifted(lifted, follower.horizon)
     if hit.status != HIT or not hit.v > 0:
         return Fate("no impact" if hit.status == MISS else "undecided"), inf

@@ -95,7 +95,7 @@ def _numbers(at: str, r: Any) -> list[Any]:
     roots = mpmath.polyroots(coefficients, maxsteps=500, extraprec=600)
     real = sorted(mpmath.re(root) for root in roots if abs(mpmath.im(root)) < mpmath.mpf(10) ** -40)
     lam = real[-1]
-    above, below = (mpmath.polyval(part, lam) for part in (p[::-1], p))
+    above, below = (mpmath.polyval(polynomial, lam) for polynomial in (p[::-1], p))
     mu = (above / below) ** 2 / lam
     if j == 2:
         return [lam - 1, lam, mu, 1 - lam, mu - 1]

@@ -24,7 +24,7 @@ NOTE = (
 )
 
 
-def chosen(names: Sequence[str], place: str | None) -> list[tuple[Function, str]]:
+def chosen(names: Sequence[str], limit: str | None) -> list[tuple[Function, str]]:
     """The requested sequences; an unknown name is refused.
 
     Examples
@@ -35,10 +35,10 @@ def chosen(names: Sequence[str], place: str | None) -> list[tuple[Function, str]
     for name in names:
         if name not in FUNCTIONS:
             raise unknown("function", name, tuple(FUNCTIONS))
-    if place is not None and place not in PLACES:
-        raise unknown("place", place, tuple(PLACES))
+    if limit is not None and limit not in PLACES:
+        raise unknown("place", limit, tuple(PLACES))
     rows = [FUNCTIONS[name] for name in dict.fromkeys(names)] or list(FUNCTIONS.values())
-    return [(row, at) for row in rows for at in PLACES if at in row.sweeps and place in (None, at)]
+    return [(row, at) for row in rows for at in PLACES if at in row.sweeps and limit in (None, at)]
 
 
 def stressed(

@@ -77,9 +77,9 @@ def advance_times(b: int, v: Any, lane: Any, turn: Any) -> None:
     """Times since the start move on, compensated; whole periods are taken off, so that phases keep their digits."""
     for k in range(LANES):
         # Kahan's sum, as in `orbits.later`
-        part = (lane[TIME + k] if lane[MODE + k] != 3.0 else 0.0) - lane[LOST + k]
-        total = lane[SINCE + k] + part
-        lost = (total - lane[SINCE + k]) - part
+        increment = (lane[TIME + k] if lane[MODE + k] != 3.0 else 0.0) - lane[LOST + k]
+        total = lane[SINCE + k] + increment
+        lost = (total - lane[SINCE + k]) - increment
         n = (total * turn[2] + NEAREST) - NEAREST
         lane[SINCE + k], lane[LOST + k] = total - n * turn[0], lost + n * turn[1]
         lane[TURNS + k] += n

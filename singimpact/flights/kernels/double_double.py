@@ -19,8 +19,8 @@ def sum_twice(a: float, a_low: float, b: float, b_low: float) -> Any:
     """
     total = a + b
     # Knuth's exact sum: total + rest = a + b whichever is larger
-    part = total - a
-    rest = ((a - (total - part)) + (b - part)) + (a_low + b_low)
+    rounded_b = total - a
+    rest = ((a - (total - rounded_b)) + (b - rounded_b)) + (a_low + b_low)
     high = total + rest
     return high, rest - (high - total)
 

@@ -208,34 +208,34 @@ def judge_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, o
     """
     count, kind = sizes[COUNT], sizes[KIND]
     model, work = taylor_model(flat, sizes), scratch_of(scratch, sizes)
-    states, speeds, given = block(tau, 0, (count,)), block(v, 0, (count,)), block(w, 0, (count,))
+    states, speeds, quantities = block(tau, 0, (count,)), block(v, 0, (count,)), block(w, 0, (count,))
     if kind == FOLLOW:
         t, t_low = reduced_twice(tau[0], model.turn)
         placed(t, t_low, model, work)
         work.flight.q[0] = v[1]
-        follow(work.launch, v[0], given, model.numbers, model.rules, work.flight, block(out, 0, (count, 2)))
+        follow(work.launch, v[0], quantities, model.numbers, model.rules, work.flight, block(out, 0, (count, 2)))
         return 0
     if kind == RELEASES:
         codes = block(status, 0, (count,))
-        return releases(states, given, model, work, block(out, 0, (10, count)), codes)
+        return releases(states, quantities, model, work, block(out, 0, (10, count)), codes)
     if kind == DROPS:
         codes = block(status, 0, (count,))
-        return drops(states, speeds, given, model, work, block(out, 0, (10, count)), codes)
+        return drops(states, speeds, quantities, model, work, block(out, 0, (10, count)), codes)
     columns = columns_of(scratch, sizes)
     if kind == VARIATIONS:
-        return taylor_variations(states, speeds, given, model, work, columns, block(out, 0, (count, 4)))
+        return taylor_variations(states, speeds, quantities, model, work, columns, block(out, 0, (count, 4)))
     trace = block(scratch, scratch_length(sizes), (sizes[IMPACTS], 4))
-    return judged_hits(states, speeds, given, model, work, columns, trace, block(out, 0, (11, count)))
+    return judged_hits(states, speeds, quantities, model, work, columns, trace, block(out, 0, (11, count)))
 
 
-def taylor_hits(tau: Any, v: Any, known: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+def taylor_hits(tau: Any, v: Any, accelerations: Any, model: Any, work: Any, out: Any, status: Any) -> int:
     """`taylor_hit` of every state; how many codes are not 0 is returned."""
     others = 0
     for i in range(len(tau)):
         code = AT_REST
         if v[i] > 0:
             t, t_low = reduced_twice(tau[i], model.turn)
-            code, _a = taylor_hit(t + t_low, v[i], 0.0, known[i], model, work)
+            code, _a = taylor_hit(t + t_low, v[i], 0.0, accelerations[i], model, work)
         status[i] = code
         others += 1 if code != 0 else 0
         for k in range(4):

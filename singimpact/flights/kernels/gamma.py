@@ -71,8 +71,8 @@ def plain_hit(t: float, t_low: float, v: float, model: Any, work: Any) -> Any:
     if a < 0 and -16 * v > a * model.table.step:
         for j in range(2 * len(model.numbers.waves)):
             work.flight.W[j, 0] = work.launch[j]
-        found, s, slope = root_after_launch(v, a, -4 * v / a, model, work.flight)
-        if found == 1 and s <= model.table.step:
+        roots, s, slope = root_after_launch(v, a, -4 * v / a, model, work.flight)
+        if roots == 1 and s <= model.table.step:
             return 0, a, s, slope * s
     code, a = linear_hit(t, t_low, v, 0.0, model, work)
     code = 0 if code == NOT_REFINED else code

@@ -142,21 +142,21 @@ def launch_acceleration(model: Any, work: Any) -> Any:
     return 2 * work.flight.X[2], rounding(work.flight.X, work.flight.W, UNIT, model.numbers)
 
 
-def taylor_hit(t: float, v: float, near: float, known: float, model: Any, work: Any) -> Any:
+def taylor_hit(t: float, v: float, near: float, a_exact: float, model: Any, work: Any) -> Any:
     """(code, a_c at the launch) of a flight in Taylor steps from a launch at t, as `linear_hit` without conditions.
 
     Parameters
     ----------
-    known : a_c at the launch to all its digits; nan: from the recurrence, and the code is CANCELS where that loses five
-        bits that matter; inf: from the recurrence.
+    a_exact : a_c at the launch to all its digits; nan: from the recurrence, and the code is CANCELS where that loses
+        five bits that matter; inf: from the recurrence.
     """
     hit, launch = work.hit, work.launch
     launch[0] = t
-    a = known
-    if not abs(known) < inf:
+    a = a_exact
+    if not abs(a_exact) < inf:
         a, error = launch_acceleration(model, work)
         # a_c decides the flight where v is small beside the size of its terms over the rate at which they change
-        if known != known and 32 * UNIT * abs(a) < error and 4 * UNIT * v * model.rules.pace < error:
+        if a_exact != a_exact and 32 * UNIT * abs(a) < error and 4 * UNIT * v * model.rules.pace < error:
             return CANCELS, a
     if near > 0 and a < 0 and ends_soon(v, a, 6 * work.flight.X[3], near, model.rules):
         return PRESSED, a

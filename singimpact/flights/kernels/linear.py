@@ -134,7 +134,7 @@ def quiet(z: Any, u: Any, W: Any, p: Any) -> Any:
     none = 0 * z
     if d < 0 or k < 0:
         return none
-    place, speed, bound, rise = none, none, none, none
+    displacement, speed, bound, rise = none, none, none, none
     for j in range(len(p.waves)):
         rate = p.waves[j, RATE]
         # (k - rate^2 + i d rate) answers: the amplitude of x over that of the force
@@ -144,18 +144,18 @@ def quiet(z: Any, u: Any, W: Any, p: Any) -> Any:
             return none  # too near to a resonance for doubles
         even = p.waves[j, COSINE] * W[2 * j, 0] + p.waves[j, SINE] * W[2 * j + 1, 0]
         odd = p.waves[j, SINE] * W[2 * j, 0] - p.waves[j, COSINE] * W[2 * j + 1, 0]
-        place += (a * even - b * odd) / square
+        displacement += (a * even - b * odd) / square
         speed += rate * (a * odd + b * even) / square
         size = ((p.waves[j, COSINE] * p.waves[j, COSINE] + p.waves[j, SINE] * p.waves[j, SINE]) / square) ** 0.5
         bound += size
         rise += abs(rate) * size
-    free, moving = z - place, u - speed
+    free, moving = z - displacement, u - speed
     spare = (abs(z) + abs(free) + bound) / 1048576
     if k > 0:
         mean = p.steady / k
         away = ((free - mean) * (free - mean) + moving * moving / k) ** 0.5
         spare += (abs(mean) + away) / 1048576
-        gap = mean + place - away - spare
+        gap = mean + displacement - away - spare
         if not gap > 0:
             return none
         return SHY * gap / rise if rise > 0 else gap * inf

@@ -60,21 +60,21 @@ def recurrence_entry(sizes: Any, numbers: Any, p: Any, launch: Any, X: Any, W: A
     p : of the model. launch, X, W, A : see `state.Work`, `state.Columns`; each is as long as a row of W, and B and Z
         lie behind A, see `layout.columns_of`.
     """
-    part, n, room = sizes[0], sizes[1], sizes[3]
+    kind, n, room = sizes[0], sizes[1], sizes[3]
     x, w, constants = block(X, 0, (room,)), block(W, 0, (sizes[2], room)), block(p, 0, (room,))
-    given = block(numbers, 0, (4,))
-    if part == DISC:
-        given[0], given[1] = disc(x, w, n, given[0], constants)
+    values = block(numbers, 0, (4,))
+    if kind == DISC:
+        values[0], values[1] = disc(x, w, n, values[0], constants)
         return
-    if part == ROUNDING:
-        given[0] = rounding(x, w, given[0], constants)
+    if kind == ROUNDING:
+        values[0] = rounding(x, w, values[0], constants)
         return
     work, start = Work(x, w, x), block(launch, 0, (room,))
-    if part == COEFFICIENTS:
-        coefficients(start, given[0], given[1], given[2], given[3], n, constants, work)
+    if kind == COEFFICIENTS:
+        coefficients(start, values[0], values[1], values[2], values[3], n, constants, work)
         return
     columns = Columns(block(A, 0, (room,)), block(A, room, (room,)), block(A, 2 * room, (room,)))
-    if part == COLUMNS:
-        variations(start, given[0], given[1], given[2], n, constants, work, columns)
+    if kind == COLUMNS:
+        variations(start, values[0], values[1], values[2], n, constants, work, columns)
         return
-    given[0], given[1], given[2] = disc_of_columns(work, columns, n, given[0], constants)
+    values[0], values[1], values[2] = disc_of_columns(work, columns, n, values[0], constants)

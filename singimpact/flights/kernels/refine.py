@@ -85,10 +85,10 @@ def move_twice(space: Any, h: float, h_low: float, p: Any, rest: Any) -> None:
             slope[i, 0], slope[i, 1] = product_twice(now[RATE], low[RATE], -term[i + 1, 0], -term[i + 1, 1])
             slope[i + 1, 0], slope[i + 1, 1] = product_twice(now[RATE], low[RATE], term[i, 0], term[i, 1])
         slope[1, 0], slope[1, 1] = s, s_low
-        part, part_low = divided(h, h_low, k)
+        ratio, ratio_low = divided(h, h_low, k)
         left = 0.0
         for i in range(n):
-            term[i, 0], term[i, 1] = product_twice(slope[i, 0], slope[i, 1], part, part_low)
+            term[i, 0], term[i, 1] = product_twice(slope[i, 0], slope[i, 1], ratio, ratio_low)
             left = max(left, abs(term[i, 0]) - 1e-33 * abs(y[i, 0]))
             y[i, 0], y[i, 1] = sum_twice(y[i, 0], y[i, 1], term[i, 0], term[i, 1])
         if left <= 0.0:

@@ -118,9 +118,9 @@ def moved(X: Any, z: Any, z_lost: Any, u: Any, u_lost: Any, n: int, h: Any) -> A
         if k > 1:
             turn = turn * h + k * X[k]
     # Kahan's sum: what the addition to z rounds away is subtracted from the next increment
-    part = rise * h - z_lost
-    total = z + part
-    z_lost = (total - z) - part
+    increment = rise * h - z_lost
+    total = z + increment
+    z_lost = (total - z) - increment
     change = turn * h - u_lost
     speed = u + change
     u_lost = (speed - u) - change

@@ -96,24 +96,24 @@ def judge(launch: Any, trace: Any, p: Any, rules: Any, work: Any, columns: Any, 
     while True:
         A[0], A[1], B[0], B[1], Z[0], Z[1] = 1.0, 0.0, 0.0, 1.0, 0.0, 0.0
         variations(launch, time, z, u, terms, p, work, columns)
-        known = rounding(X, W, unit, p) if fresh else before
+        roundoff = rounding(X, W, unit, p) if fresh else before
         if fresh and i > 0:
             cut = 2 * abs(2 * X[2] - trace[i, 3]) / order
-            off_u = h * (cut + max(known, before)) + unit * abs(u)
+            off_u = h * (cut + max(roundoff, before)) + unit * abs(u)
             off_z = unit * (abs(z) + h * (abs(u) + h * abs(X[2]))) + h * off_u / 2
             zz, uu = zz + off_z * off_z, uu + off_u * off_u
         if i == steps:
             break
         if fresh:
-            before, h = known, trace[i + 1, 0] - time
+            before, h = roundoff, trace[i + 1, 0] - time
         # columns of a stiff model decay faster than the flight moves: their steps are shorter
         stiff = max(2 * abs(B[2]), (2 * abs(A[2])) ** 0.5)
         left = trace[i + 1, 0] - time
         fresh = not stiff * left > 3
-        part = left if fresh else 3 / stiff
-        a, a_dot, _size = advanced(A, A[0], terms, part)
-        b, b_dot, _size = advanced(B, B[0], terms, part)
-        d, d_dot, _size = advanced(Z, Z[0], terms, part)
+        step = left if fresh else 3 / stiff
+        a, a_dot, _size = advanced(A, A[0], terms, step)
+        b, b_dot, _size = advanced(B, B[0], terms, step)
+        d, d_dot, _size = advanced(Z, Z[0], terms, step)
         by_v, by_v_dot = a * by_v + b * by_v_dot, a_dot * by_v + b_dot * by_v_dot
         by_tau, by_tau_dot = a * by_tau + b * by_tau_dot + d, a_dot * by_tau + b_dot * by_tau_dot + d_dot
         zz, zu, uu = (a * a * zz + 2 * a * b * zu + b * b * uu,
@@ -123,8 +123,8 @@ def judge(launch: Any, trace: Any, p: Any, rules: Any, work: Any, columns: Any, 
             i += 1
             time, z, u = trace[i, 0], trace[i, 1], trace[i, 2]
         else:
-            z, u, _size = advanced(X, z, terms, part)
-            time += part
+            z, u, _size = advanced(X, z, terms, step)
+            time += step
     out[0], out[1], out[2], out[3] = by_v, by_v_dot, by_tau, by_tau_dot
     out[4], out[5], out[6], out[7], out[8] = zz, zu, uu, 2 * X[2], steps
 
@@ -137,11 +137,11 @@ def column_step(work: Any, columns: Any, n: int, h: Any, R: Any, ulp: Any, p: An
             break
         # as in `steps.allowed_step`: Cauchy's bound of the cut-off, integrated twice
         q = h / R
-        part = 1.001 * h * h * whole_power(q, n - 1) / (n * (1 - q)) if q < 0.9 else 1e300 + 0 * h
+        cutoff = 1.001 * h * h * whole_power(q, n - 1) / (n * (1 - q)) if q < 0.9 else 1e300 + 0 * h
         a, b, d = disc_of_columns(work, columns, n, R, p)
         # Z starts from nothing, and Z - x' solves the homogeneous equation: what a step moves either of them counts
         size = ulp * abs(X[1]) + h * (abs(X[2]) + h * (abs(X[3]) + abs(Z[2]) + h * (abs(Z[3]) + h * abs(Z[4]))))
-        if a * part <= 25 * ulp and b * part <= 25 * ulp * h and d * part <= 25 * ulp * size:
+        if a * cutoff <= 25 * ulp and b * cutoff <= 25 * ulp * h and d * cutoff <= 25 * ulp * size:
             return h
         h, R = h * 4 / 5, R * 15 / 16
     return 0 * h

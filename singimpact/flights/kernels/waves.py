@@ -28,10 +28,10 @@ def reduced_twice(tau: float, turn: Any) -> Any:
     # Cody and Waite: the period in parts whose products with n are exact; the differences are summed as high + low
     n, high, low = (tau / turn[0] + NEAREST) - NEAREST, tau, 0.0
     for i in range(1, 5):
-        part, before = n * turn[i], high
-        high = before - part
+        multiple, before = n * turn[i], high
+        high = before - multiple
         back = high - before
-        low += (before - (high - back)) - (part + back)
+        low += (before - (high - back)) - (multiple + back)
     total = high + low
     return total, low - (total - high)
 

@@ -179,7 +179,7 @@ def run(
     on_start: Callable[[Entry | Claim, int, int], None] | None = None,
     on_end: Callable[[Verdict, int, int], None] | None = None,
     *,
-    kept: bool = False,
+    cached: bool = False,
 ) -> list[Verdict]:
     """Decide claims in the order given.
 
@@ -187,7 +187,7 @@ def run(
     ----------
     claims : entries as `select` returns them, whose claims are built when they are decided; or claims themselves.
     on_start, on_end : called with the entry or claim, or with its verdict; its index; the number of claims.
-    kept : use verdicts kept from earlier runs while nothing they depend on has changed, and keep new ones.  A claim
+    cached : use verdicts cached from earlier runs while nothing they depend on has changed, and keep new ones.  A claim
         that is given itself is always decided.
     """
     chosen = list(claims)
@@ -198,7 +198,7 @@ def run(
             on_start(claim, index, len(chosen))
         if isinstance(claim, Claim):
             done[claim.id] = _decided(claim, done)
-        elif kept:
+        elif cached:
             done[claim.id] = _recalled(claim, done, keys)
         else:
             done[claim.id] = _decided(CLAIMS[claim.id], done)

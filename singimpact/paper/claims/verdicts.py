@@ -180,7 +180,7 @@ def verify(
 
         wanted = [*(wanted or ()), *BEYOND]
     claims = select(wanted)
-    return VerdictTable(claims, run(claims, on_start=on_start, kept=True))
+    return VerdictTable(claims, run(claims, on_start=on_start, cached=True))
 
 
 @dataclass(frozen=True, repr=False)

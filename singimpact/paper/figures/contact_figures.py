@@ -350,7 +350,7 @@ def figure_7() -> Picture:
 
 def figure_8() -> Picture:
     """At a swan point with a'' < 0 every stable manifold flattens, and gamma touches Pi_0 to third order."""
-    swan = next(each for each in swan_points("x", "cos(2*t)") if each.kind == "negative")
+    swan = next(point for point in swan_points("x", "cos(2*t)") if point.kind == "negative")
     model = swan.oscillator("0.5")
     low, high, v = -0.45, 0.45, 0.03
     frame = Window((low, high), (0.0, v), 1 / ARCS)

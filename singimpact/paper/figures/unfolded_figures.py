@@ -30,7 +30,7 @@ def figure_13() -> Picture:
     lines = [Line(edge, "jump", "arc BE' of P", "$P$", 0.35, words="arc $BE'$ of the outline $P$")]
     for foot in np.linspace(swan.A, swan.B, LEAVES + 2)[1:-1].tolist():
         lines += [Line(curve.points, "manifold", "leaf") for curve in stable_manifold(swan.model, frame, repr(foot))]
-    curve = next(each for each in gammas_within(swan.model, frame) if abs(each.points[0, 0] - swan.B) < 1e-6)
+    curve = next(gamma for gamma in gammas_within(swan.model, frame) if abs(gamma.points[0, 0] - swan.B) < 1e-6)
     lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", 0.55))
     lines.append(
         Line(

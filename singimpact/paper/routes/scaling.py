@@ -61,11 +61,11 @@ def scaled(weights: Weights) -> tuple[Any, Any]:
         y: H**weights.velocity * y,
     }
     unit = weights.height - 2 * weights.time
-    found = sympy.expand(pushed().subs(images, simultaneous=True) / H**unit)
-    if not found.is_polynomial(H):
+    acceleration = sympy.expand(pushed().subs(images, simultaneous=True) / H**unit)
+    if not acceleration.is_polynomial(H):
         raise ArithmeticError("x'' does not stay finite as H -> 0")
-    limit = sympy.factor(found.subs(H, 0))
-    rest = sympy.expand((found - sympy.expand(limit)) / H)
+    limit = sympy.factor(acceleration.subs(H, 0))
+    rest = sympy.expand((acceleration - sympy.expand(limit)) / H)
     substitution(At(pushed(), images), H**unit * (limit + H * rest))
     return limit, rest
 

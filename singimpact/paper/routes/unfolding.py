@@ -94,7 +94,7 @@ def value_at_point(expression: Any, point: tuple[Any, Any]) -> Any:
     return found
 
 
-def _certified(expression: Any, images: dict[Any, Any], found: Any, order: int | None = None) -> None:
+def _certified(expression: Any, images: dict[Any, Any], result: Any, order: int | None = None) -> None:
     """Leave the certificate of a substitution; a square root in the images is w."""
     radicands = {
         power.base
@@ -105,9 +105,9 @@ def _certified(expression: Any, images: dict[Any, Any], found: Any, order: int |
     (radicand,) = radicands or {None}
     if radicand is not None:
         root = sympy.sqrt(radicand)
-        images, found = {name: image.subs(root, w) for name, image in images.items()}, found.subs(root, w)
+        images, result = {name: image.subs(root, w) for name, image in images.items()}, result.subs(root, w)
     relation = None if radicand is None else (w**2 - radicand, w)
-    substitution(At(expression, images), found, order=order, small=[x, y] if order else [], where=relation)
+    substitution(At(expression, images), result, order=order, small=[x, y] if order else [], where=relation)
 
 
 A, B = (sympy.Integer(-1), sympy.Integer(0)), (sympy.Integer(1), sympy.Integer(0))

@@ -387,7 +387,7 @@ def errata(on_start: Callable[[Entry | Claim, int, int], None] | None = None) ->
     from singimpact.paper.claims import run, select
 
     claims = select()
-    verdicts = {verdict.id: verdict for verdict in run(claims, on_start=on_start, kept=True)}
+    verdicts = {verdict.id: verdict for verdict in run(claims, on_start=on_start, cached=True)}
     entries = []
     for verdict in verdicts.values():
         if verdict.kind == "corrected":

@@ -98,5 +98,5 @@ def marks_of(shown: Iterable[Section], on_start: Callable[..., None] | None = No
 
     return {
         verdict.id: Mark(verdict.kind, verdict.worth, verdict.printed if verdict.corrected else "")
-        for verdict in run(select(ids), on_start=on_start, kept=True)
+        for verdict in run(select(ids), on_start=on_start, cached=True)
     }

@@ -74,7 +74,7 @@ EACH = [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name 
 @pytest.fixture(scope="module")
 def verdicts():
     """name -> verdict, decided once."""
-    return lambda name: run(select([name]), kept=True)[-1]
+    return lambda name: run(select([name]), cached=True)[-1]
 
 
 def test_index_is_what_the_files_say():

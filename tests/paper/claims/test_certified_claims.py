@@ -21,7 +21,7 @@ UNDERIVED = {
 
 @pytest.fixture(scope="module")
 def verdicts():
-    return {verdict.id: verdict for verdict in run(select(), kept=True)}
+    return {verdict.id: verdict for verdict in run(select(), cached=True)}
 
 
 def all_of(verdicts):

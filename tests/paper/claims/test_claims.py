@@ -78,12 +78,12 @@ MISPRINTED = {
 
 @pytest.fixture(scope="module")
 def verdicts():
-    return {verdict.id: verdict for verdict in run(select(), kept=True)}  # the suite starts with an empty cache
+    return {verdict.id: verdict for verdict in run(select(), cached=True)}  # the suite starts with an empty cache
 
 
 @pytest.mark.parametrize("name", CLAIMS)
 def test_claim_has_a_verdict(name):
-    verdict = run(select([name]), kept=True)[-1]  # alone with what it rests on: what fails is named at once
+    verdict = run(select([name]), cached=True)[-1]  # alone with what it rests on: what fails is named at once
     assert verdict.kind in {"proved", MODULO, "certified", "argued", "supported", "cited", "corrected"}, (
         verdict.evidence
     )
@@ -305,14 +305,14 @@ def test_for_all_r_rests_on_certificates(verdicts):
 
 def test_a_kept_verdict_with_a_damaged_certificate_is_decided_again(tmp_path, monkeypatch):
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
-    run(select(["s4b-M"]), kept=True)
+    run(select(["s4b-M"]), cached=True)
     (path,) = (tmp_path / "verdicts").iterdir()
     kept = cache.recall(path)
     key, _ = json.loads(kept)[1]
     assert recall("s4b-M", key) is not None
     cache.keep(path, kept.replace(b'"sign": 1', b'"sign": -1'))
     assert recall("s4b-M", key) is None
-    assert run(select(["s4b-M"]), kept=True)[0].kind == "proved"
+    assert run(select(["s4b-M"]), cached=True)[0].kind == "proved"
 
 
 def test_a_proof_without_an_accepted_certificate_is_none(monkeypatch):

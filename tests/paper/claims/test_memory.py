@@ -25,9 +25,9 @@ def decided(monkeypatch):
 
 
 def test_second_run_decides_nothing(decided):
-    first = run(select(["s3-slope-r"]), kept=True)
+    first = run(select(["s3-slope-r"]), cached=True)
     count = len(decided)
-    second = run(select(["s3-slope-r"]), kept=True)
+    second = run(select(["s3-slope-r"]), cached=True)
     assert count == len(first) == len(decided)
     assert second == first
 
@@ -47,10 +47,10 @@ def edited(monkeypatch):
 
 def test_an_edited_verifier_runs_with_its_file_and_their_dependants_only(decided, edited):
     claims = select(["s3-slope-r", "e:lin", "t:foliate-smooth"])
-    run(claims, kept=True)
+    run(claims, cached=True)
     decided.clear()
     edited("section3")
-    run(claims, kept=True)
+    run(claims, cached=True)
     assert decided == [
         "s3-Dp",
         "s3-Dphi",
@@ -66,16 +66,16 @@ def test_an_edited_verifier_runs_with_its_file_and_their_dependants_only(decided
 @pytest.mark.slow
 def test_edited_trials_run_the_claims_of_the_files_that_take_them(decided, edited):
     claims = select(["e:meq", "s5-phi", "s6p-AB"])
-    run(claims, kept=True)
+    run(claims, cached=True)
     decided.clear()
     edited("section6_trials")
-    run(claims, kept=True)
+    run(claims, cached=True)
     assert decided == [claim.id for claim in claims if claim.file.startswith("section6")]
 
 
 def test_a_claim_that_is_given_itself_is_always_decided(decided):
-    run([CLAIMS["e:yeq"]], kept=True)
-    run([CLAIMS["e:yeq"]], kept=True)
+    run([CLAIMS["e:yeq"]], cached=True)
+    run([CLAIMS["e:yeq"]], cached=True)
     assert decided == ["e:yeq", "e:yeq"]
 
 
@@ -119,11 +119,11 @@ def test_keys_differ_between_claims():
 
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"key": 1}', "\x00"])
 def test_damaged_entry_is_decided_again(text, cache, decided, capsys):
-    run(select(["e:yeq"]), kept=True)
+    run(select(["e:yeq"]), cached=True)
     (path,) = (cache / "verdicts").iterdir()
     path.write_text(text)
     decided.clear()
-    assert run(select(["e:yeq"]), kept=True)[0].kind == "proved"
+    assert run(select(["e:yeq"]), cached=True)[0].kind == "proved"
     assert decided == ["e:yeq"]
     assert str(path) in capsys.readouterr().err
     assert unpacked(recall(path), (Verdict, Trial))[1].kind == "proved"
@@ -132,7 +132,7 @@ def test_damaged_entry_is_decided_again(text, cache, decided, capsys):
 def test_cache_that_cannot_be_written_is_no_failure(monkeypatch, capsys):
     monkeypatch.setattr("singimpact.cache._SAID", [])
     monkeypatch.setenv("SINGIMPACT_CACHE", "/proc/nowhere")
-    kinds = {verdict.id: verdict.kind for verdict in run(select(["e:yeq", "s3-dvdt"]), kept=True)}
+    kinds = {verdict.id: verdict.kind for verdict in run(select(["e:yeq", "s3-dvdt"]), cached=True)}
     assert kinds["e:yeq"] == "proved"
     assert "error" not in kinds.values()
     told = capsys.readouterr().err

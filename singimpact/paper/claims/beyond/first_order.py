@@ -65,7 +65,7 @@ def _shifted(stated: Any) -> Check:
     """X_H - X to first order in H, in f_v and the derivatives A2, A3 of a_c at the swan point."""
     change = route.swan_removal()
     derived = sympy.factor(-change.time.subs(s, X))
-    ends = [change.time.subs(s, place) for place in (-1, 1)]
+    ends = [change.time.subs(s, edge) for edge in (-1, 1)]
     return every(
         [
             (f"S takes X_H to X, so X_H - X = {derived} H + O(H^2)", same(stated, derived)),

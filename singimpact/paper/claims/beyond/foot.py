@@ -96,7 +96,7 @@ def _within(stated: tuple[Any, Fraction, Fraction, Fraction, Fraction]) -> Check
             ),
             (
                 f"on them X (1-r)^({power})/{middle} lies between {least:.5f} and {most:.5f}",
-                all(each < 1 + _ball(share) for each in above) and all(each > 1 - _ball(share) for each in below),
+                all(ratio < 1 + _ball(share) for ratio in above) and all(ratio > 1 - _ball(share) for ratio in below),
             ),
         ],
         "certified",

@@ -116,7 +116,7 @@ def _unique(stated: tuple[Any, int]) -> Check:
         and sympy.degree(cubic, m) == 3
     )
     with_axis = bool(region.subs(v, 0)) and is_zero(fold.fixed_point_equation().subs(m, THREE_HALVES))
-    found = int(bool(region.subs(v, 1))) + int(with_axis)
+    arc_count = int(bool(region.subs(v, 1))) + int(with_axis)
 
     def trial() -> tuple[str, bool]:
         leaving = arcs.leaves_gamma()
@@ -132,13 +132,13 @@ def _unique(stated: tuple[Any, int]) -> Check:
                 orbits.after(1)[0] == "lost",
             ),
             (
-                f"{found} such arcs: gamma{' and Pi_0 (the ray m = 3/2, points at rest)' if with_axis else ''}; stated: {count}",
-                found == count,
+                f"{arc_count} such arcs: gamma{' and Pi_0 (the ray m = 3/2, points at rest)' if with_axis else ''}; stated: {count}",
+                arc_count == count,
             ),
         ],
         modulo=(orbits.STABLE,),
         tried=trial,
-        witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(found)},
+        witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(arc_count)},
     )
 
 

@@ -92,7 +92,7 @@ def _q_positive(stated: Any) -> Check:
     polynomial = fold.Q_at_one()
     outside = sign_chain(polynomial, ((-sympy.oo, 1), (0, 1), (HALF, -1), (THREE_HALVES, 1), (sympy.oo, 1)))
     end = sympy.Poly(polynomial.subs(r, HALF), m).nroots(n=30)[1]
-    zeros = all(is_zero(polynomial.subs(m, place)) for place in ENDS)
+    zeros = all(is_zero(polynomial.subs(m, zero)) for zero in ENDS)
     return every(
         [
             ("positive outside [m_-, m_+] for every r in (0, 1)", outside),

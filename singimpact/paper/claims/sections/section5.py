@@ -145,12 +145,12 @@ def _saddle(stated: tuple[int, int]) -> Check:
 def _positive_slope(sign: int) -> Check:
     """dv_c/dt = -(a''/24)(6 sigma^2 + 8 sigma t + 3 t^2): the form is definite."""
     leading = sympy.expand(sympy.diff(swan_velocity(), t) / (-a2 / 24))
-    found = definite(leading, sigma, t)
+    definiteness = definite(leading, sigma, t)
     return every(
         [
             (
                 f"dv_c/dt = -(a''/24)({leading}) + ..., a definite form, so > 0 off w_* for a'' < 0",
-                found == 1 and sign == 1,
+                definiteness == 1 and sign == 1,
             )
         ]
     )
@@ -194,7 +194,7 @@ def _unique(stated: tuple[Any, int]) -> Check:
     region, count = stated
     one = _place((sympy.Integer(-1), sympy.Integer(0))).holds and _saddle((1, 1)).holds
     with_axis = bool(region.subs(v, 0)) and is_zero(swan.h_bar().subs({m: 0, mbar: 0}))
-    found = int(bool(region.subs(v, 1))) + int(with_axis)
+    arcs = int(bool(region.subs(v, 1))) + int(with_axis)
     return every(
         [
             ("one fixed m_* in (-1, 0) for every r in (0, 1), a hyperbolic saddle", one),
@@ -205,12 +205,12 @@ def _unique(stated: tuple[Any, int]) -> Check:
                 orbits.after(2) == ("chatter", orbits.after(2)[1]) and orbits.after(2)[1][1],
             ),
             (
-                f"{found} such arcs: gamma{' and Pi_0 (m = 0)' if with_axis else ''}; stated: {count}",
-                found == count,
+                f"{arcs} such arcs: gamma{' and Pi_0 (m = 0)' if with_axis else ''}; stated: {count}",
+                arcs == count,
             ),
         ],
         modulo=(orbits.STABLE,),
-        witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(found)},
+        witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(arcs)},
     )
 
 

@@ -23,7 +23,7 @@ def _coordinates(printed: Any, corrected: Any) -> list[Trial]:
     rows = []
     for point in swans():
         ell = point.jets()["ell"]
-        times = [number(part, {"s": 1.0, "m": m}) for part in (printed, corrected)]
+        times = [number(reading, {"s": 1.0, "m": m}) for reading in (printed, corrected)]
         values = [point.leading(lambda h, p=point, t=t, e=ell: p.launch(h, t * h) / (e * h**3)) for t in times]
         rows.append(compared(point.name, "v/(ell s^3) at m = -1/2 by the formula", formula, *values))
     return rows

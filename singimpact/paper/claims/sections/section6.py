@@ -72,9 +72,9 @@ def _side(stated: int) -> Check:
     at_rest = sympy.cos(2 * tau) - c
     jets = [sympy.diff(at_rest, tau, n).subs({tau: 0, c: 1}) for n in range(3)]
     share = jets[2] * sympy.diff(at_rest, c)  # d
-    found = {clearance: tangency_points(linear(2, clearance, 1), 15) for clearance in ("0.99", "1.01")}
-    below, above = (len(points) for points in found.values())
-    shown = ", ".join(str(point) for point in found["0.99"].certified())
+    zeros = {clearance: tangency_points(linear(2, clearance, 1), 15) for clearance in ("0.99", "1.01")}
+    below, above = (len(points) for points in zeros.values())
+    shown = ", ".join(str(point) for point in zeros["0.99"].certified())
     return every(
         [
             (
