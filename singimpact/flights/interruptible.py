@@ -75,7 +75,7 @@ def on_threads(threads: Any) -> Iterator[None]:
 
 
 def threads_now() -> int:
-    """How many threads share out an array in this call."""
+    """The number of threads that share out an array in this call."""
     return _ASKED.get() or min(USUAL, _processors())
 
 

@@ -1,4 +1,4 @@
-"""Arrays shared out among threads: the same bits as in one, an error of any of them, and no more than were asked for."""
+"""Arrays shared out among threads: the same bits as in one, an error of any of them, no more than were asked for."""
 
 from __future__ import annotations
 
