@@ -536,6 +536,30 @@ class CompiledModel:
         self._call(entry, (entries.VARIATIONS, tau.size, 0), (tau, v, times), out)
         return out
 
+    def places(self, tau: Array, v: Array, times: Array, heights: Array | float = 0.0) -> Array:
+        """x - c and x' of flights of a linear model, each at its own time of either sign, shape (n, 2).
+
+        Parameters
+        ----------
+        heights : x - c at the launches.
+        """
+        columns = np.stack([times, np.broadcast_to(heights, times.shape)], axis=1)
+        tau, v = (np.ascontiguousarray(column, dtype=float) for column in (tau, v))
+        out, begin = np.empty((tau.size, 2)), 0
+        while begin < tau.size:
+            entry = self._compiled(self.main, self.price * (tau.size - begin))
+            chosen = slice(begin, begin + (TABLES.interpreted if entry is None else TABLES.block))
+            states = tau[chosen], v[chosen], columns[chosen]
+            try:
+                if entry is None:
+                    self.interpreter.places(*states, out[chosen])
+            except LEFT_OPEN:
+                entry = self._here(self.main)
+            if entry is not None:
+                self._call(entry, (entries.PLACES, states[0].size, 0), states, out[chosen])
+            begin = chosen.stop
+        return out
+
     def follow(self, tau: float, v: float, times: Array, height: float = 0.0) -> Array:
         """x - c and x' at times that run away from 0 in one direction, shape (n, 2); for Taylor flows.
 

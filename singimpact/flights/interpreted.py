@@ -99,6 +99,13 @@ class Interpreter:
             self.space["taylor_variations"](*given, columns, rows)
         out[...] = rows
 
+    def places(self, tau: Array, v: Array, times: Array, out: Array) -> None:
+        """`linear_places`."""
+        work, _ = self.work()
+        rows = out.tolist()
+        self.space["linear_places"](tau.tolist(), v.tolist(), times.tolist(), self.model, work, rows)
+        out[...] = rows
+
     def follow(self, tau: float, v: float, height: float, times: Array, out: Array) -> None:
         """`follow` of a Taylor flow."""
         work, _ = self.work()

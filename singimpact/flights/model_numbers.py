@@ -14,7 +14,6 @@ from singimpact.algebra.expressions import Expression, Number, Pi, multiply, num
 from singimpact.algebra.numbers import as_float, rational_near, sign_of
 from singimpact.codegen.taylor_recurrence import Recurrence, recurrence
 from singimpact.flights.kernels.state import Linear
-from singimpact.flights.phase import reduced
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
@@ -103,15 +102,6 @@ def _below(tree: Expression) -> float:
     high = as_float(tree)
     exact = rational_near(tree, 256)
     return float(exact - Fraction(high)) if np.isfinite(high) else 0.0
-
-
-def forcing_phases(osc: Oscillator, tau: Array) -> Array:
-    """Cosine and sine of every wave of a linear model at launch times, shape (n, 2 waves)."""
-    columns = []
-    for wave in linear_waves(osc):
-        angle = as_float(wave.rate) * reduced(tau, turn(wave.rate)) + as_float(wave.phase)
-        columns += [np.cos(angle), np.sin(angle)]
-    return np.stack(columns, axis=1) if columns else np.zeros((tau.size, 1))
 
 
 def linear_waves(osc: Oscillator) -> tuple[Any, ...]:

@@ -33,7 +33,7 @@ from singimpact.flights.kernels.layout import (
     scratch_of,
     taylor_model,
 )
-from singimpact.flights.kernels.linear import response
+from singimpact.flights.kernels.linear import place_of, response
 from singimpact.flights.kernels.orbits import iterate, orbit_segment
 from singimpact.flights.kernels.refine import fill_fine
 from singimpact.flights.kernels.state import Search
@@ -42,16 +42,18 @@ from singimpact.flights.kernels.taylor import follow, taylor_flight
 from singimpact.flights.kernels.variational import derivatives_at, judge
 from singimpact.flights.kernels.waves import reduced_twice
 
-PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET, LIMIT, DROPS = range(12)
+(PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET, LIMIT, DROPS,
+ PLACES) = range(13)  # fmt: skip
 """Kinds of work: fill the tables of a model, of its batches; first hits of many states; impacts of one orbit; the last
 states of many orbits; derivatives of x and x' at given times; x and x' along one flight; errors and conditions of hits
-of a Taylor flow; flights from rest; brackets of gamma; ends of chatter; flights that start off the wall."""
+of a Taylor flow; flights from rest; brackets of gamma; ends of chatter; flights that start off the wall; x and x' of
+many flights at given times."""
 AT_REST = 40
 """The code of a state with v = 0 among `HITS`: it is not flown."""
 
 
 def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
-    """PREPARE, HITS, SEGMENT, RELEASES or VARIATIONS of a linear model.
+    """PREPARE, HITS, SEGMENT, RELEASES, PLACES or VARIATIONS of a linear model.
 
     Parameters
     ----------
@@ -80,6 +82,8 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
         return linear_hits(states, speeds, model, work, block(out, 0, (10, count)), codes)
     if kind == RELEASES:
         return releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
+    if kind == PLACES:
+        return linear_places(states, speeds, block(w, 0, (count, 2)), model, work, block(out, 0, (count, 2)))
     return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
 
 
@@ -152,6 +156,15 @@ def linear_variations(tau: Any, v: Any, times: Any, model: Any, work: Any, out: 
         placed(t, t_low, model, work)
         by_v, by_v_dot, by_tau, by_tau_dot, _size, _speed = response(work.launch, v[i], times[i], model.numbers)
         out[i, 0], out[i, 1], out[i, 2], out[i, 3] = by_v, by_v_dot, by_tau, by_tau_dot
+    return 0
+
+
+def linear_places(tau: Any, v: Any, times: Any, model: Any, work: Any, out: Any) -> int:
+    """x - c and x' at given times of flights from x - c = height, x' = v; times : of each flight, with its height."""
+    for i in range(len(tau)):
+        t, t_low = reduced_twice(tau[i], model.turn)
+        push = placed(t, t_low, model, work)
+        out[i, 0], out[i, 1] = place_of(work.launch, v[i], push, times[i, 1], times[i, 0], model.numbers)
     return 0
 
 

@@ -17,8 +17,8 @@ from singimpact.flights.kernels.state import COSINE, RATE, SINE
 
 SHY = 1 - 2.0**-20
 """The share of a proved quiet time that is used: the rest is far above what a few operations round."""
-SOON, SOON_TERMS = 0.75, 15
-"""The fastest rate times t up to which derivatives are power series, and their terms: 0.75^16/16! < 2^-50 of a sum."""
+SOON, SOON_TERMS = 1.0, 17
+"""The fastest rate times t up to which motions are power series, and their terms: what follows is below 1/19!."""
 
 
 def coefficients(launch: Any, time: Any, z: Any, u: Any, shift: Any, n: int, p: Any, work: Any) -> None:
@@ -190,12 +190,12 @@ def response(launch: Any, v: float, time: float, p: Any) -> Any:
     reach = time if gap * time < 2 else 2 / gap
     free, slope, by_tau, by_tau_dot = 0.0, 0.0, 0.0, 0.0
     if p.fastest * time < SOON:
-        free, slope = soon(0.0, 0.0, 0.0, 1.0, time, p)
+        free, slope = soon(0.0, 0.0, 0.0, 0.0, 1.0, time, p)
         for j in range(len(p.waves)):
             even, odd = moved_wave(launch, j, p)
-            forced, moved = soon(even, odd, p.waves[j, RATE], 0.0, time, p)
+            forced, moved = soon(even, even, odd, p.waves[j, RATE], 0.0, time, p)
             by_tau, by_tau_dot = by_tau + forced, by_tau_dot + moved
-    elif square > 0 and far_from_resonance(reach, p):
+    elif square > 0 and far_from_resonance(reach, 0.0, p):
         free, slope = swinging(time, square**0.5, p)
         for j in range(len(p.waves)):
             even, odd = moved_wave(launch, j, p)
@@ -230,25 +230,79 @@ def moved_wave(launch: Any, j: int, p: Any) -> Any:
     )
 
 
-def soon(even: float, odd: float, rate: float, speed: float, time: float, p: Any) -> Any:
-    """y and y' of y'' + d y' + k y = Re (even + i odd) e^{i rate t}, y = 0 and y' = `speed` at first.
+def place_of(launch: Any, v: float, push: float, height: float, time: float, p: Any) -> Any:
+    """x - c and x' at `time` after the launch, or before it, from x - c = `height` and x' = v.
 
-    Power series, whose terms are below 2^-54 of the first one after sixteen where the fastest rate times t is `SOON`.
+    Parameters
+    ----------
+    push : a_c at the launch, known to all its digits, where the sum of constant and waves would have cancelled.
+    """
+    square, span = p.stiffness - p.damping * p.damping / 4, abs(time)
+    gap = 2 * abs(square) ** 0.5
+    if time == 0:
+        return height, v
+    if p.fastest * span < SOON:
+        z, u = soon(push - p.stiffness * height, 0.0, 0.0, 0.0, v, time, p)
+        for j in range(len(p.waves)):
+            even, odd = wave_of(launch, j, p)
+            forced, moved = soon(0.0, even, odd, p.waves[j, RATE], 0.0, time, p)
+            z, u = z + forced, u + moved
+        return z + height, u
+    if square > 0 and far_from_resonance(span if gap * span < 2 else 2 / gap, abs(p.steady), p):
+        free, slope = swinging(time, square**0.5, p)
+        z, u = answered(p.steady, 0.0, 0.0, free, slope, time, p)
+        z, u = z + v * free, u + v * slope
+        for j in range(len(p.waves)):
+            even, odd = wave_of(launch, j, p)
+            forced, moved = answered(even, odd, p.waves[j, RATE], free, slope, time, p)
+            z, u = z + forced, u + moved
+    else:
+        root = complex_sqrt(complex(-square))
+        first, second = -p.damping / 2 + root, -p.damping / 2 - root
+        difference = pair(first, second, time)
+        free, slope = difference.real, (turning(first, time) + second * difference).real
+        z, u, _error = restart(launch, v, time, 0.0, 0.0, 0.0, 0.0, p)
+    # the free motion from (1, 0) is the derivative of the one from (0, 1), and d times that one
+    return z + height * (slope + p.damping * free), u - height * p.stiffness * free
+
+
+def wave_of(launch: Any, j: int, p: Any) -> Any:
+    """The real and the imaginary part of what e^{i w t} of a wave is taken by."""
+    even, odd = p.waves[j, COSINE], p.waves[j, SINE]
+    return even * launch[2 * j] + odd * launch[2 * j + 1], even * launch[2 * j + 1] - odd * launch[2 * j]
+
+
+def soon(first: float, even: float, odd: float, rate: float, speed: float, time: float, p: Any) -> Any:
+    """y and y' of y'' + d y' + k y = F, y = 0 and y' = `speed` at first; F is Re (even + i odd) e^{i rate t}.
+
+    Power series, for the fastest rate times t up to `SOON`.
+
+    Parameters
+    ----------
+    first : F at the beginning; 0 leaves out the constant part of the wave.
     """
     low, high = 0.0, speed * time
     y, y_dot = high, high
     turn, drag, pull = rate * time, p.damping * time, p.stiffness * time * time
-    even, odd = even * time * time, odd * time * time
+    force, even, odd = first * time * time, even * time * time, odd * time * time
     for n in range(SOON_TERMS):
-        low, high = high, (even - drag * (n + 1) * high - pull * low) * (1.0 / ((n + 1) * (n + 2)))
+        low, high = high, (force - drag * (n + 1) * high - pull * low) * (1.0 / ((n + 1) * (n + 2)))
         y, y_dot = y + high, y_dot + (n + 2) * high
         even, odd = -turn * odd * (1.0 / (n + 1)), turn * even * (1.0 / (n + 1))
+        force = even
     return y, y_dot / time
 
 
-def far_from_resonance(reach: float, p: Any) -> bool:
-    """Whether the answers to all waves, over what `answered` subtracts from them, lose less than three bits."""
+def far_from_resonance(reach: float, steady: float, p: Any) -> bool:
+    """Whether the answers to all waves, over what `answered` subtracts from them, lose less than three bits.
+
+    Parameters
+    ----------
+    steady : the size of a constant force that is answered like a wave of rate 0.
+    """
     scale = 8 * reach * reach
+    if steady > 0 and not p.stiffness * scale > 1:
+        return False
     for j in range(len(p.waves)):
         rate = p.waves[j, RATE]
         above, drag = p.stiffness - rate * rate, p.damping * rate

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.flights import on_threads, shared_out, threads_now
+from singimpact.flights import Allowance, CompiledModel, on_threads, shared_out, threads_now
 
 MODELS = {
     "linear": si.linear("2.8", 0, "0.8"),
@@ -26,7 +26,10 @@ def states(count):
 @pytest.mark.parametrize("count", [1, 4095, 8192, 8193, 20_011])
 def test_any_number_of_threads_has_the_same_bits(name, count):
     model, (tau, v) = MODELS[name], states(count)
-    assert model.impact_map(tau, v).error is not None  # from here on nothing is interpreted
+    flown = CompiledModel(model, Allowance(10.0))
+    for text in (flown.law, flown.recurrence):  # interpreted orbits differ from batches in the last bit
+        if text is not None:
+            text.compile_here()
     want, last = model.impact_map(tau, v, threads=1), model.iterate(tau[:500], v[:500], 40, threads=1)
     for threads in (2, 3, None):
         got, end = model.impact_map(tau, v, threads=threads), model.iterate(tau[:500], v[:500], 40, threads=threads)
