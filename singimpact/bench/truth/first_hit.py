@@ -13,7 +13,7 @@ def first_hit(motion: Any, v: float, horizon: float) -> tuple[Any, Any] | None:
 
     Parameters
     ----------
-    motion : of `motions`, launched with velocity v >= 0, a > 0 for v = 0.
+    motion : `Linear` or `Cubic`, launched with velocity v >= 0, a > 0 for v = 0.
 
     Raises
     ------
