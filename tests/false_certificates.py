@@ -289,7 +289,7 @@ IN_PLAIN = {
 }  # fmt: skip
 
 
-CHAIN = ("plain", "sentences", "checked_identities", "checked_motions", "checking")
+CHAIN = ("plain", "sentences", "checked_identities", "checking")
 
 
 def without(condition, instead, name):

@@ -9,9 +9,22 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from singimpact.algebra.plain import Terms, cut, plus, substituted, terms, times, weight
+from singimpact.algebra.plain import (
+    Terms,
+    at,
+    cut,
+    line,
+    plus,
+    powers,
+    short_times,
+    slope,
+    substituted,
+    terms,
+    times,
+    weight,
+)
 
-ONE = Fraction(1)
+ONE, ZERO = Fraction(1), Fraction(0)
 
 
 class Cut(NamedTuple):
@@ -99,3 +112,89 @@ def _norm(poly: Terms, relation: Terms) -> Terms:
 
 def _coefficient(poly: Terms, power: int) -> Terms:
     return {(*key[:-1], 0): value for key, value in poly.items() if key[-1] == power}
+
+
+# The checks of motions: a polynomial solves x'' + f(x, x') = a at the wall, as an initial or a boundary value problem.
+#
+# The equation is data: `acceleration` has the polynomials a_n of a = sum a_n (tau - tau_*)^n, and `force` the f_ik of
+# f(c + x, x') - f(c, 0) = sum f_ik x^i x'^k.  The residual is formed here, from these and the motion alone.
+
+
+def motion(data: Mapping[str, Any]) -> bool:
+    """x = height(sigma, v, t) leaves 0 with velocity v and solves the equation at the time sigma + t, to the order.
+
+    With launch = v_c(sigma, t) the motion is back after t: height/t = 0 at v = launch; landing is x' there.
+    """
+    size, weights, order = _layout(data, (1, None, 1))
+    height = terms(data["height"])
+    speed = slope(height, 2)
+    clock = plus(line(ZERO, 1, 0, size), line(ZERO, 1, 2, size))
+    pushed = _pushed(data, height, speed, clock, weights, order)
+    residual = cut(plus(slope(speed, 2), pushed, -ONE), weights, None if order is None else order - 1)
+    starts = not at(height, 2, ZERO) and at(speed, 2, ZERO) == line(ZERO, 1, 1, size)
+    if residual or not starts or data["launch"] is None:
+        return not residual and starts and data["landing"] is None
+    launch = terms(data["launch"])
+    if any(key[1] for key in launch) or any(weight(key, weights) < weights[1] for key in launch):
+        return False  # then terms that were cut away could come back to a lower degree
+    quotient = {(*key[:2], key[2] - 1, *key[3:]): value for key, value in height.items()}
+    images = {1: (launch, {(0,) * size: ONE})}
+    back, _ = substituted(quotient, images, weights, order)
+    if data["landing"] is None:
+        return not back
+    landed, _ = substituted(speed, images, weights, order)
+    return not back and cut(landed, weights, order) == cut(terms(data["landing"]), weights, order)
+
+
+def flight(data: Mapping[str, Any]) -> bool:
+    """x = t rise(z; sigma, t), z = time/t, is at the wall at z = 0 and z = 1 and solves the equation at sigma + z t.
+
+    launch and landing are its velocities there.
+    """
+    size, weights, order = _layout(data, (0, 1, 1))
+    rise = terms(data["rise"])
+    speed, t = slope(rise, 0), line(ZERO, 1, 2, size)
+    clock = plus(line(ZERO, 1, 1, size), times(line(ZERO, 1, 0, size), t))
+    pushed = times(t, _pushed(data, times(t, rise), speed, clock, weights, order))
+    if cut(plus(slope(speed, 0), pushed, -ONE), weights, order):
+        return False
+    ends = [cut(at(series, 0, end), weights, order) for series in (rise, speed) for end in (ZERO, ONE)]
+    stated = [{}, {}, *(cut(terms(data[name]), weights, order) for name in ("launch", "landing"))]
+    return ends == stated
+
+
+def _layout(data: Mapping[str, Any], first: Sequence[int | None]) -> tuple[int, tuple[int, ...], int | None]:
+    """(variables, weights, order); the first three variables have weights, the letters of the equation have none."""
+    size, weights, order = len(data["variables"]), tuple(data["weights"]), data["order"]
+    right = all(
+        weight >= 1 if wanted is None else weight == wanted for weight, wanted in zip(weights, first, strict=False)
+    )
+    if order is None and weights[:3] != (1, 1, 1):
+        raise ValueError("weights without an order")
+    if len(weights) != size or any(type(weight) is not int for weight in weights) or any(weights[3:]) or not right:
+        raise ValueError(f"weights {weights} are not those of a motion")
+    if order is not None and (type(order) is not int or order < 1):
+        raise ValueError("an order is a whole number >= 1, or null")
+    return size, weights, order
+
+
+def _pushed(
+    data: Mapping[str, Any], x: Terms, speed: Terms, clock: Terms, weights: Sequence[int], order: int | None
+) -> Terms:
+    """a - (f - f(c, 0)) on a motion, at the time `clock` after tau_*, cut; the state may not occur in the jets."""
+    acceleration, force = [terms(jet) for jet in data["acceleration"]], data["force"]
+    pairs, jets = [tuple(pair) for pair, _ in force], [terms(jet) for _, jet in force]
+    if any(any(key[:3]) for jet in (*acceleration, *jets) for key in jet):
+        raise ValueError("a jet that depends on the state")
+    if len(set(pairs)) < len(pairs) or not all(type(n) is int and n >= 0 for pair in pairs for n in pair):
+        raise ValueError("powers of x and x' that are not whole, negative, or occur twice")
+    if (0, 0) in pairs:
+        raise ValueError("f(c, 0) belongs to the acceleration")
+    tops = [max((pair[n] for pair in pairs), default=0) for n in (0, 1)]
+    xs, speeds = (powers(base, top, weights, order) for base, top in zip((x, speed), tops, strict=True))
+    total: Terms = {}
+    for jet, power in zip(acceleration, powers(clock, len(acceleration), weights, order), strict=False):
+        total = plus(total, times(jet, power))
+    for (i, k), jet in zip(pairs, jets, strict=True):
+        total = plus(total, times(jet, short_times(xs[i], speeds[k], weights, order)), -ONE)
+    return total

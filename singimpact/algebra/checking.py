@@ -2,7 +2,7 @@
 
 A polynomial is a list of [exponents, coefficient].  `certificates` and `derivations` make them and share nothing with
 this file but the layout of the data; the sentence that goes with one is made from the data (`sentences`), and another
-is refused.  Signs, roots and values are checked here, identities in `checked_identities`, motions in `checked_motions`.
+is refused.  Signs, roots and values are checked here, identities and motions in `checked_identities`.
 """
 
 from __future__ import annotations
@@ -12,8 +12,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from singimpact.algebra.checked_identities import composed, identity
-from singimpact.algebra.checked_motions import flight, motion
+from singimpact.algebra.checked_identities import composed, flight, identity, motion
 from singimpact.algebra.plain import Terms, line, plus, raised, rational, row, terms, times
 from singimpact.algebra.sentences import sentence
 

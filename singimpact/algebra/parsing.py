@@ -212,7 +212,7 @@ class _Parser:
 
     def root(self) -> Expression:
         """root(function of u, low, high): the one zero between two rationals."""
-        from singimpact.algebra.zeros import is_one_root
+        from singimpact.algebra.isolated_zeros import is_one_root
 
         outer, self.names = self.names, (BOUND,)
         function = self.sum()

@@ -34,9 +34,8 @@ _FILES = {
     "stress.judging": "Function LIMITS Trial moved worst",
     "stress.launches": "Launch PLACES SteepLaunch",
     "stress.table": "FUNCTIONS chosen stressed",
-    "truth.first_hit": "first_hit",
+    "truth.first_hit": "Cubic Linear first_hit",
     "truth.graded_steps": "HIT MISS Motion PHASE POSITION UNDECIDED VELOCITY",
-    "truth.motions": "Cubic Linear",
     "truth.plain_orbits": "plain_orbits",
     "truth.plain_steps": "motion",
 }

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.precision import balls_at
-from singimpact.bench.truth.first_hit import first_hit
-from singimpact.bench.truth.motions import Cubic, Linear
+from singimpact.bench.truth.first_hit import Cubic, Linear, first_hit
 from singimpact.cases import sweep
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Status

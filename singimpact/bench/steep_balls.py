@@ -17,8 +17,8 @@ import numpy as np
 from singimpact.algebra.precision import balls_at
 from singimpact.bench.steep_states import DRAW, EPSILON, drawn
 from singimpact.bench.truth import enclosed_flight
+from singimpact.bench.truth.enclosed_flight import Refused
 from singimpact.bench.truth.graded_steps import FINENESS, HIT, MISS, UNDECIDED
-from singimpact.bench.truth.sign_pieces import Refused
 from singimpact.cases import sweep
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.status import Status

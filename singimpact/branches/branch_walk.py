@@ -17,7 +17,6 @@ from singimpact import cache
 from singimpact.branches.branch_points import BranchPoint, branch_point
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
-from singimpact.branches.event_tests import EventTests, Key, Tests
 from singimpact.branches.events import KINDS, Event, EventKind
 from singimpact.branches.events.meeting_branches import PITCHFORK
 from singimpact.branches.events.orbit_state import Test
@@ -25,7 +24,7 @@ from singimpact.branches.events.table import kind_of
 from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, orbit_of
-from singimpact.branches.step_search import Crossing, StepSearch
+from singimpact.branches.step_search import Crossing, EventTests, Key, StepSearch, Tests
 from singimpact.flights.family import SteppedFamily
 from singimpact.inputs import InputError
 from singimpact.store import cache_folder

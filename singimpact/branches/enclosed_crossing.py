@@ -23,8 +23,7 @@ from singimpact.algebra.balls import BITS_A_DIGIT
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.numbers import exact
 from singimpact.algebra.precision import balls_at
-from singimpact.branches.enclosed_orbit import EnclosedOrbit
-from singimpact.branches.krawczyk import KRAWCZYK, Image, Krawczyk, proved, upper
+from singimpact.branches.krawczyk import KRAWCZYK, EnclosedOrbit, Image, Krawczyk, proved, upper
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.saddle_cones import Cones, Pair, smooth
 from singimpact.dynamics.invariant_arcs import model_step

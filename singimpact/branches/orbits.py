@@ -15,7 +15,7 @@ from singimpact.result import Result, Results
 from singimpact.status import Status
 
 if TYPE_CHECKING:
-    from singimpact.branches.enclosed_orbit import EnclosedOrbit
+    from singimpact.branches.krawczyk import EnclosedOrbit
 
 Array = np.ndarray[Any, Any]
 Sentences = tuple[str, ...]
@@ -92,7 +92,7 @@ class PeriodicOrbit(Result):
         >>> print(orbit.certified(20).v[0], orbit.certified(20).stable)
         0.28319534613206575959 True
         """
-        from singimpact.branches.enclosed_orbit import enclosed_orbit
+        from singimpact.branches.krawczyk import enclosed_orbit
 
         if self.kind != "impacts":
             raise InputError(f"{self!r} is not accepted: an orbit with impacts, none of which rests, can be certified")

@@ -24,11 +24,10 @@ from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
 from singimpact.branches.enclosed_closing import closed_boxes
 from singimpact.branches.krawczyk import Krawczyk
-from singimpact.branches.one_or_two_impacts import phases_and_speeds, two_impacts
 from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits, same_states
 from singimpact.branches.resting import chatter_orbits, free_orbits
 from singimpact.branches.solutions import orbit_at
-from singimpact.branches.starts import closed_from, grid_of_starts
+from singimpact.branches.starts import closed_from, grid_of_starts, phases_and_speeds, two_impacts
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import checked_digits

@@ -29,8 +29,7 @@ from typing import Any
 from singimpact.algebra.balls import as_rational
 from singimpact.algebra.numbers import exact
 from singimpact.branches.ball_closing import POINT, EnclosedMap
-from singimpact.branches.enclosed_orbit import EnclosedOrbit, enclosed_orbit
-from singimpact.branches.krawczyk import upper
+from singimpact.branches.krawczyk import EnclosedOrbit, enclosed_orbit, upper
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.certified_hit import ProvedImpact
 from singimpact.flights.enclosures.equation import Refused

@@ -15,8 +15,8 @@ from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.numbers import sign_of
 from singimpact.branches.border import BorderOrbit
 from singimpact.branches.enclosed_event import EnclosedEvent
-from singimpact.branches.enclosed_orbit import EnclosedOrbit
 from singimpact.branches.horseshoe import Horseshoe
+from singimpact.branches.krawczyk import EnclosedOrbit
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.certificates.checker import KINDS, SCHEMA, TOUCHING, Refused, digest_of, read, sentence
 from singimpact.dynamics.chatter import ChatterLimit

@@ -14,9 +14,9 @@ import numpy as np
 from singimpact.algebra.balls import Balls, Zero, as_rational, derivatives, refined, sign_at
 from singimpact.algebra.certified import Certified, as_certified
 from singimpact.algebra.expressions import Call, Expression, Number, Power, children, evaluate, names_in, walk
+from singimpact.algebra.isolated_zeros import isolate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import Ladder, balls_at, digits_at, for_user, kept_property
-from singimpact.algebra.zeros import isolate
 from singimpact.contact.contact import acceleration
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator

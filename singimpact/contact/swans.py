@@ -25,11 +25,10 @@ from singimpact.algebra.expressions import (
     subtract,
     walk,
 )
-from singimpact.algebra.isolated_zeros import double_zeros
+from singimpact.algebra.isolated_zeros import double_zeros, is_one_root, isolate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC, ExactAtAngles
-from singimpact.algebra.zeros import is_one_root, isolate
 from singimpact.contact.points import enclosed, is_polynomial, window
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator

@@ -26,11 +26,11 @@ from singimpact.algebra.expressions import (
     substitute,
     walk,
 )
+from singimpact.algebra.isolated_zeros import isolate
 from singimpact.algebra.numbers import as_float, rational_near
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import Symbolic
 from singimpact.algebra.taylor import NotSmooth
-from singimpact.algebra.zeros import isolate
 from singimpact.contact.contact import acceleration
 from singimpact.contact.points import window
 from singimpact.inputs import InputError

@@ -7,9 +7,8 @@ from singimpact.handed_on import names_of
 
 _FILES = {
     "arranging": "by_degree factored in_powers",
-    "breaking": "PAGE lines_of width",
     "compiling": "CompileError compiled",
     "document_steps": "Mark Section Step claims_of equations_of",
-    "rendering": "as_data as_files as_latex as_markdown as_text latex_text",
+    "rendering": "PAGE as_data as_files as_latex as_markdown as_text latex_text lines_of width",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -24,7 +24,7 @@ from singimpact.theory import chatter_limit, dynamics_on_gamma, fibre, gamma, no
 from singimpact.theory.contact_points import Place, place, points_of
 from singimpact.theory.formulas import LIMITS
 from singimpact.theory.frozen import COMMAND, curve_functions, sheet_functions
-from singimpact.theory.homogeneous import r_of_lambda
+from singimpact.theory.multipliers import r_of_lambda
 from singimpact.theory.notation import latex
 from singimpact.theory.plane_forms import HIGHEST, HIGHEST_NUMBERS, FoldForm
 from singimpact.theory.power_series import TRUST, PowerSeries

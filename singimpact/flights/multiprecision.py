@@ -24,8 +24,7 @@ from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.state import Rules
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, linear_numbers, linear_waves, recurrence_of
-from singimpact.flights.no_return.linear import never_returns
-from singimpact.flights.no_return.polynomial import never_turns
+from singimpact.flights.no_return.polynomial import never_returns, never_turns
 from singimpact.flights.states import States
 from singimpact.oscillator.linear import LinearForm, linear_form
 from singimpact.oscillator.model import Oscillator

@@ -31,8 +31,7 @@ from singimpact.surface.curve import window_ends
 from singimpact.surface.followed_rests import FollowedRests, doubts_of_rests, gaps_of, met_rests
 from singimpact.surface.proved_touches import doubts_left
 from singimpact.surface.rest_flights import RestFlights
-from singimpact.surface.seen_events import bracketed, told
-from singimpact.surface.swan_families import STEPS, Family, Transition, swans_met
+from singimpact.surface.swan_families import STEPS, Family, Transition, bracketed, swans_met, told
 from singimpact.surface.two_rests import Rests, linear_rests
 
 Array = np.ndarray[Any, Any]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,9 +15,15 @@ from singimpact.algebra.isolated_zeros import DoubleZero, DoubleZeros, double_ze
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.swans import swan_points_over_clearance
+from singimpact.flights.flight_path import many_paths
+from singimpact.flights.impact_map import first_hit
+from singimpact.flights.inverse_map import backwards
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration as wall_acceleration
+from singimpact.oscillator.wall_acceleration import largest_push
 from singimpact.result import Result
+from singimpact.status import Status
 from singimpact.surface.curve import Curve, window_ends
 
 Array = np.ndarray[Any, Any]
@@ -183,3 +191,187 @@ def _linked(rows: list[list[tuple[float, float, Transition]]]) -> list[list[tupl
         done += [line for _, line in open_]
         open_ = following
     return done + [line for _, line in open_]
+
+
+# Which transitions of P change the map of first hits, from where they are launched, and what they do, in words.
+#
+# A visible rest at s is reached from above: a(s) > 0, or a = 0 > a', or a = a' = 0 < a''.  All but the last are left
+# upwards too; between the rests x > c.  So everything is decided by signs and by one flight, run back to its launch.
+
+Launch = tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class SightSettings:
+    """Settings of the search for the visible part of a flight.
+
+    flat : a_c or a_c' below this, of the largest a_c, is zero: rests are known to 1e-12. step : of the flight in time.
+    aside : of a rest, where x - c is too flat to be compared. near : of x - c, below which a minimum is one more rest.
+    slow : a launch below this velocity, in parts of the largest a_c, is one more rest. periods : of the forcing that
+    the flight from a swan is run back; other flights are run back as `first_hit` says.
+    """
+
+    flat: float = 1e-7
+    step: float = 2e-3
+    aside: float = 0.02
+    near: float = 1e-8
+    slow: float = 1e-7
+    periods: int = 40
+
+
+SIGHT = SightSettings()
+WORDS = {
+    "swan, negative": "an arc delta of discontinuities is born, with gamma at its foot and the loops round its tip",
+    "swan, positive": "the arcs delta of two neighbours join: one ends on the other in a T-junction",
+    "swallowtail": "above a positive swan two cusps of P and a crossing are born: delta gets one T-junction",
+    "tacnode, opposite": (
+        "a lens of launches opens that miss both rests: delta gets two T-junctions, or on v = 0 two more feet; gamma, "
+        "or an arc of W^s with its loops, is cut twice more where it crosses the lens"
+    ),
+    "tacnode, same": (
+        "a piece of delta comes out from behind another arc: two T-junctions; gamma, or an arc of W^s with its loops, "
+        "is cut twice more where it crosses that piece"
+    ),
+    "tangency last": (
+        "the tip of delta goes behind another arc and ends there in a T-junction: the loops round the tip are lost to "
+        "that arc; gamma at the foot stays"
+    ),
+    "tangency first": (
+        "delta meets the foot A of gamma: on one side of A it ends at the height 3 a' sigma^2/8, on the other at "
+        "v = 0; gamma stays, but W^s(X) has the 2-jet of this arc, so that the chattering orbit released at A grazes "
+        "and the loops at X break"
+    ),
+    "tangency to tangency": (
+        "the flight released at one tangency point is at rest at another: the tip of delta meets an arc as that arc "
+        "meets the foot of gamma, and the loops of both break"
+    ),
+    "triple point": (
+        "two T-junctions of delta trade places: one cut goes over to another arc, and cuts of loops with it; "
+        "gamma stays"
+    ),
+    "periodic graze": (
+        "the motion without impact meets the wall: arcs delta accumulate on it, and cuts of gamma and of its loops too"
+    ),
+}
+"""What a visible transition does in one direction of the number; in the other one it is undone."""
+HIDDEN = "no first hit changes: the flight meets the wall from below, or passes through it between its rests"
+UNDECIDED = "the flight touches the wall once more, so that it is not decided whether first hits change"
+
+
+def told(event: Transition, model: Oscillator) -> Transition:
+    """A transition with its rests moved to one period, whether it is visible, its launch, and its effect.
+
+    Parameters
+    ----------
+    event : with its rests. model : at the value of the transition.
+    """
+    rests = _in_first_period(event.rests, model)
+    visible, launch = _seen(event, rests, model)
+    words = UNDECIDED if visible is None else WORDS[_key(event)] if visible else HIDDEN
+    return replace(event, rests=rests, visible=visible, launch=launch, effect=words)
+
+
+def _key(found: Transition) -> str:
+    return found.kind if found.kind in WORDS else found.event
+
+
+def _in_first_period(rests: tuple[float, ...], model: Oscillator) -> tuple[float, ...]:
+    if model.period is None:
+        return rests
+    period = as_float(model.period)
+    back = np.floor(rests[0] / period + 1e-9) * period
+    return tuple(float(rest - back) if abs(rest - back) > 1e-12 * period else 0.0 for rest in rests)
+
+
+def _seen(
+    event: Transition, rests: tuple[float, ...], model: Oscillator
+) -> tuple[bool | None, tuple[float, float] | None]:
+    """Whether first hits change there, and the launch with v > 0."""
+    if event.kind == "swan, negative":
+        return True, None
+    size = (largest_push(model) if model.period is not None else 0.0) or 1.0
+    jets = np.array([wall_acceleration(model, np.array(rests), order) for order in range(3)]) / size
+    if not all(_from_above(jet, n == 0 < len(rests) - 1, n == len(rests) - 1) for n, jet in enumerate(jets.T)):
+        return False, None
+    clear = [_clear(model, *pair) for pair in pairwise(rests)]
+    if False in clear:
+        return False, None
+    if None in clear:
+        return None, None
+    if event.kind == "periodic graze":
+        return True, None
+    launch = _launch(model, rests[0], jets[:, 0], size, len(rests))
+    if event.kind == "swallowtail":
+        there = launch is not None and abs(launch[0] - rests[0] - event.t) < SIGHT.aside
+        return there, launch if there else None
+    return True, launch
+
+
+def _from_above(jet: Array, first: bool, last: bool) -> bool:
+    """Whether the flight is above the wall before a rest, if it is not the first, and after it, if not the last."""
+    a, slope, curvature = jet.tolist()
+    if abs(a) > SIGHT.flat:
+        return bool(a > 0)
+    if abs(slope) > SIGHT.flat:
+        return (first or slope < 0) and (last or slope > 0)
+    return bool(curvature > 0)
+
+
+def _clear(model: Oscillator, start: float, end: float) -> bool | None:
+    """Whether x > c between two rests; None where a minimum touches c."""
+    count = max(40, int((end - start) / SIGHT.step))
+    t = np.linspace(0, end - start, count)[1:]
+    t = t[(t > SIGHT.aside) & (t < end - start - SIGHT.aside)]
+    if t.size < 3:
+        return True  # one arch of a flight that is left and reached from above
+    x = many_paths(model, np.array([start]), np.zeros(1), [t])[0][:, 0]
+    before, at, after = x[:-2], x[1:-1], x[2:]
+    least = at - (after - before) ** 2 / np.where((bend := before - 2 * at + after) > 0, 8 * bend, np.inf)
+    inner = least[(at <= before) & (at <= after)]
+    if (x < -SIGHT.near).any() or (inner < -SIGHT.near).any():
+        return False
+    return None if (inner < SIGHT.near).any() else True
+
+
+def _launch(model: Oscillator, rest: float, jet: Array, size: float, count: int) -> Launch:
+    """(tau, v) of the launch from which a rest is reached; None where none is, or at the foot of gamma."""
+    if jet[0] > SIGHT.flat:
+        hit = first_hit(backwards(model), -rest, 0.0)
+        if int(hit.status) != Status.hit or not -float(hit.velocity) > SIGHT.slow * size:
+            return None
+        return rest - float(hit.flight_time), -float(hit.velocity)
+    if count > 1 and jet[1] > SIGHT.flat:
+        return None
+    return _back_from_swan(model, rest, size)
+
+
+def _back_from_swan(model: Oscillator, rest: float, size: float) -> Launch:
+    reach = SIGHT.periods * (as_float(model.period) if model.period is not None else 1.0)
+    t = -np.arange(10 * SIGHT.aside, reach, SIGHT.aside)
+    x = many_paths(model, np.array([rest]), np.zeros(1), [t])[0][:, 0]
+    under = np.flatnonzero(~(x > 0))
+    if not under.size or under[0] == 0 or not np.isfinite(x[under[0]]):
+        return None
+
+    def ends(at: float) -> tuple[float, float]:
+        height, velocity = many_paths(model, np.array([rest]), np.zeros(1), [np.array([at])])[0][0].tolist()
+        return height, velocity
+
+    at = bracketed(ends, float(t[under[0] - 1]), float(t[under[0]]))
+    velocity = ends(at)[1]
+    return (rest + at, velocity) if velocity > SIGHT.slow * size else None
+
+
+def bracketed(ends: Callable[[float], tuple[float, float]], low: float, high: float) -> float:
+    """The zero of a function that is given with its derivative: Newton's method, kept in a bracket."""
+    start = ends(low)[0]
+    at = (low + high) / 2
+    for _ in range(80):
+        height, velocity = ends(at)
+        low, high = (at, high) if height * start > 0 else (low, at)
+        newton = at - height / velocity if velocity else low
+        following = newton if min(low, high) < newton < max(low, high) else (low + high) / 2
+        if abs(following - at) < 1e-14 * (1 + abs(at)):
+            return float(following)
+        at = following
+    return float(at)

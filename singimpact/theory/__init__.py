@@ -17,7 +17,7 @@ from singimpact.theory.impact_sheet import Sheet as Sheet
 
 if TYPE_CHECKING:
     from singimpact.theory.grazing import grazing_map as grazing_map
-    from singimpact.theory.homogeneous import r_of_lambda as r_of_lambda
+    from singimpact.theory.multipliers import r_of_lambda as r_of_lambda
     from singimpact.theory.plane_forms import normal_form as normal_form
 
 
@@ -29,11 +29,11 @@ _FILES = {
     "gamma_in_symbols": "rho_names symbolic_curve",
     "gamma_series": "invariant_curve multiplier_across restitution_of",
     "grazing": "grazing_map",
-    "homogeneous": (
-        "DG_on_ray P Q eigenvalues_on_gamma lambda_ launch_velocity leading_coefficient mu_of_lambda r_of_lambda"
-    ),
     "impact_sheet": "Sheet generic_sheet iota sheet",
-    "multipliers": "minimal_polynomial of_m series",
+    "multipliers": (
+        "DG_on_ray P Q eigenvalues_on_gamma lambda_ launch_velocity leading_coefficient minimal_polynomial "
+        "mu_of_lambda of_m r_of_lambda series"
+    ),
     "notation": "latex",
     "plane_forms": "fold_form normal_form",
 }

@@ -36,7 +36,7 @@ CLAIMS = [
 # files -> the tests that guard them, the quickest first; doctests of the file itself come before
 GUARDS = {
     "singimpact/theory/impact_sheet.py": ["tests/tool/theory", *CLAIMS],
-    "singimpact/theory/homogeneous.py": ["tests/tool/theory", *CLAIMS],
+    "singimpact/theory/multipliers.py": ["tests/tool/theory", *CLAIMS],
     "singimpact/theory/fixed_points.py": ["tests/tool/theory", "tests/tool/algebra"],
     "singimpact/theory/gamma_series.py": ["tests/tool/theory", "tests/tool/dynamics"],
     "singimpact/theory/completion.py": ["tests/tool/theory", "tests/tool/dynamics"],
@@ -57,7 +57,7 @@ GUARDS = {
     "singimpact/flights/no_return/barrier.py": ["tests/tool/flights"],
 }
 KNOWN_ALONE = {
-    "singimpact/flights/no_return/linear.py": ["tests/tool/flights"],
+    "singimpact/flights/no_return/polynomial.py": ["tests/tool/flights"],
     "singimpact/paper/claims/sections/section4a_arc.py": CLAIMS,
     "singimpact/paper/claims/sections/section6.py": CLAIMS,
 }

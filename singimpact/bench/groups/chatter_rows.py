@@ -11,8 +11,7 @@ from functools import partial
 from math import cos
 from typing import Any
 
-from singimpact.bench.compiled import compiled
-from singimpact.bench.drawn import CHATTERING, Draws, States, counted, model
+from singimpact.bench.drawn import CHATTERING, Draws, States, compiled, counted, model
 from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
 from singimpact.bench.peers import followed_impacts, many_digits, runge_kutta, taylor_events

@@ -5,7 +5,7 @@ All evaluate the same cut series, whose exact value at each point is a rational 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import partial
 from itertools import product
@@ -15,13 +15,39 @@ import numpy as np
 
 from singimpact.algebra.rings import EXACT
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
-from singimpact.bench.peers import lambdified
 from singimpact.codegen.over_lists import plain
 from singimpact.contact.contact import Contact
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.theory.formulas import v_c_on_arrays
 from singimpact.theory.frozen import sheet_functions
 from singimpact.theory.impact_sheet import sheet
+
+# A polynomial in (sigma, t) evaluated by sympy's own means: `lambdify` for numpy, and `subs` point by point.
+
+
+def expression(terms: Mapping[tuple[int, ...], Any]) -> tuple[Any, Any, Any]:
+    """sigma, t and the expanded sum, as sympy keeps it."""
+    import sympy
+
+    sigma, t = sympy.symbols("sigma t")
+    rational = {key: sympy.Rational(c.numerator, c.denominator) for key, c in terms.items()}
+    return sigma, t, sympy.expand(sympy.Add(*(c * sigma**i * t**k for (i, k), c in rational.items())))
+
+
+def function(terms: Mapping[tuple[int, ...], Any], shared: bool) -> Callable[[Any, Any], Any]:
+    """By `lambdify`, with or without common subexpressions taken out."""
+    import sympy
+
+    sigma, t, total = expression(terms)
+    found: Callable[[Any, Any], Any] = sympy.lambdify((sigma, t), total, "numpy", cse=shared)
+    return found
+
+
+def substituting(terms: Mapping[tuple[int, ...], Any]) -> Callable[[Any, Any], list[float]]:
+    """By `subs` at each point."""
+    sigma, t, total = expression(terms)
+    return lambda at, times: [float(total.subs({sigma: s, t: u})) for s, u in zip(at, times, strict=True)]
+
 
 POINTS, JUDGED = 1000, 50
 ORDERS = (3, 4, 6, 8)  # at a swan v_c begins with the third
@@ -78,9 +104,7 @@ def _horner(order: int, sigma: Any, t: Any, compensated: bool) -> Callable[[], A
 
 def _peers(terms: Any, order: int, sigma: Any, t: Any) -> list[Method]:
     few = slice(0, 20)  # a call of subs takes milliseconds
-    made = [
-        (f"sympy lambdify{', cse' if shared else ''}", lambdified.function(terms, shared)) for shared in (False, True)
-    ]
+    made = [(f"sympy lambdify{', cse' if shared else ''}", function(terms, shared)) for shared in (False, True)]
     methods = [Method(name, f"order {order}", partial(function, sigma, t), order) for name, function in made]
-    by_point = lambdified.substituting(terms)
+    by_point = substituting(terms)
     return [*methods, Method("sympy subs", f"order {order}", partial(by_point, sigma[few], t[few]), order)]

@@ -12,9 +12,21 @@ from typing import Any
 import numpy as np
 
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
-from singimpact.bench.peers import contours
 from singimpact.impact_oscillator import linear
 from singimpact.paper.figures import FIGURES, figure
+
+# The zero set of a function by the contour of its values on a grid, as matplotlib draws it.
+
+
+def zero_set(
+    function: Callable[[Any, Any], Any], x: tuple[float, float], y: tuple[float, float], side: int
+) -> list[Any]:
+    """Polylines, arrays (points, 2), from side x side values."""
+    from contourpy import contour_generator
+
+    across, up = np.linspace(*x, side), np.linspace(*y, side)
+    return list(contour_generator(across, up, function(*np.meshgrid(across, up))).lines(0.0))
+
 
 OMEGA, CLEARANCE = 2.0, 0.7
 TAU, T, PIXELS = (-1.2, 1.0), (0.2, 4.0), 800
@@ -53,7 +65,7 @@ def _own() -> list[Any]:
 
 def _contours(effort: Effort) -> list[Method]:
     sides = SIDES[1::2] if effort.quick else SIDES
-    return [_method("contour of a grid", f"{n} x {n}", partial(contours.zero_set, _rise, TAU, T, n)) for n in sides]
+    return [_method("contour of a grid", f"{n} x {n}", partial(zero_set, _rise, TAU, T, n)) for n in sides]
 
 
 def _rise(tau: Any, t: Any) -> Any:

@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.bench.compiled import compiled
-from singimpact.bench.drawn import RESTITUTIONS, Draws, Fed, States, counted, model
+from singimpact.bench.drawn import RESTITUTIONS, Draws, Fed, States, compiled, counted, model
 from singimpact.bench.measuring import Aim, Case, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta, taylor_events
 from singimpact.bench.truth import drawn_flights

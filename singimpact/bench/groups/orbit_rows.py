@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.bench.compiled import compiled
-from singimpact.bench.drawn import CHATTERING, CLEARANCES, RESTITUTIONS, Draws, States, counted
+from singimpact.bench.drawn import CHATTERING, CLEARANCES, RESTITUTIONS, Draws, States, compiled, counted
 from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import NO_AIM, Aim, Case, Counted, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta

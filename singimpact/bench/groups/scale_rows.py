@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from singimpact.bench.compiled import compiled
+from singimpact.bench.drawn import compiled
 from singimpact.bench.fresh import Cost, cost
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Timed
 

@@ -10,8 +10,7 @@ from functools import partial
 from math import pi
 from typing import Any
 
-from singimpact.bench.compiled import compiled
-from singimpact.bench.drawn import Draws, States, counted, model, pressing
+from singimpact.bench.drawn import Draws, States, compiled, counted, model, pressing
 from singimpact.bench.groups.chatter_rows import affordable
 from singimpact.bench.groups.impact_map_rows import HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers

@@ -15,8 +15,8 @@ from singimpact.algebra.precision import balls_at, digits_at
 from singimpact.bench.selftest.draws import Flown
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth import enclosed_flight, graded_steps, plain_steps
+from singimpact.bench.truth.enclosed_flight import Refused
 from singimpact.bench.truth.graded_steps import HIT, MISS
-from singimpact.bench.truth.sign_pieces import Refused
 from singimpact.status import Status
 
 EPSILON = 2.0**-52

@@ -14,8 +14,7 @@ from typing import Any
 
 from singimpact.algebra.precision import balls_at
 from singimpact.bench.stress.judging import powers
-from singimpact.bench.truth.first_hit import first_hit
-from singimpact.bench.truth.motions import Cubic, Linear
+from singimpact.bench.truth.first_hit import Cubic, Linear, first_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
 CUBIC = "x + xdot/10 + 3*x**3/10"

@@ -14,8 +14,7 @@ from typing import Any
 
 from singimpact.algebra.precision import balls_at
 from singimpact.bench.drawn import CLEARANCES, OMEGAS, States
-from singimpact.bench.truth.first_hit import first_hit
-from singimpact.bench.truth.motions import Cubic, Linear
+from singimpact.bench.truth.first_hit import Cubic, Linear, first_hit
 
 BITS = 320
 HORIZON = 2000.0

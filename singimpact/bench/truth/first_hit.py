@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import hypot, sqrt
 from typing import Any
 
 from singimpact.algebra.precision import bits_of_balls
@@ -13,7 +13,7 @@ def first_hit(motion: Any, v: float, horizon: float) -> tuple[Any, Any] | None:
 
     Parameters
     ----------
-    motion : of `motions`, launched with velocity v >= 0, a > 0 for v = 0.
+    motion : `Linear` or `Cubic`, launched with velocity v >= 0, a > 0 for v = 0.
 
     Raises
     ------
@@ -22,7 +22,7 @@ def first_hit(motion: Any, v: float, horizon: float) -> tuple[Any, Any] | None:
     Examples
     --------
     >>> from singimpact.algebra.precision import balls_at
-    >>> from singimpact.bench.truth.motions import Linear
+    >>> from singimpact.bench.truth.first_hit import Linear
     >>> with balls_at(256):
     ...     print(first_hit(Linear(2.0, 0.0, 1.0, 0.5), 0.5, 100.0)[0].str(20, radius=False))
     1.1115158754205710871
@@ -77,3 +77,141 @@ def _root(motion: Any, low: float, high: float) -> tuple[Any, Any]:
         if abs(change) < small * t:
             break
     return t, motion.at(t)[1]
+
+
+# Flights in balls: the linear oscillator in closed form, the cubic one by its Taylor recurrence.
+#
+# x'' + x = cos omega t,        x'' + x'/10 + x + 3 x^3/10 = cos omega t
+
+DIGITS = 60
+
+
+class Linear:
+    """The flight from (c, v) at tau, by sums and differences of frequencies: omega = 1 is an ordinary point.
+
+    Examples
+    --------
+    >>> z, u, e = Linear(2.0, 0.0, 0.0, 1.0).at(0)
+    >>> float(z), float(u), float(e)
+    (0.0, 1.0, 1.0)
+    """
+
+    def __init__(self, omega: float, clearance: float, tau: float, v: float) -> None:
+        import flint
+
+        arb = flint.arb
+        self.omega, self.c, self.v = arb(omega), arb(clearance), arb(v)
+        self.sin, self.cos = (self.omega * arb(tau)).sin_cos()
+        self.p, self.q = (1 + self.omega) / 2, (1 - self.omega) / 2
+
+    def at(self, t: Any) -> tuple[Any, Any, Any]:
+        """x - c, x', x'' at a time after the launch."""
+        import flint
+
+        t = flint.arb(t)
+        sin_p, cos_p = (self.p * t).sin_cos()
+        sin_q, cos_q = (self.q * t).sin_cos()
+        over_q = t if self.q == 0 else sin_q / self.q
+        sine, cosine = sin_p * cos_q + cos_p * sin_q, cos_p * cos_q - sin_p * sin_q
+        one, other = sin_p * cos_q / self.p, cos_p * over_q
+        answer = sin_p * over_q / (2 * self.p)
+        z = self.v * sine - self.c * (1 - cosine) + self.cos * answer - self.sin * (one - other) / 2
+        u = self.v * cosine - self.c * sine + self.cos * (one + other) / 2 - self.sin * self.omega * answer
+        force = self.cos * (cos_p * cos_q + sin_p * sin_q) - self.sin * (sin_p * cos_q - cos_p * sin_q)
+        return z, u, force - z - self.c
+
+    def third(self, z: float, u: float, width: float) -> float:
+        """A bound of |x'''| within `width` of a place; the energy grows by less than the force times the time."""
+        return float(self.omega) + hypot(z + float(self.c), u) + width
+
+    def variations(self, t: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+        """Derivatives of (x, x') at t by tau and by v."""
+        import flint
+
+        # by tau only the force moves: the same motion from rest at c = 0, with the force's derivative
+        turned = Linear.__new__(Linear)
+        vars(turned).update(vars(self))
+        turned.c, turned.v = flint.arb(0), flint.arb(0)
+        turned.cos, turned.sin = -self.omega * self.sin, self.omega * self.cos
+        z, u, _ = turned.at(t)
+        sine, cosine = flint.arb(t).sin_cos()
+        return (z, u), (sine, cosine)
+
+
+class Cubic:
+    """The flight of x'' + sign x'/10 + x + 3 x^3/10 = cos omega t, in Taylor steps whose last terms are below 10^-60.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.precision import balls_at
+    >>> with balls_at(256):
+    ...     print(Cubic(2.0, 0.0, 0.0, 1.0).at(1)[0].str(20, radius=False))
+    1.0860656485255256926
+    """
+
+    order = 72
+
+    def __init__(self, omega: float, clearance: float, tau: Any, v: Any, sign: int = 1) -> None:
+        import flint
+
+        arb = flint.arb
+        self.omega, self.c, self.start = arb(omega), arb(clearance), (arb(tau), arb(v))
+        self.damping, self.cubic, self.sign = arb(sign) / 10, arb(3) / 10, sign
+        self.steps: list[tuple[Any, Any, list[Any]]] = []
+        self._extend(arb(0), self.c, arb(v))
+
+    def _extend(self, t: Any, x: Any, u: Any) -> None:
+        X, square = [x, u], [x * x]
+        sine, cosine = (self.omega * (self.start[0] + t)).sin_cos()
+        force, power = (cosine, -sine, -cosine, sine), self.omega / self.omega
+        for k in range(self.order - 1):
+            cube = sum((square[i] * X[k - i] for i in range(k + 1)), 0 * x)
+            pull = self.damping * (k + 1) * X[k + 1] + X[k] + self.cubic * cube
+            X.append((force[k % 4] * power - pull) / ((k + 1) * (k + 2)))
+            square.append(sum((X[i] * X[k + 1 - i] for i in range(k + 2)), 0 * x))
+            power = power * self.omega / (k + 1)
+        last = max(float(abs(X[-1])) ** (1 / self.order), float(abs(X[-2])) ** (1 / (self.order - 1)))
+        width = min(10.0 ** (-(DIGITS + 3) / self.order) / last, 1.0)
+        self.steps.append((t, t + width, X))
+
+    def at(self, t: Any) -> tuple[Any, Any, Any]:
+        """x - c, x', x'' at a time after the launch."""
+        import flint
+
+        t = flint.arb(t)
+        while not t <= self.steps[-1][1]:
+            begin, end, X = self.steps[-1]
+            x, u, _ = _summed(X, end - begin)
+            self._extend(end, x, u)
+        begin, _, X = next(step for step in reversed(self.steps) if t >= step[0])
+        x, u, e = _summed(X, t - begin)
+        return x - self.c, u, e
+
+    def third(self, z: float, u: float, width: float) -> float:
+        """A bound of |x'''| within `width` <= 1/2 of a place, by twice the sizes there and what the force adds."""
+        x, u = 2 * (abs(z + float(self.c)) + abs(u) * width + width), 2 * (abs(u) + width)
+        pull, damping = x + float(abs(self.cubic)) * x**3, float(abs(self.damping))
+        return float(self.omega) + damping * (1 + damping * u + pull) + u * (1 + 3 * float(abs(self.cubic)) * x * x)
+
+    def variations(self, t: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+        """Derivatives of (x, x') at t by tau and by v, as differences that 60 digits carry."""
+        import flint
+
+        small = flint.arb(10) ** -25
+        z, u, _ = self.at(t)
+        rows = []
+        for moved in ((small, 0), (0, small * self.start[1])):
+            tau, v = self.start[0] + moved[0], self.start[1] + moved[1]
+            other = Cubic(float(self.omega), float(self.c), tau, v, self.sign).at(t)
+            size = moved[0] + moved[1]
+            rows.append(((other[0] - z) / size, (other[1] - u) / size))
+        return rows[0], rows[1]
+
+
+def _summed(X: list[Any], s: Any) -> tuple[Any, Any, Any]:
+    value, slope, bend = X[-1], 0 * s, 0 * s
+    for part in reversed(X[:-1]):
+        bend = bend * s + slope
+        slope = slope * s + value
+        value = value * s + part
+    return value, slope, 2 * bend

@@ -29,13 +29,13 @@ class TouchingKind(EventKind):
 
     def others(self, orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:  # noqa: ARG002
         """The orbit with an impact where it touches the wall."""
-        from singimpact.branches.switching import with_impact
+        from singimpact.branches.branch_points import with_impact
 
         return [with_impact(orbit)]
 
     def graze_time(self, orbit: PeriodicOrbit) -> float:
         """The time of the lowest place, of an orbit without impact; else of the flight that touches the wall."""
-        from singimpact.branches.switching import touching_flight
+        from singimpact.branches.branch_points import touching_flight
 
         times = np.asarray(orbit.tau, dtype=float)
         if not orbit.n:
@@ -89,7 +89,7 @@ class Graze(TouchingKind):
 
     def others(self, orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:
         """The orbit without the impact; of an orbit without impact the one with an impact there."""
-        from singimpact.branches.switching import without_impact
+        from singimpact.branches.branch_points import without_impact
 
         return [without_impact(orbit)] if orbit.n else super().others(orbit, over, parameter)
 

@@ -29,8 +29,8 @@ class InteriorGraze(TouchingKind):
 
     def touching(self, closing: AnyClosing, orbit: PeriodicOrbit) -> int:
         """The flight whose lowest place is nearest to the wall."""
+        from singimpact.branches.branch_points import states_of
         from singimpact.branches.solutions import closing_of
-        from singimpact.branches.switching import states_of
 
         plain = closing_of(orbit.oscillator, closing.n, closing.k, ())
         return int(np.argmin([abs(height) for _, height in plain.heights(states_of(orbit))]))

@@ -34,7 +34,7 @@ class PeriodDoubling(MultiplierKind):
 
     def others(self, orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:
         """The orbit of 2n impacts in 2k periods next to the doubling."""
-        from singimpact.branches.switching import doubled
+        from singimpact.branches.branch_points import doubled
 
         return doubled(orbit, over, parameter)
 

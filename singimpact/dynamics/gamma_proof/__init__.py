@@ -2,10 +2,10 @@
 
 Not here: its series in (tau, v) (`theory.gamma_series`), single thresholds (`dynamics.threshold`), the certificate
 as a file and its check (`certificates`).
-Files: `gravity` (the model as a ball under gravity: power series with a bound of its tail; times and places),
-`folded` (Taylor models in S and lambda), `relation` (launch and landing speeds, in balls), `nonlinear` (the same from
-the series of v_c, with a bound of the rest), `lemmas` (drift, residual
-and cones, for a box of lambda), `after` (what comes after the contact point), `proof` (`certified_gamma`).
+Files: `gravity` (the model as a ball under gravity: power series with a bound of its tail; times and places; launch
+and landing speeds, in balls), `folded` (Taylor models in S and lambda), `nonlinear` (these speeds from the series of
+v_c, with a bound of the rest), `lemmas` (drift, residual and cones, for a box of lambda), `after` (what comes after
+the contact point), `proof` (`certified_gamma`).
 
 The argument.  Launches are (S, l), S = -s at launch and l the ratio of landing to launch place; q = (1-l)/(1-L(S)).
 Below l = L + Kl S^N the drift lemma makes q decrease: either q tends to 0, flights shorten by r and chatter completes

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from flint import arb, arb_poly, fmpq
 
 from singimpact.dynamics.gamma_proof.folded import Models, between, symmetric
-from singimpact.dynamics.gamma_proof.relation import Flights, residual
+from singimpact.dynamics.gamma_proof.gravity import Flights, residual
 
 
 @dataclass(frozen=True)

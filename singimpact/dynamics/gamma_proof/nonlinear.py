@@ -29,7 +29,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.contact.contact import Contact, acceleration
 from singimpact.contact.zero_ahead import ContactZero
 from singimpact.dynamics.gamma_proof.folded import Models, symmetric
-from singimpact.dynamics.gamma_proof.relation import Hats
+from singimpact.dynamics.gamma_proof.gravity import Hats
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory.impact_sheet import sheet

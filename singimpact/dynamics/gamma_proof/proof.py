@@ -19,10 +19,19 @@ from singimpact.algebra.precision import balls_at
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics.gamma_proof.after import PIECES, Lost, Settled, lost_contact, settled
 from singimpact.dynamics.gamma_proof.folded import between
-from singimpact.dynamics.gamma_proof.gravity import clock_of, gravity, numbers_of, place_of, speed_factor, time_of
+from singimpact.dynamics.gamma_proof.gravity import (
+    Flights,
+    Relation,
+    clock_of,
+    gravity,
+    numbers_of,
+    place_of,
+    restitution_at,
+    speed_factor,
+    time_of,
+)
 from singimpact.dynamics.gamma_proof.lemmas import BoxProof, ProofSettings, Undecided, prove_box, rational
 from singimpact.dynamics.gamma_proof.nonlinear import NonlinearRelation, nonlinear_relation
-from singimpact.dynamics.gamma_proof.relation import Flights, Relation, restitution_at
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Protocol
 
-from singimpact.algebra.jet_maps import blow_up, divided, implicit, inverse_map
-from singimpact.algebra.jets import Jet
+from singimpact.algebra.jets import Jet, blow_up, divided, implicit, inverse_map
 from singimpact.contact.contact import Contact
 
 

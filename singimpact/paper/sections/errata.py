@@ -11,8 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from singimpact.documents.breaking import wrapping
-from singimpact.documents.rendering import latex_text, latex_words, markdown_text, markdown_words
+from singimpact.documents.rendering import latex_text, latex_words, markdown_text, markdown_words, wrapping
 from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
 from singimpact.paper.sections.stored_sections import kept_legend
 

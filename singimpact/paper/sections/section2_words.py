@@ -7,8 +7,8 @@ from typing import Any
 import sympy
 
 from singimpact.documents.arranging import by_degree
-from singimpact.documents.breaking import PAGE, lines_of, width
 from singimpact.documents.document_steps import Section, Step
+from singimpact.documents.rendering import PAGE, lines_of, width
 from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.implicit import f_symbol, sigma, t, v
 from singimpact.theory.notation import joined, latex

@@ -14,7 +14,7 @@ from singimpact.paper.routes import fold
 from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.fold import k
 from singimpact.paper.routes.implicit import r, sigma, t, v
-from singimpact.paper.sections import section4_orbits_words as orbits
+from singimpact.paper.sections import section4_blowup_words as orbits
 from singimpact.paper.sections.section2_words import rows, with_b
 from singimpact.paper.sections.section4_blowup_words import blow_up, in_lambda
 from singimpact.theory.notation import latex

@@ -9,8 +9,8 @@ from singimpact.documents.document_steps import Section, Step
 from singimpact.paper.routes import swan
 from singimpact.paper.routes.implicit import a_symbol, r, sigma
 from singimpact.paper.routes.swan import ell, s
-from singimpact.paper.sections import section4_orbits_words as orbits
-from singimpact.theory.homogeneous import P, Q, leading_coefficient, mu_of_lambda, r_of_lambda
+from singimpact.paper.sections import section4_blowup_words as orbits
+from singimpact.theory.multipliers import P, Q, leading_coefficient, mu_of_lambda, r_of_lambda
 from singimpact.theory.notation import latex
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 
 from singimpact import cache
-from singimpact.documents.breaking import wrapping
 from singimpact.documents.document_steps import Mark, Section, Step, claims_of
+from singimpact.documents.rendering import wrapping
 from singimpact.store import cache_folder
 
 LIBRARIES = ("sympy", "python-flint", "mpmath")

@@ -124,7 +124,7 @@ def test_contraction_at_numbers():
 
 
 def test_key_holds_what_a_file_imports():
-    assert {"cascade", "section4a_rays", "section4a_blowup"} <= set(imported_by("cascade"))
+    assert {"cascade", "section4a_multipliers", "section4a_blowup"} <= set(imported_by("cascade"))
 
 
 @pytest.mark.slow

@@ -181,17 +181,17 @@ MUTANTS = {
         "found = -r * impact - growth**2 * launch",
         "s5-hbar s5-mstar-place s5-slopes s5-unique"),
     "P_j without a factor": (
-        "theory/homogeneous.py",
+        "theory/multipliers.py",
         "(j + 1) * (j + 2) * launch_velocity(j, sympy.Integer(1), lambda_)",
         "(j + 1) * launch_velocity(j, sympy.Integer(1), lambda_)",
         "t:t2-repelling"),
     "mu without 1/lambda": (
-        "theory/homogeneous.py",
+        "theory/multipliers.py",
         "ratio = sympy.factor((P(j) / Q(j)) ** 2 / lambda_)",
         "ratio = sympy.factor((P(j) / Q(j)) ** 2)",
         "s6n-accumulate"),
     "a leading coefficient with a factor": (
-        "theory/homogeneous.py",
+        "theory/multipliers.py",
         "found = sympy.factor((1 - lambda_) * P(j)",
         "found = sympy.factor(3 * (1 - lambda_) * P(j)",
         "t:t2-eigenvalue-limit t:t2-repelling t:t3-eigenvalue-limit t:t3-repelling"),

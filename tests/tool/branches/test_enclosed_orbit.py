@@ -7,7 +7,7 @@ import pytest
 
 import singimpact as si
 from singimpact.branches import BallClosing, EnclosedOrbit
-from singimpact.branches.enclosed_orbit import enclosed_orbit
+from singimpact.branches.krawczyk import enclosed_orbit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.inputs import InputError
 

@@ -305,7 +305,7 @@ def test_false_statements_about_an_orbit_are_refused(change, why, orbits):
 def test_states_of_a_virtual_orbit_are_refused():
     """A solution of the closing conditions whose flight is below the wall on its way: another impact comes before."""
     osc = si.linear("2.8", "0.1", "0.8")
-    from singimpact.branches.one_or_two_impacts import two_impacts
+    from singimpact.branches.starts import two_impacts
 
     points, _ = two_impacts(osc, 2)
     visible = [tuple(np.round(orbit.v, 8)) for orbit in osc.periodic(2, 2)]

@@ -12,7 +12,7 @@ from singimpact.branches.border import BorderOrbit, border_orbits
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
-from singimpact.paper.claims.sections.section4a_rays import ray_m3
+from singimpact.paper.claims.sections.section4a_multipliers import ray_m3
 from singimpact.paper.claims.verifiers import every, identity, is_zero
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.implicit import a_symbol, at_contact, sigma, t, v, y_c

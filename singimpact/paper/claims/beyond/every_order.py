@@ -1,7 +1,7 @@
 """Contact points of every order j: one ray that carries gamma, a saddle for every r, and on which side it lies.
 
 The model is x'' = s^j; l is the ratio of landing and launch time, and L stands for l^j, so that an identity in l, L and
-j holds for every j.  P and Q are the polynomials of `theory.homogeneous`.
+j holds for every j.  P and Q are the polynomials of `theory.multipliers`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from singimpact.algebra.certificates import positive_in, positive_on
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.verifiers import every, is_zero, same
-from singimpact.theory.homogeneous import DG_on_ray, P, Q, lambda_, mu_of_lambda, r_of_lambda
+from singimpact.theory.multipliers import DG_on_ray, P, Q, lambda_, mu_of_lambda, r_of_lambda
 
 claim = in_section("beyond")
 ell, L, j, i, V, W = sympy.symbols("l L j i V W")

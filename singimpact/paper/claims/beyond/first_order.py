@@ -13,8 +13,8 @@ from singimpact.paper.claims.verifiers import every, is_zero, same, sample
 from singimpact.paper.routes import first_order as route
 from singimpact.paper.routes.first_order import A2, A3, Change, damping, first, h, j, s, second
 from singimpact.paper.trials.first_order_feet import MODELS, RATES, measured
-from singimpact.theory.homogeneous import launch_velocity
 from singimpact.theory.impact_sheet import generic_sheet
+from singimpact.theory.multipliers import launch_velocity
 
 claim = in_section("beyond")
 X = sympy.Symbol("X")

@@ -26,7 +26,7 @@ from singimpact.paper.trials.loop_heights import (
     generations,
     heights,
 )
-from singimpact.theory.homogeneous import P, Q, lambda_, launch_velocity
+from singimpact.theory.multipliers import P, Q, lambda_, launch_velocity
 
 claim = in_section("beyond")
 ell, w, r, s, v = sympy.symbols("l w r s v")

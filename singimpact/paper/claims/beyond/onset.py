@@ -14,8 +14,7 @@ from singimpact.paper.claims.sections.section6_scaling import near_the_swan
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u
-from singimpact.paper.trials.born_orbits import DEPTHS, LIFTS, RATES, hop
-from singimpact.paper.trials.first_order_feet import limit_of
+from singimpact.paper.trials.first_order_feet import BIRTH_RATES, DEPTHS, LIFTS, hop, limit_of
 
 claim = in_section("beyond")
 v, s, bend, drop, rate = sympy.symbols("v s A2 dc a_c")  # A2 = |a''|, a_c = |da/dc|
@@ -79,7 +78,7 @@ def _orbit(stated: tuple[float, float, float, float]) -> Check:
     """Laws of the first hit, its speed, the height and the rest (a number of X beside 1) at c_0 - 10^-k."""
     checks, worst = [], dict[str, str]()
     for lift in LIFTS:
-        for rate_ in RATES:
+        for rate_ in BIRTH_RATES:
             laws = (*stated[:3], stated[3] + limit_of(rate_))
             orbits = [hop(lift, rate_, depth) for depth in DEPTHS]
             parts = [(orbit.first, orbit.speed, orbit.top, orbit.rest) for orbit in orbits]

@@ -58,12 +58,6 @@ def _section4a_blowup() -> tuple[Claim, ...]:
     return _tried(section.CLAIMS, section.TRIALS)
 
 
-def _section4a_rays() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.sections import section4a_rays as section
-
-    return _tried(section.CLAIMS, section.TRIALS)
-
-
 def _section4a_multipliers() -> tuple[Claim, ...]:
     from singimpact.paper.claims.sections import section4a_multipliers as section
 
@@ -106,12 +100,6 @@ def _section6_regions() -> tuple[Claim, ...]:
     return _tried(section.CLAIMS, section.TRIALS)
 
 
-def _section6_leaves() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.sections import section6_leaves as section
-
-    return _tried(section.CLAIMS, section.TRIALS)
-
-
 SECTIONS: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "section2": _section2,
     "section2_maps": _section2_maps,
@@ -120,7 +108,6 @@ SECTIONS: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "section4a_arc": _section4a_arc,
     "section4a_fold": _section4a_fold,
     "section4a_blowup": _section4a_blowup,
-    "section4a_rays": _section4a_rays,
     "section4a_multipliers": _section4a_multipliers,
     "section4b": _section4b,
     "section4b_leaves": _section4b_leaves,
@@ -128,5 +115,4 @@ SECTIONS: dict[str, Callable[[], tuple[Claim, ...]]] = {
     "section6": _section6,
     "section6_negative": _section6_negative,
     "section6_regions": _section6_regions,
-    "section6_leaves": _section6_leaves,
 }

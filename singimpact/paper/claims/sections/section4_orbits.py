@@ -16,7 +16,7 @@ from singimpact.paper.claims.verifiers import is_zero, same
 from singimpact.paper.routes import ratios
 from singimpact.paper.routes.implicit import sigma, t
 from singimpact.paper.routes.ratios import l
-from singimpact.theory.homogeneous import DG_on_ray, P, Q, lambda_
+from singimpact.theory.multipliers import DG_on_ray, P, Q, lambda_
 
 STABLE = "the stable manifold theorem"
 BEHIND = -sympy.Rational(1, 4)  # ratios down to it are used: next to gamma a landing may fall just behind tau_*

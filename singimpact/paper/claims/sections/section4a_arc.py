@@ -17,7 +17,7 @@ from singimpact.paper.routes import implicit as route
 from singimpact.paper.routes.fold import m
 from singimpact.paper.routes.implicit import a_symbol, t, v
 from singimpact.paper.trials import arcs, true_orbits
-from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
+from singimpact.theory.multipliers import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
 from singimpact.theory.notation import latex
 
 REACHED = 1e-3  # relative error to which DOP853 finds a leading coefficient of gamma: double precision near Pi_0

@@ -14,9 +14,9 @@ from singimpact.paper.claims.sections.section5_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero
 from singimpact.paper.routes import swan
 from singimpact.paper.routes.implicit import r, v
-from singimpact.paper.trials import swan_orbits, true_orbits
-from singimpact.theory.homogeneous import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
+from singimpact.paper.trials import arcs, true_orbits
 from singimpact.theory.impact_sheet import generic_sheet
+from singimpact.theory.multipliers import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
 
 m, s, ell, mbar = swan.m, swan.s, swan.ell, swan.mbar
 a2, sigma, t = sympy.symbols("a_d2 sigma t")
@@ -172,7 +172,7 @@ def _smoothness(stated: int) -> Check:
     growing = _positive_slope(1).holds
 
     def trial() -> tuple[str, bool]:
-        found = swan_orbits.cube_root()
+        found = arcs.cube_root()
         return f"true flights: t ~ v^{found:.4f} as v -> 0", abs(found - 1 / 3) < 1e-2
 
     return every(
@@ -183,7 +183,7 @@ def _smoothness(stated: int) -> Check:
         tried=trial,
         witness=lambda: {
             "sigma": "0",
-            "exponent of v in the flight time": f"{swan_orbits.cube_root():.4f}",
+            "exponent of v in the flight time": f"{arcs.cube_root():.4f}",
             "needed for C^infinity": "1",
         },
     )
@@ -287,7 +287,7 @@ def _limit(stated: Any) -> Check:
     residual = stated**2 - matrix.trace() * stated + matrix.det()
 
     def trial() -> tuple[str, bool]:
-        orbit = swan_orbits.eigenvalue().found
+        orbit = arcs.eigenvalue().found
         value = float(sympy.N(stated.subs(lambda_, true_orbits.lambda_of(0.5, 2))))
         return f"true orbits give {orbit:.6f} at r = 1/2, the statement {value:.6f}", abs(orbit / value - 1) < REACHED
 
@@ -299,8 +299,8 @@ def _limit(stated: Any) -> Check:
         tried=trial,
         witness=lambda: {
             "r": "1/2",
-            "limit of the eigenvalue": f"{swan_orbits.eigenvalue().expected:.15f}",
-            "found on true orbits": f"{swan_orbits.eigenvalue().found:.6f}",
+            "limit of the eigenvalue": f"{arcs.eigenvalue().expected:.15f}",
+            "found on true orbits": f"{arcs.eigenvalue().found:.6f}",
         },
     )
 
@@ -311,7 +311,7 @@ def _others(stated: str) -> Check:
     below = "chatter" if orbits.drift(2) == 1 else behind
 
     def trial() -> tuple[str, bool]:
-        found = swan_orbits.fates()
+        found = arcs.fates()
         name = (
             f"{found.count} true orbits from states near w_*, below and above gamma on two models, all come to rest at "
             f"points with a < 0 (largest a there {found.largest:.1e})"

@@ -22,7 +22,7 @@ from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t, u
 from singimpact.paper.trials import universal_orbits
 from singimpact.paper.trials.true_orbits import lambda_of
-from singimpact.theory.homogeneous import lambda_, mu_of_lambda
+from singimpact.theory.multipliers import lambda_, mu_of_lambda
 
 
 def _corresponds(point: tuple[Any, Any]) -> Check:
