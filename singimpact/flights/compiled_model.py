@@ -6,7 +6,6 @@ import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from math import frexp, ldexp
 from threading import Lock
 from time import perf_counter
 from typing import Any
@@ -37,6 +36,7 @@ from singimpact.flights.model_numbers import (
     numbers_of_flow,
     phases_of,
     recurrence_of,
+    step_with_few_bits,
     turn_of,
 )
 from singimpact.flights.phase import reduced
@@ -79,6 +79,8 @@ class TableSettings:
 TABLES = TableSettings()
 PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_BATCH}
 """Kinds of work that fill the tables which an entry reads."""
+INTERPRETED: dict[int, Callable[..., None]] = {entries.RELEASES: Interpreter.releases, entries.DROPS: Interpreter.drops,
+               entries.PLACES: Interpreter.places, entries.VARIATIONS: Interpreter.variations}  # fmt: skip
 
 
 @lru_cache(maxsize=256)
@@ -156,7 +158,10 @@ class CompiledModel:
             scalars = layout.SCALARS
             flat[scalars : scalars + 4], flat[scalars + 4 : scalars + 8] = numbers[1:5], rest[1:5]
             rate = fastest(osc) or TABLES.slowest
-            flat[scalars + 8], flat[scalars + 9] = _step(TABLES.reach, rate), _step(TABLES.batch_reach, rate)
+            flat[scalars + 8], flat[scalars + 9] = (
+                step_with_few_bits(TABLES.reach, rate, TABLES.bits),
+                step_with_few_bits(TABLES.batch_reach, rate, TABLES.bits),
+            )
             model = layout.linear_model(flat, sizes)
             phases = phases_of(osc)
             for numbers_of_waves, values, phase in ((model.numbers, numbers, phases[0]), (model.rest, rest, phases[1])):
@@ -232,7 +237,8 @@ class CompiledModel:
         try:
             scratch, at = self._spare.pop()
         except IndexError:
-            scratch, at = _addressed(self._new_scratch())
+            scratch = self._new_scratch()
+            at = _address(scratch)
         result = self._timed(entry, (sizes, model, at, *addresses), units, (scratch, arrays, out, status, flat))
         self._spare.append((scratch, at))
         return result
@@ -260,6 +266,18 @@ class CompiledModel:
             entry = self._entry(name)
         missing = [text for text in self._called(law) if not text.is_bound(seconds)]
         return None if missing else entry
+
+    def _work(self, kind: int, states: tuple[Array, ...], *results: Array) -> None:
+        """Work on flights, one a state; interpreted until it is compiled, unless Python's numbers refuse it."""
+        name, count = self.main if self.linear else "judge_entry", states[0].size
+        entry = self._compiled(name, self.price * count)
+        if entry is None:
+            try:
+                INTERPRETED[kind](self.interpreter, *states, *results)
+                return
+            except LEFT_OPEN:
+                entry = self._here(name)
+        self._call(entry, (kind, count, 0), states, *results)
 
     def _for_orbits(self, name: str, seconds: float) -> Callable[..., int] | None:
         """The entry for work that calls rho; waited for after long interpreted flights, unless its compiler dies."""
@@ -395,29 +413,14 @@ class CompiledModel:
         """Codes and flight time, velocity, depth and bound, shape (10, n), of masses released at rest."""
         flight_count.add(tau.size)
         status, out, orders = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan), removed.astype(float)
-        name = "linear_entry" if self.linear else "judge_entry"
-        entry = self._compiled(name, self.price * tau.size)
-        if entry is None:
-            try:
-                self.interpreter.releases(tau, orders, out, status)
-                return status, out
-            except LEFT_OPEN:
-                entry = self._here(name)
-        self._call(entry, (entries.RELEASES, tau.size, 0), (tau, tau, orders), out, status)
+        self._work(entries.RELEASES, (tau, tau, orders), out, status)
         return status, out
 
     def drops(self, tau: Array, v: Array, heights: Array) -> tuple[Array, Array]:
         """Codes and flight time, velocity, depth and bound, shape (10, n), of starts off the wall; for Taylor flows."""
         flight_count.add(tau.size)
         status, out = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan)
-        entry = self._compiled("judge_entry", self.price * tau.size)
-        if entry is None:
-            try:
-                self.interpreter.drops(tau, v, heights, out, status)
-                return status, out
-            except LEFT_OPEN:
-                entry = self._here("judge_entry")
-        self._call(entry, (entries.DROPS, tau.size, 0), (tau, v, heights), out, status)
+        self._work(entries.DROPS, (tau, v, heights), out, status)
         return status, out
 
     def segment(self, tau: float, v: float, count: int, near: float = 0.0) -> tuple[Array, int]:
@@ -525,15 +528,7 @@ class CompiledModel:
     def variations(self, tau: Array, v: Array, times: Array) -> Array:
         """dx/dv, dx'/dv, dx/dtau, dx'/dtau at given flight times, shape (n, 4)."""
         out = np.empty((tau.size, 4))
-        name = "linear_entry" if self.linear else "judge_entry"
-        entry = self._compiled(name, self.price * tau.size)
-        if entry is None:
-            try:
-                self.interpreter.variations(tau, v, times, out)
-                return out
-            except LEFT_OPEN:
-                entry = self._here(name)
-        self._call(entry, (entries.VARIATIONS, tau.size, 0), (tau, v, times), out)
+        self._work(entries.VARIATIONS, (tau, v, times), out)
         return out
 
     def places(self, tau: Array, v: Array, times: Array, heights: Array | float = 0.0) -> Array:
@@ -545,19 +540,8 @@ class CompiledModel:
         """
         columns = np.stack([times, np.broadcast_to(heights, times.shape)], axis=1)
         tau, v = (np.ascontiguousarray(column, dtype=float) for column in (tau, v))
-        out, begin = np.empty((tau.size, 2)), 0
-        while begin < tau.size:
-            entry = self._compiled(self.main, self.price * (tau.size - begin))
-            chosen = slice(begin, begin + (TABLES.interpreted if entry is None else TABLES.block))
-            states = tau[chosen], v[chosen], columns[chosen]
-            try:
-                if entry is None:
-                    self.interpreter.places(*states, out[chosen])
-            except LEFT_OPEN:
-                entry = self._here(self.main)
-            if entry is not None:
-                self._call(entry, (entries.PLACES, states[0].size, 0), states, out[chosen])
-            begin = chosen.stop
+        out = np.empty((tau.size, 2))
+        self._work(entries.PLACES, (tau, v, columns), out)
         return out
 
     def follow(self, tau: float, v: float, times: Array, height: float = 0.0) -> Array:
@@ -610,15 +594,5 @@ def _address(array: Array) -> int:
     return int(array.__array_interface__["data"][0])
 
 
-def _addressed(array: Array) -> tuple[Array, int]:
-    return array, _address(array)
-
-
 _NONE = np.zeros(16)
 _NOWHERE = _address(_NONE)
-
-
-def _step(reach: float, rate: float) -> float:
-    """reach/rate with few bits, so that multiples of it are exact."""
-    fraction, exponent = frexp(reach / rate)
-    return ldexp(int(ldexp(fraction, TABLES.bits)), exponent - TABLES.bits)

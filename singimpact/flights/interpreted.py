@@ -59,7 +59,7 @@ class Interpreter:
         else:
             self._rows("taylor_hits", given, out, status)
 
-    def releases(self, tau: Array, removed: Array, out: Array, status: Array) -> None:
+    def releases(self, tau: Array, _: Array, removed: Array, out: Array, status: Array) -> None:
         """First hits of masses released at rest."""
         self._rows("releases", (tau, removed), out, status)
 

@@ -161,3 +161,9 @@ def fastest_rate(osc: Oscillator) -> float:
 def turn(rate: Expression) -> Expression:
     """The time 2 pi/|rate| of a turn."""
     return multiply(number(2 * sign_of(rate)), Pi(), power(rate, number(-1)))
+
+
+def step_with_few_bits(reach: float, rate: float, bits: int) -> float:
+    """reach/rate with few bits, so that multiples of it are exact."""
+    fraction, exponent = frexp(reach / rate)
+    return ldexp(int(ldexp(fraction, bits)), exponent - bits)
