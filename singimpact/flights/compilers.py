@@ -29,6 +29,8 @@ from singimpact.flights.bind import (
 from singimpact.flights.kernels import recurrence
 
 UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+Built = Any
+"""Types, values and builders of numba and LLVM, which give them no types."""
 LEVEL = 3
 """Of numba's own passes: without them batches of states take three times as long."""
 
@@ -115,7 +117,7 @@ def _chosen(steps: bool) -> dict[str, Any]:
     return functions
 
 
-def _of_addresses() -> dict[str, Any]:
+def _of_addresses() -> dict[str, Built]:
     """`layout.block` over an address; `orbits.law` and `recurrence.called` at an address."""
     import numba
     from llvmlite import ir
@@ -126,24 +128,24 @@ def _of_addresses() -> dict[str, Any]:
     whole, number = ir.IntType(64), ir.DoubleType()
 
     @intrinsic
-    def moved(_typing: Any, address: Any, count: Any) -> Any:
-        def emit(_context: Any, builder: Any, _signature: Any, given: Any) -> Any:
+    def moved(_typing: Built, address: Built, count: Built) -> Built:
+        def emit(_context: Built, builder: Built, _signature: Built, given: Built) -> Built:
             return builder.gep(given[0], [given[1]])
 
         return address(address, count), emit
 
-    def block(flat: Any, at: Any, shape: Any) -> Any:
+    def block(flat: Built, at: Built, shape: Built) -> Built:
         return numba.carray(moved(flat, at), shape)  # type: ignore[call-arg]
 
-    def last_address(builder: Any, numbers: Any, called: Any) -> Any:
+    def last_address(builder: Built, numbers: Built, called: Built) -> Built:
         """The function at the address that an array of numbers ends with."""
         last = builder.sub(builder.extract_value(numbers.shape, 0), ir.Constant(whole, 1))
         at = builder.fptoui(builder.load(builder.gep(numbers.data, [last])), whole)
         return builder.inttoptr(at, called.as_pointer())
 
     @intrinsic
-    def law(_typing: Any, velocity: Any, w: Any) -> Any:
-        def emit(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def law(_typing: Built, velocity: Built, w: Built) -> Built:
+        def emit(context: Built, builder: Built, signature: Built, given: Built) -> Built:
             numbers = context.make_array(signature.args[1])(context, builder, given[1])
             called = ir.FunctionType(number, [number, number.as_pointer()])
             return builder.call(last_address(builder, numbers, called), [given[0], numbers.data])
@@ -151,8 +153,10 @@ def _of_addresses() -> dict[str, Any]:
         return kinds.float64(velocity, w), emit
 
     @intrinsic
-    def called(_typing: Any, _job: Any, _numbers: Any, p: Any, launch: Any, X: Any, W: Any, A: Any) -> Any:
-        def emit(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    def called(
+        _typing: Built, _job: Built, _numbers: Built, p: Built, launch: Built, X: Built, W: Built, A: Built
+    ) -> Built:
+        def emit(context: Built, builder: Built, signature: Built, values: Built) -> Built:
             pairs = zip(signature.args[2:], values[2:], strict=True)
             arrays = [context.make_array(kind)(context, builder, value) for kind, value in pairs]
             rows = [builder.extract_value(arrays[3].shape, axis) for axis in (0, 1)]
@@ -167,7 +171,7 @@ def _of_addresses() -> dict[str, Any]:
         four, two = kinds.UniTuple(kinds.float64, 4), kinds.UniTuple(kinds.int64, 2)
         return four(two, four, p, launch, X, W, A), emit
 
-    def written(builder: Any, kind: Any, values: Any) -> Any:
+    def written(builder: Built, kind: Built, values: Built) -> Built:
         """Places of values in memory, one after the other."""
         memory = cgutils.alloca_once(builder, kind, len(values))
         places = [builder.gep(memory, [ir.Constant(whole, at)]) for at in range(len(values))]
@@ -175,5 +179,5 @@ def _of_addresses() -> dict[str, Any]:
             builder.store(value, place)
         return places
 
-    bound: Any = numba.njit(**UNWRAPPED)(block)
+    bound: Built = numba.njit(**UNWRAPPED)(block)
     return {"block": bound, LAW: law, "called": called}
