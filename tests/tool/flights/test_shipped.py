@@ -8,7 +8,6 @@ import lzma
 import platform
 import subprocess
 import sys
-from importlib.metadata import version
 
 import numpy as np
 import pytest
@@ -167,23 +166,6 @@ def test_a_processor_without_a_feature_gets_no_code_that_needs_it(monkeypatch):
 def states(count=2000):
     draw = np.random.default_rng(3)
     return draw.uniform(-5, 5, count), 10 ** draw.uniform(-4, 0.3, count)
-
-
-BUILD = """
-import hashlib, json
-from singimpact.flights import objects, platforms_here, texts
-print(json.dumps({name: hashlib.sha256(code).hexdigest() for name, code in objects(texts(), platforms_here()).items()}))
-"""
-
-
-@pytest.mark.slow
-def test_built_again_in_a_new_process_it_has_the_same_bytes(index):
-    """Where numba and llvmlite are those that it was made with; the next test compares results anywhere."""
-    if index["made with"] == {name: version(name) for name in ("numba", "llvmlite")}:
-        done = subprocess.run([sys.executable, "-c", BUILD], capture_output=True, text=True, check=True)
-        again = json.loads(done.stdout)
-        assert len(again) >= len(ENTRIES)
-        assert again == {name: index["objects"][name] for name in again}
 
 
 @pytest.mark.slow
