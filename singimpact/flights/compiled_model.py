@@ -68,8 +68,9 @@ class TableSettings:
     bits: int = 24
     # states of one call into compiled code, which hears no interruption: 0.05 s
     block: int = 65_536
-    # states that are worth a thread of their own, which costs 0.1 ms
+    # states that are worth a thread of their own, which costs 0.1 ms, and impacts in batches
     shared: int = 4096
+    batched: int = 32_768
     # states of one call when flights are interpreted
     interpreted: int = 64
     # impacts of a chatter that scratch has rows for: at first, and of a state that needs more
@@ -466,7 +467,8 @@ class CompiledModel:
                 self._call(entry, (entries.ITERATE, codes.size, impacts), states, status=codes)
 
             lanes = LANES if self.linear else 1
-            shared_out(fly, begin // lanes, -(-end // lanes), max(1, TABLES.shared // max(impacts, 1) // lanes))
+            least = (TABLES.batched if self.linear else TABLES.shared) // max(impacts, 1) // lanes
+            shared_out(fly, begin // lanes, -(-end // lanes), max(1, least))
             begin = end
         return times[: tau.size], speeds[: tau.size], status[: tau.size]
 
