@@ -303,8 +303,6 @@ class _Body:
 
     def _value(self, tree: ast.expr) -> Value:
         match tree:
-            case ast.Constant(value=bool()):
-                raise Unsupported(ast.unparse(tree))
             case ast.Constant(value=int() | float() as number):
                 return _constant(number)
             case ast.Name(id=name):
@@ -480,8 +478,7 @@ class _Body:
 
     def _block(self, array: Array, at: Value, shape: Fields) -> Array:
         """`flights.kernels.layout.block` over an address."""
-        lengths = shape.values
-        return Array(self.builder.gep(array.address, [at]), lengths[1] if len(lengths) == 2 else None)
+        return Array(self.builder.gep(array.address, [at]), shape.values[1] if len(shape.values) == 2 else None)
 
     def _function(self, name: str, *values: Value) -> Value:
         full = f"llvm.{name}.f64" if name in INTRINSICS else name

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import lru_cache
-from itertools import pairwise
 from threading import Thread, current_thread, main_thread
 from typing import Any
 
@@ -98,9 +97,9 @@ def shared_out(work: Callable[[slice], None], begin: int, end: int, least: int) 
     >>> sorted((part.start, part.stop) for part in parts)
     [(0, 50), (50, 100)]
     """
-    count = max(1, min(threads_now(), (end - begin) // least))
-    ends = [begin + (end - begin) * at // count for at in range(count + 1)]
-    slices = [slice(*ends_of_one) for ends_of_one in pairwise(ends)]
+    length = end - begin
+    count = max(1, min(threads_now(), length // least))
+    slices = [slice(begin + length * at // count, begin + length * (at + 1) // count) for at in range(count)]
     errors: list[BaseException] = []
 
     def run(chosen: slice) -> None:

@@ -167,9 +167,8 @@ class Machine:
 
     @property
     def _reason(self) -> str:
-        if self.is_own:
-            return f"a cache: its f, g or law is {len(''.join(self.emitted.texts))} characters of code"
-        return f"a cache: there is no object code of the kernels, for {why_not()}"
+        own = f"its f, g or law is {len(''.join(self.emitted.texts))} characters of code"
+        return f"a cache: {own if self.is_own else 'there is no object code of the kernels, for ' + why_not()}"
 
     def awaited(self, name: str) -> Entry | None:
         """An entry from that process, started unless it runs; None when it is busy with another text, or has ended.

@@ -69,7 +69,7 @@ def shipped_code(entry: str) -> bytes | None:
             content = _unpacked(FOLDER / f"{entry}.{name}.xz")
             if content is not None and hashlib.sha256(content).hexdigest() == digest:
                 return content
-            tell(f"{entry}.{name}.xz of the package is damaged: install it again; the kernels are compiled meanwhile")
+            tell(f"{entry}.{name}.xz of the package is damaged, or Python has no lzma: kernels are compiled")
             return None
     return None
 
@@ -99,14 +99,13 @@ def _index() -> dict[str, str]:
         index: dict[str, Any] = json.loads((FOLDER / INDEX).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    digests: dict[str, str] = index["objects"] if index.get("sources") == sources_digest() else {}
-    return digests
+    return dict(index["objects"]) if index.get("sources") == sources_digest() else {}
 
 
 def sources() -> list[bytes]:
     """The bytes of every file that object code of the kernels is made from, with the ends of lines of one system."""
-    modules = [*bind.MODULES, bind, compilers, object_code]
-    return [Path(str(module.__file__)).read_bytes().replace(b"\r\n", b"\n") for module in modules]
+    paths = (Path(str(module.__file__)) for module in (*bind.MODULES, bind, compilers, object_code))
+    return [path.read_bytes().replace(b"\r\n", b"\n") for path in paths]
 
 
 @lru_cache(maxsize=1)
@@ -117,10 +116,12 @@ def sources_digest() -> str:
 
 def _unpacked(file: Path) -> bytes | None:
     try:
-        import lzma
-
-        return lzma.decompress(file.read_bytes())
-    except (ImportError, OSError, lzma.LZMAError):
+        from lzma import LZMAError, decompress
+    except ImportError:  # Python may have been built without it
+        return None
+    try:
+        return decompress(file.read_bytes())
+    except (OSError, LZMAError):
         return None
 
 

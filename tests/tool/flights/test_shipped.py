@@ -148,6 +148,12 @@ def test_settings_of_numba_ask_for_code_of_their_own(monkeypatch):
     assert "NUMBA_CPU_NAME" in why_not()
 
 
+def test_a_python_without_lzma_compiles_and_says_why(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "lzma", None)
+    assert shipped_code("linear_entry") is None
+    assert "lzma" in capsys.readouterr().err
+
+
 def test_a_processor_without_a_feature_gets_no_code_that_needs_it(monkeypatch):
     import llvmlite.binding as llvm
 
