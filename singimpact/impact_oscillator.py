@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -170,8 +171,10 @@ class ImpactOscillator(Oscillator):
         [0.0, -1.860079008832274]
         """
         from singimpact.flights.states import States
-        from singimpact.oscillator.wall_acceleration import acceleration, at_exactly
+        from singimpact.oscillator.wall_acceleration import acceleration, acceleration_at, at_exactly
 
+        if type(tau) is float and type(order) is int and order == 0 and abs(tau) < inf:
+            return np.float64(acceleration_at(self, tau))
         if isinstance(order, bool) or not isinstance(order, int) or not 0 <= order <= 60:
             raise refuse("order", order, "a whole number from 0 to 60")
         states = States.read(tau, 0.0).in_period(self)

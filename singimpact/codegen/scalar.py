@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from fractions import Fraction
 
 from singimpact.algebra.expressions import Call, Expression, Name, Number, Power, Product, Sum, names_in
+from singimpact.algebra.numbers import as_float
+from singimpact.codegen.over_lists import FUNCTIONS, plain
+
+MATH = {name: getattr(math, name) for name in FUNCTIONS}
 
 
 def scalar(tree: Expression, variable: str, name: str) -> tuple[str, tuple[Expression, ...]]:
@@ -22,6 +28,29 @@ def scalar(tree: Expression, variable: str, name: str) -> tuple[str, tuple[Expre
     constants: list[Expression] = []
     body = _source(tree, variable, constants)
     return f"def {name}({variable}, w):\n    return {body}\n", tuple(constants)
+
+
+def in_floats(tree: Expression, variable: str) -> Callable[[float], float]:
+    """An expression as a Python function of one float; nan where it is no real number in doubles.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> root = in_floats(parse("sqrt(v)/2", ["v"]), "v")
+    >>> root(9.0), root(-9.0)
+    (1.5, nan)
+    """
+    text, trees = scalar(tree, variable, "value")
+    function, constants = plain(text, MATH)["value"], [as_float(each) for each in trees]
+
+    def value(number: float) -> float:
+        try:
+            result = function(number, constants)
+        except (ArithmeticError, ValueError):
+            return math.nan
+        return result if isinstance(result, float) else math.nan  # a root of a negative number is complex
+
+    return value
 
 
 def _source(tree: Expression, variable: str, constants: list[Expression]) -> str:

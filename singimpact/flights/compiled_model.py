@@ -6,7 +6,6 @@ import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from threading import Lock
 from time import perf_counter
 from typing import Any
 
@@ -27,7 +26,7 @@ from singimpact.flights.kernels.chatter import NO_ROOM
 from singimpact.flights.kernels.hits import UNIT
 from singimpact.flights.kernels.lanes import LANES
 from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.machine import Called, Machine, compilable, machine_of
+from singimpact.flights.machine import FEW, Bound, Called, Machine, compilable, machine_of
 from singimpact.flights.model_numbers import (
     batch_turn_of,
     fastest,
@@ -39,7 +38,7 @@ from singimpact.flights.model_numbers import (
     step_with_few_bits,
     turn_of,
 )
-from singimpact.flights.phase import reduced
+from singimpact.oscillator.phase import reduced
 from singimpact.flights.states import FAR
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import linear_form
@@ -80,6 +79,8 @@ class TableSettings:
 TABLES = TableSettings()
 PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_BATCH}
 """Kinds of work that fill the tables which an entry reads."""
+SEARCHES = (entries.HITS, entries.DROPS)
+"""Kinds of work that look for hits; they return codes too."""
 INTERPRETED: dict[int, Callable[..., None]] = {entries.RELEASES: Interpreter.releases, entries.DROPS: Interpreter.drops,
                entries.PLACES: Interpreter.places, entries.VARIATIONS: Interpreter.variations}  # fmt: skip
 
@@ -128,7 +129,7 @@ class CompiledModel:
         self.nearest = FAR * as_float(osc.period) if osc.period is not None else np.inf
         self._spare: list[tuple[Array, int]] = []
         self._prepared: set[str] = set()
-        self._quick: Callable[..., Any] | None = None
+        self._bound: dict[int, Bound] = {}
         self._interpreter: Interpreter | None = None
         # seconds of a state by kind of work, as last measured; before that, and at least, with many steps allowed
         self._seconds: dict[int, float] = {}
@@ -246,13 +247,17 @@ class CompiledModel:
 
     def _timed(self, entry: Callable[..., int], arguments: tuple[Any, ...], units: int, kept: tuple[Any, ...]) -> int:
         """A call of an entry; one that is expected to be long hears Ctrl-C."""
-        kind = arguments[0][layout.KIND]
-        known = self._seconds.get(kind, self._guess)
-        begun = perf_counter()
-        found = interruptible(entry, arguments, kept) if known * units > LONG else entry(*arguments)
-        spent = (perf_counter() - begun) / units
-        self._seconds[kind] = max(spent, 0.9 * known if kind in self._seconds else self._least)
+        kind, begun = arguments[0][layout.KIND], perf_counter()
+        found = interruptible(entry, arguments, kept) if self._is_long(kind, units) else entry(*arguments)
+        self._measure(kind, units, begun)
         return found
+
+    def _is_long(self, kind: int, units: int) -> bool:
+        return self._seconds.get(kind, self._guess) * units > LONG
+
+    def _measure(self, kind: int, units: int, begun: float) -> None:
+        least = 0.9 * self._seconds[kind] if kind in self._seconds else self._least
+        self._seconds[kind] = max((perf_counter() - begun) / units, least)
 
     def _compiled(self, name: str, seconds: float, law: Called | None = None) -> Callable[..., int] | None:
         """An entry for work that takes so long when it is interpreted; None: interpret it.
@@ -327,6 +332,9 @@ class CompiledModel:
         pushes : a_c at the launches of a Taylor flow, nan where it is not known.
         """
         flight_count.add(int(np.count_nonzero(v)))
+        few = self._hits_of_few(tau, v, pushes) if 0 < tau.size <= FEW else None
+        if few is not None:
+            return few
         status, out = np.empty(tau.size, np.int8), np.empty((10, tau.size))
         if self.linear:
             states: tuple[Array, ...] = (tau, v)
@@ -345,6 +353,19 @@ class CompiledModel:
                 shared_out(fly, begin, end, TABLES.shared)
             begin = end
         return status, out
+
+    def _hits_of_few(self, tau: Array, v: Array, pushes: Array | None) -> tuple[Array, Array] | None:
+        """`hits` of few states that take no time; None for others, and until they are compiled."""
+        kind = entries.HITS
+        bound = self._bound.get(kind) or self._for_few(kind)
+        if bound is None or self._is_long(kind, tau.size):
+            return None
+        begun = perf_counter()
+        results = bound.few(tau, v, np.nan if pushes is None else pushes)
+        self._measure(kind, tau.size, begun)
+        if results is not None and not self.linear:
+            results[1][4:] = np.nan
+        return results
 
     def _compiled_hits(self, entry: Any, given: Any, found: Any, part: slice) -> None:
         out, status = found
@@ -369,46 +390,34 @@ class CompiledModel:
             for index in range(chosen.start, chosen.stop):
                 self._interpreted_hits(states, results, slice(index, index + 1))
 
-    def quick(self) -> Callable[..., Any]:
-        """A function (tau, v) -> (code, list of the columns of a hit) of two floats, v > 0, with the least overhead.
+    def one(self, kind: int, tau: float, v: float, *quantities: float) -> tuple[int, list[float]]:
+        """Code and results of one flight, v > 0, by the compiled entry with the least overhead.
 
-        A third number is a_c at the launch of a Taylor flow, nan where it is not known.
+        Parameters
+        ----------
+        kind : HITS (the columns of a hit), DROPS, VARIATIONS or PLACES. quantities : as for the method of that name; of
+            a Taylor flow that is searched for hits, a_c at the launch where it is known.
         """
-        if self._quick is None:
-            entry = self.machine.entry(self.main)
-            if entry is None or (self.recurrence and not self.recurrence.is_bound()):
-                return self._one
-            self._ready(self.main, entry[0])
-            self._quick = self._bound(entry[1])
-        return self._quick
+        bound = self._bound.get(kind) or self._for_few(kind)
+        results = None if bound is None else bound.one(tau, v, *quantities)
+        if results is not None:
+            if kind in SEARCHES:
+                flight_count.add(1)
+            return results
+        work: Any = {entries.HITS: self.hits, entries.DROPS: self.drops, entries.PLACES: self.places}
+        outcome = work.get(kind, self.variations)(*(np.array([number]) for number in (tau, v, *quantities)))
+        codes, rows = outcome if kind in SEARCHES else (np.zeros(1, np.int8), outcome)
+        return int(codes[0]), rows.ravel().tolist()
 
-    def _one(self, tau: float, v: float, push: float = np.nan) -> tuple[int, list[float]]:
-        status, out = self.hits(np.array([tau]), np.array([v]), np.array([push]))
-        return int(status[0]), out[:, 0].tolist()
-
-    def _bound(self, entry: Callable[..., int]) -> Callable[..., Any]:
-        """`quick` over scratch of its own; a thread that finds another one in it goes the longer way."""
-        sizes, scratch = self.sizes.copy(), self._new_scratch()
-        sizes[layout.KIND], sizes[layout.COUNT] = entries.HITS, 1
-        state, out, status = (ctypes.c_double * 3)(0, 0, np.nan), (ctypes.c_double * 10)(), (ctypes.c_int8 * 1)()
-        at = ctypes.addressof(state)
-        addresses = [ctypes.c_void_p(address) for address in (
-            *(array.ctypes.data for array in (sizes, self.flat, scratch)), at, at + 8, at + 16, ctypes.addressof(out),
-            ctypes.addressof(status))]  # fmt: skip
-        count, alone = flight_count.add, Lock()
-
-        def quick(tau: float, v: float, push: float = np.nan, kept: Any = (sizes, scratch)) -> Any:  # noqa: ARG001
-            if not alone.acquire(blocking=False):
-                return self._one(tau, v, push)
-            try:
-                count(1)
-                state[0], state[1], state[2] = tau, v, push
-                entry(*addresses)
-                return status[0], out[:]
-            finally:
-                alone.release()
-
-        return quick
+    def _for_few(self, kind: int) -> Bound | None:
+        """A compiled entry over memory of its own."""
+        name = self.main if self.linear or kind == entries.HITS else "judge_entry"
+        entry = self.machine.entry(name)
+        if entry is None or (self.recurrence and not self.recurrence.is_bound()):
+            return None
+        self._ready(name, entry[0])
+        self._bound[kind] = Bound(entry[1], kind, (self.sizes, self.flat, self._new_scratch()))
+        return self._bound[kind]
 
     def releases(self, tau: Array, removed: Array) -> tuple[Array, Array]:
         """Codes and flight time, velocity, depth and bound, shape (10, n), of masses released at rest."""

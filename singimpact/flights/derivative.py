@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from math import isnan
 from typing import Any
 
 import numpy as np
@@ -23,12 +24,13 @@ from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import allowed, compiled_model
 from singimpact.flights.flight_path import many_paths
 from singimpact.flights.horizons import Allowance, horizon_of, steps_of
+from singimpact.flights.impact_map import plain_hit
 from singimpact.flights.kernels.state import TIME_BY_TAU, VELOCITY_BY_V
 from singimpact.flights.rebound_law import rebound, rebound_slope
-from singimpact.flights.response import response, touching
-from singimpact.flights.results import Derivative
+from singimpact.flights.response import derivatives_of_one, response, touching
+from singimpact.flights.results import SCALAR_STATUS, Derivative
 from singimpact.flights.states import States
-from singimpact.flights.undecided import flights_and_rows
+from singimpact.flights.undecided import Flown, flights_and_rows
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
@@ -53,6 +55,11 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
     >>> (derivative(Oscillator("0", "-2", 0, "1/2"), 0, 1).matrix + 0).tolist()
     [[1.0, 1.0], [0.0, 0.5]]
     """
+    flown = None
+    if type(tau) is float and type(v) is float and horizon is None and not names_in(osc.restitution):
+        found, flown = _of_one(osc, tau, v)
+        if found is not None:
+            return found
     if many(tau, v):
         return in_blocks(partial(derivative, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     states = States.of(osc, tau, v)
@@ -61,7 +68,7 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
         if horizon is None
         else allowed(osc, Allowance(horizon_of(osc, horizon), steps=steps_of(osc)))
     )
-    hit, rows = flights_and_rows(osc, model, states)
+    hit, rows = flights_and_rows(osc, model, states, flown)
     status, velocity = np.asarray(hit.status).copy(), hit.velocity
     columns = rows[TIME_BY_TAU : VELOCITY_BY_V + 1]
     others = np.isnan(columns[0]) & (status == Status.hit)
@@ -81,6 +88,19 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
     if rest.size:
         matrix[rest] = _at_rest(osc, acceleration(osc, states.tau[rest]))
     return Derivative(matrix.reshape(*states.shape, 2, 2), status.reshape(states.shape)[()])
+
+
+def _of_one(osc: Oscillator, tau: float, v: float) -> tuple[Derivative | None, Flown | None]:
+    """D G at a plain hit of two floats; None for all others, with what was flown of them."""
+    model = compiled_model(osc)
+    hit, flown = plain_hit(model, tau, v)
+    if hit is None:
+        return None, flown
+    late, later, faster, fast = hit[TIME_BY_TAU : VELOCITY_BY_V + 1]
+    if not model.linear or isnan(late):
+        late, later, faster, fast = derivatives_of_one(osc, tau, v, hit[0], hit[1])
+    matrix = np.array([[1 + late, later], [-model.r * faster, -model.r * fast]])
+    return Derivative(matrix, SCALAR_STATUS[0]), None
 
 
 def _at_touch(by_tau: Array, by_v: Array) -> Array:

@@ -19,6 +19,7 @@ from singimpact.flights import undecided
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import EPSILON, CompiledModel, allowed, compiled_model
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
+from singimpact.flights.kernels.entries import HITS
 from singimpact.flights.kernels.hits import CANCELS
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.rebound_law import rebound
@@ -27,7 +28,7 @@ from singimpact.flights.results import SCALAR_STATUS, Flight, Step
 from singimpact.flights.states import States
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.oscillator.wall_acceleration import acceleration_at
 from singimpact.status import Cause, Status, status_array
 
 Array = np.ndarray[Any, Any]
@@ -77,7 +78,7 @@ def first_hit(
     """
     flown = None
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
-        fields, flown = _quickly(compiled_model(osc), tau, v)
+        fields, flown = plain_fields(compiled_model(osc), tau, v)
         if fields is not None:
             later = fields.pop("later")
             return Flight.made(later, **fields)
@@ -115,7 +116,7 @@ def impact_map(
     flown = None
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
         model = compiled_model(osc)
-        fields, flown = _quickly(model, tau, v) if model.constant_restitution else (None, None)
+        fields, flown = plain_fields(model, tau, v) if model.constant_restitution else (None, None)
         if fields is not None:
             later = fields.pop("later")
             return Step.made(later, tau=tau + fields["flight_time"], v=-model.r * fields["velocity"], **fields)
@@ -150,17 +151,25 @@ def landing_times(states: States, times: Any) -> Any:
     return landed if isinstance(states.turns, float) else landed + states.turns.reshape(states.shape)
 
 
-def _quickly(model: CompiledModel, tau: float, v: float) -> tuple[dict[str, Any] | None, undecided.Flown | None]:
-    """The fields of a plain hit of two floats; None for all that needs a closer look, with what was flown of it."""
+def plain_hit(model: CompiledModel, tau: float, v: float) -> tuple[list[float] | None, undecided.Flown | None]:
+    """The columns of a plain hit of two floats, the first two of a Taylor flow; None for all that needs a closer look,
+    with what was flown of it.
+    """
     if not (0 < v < inf and -model.nearest < tau < model.nearest) or model.sometimes_kept:
         return None, None
     if model.osc.period is None and abs(tau) > LATE:
         return None, None
-    code, hit = model.quick()(tau, v)
+    code, hit = model.one(HITS, tau, v)
     if code == CANCELS:  # a_c at the launch has lost digits: flown with the exact one
-        code, hit = model.quick()(tau, v, float(acceleration(model.osc, np.array([tau]))[0]))
-    if code != 0:
-        return None, (np.array([code], np.int8), np.array(hit).reshape(10, 1))
+        code, hit = model.one(HITS, tau, v, acceleration_at(model.osc, tau))
+    return (hit, None) if code == 0 else (None, (np.array([code], np.int8), np.array(hit).reshape(10, 1)))
+
+
+def plain_fields(model: CompiledModel, tau: float, v: float) -> tuple[dict[str, Any] | None, undecided.Flown | None]:
+    """The fields of a `plain_hit`."""
+    hit, flown = plain_hit(model, tau, v)
+    if hit is None:
+        return None, flown
     fields = {
         "flight_time": hit[0],
         "velocity": hit[1],

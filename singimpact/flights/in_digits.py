@@ -18,6 +18,7 @@ from singimpact.flights.compiled_model import allowed
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, ProvedImpact, certified_hit
 from singimpact.flights.enclosures.equation import NoHit, Refused
 from singimpact.flights.horizons import Allowance
+from singimpact.flights.kernels.entries import HITS
 from singimpact.flights.multiprecision import found
 from singimpact.flights.rebound_law import rebound_in_digits
 from singimpact.flights.results import CertifiedImpact, Flight, Step
@@ -108,7 +109,7 @@ def _plain_hit(osc: Oscillator, states: States, digits: int, allowance: Allowanc
     model, v = allowed(osc, allowance), float(states.v[0])
     if model.linear or model.sometimes_kept or not 0 < v < inf or not abs(states.tau[0]) < model.nearest:
         return None
-    code, hit = model.quick()(float(states.tau[0]), v)
+    code, hit = model.one(HITS, float(states.tau[0]), v)
     if code != 0:
         return None
     kappas = model.judged(states.tau, states.v, np.ones(1))[2:4, 0]

@@ -11,7 +11,8 @@ from singimpact.algebra.expressions import Name, multiply, names_in, number, sub
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights.blocks import in_blocks, many
-from singimpact.flights.impact_map import first_hit, landing_times
+from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.impact_map import first_hit, landing_times, plain_fields
 from singimpact.flights.rebound_law import sharpened, speed_before
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
@@ -52,6 +53,12 @@ def inverse_map(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None,
     """
     if many(tau, v, digits=digits):
         return in_blocks(partial(inverse_map, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
+    if type(tau) is float and type(v) is float and digits is horizon is None and not names_in(osc.restitution):
+        speed = v / compiled_model(osc).r if v > 0 else 0.0
+        fields, _ = plain_fields(compiled_model(backwards(osc)), -tau, speed)
+        if fields is not None:
+            fields |= {"tau": tau - fields["flight_time"], "v": -fields["velocity"], "velocity": -speed}
+            return Step.made(fields.pop("later"), **fields)
     states = States.read(tau, v).in_period(osc)
     if digits is None:
         return _in_doubles(osc, states, horizon)

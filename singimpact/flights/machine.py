@@ -18,13 +18,17 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from math import nan
 from pathlib import Path
 from threading import Lock, Thread
 from typing import Any
 
+import numpy as np
+
 from singimpact import cache
 from singimpact.flights import bind
 from singimpact.flights.bind import Emitted
+from singimpact.flights.kernels import layout
 from singimpact.flights.shipped import shipped_code, sources, why_not
 from singimpact.inputs import InputError
 from singimpact.progress import ProgressLine
@@ -56,6 +60,9 @@ ASKED = ".asked"
 BUSY = 75  # exit code of a process that finds the lock held for another text
 FIRST = ".first"  # beside a request: the entry that somebody waits for
 Entry = tuple[Callable[..., int], Callable[..., int]]
+Array = np.ndarray[Any, Any]
+FEW = 32
+"""States of one call of a `Bound` entry at most."""
 
 
 @lru_cache(maxsize=256)
@@ -349,6 +356,49 @@ class Called:
 
     def _bind(self, found: Entry) -> None:
         self.numbers[-1] = ctypes.cast(found[0], ctypes.c_void_p).value or 1  # type: ignore[arg-type]
+
+
+class Bound:
+    """An entry over memory of its own, for the flights of few states: no call looks up an address."""
+
+    def __init__(self, entry: Callable[..., int], kind: int, model: tuple[Array, Array, Array]) -> None:
+        """`model` : sizes, numbers and scratch of a model."""
+        numbers, status = np.zeros(14 * FEW), np.zeros(FEW, np.int8)
+        sizes = model[0].copy()
+        sizes[layout.KIND] = kind
+        arrays = sizes, *model[1:], *(numbers[FEW * k :] for k in (0, 1, 2, 4)), status
+        self._entry, self._arrays, self._free = entry, arrays, Lock()
+        self._addresses = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
+        # Python's own view of the memory is faster for single numbers
+        self._sizes = (ctypes.c_int64 * sizes.size).from_buffer(sizes)
+        self._numbers = (ctypes.c_double * numbers.size).from_buffer(numbers)
+        self._status = (ctypes.c_int8 * FEW).from_buffer(status)
+
+    def one(self, tau: float, v: float, quantity: float = nan, other: float = 0.0) -> tuple[int, list[float]] | None:
+        """Code and the first ten results of one state; None while another thread is in this memory."""
+        if not self._free.acquire(blocking=False):
+            return None
+        try:
+            numbers = self._numbers
+            numbers[0], numbers[FEW], numbers[2 * FEW], numbers[2 * FEW + 1] = tau, v, quantity, other
+            self._sizes[layout.COUNT] = 1
+            self._entry(*self._addresses)
+            return self._status[0], numbers[4 * FEW : 4 * FEW + 10]
+        finally:
+            self._free.release()
+
+    def few(self, tau: Array, v: Array, quantities: Array | float) -> tuple[Array, Array] | None:
+        """Codes, and ten rows of results, of at most `FEW` states; None while another thread is in this memory."""
+        if not self._free.acquire(blocking=False):
+            return None
+        try:
+            count, (*_, times, speeds, others, results, status) = tau.size, self._arrays
+            times[:count], speeds[:count], others[:count] = tau, v, quantities
+            self._sizes[layout.COUNT] = count
+            self._entry(*self._addresses)
+            return status[:count].copy(), results[: 10 * count].reshape(10, count).copy()
+        finally:
+            self._free.release()
 
 
 @lru_cache(maxsize=1)

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache, partial
+from math import fsum, inf, isnan
 from typing import Any
 
 import numpy as np
@@ -19,15 +20,17 @@ from singimpact.algebra.numbers import as_float, as_mpf, constant, float_array
 from singimpact.algebra.precision import digits_at
 from singimpact.flights.bind import over_mpmath
 from singimpact.flights.causes import decoded, where
-from singimpact.flights.compiled_model import CompiledModel, allowed
+from singimpact.flights.compiled_model import CompiledModel, allowed, compiled_model
 from singimpact.flights.flight_path import off_wall_places
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.interpreted import workspace
+from singimpact.flights.kernels.entries import DROPS, PLACES
 from singimpact.flights.kernels.state import Rules
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, has_table, recurrence_of
 from singimpact.flights.rebound_law import rebound
+from singimpact.flights.results import SCALAR_STATUS
 from singimpact.flights.states import States, require_room
 from singimpact.flights.undecided import Fates, escapes
 from singimpact.inputs import InputError, refuse
@@ -106,6 +109,10 @@ def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -
     >>> float(ball.tau), float(ball.v), float(ball.velocity)
     (2.0, 2.0, -4.0)
     """
+    if type(x) is type(xdot) is type(t) is float and horizon is None:
+        launched = _of_one(osc, x, xdot, t)
+        if launched is not None:
+            return launched
     require_room(("x", x), ("xdot", xdot), ("t", t))
     parts = [_objects(name, value) for name, value in (("x", x), ("xdot", xdot), ("t", t))]
     try:
@@ -123,6 +130,33 @@ def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -
     return flown.result(shape)
 
 
+def _of_one(osc: Oscillator, x: float, xdot: float, t: float) -> Launched | None:
+    """A plain hit from three floats off the wall; None for all that needs a closer look."""
+    model, closed, (high, low) = _usual(osc)
+    height = fsum((x, -high, -low))  # rounded once
+    if not (0 < height < inf and -inf < xdot < inf and -closed.nearest < t < closed.nearest):
+        return None
+    code, (time, velocity, *_) = model.one(DROPS, t, xdot, height)
+    if code:
+        return None
+    if closed.linear:
+        z, u = closed.one(PLACES, t, xdot, time, height)[1][:2]
+        if u < 0 and abs(z / u) <= SETTINGS.step * time:
+            time -= z / u
+            velocity = closed.one(PLACES, t, xdot, time, height)[1][1]
+    after = abs(closed.r * velocity) if closed.constant_restitution else float(rebound(osc, np.array(velocity)))
+    status = Status.no_rebound if isnan(after) else Status.hit
+    return Launched(t + time, after, time, velocity, SCALAR_STATUS[status], SCALAR_STATUS[0])
+
+
+@lru_cache(maxsize=256)
+def _usual(osc: Oscillator) -> tuple[CompiledModel, CompiledModel, tuple[float, float]]:
+    """The model in Taylor steps under the default rules, the compiled one, and the clearance with what it leaves out."""
+    high = as_float(osc.clearance)
+    low = as_float(subtract(osc.clearance, Number(Fraction(high))))
+    return stepped(osc, horizon_of(osc, None), reach_of(osc)), compiled_model(osc), (high, low)
+
+
 def _objects(name: str, value: Any) -> Array:
     """Numbers as they were written: text among numbers stays text."""
     if isinstance(value, Expression):
@@ -137,11 +171,9 @@ def _objects(name: str, value: Any) -> Array:
 
 def _heights(osc: Oscillator, places: Array) -> Array:
     """x - c, rounded once."""
-    high = as_float(osc.clearance)
     if places.dtype.kind in "fiu":
-        values = float_array("x", places)
-        low = as_float(subtract(osc.clearance, Number(Fraction(high))))
-        heights = (values - high) - low
+        high, low = _usual(osc)[2]
+        heights = (float_array("x", places) - high) - low
     else:
         heights = np.array([as_float(subtract(constant("x", position), osc.clearance)) for position in places.tolist()])
     if heights.size and heights.min() < 0:

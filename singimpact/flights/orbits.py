@@ -14,7 +14,7 @@ from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import EPSILON, allowed, compiled_model
 from singimpact.flights.kernels.entries import AT_REST
 from singimpact.flights.kernels.hits import PRESSED
-from singimpact.flights.phase import reduced
+from singimpact.oscillator.phase import reduced
 from singimpact.flights.states import States
 from singimpact.inputs import require_memory
 from singimpact.oscillator.model import Oscillator

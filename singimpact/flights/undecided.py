@@ -20,7 +20,7 @@ from singimpact.flights.limits import LIMITS
 from singimpact.flights.no_return.averaged import stays_up
 from singimpact.flights.no_return.barrier import kept_up
 from singimpact.flights.no_return.polynomial import never_returns, never_turns
-from singimpact.flights.phase import reduced
+from singimpact.oscillator.phase import reduced
 from singimpact.flights.response import response, usual_errors
 from singimpact.flights.results import JUDGED, Flight
 from singimpact.flights.states import States

@@ -6,6 +6,7 @@ next to a zero would fly or stick by the sign of a rounding.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -21,10 +22,15 @@ from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.taylor import NotSmooth
+from singimpact.codegen.scalar import in_floats
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.phase import reduced
 
 CANCELLATION = 1 / 32
 """Below this part of |g| + |f| the difference g - f has lost five bits and is computed again with balls."""
+
+NEAR = 64.0
+"""Times up to which doubles keep the phase; later ones are reduced by the period."""
 
 BITS = (128, 512, 2048, 8192)
 """Precisions tried until the sign of a is decided; what is still undecided is below 10^-2000 and is taken as zero."""
@@ -49,16 +55,47 @@ def acceleration(osc: Oscillator, tau: np.ndarray[Any, Any], order: int = 0) -> 
     >>> acceleration(Oscillator("x", "cos(t)", 1, 1), np.array([1e-9])).tolist()
     [-5e-19]
     """
-    forcing, force = _forcing(osc, tau, order), _resting_float(osc) if order == 0 else 0.0
+    near = tau if order else _near(osc, tau)
+    forcing, force = _forcing(osc, near, order), _resting_float(osc) if order == 0 else 0.0
     values = np.asarray(forcing - force, dtype=float)
     size = np.abs(forcing) + abs(force)
     # a big tau loses its phase in double arithmetic, and a derivative has no size to compare with
-    doubtful = ~(np.abs(values) >= CANCELLATION * size) | (np.abs(tau) > 64) | (order > 0)
+    doubtful = ~(np.abs(values) >= CANCELLATION * size) | (np.abs(near) > NEAR) | (order > 0)
     for index in np.flatnonzero(doubtful):
         exactly = at_exactly(osc, Number(Fraction(float(tau[index]))), order)
         # where it is not smooth a_c itself stays inf or nan, as of any numpy function
         values[index] = exactly if order or not np.isnan(exactly) else values[index]
     return values
+
+
+def acceleration_at(osc: Oscillator, tau: float) -> float:
+    """a_c at one time, as by `acceleration`.
+
+    Examples
+    --------
+    >>> acceleration_at(Oscillator("x", "cos(t)", 1, 1), 1e-9)
+    -5e-19
+    """
+    forcing, force = _in_floats(osc)
+    phase = tau if -NEAR <= tau <= NEAR else float(_near(osc, np.array([tau]))[0])
+    if -NEAR <= phase <= NEAR:
+        ahead = forcing(phase)
+        value = ahead - force
+        if abs(value) >= CANCELLATION * (abs(ahead) + abs(force)):
+            return value
+    return float(acceleration(osc, np.array([tau]))[0])
+
+
+@lru_cache(maxsize=256)
+def _in_floats(osc: Oscillator) -> tuple[Callable[[float], float], float]:
+    """g(t) as a function of floats, and f(c, 0)."""
+    return in_floats(_forcing_tree(osc)[0], "t"), _resting_float(osc)
+
+
+def _near(osc: Oscillator, tau: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Times of which doubles lose the phase, reduced by the period, if there is one; the others as they are."""
+    far = np.abs(tau) > NEAR
+    return np.where(far, reduced(tau, osc.period), tau) if osc.period is not None and far.any() else tau
 
 
 def at_exactly(osc: Oscillator, tau: Expression, order: int = 0) -> float:

@@ -10,6 +10,10 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Expression
+from singimpact.algebra.numbers import rational_near
+
+TURNS = 2.0**20
+"""Periods within which two doubles hold the period well enough: phases above its part 1/TURNS keep to 2^-10 of a unit."""
 
 
 def reduced(tau: np.ndarray[Any, Any], period: Expression) -> np.ndarray[Any, Any]:
@@ -26,14 +30,31 @@ def reduced(tau: np.ndarray[Any, Any], period: Expression) -> np.ndarray[Any, An
     >>> reduced(np.array([1e22, -1e-20]), constant("period", "2*pi")).tolist()
     [-1.020177392559087, -1e-20]
     """
-    try:
-        size = _scaled(period, 64) / 2**64
-    except OverflowError:  # no double is beyond such a period
-        size = math.inf
+    size, rest = _in_doubles(period)
     result = np.array(tau, dtype=float)
-    for index in np.flatnonzero(np.abs(result) > size):
-        result[index] = phase_of(Fraction(float(result[index])), period)
+    far = np.flatnonzero(np.abs(result) > size)
+    if far.size:
+        left = np.fmod(result[far], size)  # exact, and so is the difference below
+        left -= np.where(np.abs(left) > size / 2, np.copysign(size, left), 0.0)
+        turns = np.rint((result[far] - left) / size)
+        phases = left - turns * rest
+        near = np.minimum(np.abs(phases), np.abs(np.abs(phases) - size / 2))  # to a multiple, or half-way between two
+        doubtful = (np.abs(turns) > TURNS) | (near < size / TURNS)
+        for index in np.flatnonzero(doubtful).tolist():
+            phases[index] = phase_of(Fraction(float(result[far[index]])), period)
+        result[far] = phases
     return result
+
+
+@lru_cache(maxsize=256)
+def _in_doubles(period: Expression) -> tuple[float, float]:
+    """The period as a double, inf where none is as large, and the part that it leaves out."""
+    exact = rational_near(period, 256)
+    try:
+        size = float(exact)
+    except OverflowError:
+        return math.inf, 0.0
+    return size, float(exact - Fraction(size))
 
 
 def phase_of(tau: Fraction, period: Expression) -> float:
@@ -57,7 +78,5 @@ def phase_of(tau: Fraction, period: Expression) -> float:
 @lru_cache(maxsize=1024)
 def _scaled(period: Expression, bits: int) -> int:
     """The integer nearest to period * 2^bits."""
-    from singimpact.algebra.numbers import rational_near
-
     scaled: int = round(rational_near(period, bits + 80) * 2**bits)
     return scaled
