@@ -39,7 +39,7 @@ from singimpact.flights.model_numbers import (
     turn_of,
 )
 from singimpact.oscillator.phase import reduced
-from singimpact.flights.states import FAR
+from singimpact.flights.states import late
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
@@ -70,6 +70,8 @@ class TableSettings:
     # states that are worth a thread of their own, which costs 0.1 ms, and impacts in batches
     shared: int = 4096
     batched: int = 32_768
+    # states at most whose orbits are flown one by one: a batch costs as much as three of them, 1.8 us an impact
+    alone: int = 3
     # states of one call when flights are interpreted
     interpreted: int = 64
     # impacts of a chatter that scratch has rows for: at first, and of a state that needs more
@@ -126,7 +128,7 @@ class CompiledModel:
         self.r = float(self.rho[0]) if self.constant_restitution else np.nan
         self.price = LIMITS.interpreted_linear if self.linear else LIMITS.interpreted_taylor
         # launch times beyond are reduced by exact arithmetic first
-        self.nearest = FAR * as_float(osc.period) if osc.period is not None else np.inf
+        self.nearest = late(osc)
         self._spare: list[tuple[Array, int]] = []
         self._prepared: set[str] = set()
         self._bound: dict[int, Bound] = {}
@@ -320,7 +322,7 @@ class CompiledModel:
     def near(self, tau: Array) -> Array:
         """Launch times within the reach of the reduction in kernels; farther ones are reduced exactly."""
         period = self.osc.period
-        if period is None or not tau.size or max(tau.max(), -tau.min()) < self.nearest:
+        if period is None or not tau.size or np.maximum.reduce(np.abs(tau)) < self.nearest:
             return tau
         return np.where(np.abs(tau) < self.nearest, tau, reduced(tau, period))
 
@@ -451,6 +453,8 @@ class CompiledModel:
 
     def iterate(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array]:
         """The last states of orbits of so many impacts, and the code of the flight that ended an orbit before."""
+        if self.linear and tau.size <= TABLES.alone:
+            return self._iterate_alone(tau, v, impacts)
         size = -(-tau.size // LANES) * LANES if self.linear else tau.size
         times, speeds = np.resize(tau, size), np.resize(v, size)
         status = np.where(speeds > 0, 0, entries.AT_REST).astype(np.int8)
@@ -480,6 +484,19 @@ class CompiledModel:
             shared_out(fly, begin // lanes, -(-end // lanes), max(1, least))
             begin = end
         return times[: tau.size], speeds[: tau.size], status[: tau.size]
+
+    def _iterate_alone(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array]:
+        """`iterate` of each orbit as a segment."""
+        times, speeds, codes = tau.copy(), v.copy(), np.where(v > 0, 0, entries.AT_REST).astype(np.int8)
+        for index in np.flatnonzero(codes == 0).tolist():
+            for begin in range(0, impacts, TABLES.block):
+                count = min(TABLES.block, impacts - begin)
+                rows, codes[index] = self.segment(times[index], speeds[index], count)
+                if len(rows):
+                    times[index], speeds[index] = times[index] + rows[-1, 0], rows[-1, 1]
+                if codes[index]:
+                    break
+        return times, speeds, codes
 
     def brackets(self, tau: Array, velocities: Array, settings: tuple[float, ...]) -> tuple[Array, Array] | None:
         """Brackets of gamma, shape (n, 2), and codes; None where no compiled entry of a linear model is there.

@@ -135,8 +135,8 @@ def impact_map(
 def landed(osc: Oscillator, states: States, hit: Flight) -> Step:
     """The states just after first hits."""
     tau = landing_times(states, hit.flight_time)
-    fields = {name: value for name, value in vars(hit).items() if name != "_later"}
-    later, model = vars(hit).get("_later"), compiled_model(osc)
+    fields, model = vars(hit).copy(), compiled_model(osc)
+    later = fields.pop("_later", None)
     if model.constant_restitution:
         return Step.made(later, **fields, tau=tau[()], v=np.abs(model.r * hit.velocity)[()])
     bounce = rebound(osc, np.asarray(hit.velocity))

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -62,6 +63,11 @@ class States:
     @staticmethod
     def of(osc: Oscillator, tau: Any, v: Any, digits: int | None = None) -> States:
         """`read`, and what a model does with a mass at rest: next to a zero of a_c, a double is that zero."""
+        if _doubles(tau) and _doubles(v) and tau.shape == v.shape and tau.size:
+            times, speeds = tau.ravel(), v.ravel()
+            moving = np.minimum.reduce(speeds) > 0 and np.maximum.reduce(speeds) < np.inf  # not so where one is nan
+            if moving and np.maximum.reduce(np.abs(times)) < late(osc):
+                return States(times, speeds, tau.shape, (times, speeds))
         states = States.read(tau, v).in_period(osc)
         if states.v.all():
             return states
@@ -107,14 +113,13 @@ class States:
         """
         if osc.period is None or not self.tau.size:
             return self
-        period, rough = as_float(osc.period), self._rough()
-        far = np.flatnonzero(np.abs(self.tau) >= FAR * period)
+        rough, far = self._rough(), np.flatnonzero(np.abs(self.tau) >= late(osc))
         if not rough.size and not far.size:
             return self
         tau, turns = self.tau.copy(), np.zeros(self.tau.size)
-        for index in np.union1d(rough[np.abs(self.tau[rough]) > period], far).tolist():
+        for index in np.union1d(rough[np.abs(self.tau[rough]) > late(osc) / FAR], far).tolist():
             exact, double = self._exactly(index), Fraction(float(tau[index]))
-            if exact != double or abs(double) >= FAR * period:
+            if exact != double or abs(double) >= late(osc):
                 tau[index] = phase_of(exact, osc.period)
                 turns[index] = float(exact - Fraction(float(tau[index])))
         return replace(self, tau=tau, turns=turns) if turns.any() else self
@@ -156,6 +161,12 @@ class States:
         return constant("v", self.written[1][index])
 
 
+@lru_cache(maxsize=256)
+def late(osc: Oscillator) -> float:
+    """The size of launch times from which on they are reduced exactly; inf without a period."""
+    return np.inf if osc.period is None else FAR * as_float(osc.period)
+
+
 def require_room(*numbers: tuple[str, Any]) -> None:
     """Refuse arguments with so many numbers together that no memory holds their results.
 
@@ -177,7 +188,11 @@ def require_room(*numbers: tuple[str, Any]) -> None:
 
 
 def _plain(values: Any) -> bool:
-    return type(values) is np.ndarray and values.dtype == np.float64 and bool(np.isfinite(values).all())
+    return _doubles(values) and bool(np.isfinite(values).all())
+
+
+def _doubles(values: Any) -> bool:
+    return type(values) is np.ndarray and values.dtype == np.float64
 
 
 def _zero_beside(osc: Oscillator, written: Any, digits: int | None) -> Zero | None:

@@ -72,13 +72,12 @@ class Judge:
         self.model, self.tau, self.v, self.shape = model, tau, v, shape
         if shape is None:
             self.tau, self.v = tau.copy(), v.copy()  # they may be the caller's own, and change
-            self.removed = np.ones(tau.size)
-            self.hits = np.ones(tau.size, dtype=bool)
+            self.removed, self.hits = np.ones((2, tau.size))
 
     def __call__(self, _name: str) -> dict[str, Any]:
         if self.shape is not None:  # one state, as numbers
             self.tau, self.v = np.array([self.tau]), np.array([self.v])
-            self.removed, self.hits = np.ones(1), np.ones(1, dtype=bool)
+            self.removed, self.hits = np.ones((2, 1))
         rows = np.full((4, self.tau.size), np.nan)
         chosen = np.flatnonzero(self.hits)
         judged = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])
@@ -121,13 +120,10 @@ def flights_and_rows(
     osc: Oscillator, model: CompiledModel, states: States, hits: Flown | None = None
 ) -> tuple[Flight, Array]:
     """First hits in doubles, flat; and the columns of `kernels.state`, nan where they are not known."""
-    if model.linear:
-        codes, rows = hits or model.hits(model.near(states.tau), states.v)
-        if not codes.any():
-            return plain(codes, rows), rows
-        fates, judge = decided(osc, model, states, codes, rows), None
-    else:
-        fates, judge = flown(osc, model, states, hits)
+    codes, rows = hits or launched(osc, model, states)
+    if not np.count_nonzero(codes) and not model.sometimes_kept:
+        return plain(model, states, codes, rows), rows
+    fates, judge = (decided(osc, model, states, codes, rows), None) if model.linear else _judged(osc, model, states, codes, rows)
     # first: a flight that left the range of doubles would be followed again in many digits
     escapes(osc, model, states, fates)
     settled = _settled(osc, model, states, fates)
@@ -138,18 +134,26 @@ def flights_and_rows(
     return result(osc, states, fates, judge, settled), fates.rows
 
 
-def flown(osc: Oscillator, model: CompiledModel, states: States, hits: Flown | None = None) -> tuple[Fates, Judge]:
+def launched(osc: Oscillator, model: CompiledModel, states: States) -> Flown:
+    """Codes and columns of first hits; a launch at which a_c has lost digits is flown with the exact one."""
+    codes, rows = model.hits(states.tau, states.v)
+    cancelled = np.flatnonzero(codes == CANCELS) if np.count_nonzero(codes) else codes[:0]
+    if cancelled.size:
+        pushes = acceleration(osc, states.tau[cancelled])
+        codes[cancelled], rows[:, cancelled] = model.hits(states.tau[cancelled], states.v[cancelled], pushes)
+    return codes, rows
+
+
+def flown(osc: Oscillator, model: CompiledModel, states: States) -> tuple[Fates, Judge]:
     """Flights of a Taylor flow, and what judges them."""
-    tau = model.near(states.tau)
-    codes, rows = hits or model.hits(tau, states.v)
+    return _judged(osc, model, states, *launched(osc, model, states))
+
+
+def _judged(osc: Oscillator, model: CompiledModel, states: States, codes: Array, rows: Array) -> tuple[Fates, Judge]:
     rows[4:] = np.nan
-    open_ones = np.flatnonzero(codes == CANCELS)
-    if open_ones.size:  # a_c at the launch has lost digits: flown with the exact one
-        pushes = acceleration(osc, states.tau[open_ones])
-        codes[open_ones], rows[:, open_ones] = model.hits(tau[open_ones], states.v[open_ones], pushes)
     fates = decided(osc, model, states, codes, rows)
     _decided_at_launch(osc, model, states, fates)
-    judge = Judge(model, tau, states.v)
+    judge = Judge(model, states.tau, states.v)
     for index, rest in states.rest.items():
         judge.removed[index] = rest.order + 2
     judge.hits = fates.status == Status.hit
@@ -170,22 +174,23 @@ def decided(osc: Oscillator, model: CompiledModel, states: States, codes: Array,
     return fates
 
 
-def plain(codes: Array, rows: Array) -> Flight:
+def plain(model: CompiledModel, states: States, codes: Array, rows: Array) -> Flight:
     """Hits and nothing else."""
-    nothing = np.full(codes.size, np.nan)
-    return Flight.made(
-        flight_time=rows[0],
-        velocity=rows[1],
-        status=codes,
-        depth=nothing,
-        bound=nothing.copy(),
-        condition=rows[2],
-        velocity_condition=rows[3],
-        time_error=rows[4],
-        velocity_error=rows[5],
-        cause=np.zeros(codes.size, np.int8),
-        notes={},
-    )
+    judge = None if model.linear else Judge(model, states.tau, states.v)
+    judged = dict(zip(JUDGED, rows[2:6], strict=True)) if model.linear else {}
+    cause = np.zeros(codes.size, np.int8)
+    fields = {"flight_time": rows[0], "velocity": rows[1], "status": codes, "cause": cause, "notes": {}}
+    return Flight.made(Nowhere(codes.size, judge), **fields, **judged)
+
+
+class Nowhere:
+    """Depths of hits, which have none; with the conditions and errors of a Taylor flow."""
+
+    def __init__(self, size: int, judge: Judge | None) -> None:
+        self.size, self.judge = size, judge
+
+    def __call__(self, name: str) -> dict[str, Any]:
+        return {name: np.full(self.size, np.nan)} if self.judge is None or name not in JUDGED else self.judge(name)
 
 
 def _decided_at_launch(osc: Oscillator, model: CompiledModel, states: States, fates: Fates) -> None:
