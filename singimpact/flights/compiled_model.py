@@ -579,16 +579,22 @@ class CompiledModel:
         ----------
         height : x - c at the launch.
         """
-        out = np.full((times.size, 2), np.nan)
-        entry = self._compiled("judge_entry", self.price)
+        return self.follow_all(np.array([tau]), np.array([v]), np.array([times.size]), times, height)
+
+    def follow_all(self, tau: Array, v: Array, counts: Array, times: Array, height: float = 0.0) -> Array:
+        """`follow` of many flights, one after the other: counts[i] of the times are those of flight i."""
+        out, states = np.full((times.size, 2), np.nan), np.stack([tau, v, np.full(tau.size, height)], axis=1)
+        ends = np.cumsum(counts).tolist()
+        entry = self._compiled("judge_entry", self.price * tau.size)
         if entry is None:
             try:
-                self.interpreter.follow(tau, v, height, times, out)
+                for (start, speed, place), begin, end in zip(states.tolist(), [0, *ends], ends, strict=False):
+                    self.interpreter.follow(start, speed, place, times[begin:end], out[begin:end])
                 return out
             except LEFT_OPEN:
                 entry = self._here("judge_entry")
-        states = np.array([tau]), np.array([v, height]), times
-        self._call(entry, (entries.FOLLOW, times.size, 0), states, out)
+        each = _Each(entry, counts.tolist())
+        self._call(each, (entries.FOLLOW, tau.size, 0), (states, states[0, 1:], times), out)
         return out
 
     def judged(self, tau: Array, v: Array, removed: Array) -> Array:
@@ -612,6 +618,21 @@ class CompiledModel:
         trace = self._new_scratch(room)
         self._call(entry, (entries.JUDGE, tau.size, room), (tau, v, removed), out, trace=trace)
         return out
+
+
+class _Each:
+    """An entry called for flights one after the other, each with as many times as `counts` says."""
+
+    def __init__(self, entry: Callable[..., int], counts: list[int]) -> None:
+        self.entry, self.counts = entry, counts
+
+    def __call__(self, sizes: Any, model: int, scratch: int, tau: int, v: int, w: int, out: int, status: int) -> int:
+        entry = self.entry
+        for count in self.counts:
+            sizes[layout.COUNT] = count
+            entry(sizes, model, scratch, tau, v, w, out, status)
+            tau, v, w, out = tau + 24, v + 24, w + 8 * count, out + 16 * count
+        return 0
 
 
 _SIZES = ctypes.c_int64 * 8

@@ -86,11 +86,12 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[Array]) -> lis
     flight_count.add(len(times))
     model = compiled_model(osc)
     starts = model.near(np.asarray(tau, dtype=float))
+    counts, at = np.array([part.size for part in times], dtype=int), np.concatenate([*times, np.zeros(0)])
     if model.linear:
-        counts = [at.size for at in times]
-        both = model.places(np.repeat(starts, counts), np.repeat(v, counts), np.concatenate([*times, np.zeros(0)]))
-        return np.split(both, np.cumsum(counts))[:-1]
-    return [model.follow(start, speed, at) for start, speed, at in zip(starts.tolist(), v.tolist(), times, strict=True)]
+        both = model.places(np.repeat(starts, counts), np.repeat(v, counts), at)
+    else:
+        both = model.follow_all(starts, np.asarray(v, dtype=float), counts, at)
+    return np.split(both, np.cumsum(counts))[:-1]
 
 
 def along(osc: Oscillator, tau: Array, v: Array, which: Array, times: Array) -> Array:
@@ -105,15 +106,13 @@ def along(osc: Oscillator, tau: Array, v: Array, which: Array, times: Array) -> 
     >>> along(Oscillator("0", "-2", 0, 1), np.zeros(2), np.array([3.0, 1.0]), np.array([0, 1]), np.ones(2)).tolist()
     [[2.0, 1.0], [0.0, -1.0]]
     """
-    used, at = np.unique(which, return_inverse=True)
-    launches, speeds = tau[used], v[used]
-    model = compiled_model(osc)
-    if not model.linear:
-        cuts = np.flatnonzero(np.diff(at)) + 1
-        parts = many_paths(osc, launches, speeds, np.split(times, cuts) if times.size else [])
-        return np.concatenate([*parts, np.zeros((0, 2))])
+    used, at, counts = np.unique(which, return_inverse=True, return_counts=True)
+    model, speeds = compiled_model(osc), v[used]
+    launches = model.near(tau[used])
     flight_count.add(used.size)
-    return model.places(model.near(launches)[at], speeds[at], times)
+    if not model.linear:
+        return model.follow_all(launches, speeds, counts, times)
+    return model.places(launches[at], speeds[at], times)
 
 
 def dropped(osc: Oscillator, start: tuple[float, float, float], times: Array) -> Array:

@@ -165,7 +165,7 @@ def test_tables_are_filled_beside_those_that_other_threads_fly_through(monkeypat
 
     monkeypatch.setattr(CompiledModel, "_call", watched)
     model.hits(np.array([0.3]), np.array([0.5]))
-    model.iterate(np.array([0.3]), np.array([0.5]), 1)
+    model.iterate(np.full(8, 0.3), np.full(8, 0.5), 1)
     assert {PREPARE, PREPARE_BATCH} <= set(kinds)
 
 
