@@ -43,6 +43,5 @@ _FILES = {
     "rebound_law": "rebound speed_before",
     "shipped": "PLATFORMS index_of objects platforms_here shipped_code sources_digest texts why_not",
     "states": "States",
-    "together": "NotTogether in_step rest_flights runs_on_arrays",
 }
 __getattr__ = names_of(__name__, _FILES)

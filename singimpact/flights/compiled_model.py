@@ -585,7 +585,7 @@ class CompiledModel:
         """`follow` of many flights, one after the other: counts[i] of the times are those of flight i."""
         out, states = np.full((times.size, 2), np.nan), np.stack([tau, v, np.full(tau.size, height)], axis=1)
         ends = np.cumsum(counts).tolist()
-        entry = self._compiled("judge_entry", self.price * tau.size)
+        entry = self._compiled("judge_entry", self.price * tau.size) if times.size else None
         if entry is None:
             try:
                 for (start, speed, place), begin, end in zip(states.tolist(), [0, *ends], ends, strict=False):

@@ -15,7 +15,6 @@ from singimpact.algebra.numbers import as_float, compare
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.dynamics.invariant_arcs import grown_gamma
-from singimpact.flights.together import in_step
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
@@ -156,11 +155,7 @@ def clearance_film(
     surfaces, frames = [], []
     for clearance, view in views:
         at = swan.place if swan is not None and clearance == swan.clearance else clearance
-        surface = ImpactSurface(model.replace(clearance=at), view.tau, view.t, 1 / SETTINGS.pixels)
-        surface.placed_tangencies  # noqa: B018 found before the threads start: balls have one precision in a process
-        surfaces.append(surface)
-    progress(0, len(views), "Z at all clearances")
-    in_step(model, [surface.trace for surface in surfaces])
+        surfaces.append(ImpactSurface(model.replace(clearance=at), view.tau, view.t, 1 / SETTINGS.pixels))
     for n, ((clearance, view), surface) in enumerate(zip(views, surfaces, strict=True)):
         progress(n, len(views), f"c = {clearance:.6g}")
         frames.append(_frame(surface, clearance, view))

@@ -24,7 +24,6 @@ from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards
 from singimpact.flights.model_numbers import fastest_rate
-from singimpact.flights.together import Meeting
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
@@ -221,15 +220,6 @@ class ImpactSurface:
             raise refuse("model", model, "an ImpactOscillator")
         self.model, self.window = model, Window.read(tau, t, resolution)
         self._rest = RestFlights(model)
-
-    def trace(self, meeting: Meeting | None) -> None:
-        """Compute Z, with its flights at a meeting where there is one; every other curve follows from it."""
-        self._rest.meeting = meeting
-        try:
-            # not through the property: until Python 3.12 one lock serves that of all surfaces
-            self.take(lines=self._traced())
-        finally:
-            self._rest.meeting = None
 
     def __repr__(self) -> str:
         (a, b), (c, d) = self.window.x, self.window.y

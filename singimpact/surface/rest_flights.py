@@ -20,7 +20,6 @@ from singimpact.contact.contact import acceleration
 from singimpact.flights.flight_path import many_paths
 from singimpact.flights.inverse_map import backwards
 from singimpact.flights.response import variations
-from singimpact.flights.together import Meeting
 from singimpact.oscillator.model import Oscillator
 
 Array = np.ndarray[Any, Any]
@@ -32,14 +31,11 @@ class RestFlights:
 
     Attributes
     ----------
-    model : the oscillator. meeting : where its flights are made together with those of other models; see
-        `flights.together`. flown : flights computed so far.
+    model : the oscillator. flown : flights computed so far.
     """
 
     model: Oscillator
-    meeting: Meeting | None = None
     flown: int = 0
-    _last: tuple[Any, Any, Any] = field(init=False, repr=False, default=(None, None, None))
     _acceleration: Any = field(init=False, repr=False)
     _slope: Any = field(init=False, repr=False)
 
@@ -56,12 +52,7 @@ class RestFlights:
         heights = np.empty((len(t), len(tau)))
         heights[t == 0] = self.acceleration(tau) / 2
         for side in (np.flatnonzero(t > 0), np.flatnonzero(t < 0)[::-1]):
-            if side.size and self.meeting is not None:
-                self.flown += len(tau)
-                lane, times = np.repeat(np.arange(len(tau)), side.size), np.tile(t[side], len(tau))
-                rows = self.meeting.rest_flights(as_float(self.model.clearance), tau, lane, times)
-                heights[side] = rows[:, 0].reshape(len(tau), side.size).T / (t[side] ** 2)[:, None]
-            elif side.size:
+            if side.size:
                 self.flown += len(tau)
                 paths = many_paths(self.model, tau, np.zeros(len(tau)), [t[side]] * len(tau))
                 heights[side] = np.array([path[:, 0] for path in paths]).T / (t[side] ** 2)[:, None]
@@ -70,17 +61,12 @@ class RestFlights:
     def ends(self, tau: Array, t: Array) -> tuple[Array, Array]:
         """x - c and x' at time t of the flight from tau, one pair each."""
         self.flown += len(tau)
-        if self.meeting is not None:
-            rows = self._met(tau, t)
-            return rows[:, 0], rows[:, 1]
         paths = many_paths(self.model, tau, np.zeros(len(tau)), [np.array([s]) for s in t.tolist()])
         both = np.array([path[0] for path in paths]).reshape(len(tau), 2)
         return both[:, 0], both[:, 1]
 
     def by_speed(self, tau: Array, t: Array) -> Array:
         """Derivatives of x and x' at time t by the launch velocity, shape (n, 2)."""
-        if self.meeting is not None:
-            return self._met(tau, t)[:, 2:]
         slopes = np.empty((len(tau), 2))
         for side, model, turn in ((t >= 0, self.model, 1), (t < 0, backwards(self.model), -1)):
             if side.any():
@@ -88,14 +74,6 @@ class RestFlights:
                 answer = variations(model, turn * tau[side], np.zeros(at.size), at)
                 slopes[side] = answer[:, :2] * [turn, 1]
         return slopes
-
-    def _met(self, tau: Array, t: Array) -> Array:
-        """x - c, x' and their derivatives; asked for twice in a row, they are flown once."""
-        assert self.meeting is not None
-        if self._last[0] is not tau or self._last[1] is not t:
-            rows = self.meeting.rest_flights(as_float(self.model.clearance), tau, np.arange(len(tau)), t)
-            self._last = tau, t, rows
-        return np.asarray(self._last[2])
 
     def rest_matrix(self, tau: Array, t: Array, velocity: Array) -> Array:
         """The derivative of (F, x') by (tau, t) for one flight, shape (2, 2)."""
