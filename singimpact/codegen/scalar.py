@@ -41,7 +41,7 @@ def in_floats(tree: Expression, variable: str) -> Callable[[float], float]:
     (1.5, nan)
     """
     text, trees = scalar(tree, variable, "value")
-    function, constants = plain(text, MATH)["value"], [as_float(each) for each in trees]
+    function, constants = plain(text, MATH)["value"], [as_float(constant) for constant in trees]
 
     def value(number: float) -> float:
         try:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache, partial
 from time import perf_counter
 from typing import Any
@@ -18,67 +17,29 @@ from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
 from singimpact.flights import flight_count
 from singimpact.flights.bind import LAW, Emitted
+from singimpact.flights.flat_numbers import TABLES, laid_out
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
 from singimpact.flights.interruptible import LONG, interruptible, shared_out, threads_now
 from singimpact.flights.kernels import entries, layout
 from singimpact.flights.kernels.chatter import NO_ROOM
-from singimpact.flights.kernels.hits import UNIT
 from singimpact.flights.kernels.lanes import LANES
-from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.machine import FEW, Bound, Called, Machine, compilable, machine_of
+from singimpact.flights.limits import LIMITS
+from singimpact.flights.machine import FEW, Bound, Called, Machine, compilable, machine_of, one_by_one
 from singimpact.flights.model_numbers import (
-    batch_turn_of,
-    fastest,
     has_table,
-    numbers_of,
-    numbers_of_flow,
-    phases_of,
     recurrence_of,
-    step_with_few_bits,
-    turn_of,
 )
-from singimpact.oscillator.phase import reduced
 from singimpact.flights.states import late
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.phase import reduced
 from singimpact.oscillator.rebound import rho_of
 
 Array = np.ndarray[Any, Any]
-EPSILON = UNIT
 
 
-@dataclass(frozen=True)
-class TableSettings:
-    """The layout of the tables of a linear model."""
-
-    # step times the fastest rate: longer steps are fewer, need more terms and leave a larger remainder
-    reach: float = 0.6
-    # the same for batches: measured best at 1.0, for one flight at a time at 0.6
-    batch_reach: float = 1.0
-    # degree of a Taylor step: 0.6^17/17! and 1/19! leave less than 1e-17 of the terms at its far end
-    order: int = 16
-    # rows of a table; after so many steps the closed form begins again
-    rows: int = 200
-    # the rate where nothing has one: x'' is constant then, and a step of any length is exact
-    slowest: float = 2.0**-10
-    # bits of the step, so that the time of a row is exact
-    bits: int = 24
-    # states of one call into compiled code, which hears no interruption: 0.05 s
-    block: int = 65_536
-    # states that are worth a thread of their own, which costs 0.1 ms, and impacts in batches
-    shared: int = 4096
-    batched: int = 32_768
-    # states at most whose orbits are flown one by one: a batch costs as much as three of them, 1.8 us an impact
-    alone: int = 3
-    # states of one call when flights are interpreted
-    interpreted: int = 64
-    # impacts of a chatter that scratch has rows for: at first, and of a state that needs more
-    chatter: tuple[int, int] = (4096, 2**20)
-
-
-TABLES = TableSettings()
 PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_BATCH}
 """Kinds of work that fill the tables which an entry reads."""
 SEARCHES = (entries.HITS, entries.DROPS)
@@ -120,7 +81,7 @@ class CompiledModel:
         self.emitted = Emitted("" if self.flow is None else self.flow.source, text)
         self.machine: Machine = machine_of(Emitted(steps=not self.linear))
         self.main = self.machine.emitted.entries[0]
-        self.sizes, self.flat = self._laid_out()
+        self.sizes, self.flat = laid_out(osc, allowance, self.flow, self.rho)
         self.recurrence = Called(machine_of(Emitted(self.emitted.flow)), self.flat) if self.flow else None
         self.law = Called(machine_of(Emitted(rho=text)), self.rho) if text else None
         self._sizes, self._flat_address = self.sizes.tolist(), _address(self.flat)
@@ -140,55 +101,6 @@ class CompiledModel:
         self._least = 3e-4 * steps
 
     # ---- preparation
-
-    def _laid_out(self) -> tuple[Array, Array]:
-        allowance, osc = self.allowance, self.osc
-        order = degree_for(EPSILON if self.linear else allowance.epsilon)
-        short = TABLES.order if self.linear else degree_for(LIMITS.judging)
-        coarse = 10 * allowance.epsilon if allowance.epsilon > EPSILON else 0.0
-        rules = (allowance.horizon, LIMITS.longest if self.linear else allowance.steps, order, short,
-                 LIMITS.safety * (EPSILON if self.linear else allowance.epsilon), LIMITS.likely,
-                 max(LIMITS.rough[0], coarse), max(LIMITS.rough[1], coarse), self._pace(),
-                 1 - as_float(osc.slope_at_rest()), allowance.reach)  # fmt: skip
-        numbers, rest = numbers_of(osc) if self.flow is None else (numbers_of_flow(osc, self.flow), np.zeros(0))
-        room = max(order, degree_for(LIMITS.judging)) + 2 + LIMITS.derivatives_at_rest
-        sizes = np.zeros(8, dtype=np.int64)
-        sizes[layout.RHO] = self.rho.size
-        if self.linear:
-            assert self.form is not None
-            waves = len(self.form.harmonics)
-            sizes[[layout.WAVES, layout.ROWS, layout.ROOM]] = waves, TABLES.rows, max(room, 2 * waves + 2)
-            flat = np.zeros(layout.linear_length(sizes))
-            scalars = layout.SCALARS
-            flat[scalars : scalars + 4], flat[scalars + 4 : scalars + 8] = numbers[1:5], rest[1:5]
-            rate = fastest(osc) or TABLES.slowest
-            flat[scalars + 8], flat[scalars + 9] = (
-                step_with_few_bits(TABLES.reach, rate, TABLES.bits),
-                step_with_few_bits(TABLES.batch_reach, rate, TABLES.bits),
-            )
-            model = layout.linear_model(flat, sizes)
-            phases = phases_of(osc)
-            for numbers_of_waves, values, phase in ((model.numbers, numbers, phases[0]), (model.rest, rest, phases[1])):
-                for j in range(waves):
-                    rate, cosine, sine = values[5 + 3 * j : 8 + 3 * j]
-                    numbers_of_waves.waves[j] = rate, phase[j], cosine, sine
-            turn = flat.size - 3
-            flat[turn:] = batch_turn_of(osc)
-        else:
-            assert self.flow is not None
-            constants = numbers.size + 1  # last, the address of the compiled recurrence
-            sizes[[layout.ROWS, layout.ROOM, layout.CONSTANTS]] = self.flow.rows, room, constants
-            flat = np.ones(layout.SCALARS + constants)
-            flat[layout.SCALARS : -1] = numbers
-        flat[: len(rules)] = rules
-        flat[layout.TURN : layout.TURN + 5] = turn_of(osc)
-        return sizes, flat
-
-    def _pace(self) -> float:
-        """The rate of the model: the largest rate of a linear one, else the forcing's frequency, or 1."""
-        if self.linear:
-            return float(numbers_of(self.osc)[0][4])
-        return 1.0 if self.osc.period is None else 2 * np.pi / as_float(self.osc.period)
 
     def _entry(self, name: str) -> Callable[..., int] | None:
         """A compiled entry, with the tables that it needs filled."""
@@ -275,17 +187,24 @@ class CompiledModel:
         missing = [text for text in self._called(law) if not text.is_bound(seconds)]
         return None if missing else entry
 
+    def _unless_done(self, name: str, seconds: float, work: Callable[[], None]) -> Callable[..., int] | None:
+        """The entry for work; None where it is not compiled and `work` has done it in Python's numbers."""
+        entry = self._compiled(name, seconds)
+        if entry is None:
+            try:
+                work()
+            except LEFT_OPEN:
+                return self._here(name)
+        return entry
+
     def _work(self, kind: int, states: tuple[Array, ...], *results: Array) -> None:
         """Work on flights, one a state; interpreted until it is compiled, unless Python's numbers refuse it."""
         name, count = self.main if self.linear else "judge_entry", states[0].size
-        entry = self._compiled(name, self.price * count)
-        if entry is None:
-            try:
-                INTERPRETED[kind](self.interpreter, *states, *results)
-                return
-            except LEFT_OPEN:
-                entry = self._here(name)
-        self._call(entry, (kind, count, 0), states, *results)
+        entry = self._unless_done(
+            name, self.price * count, lambda: INTERPRETED[kind](self.interpreter, *states, *results)
+        )
+        if entry is not None:
+            self._call(entry, (kind, count, 0), states, *results)
 
     def _for_orbits(self, name: str, seconds: float) -> Callable[..., int] | None:
         """The entry for work that calls rho; waited for after long interpreted flights, unless its compiler dies."""
@@ -334,9 +253,8 @@ class CompiledModel:
         pushes : a_c at the launches of a Taylor flow, nan where it is not known.
         """
         flight_count.add(int(np.count_nonzero(v)))
-        few = self._hits_of_few(tau, v, pushes) if 0 < tau.size <= FEW else None
-        if few is not None:
-            return few
+        if 0 < tau.size <= FEW and (results := self._hits_of_few(tau, v, pushes)) is not None:
+            return results
         status, out = np.empty(tau.size, np.int8), np.empty((10, tau.size))
         if self.linear:
             states: tuple[Array, ...] = (tau, v)
@@ -358,15 +276,15 @@ class CompiledModel:
 
     def _hits_of_few(self, tau: Array, v: Array, pushes: Array | None) -> tuple[Array, Array] | None:
         """`hits` of few states that take no time; None for others, and until they are compiled."""
-        kind = entries.HITS
-        bound = self._bound.get(kind) or self._for_few(kind)
-        if bound is None or self._is_long(kind, tau.size):
+        # long flights go where they hear an interruption
+        is_long, begun = self._is_long(entries.HITS, tau.size), perf_counter()
+        bound = None if is_long else self._bound.pop(entries.HITS, None) or self._for_few(entries.HITS)
+        if bound is None:
             return None
-        begun = perf_counter()
         results = bound.few(tau, v, np.nan if pushes is None else pushes)
-        self._measure(kind, tau.size, begun)
-        if results is not None and not self.linear:
-            results[1][4:] = np.nan
+        self._bound[entries.HITS] = bound
+        self._measure(entries.HITS, tau.size, begun)
+        results[1][4 if not self.linear else 10 :] = np.nan
         return results
 
     def _compiled_hits(self, entry: Any, given: Any, found: Any, part: slice) -> None:
@@ -400,9 +318,10 @@ class CompiledModel:
         kind : HITS (the columns of a hit), DROPS, VARIATIONS or PLACES. quantities : as for the method of that name; of
             a Taylor flow that is searched for hits, a_c at the launch where it is known.
         """
-        bound = self._bound.get(kind) or self._for_few(kind)
-        results = None if bound is None else bound.one(tau, v, *quantities)
-        if results is not None:
+        bound = self._bound.pop(kind, None) or self._for_few(kind)
+        if bound is not None:
+            results = bound.one(tau, v, *quantities)
+            self._bound[kind] = bound
             if kind in SEARCHES:
                 flight_count.add(1)
             return results
@@ -418,8 +337,7 @@ class CompiledModel:
         if entry is None or (self.recurrence and not self.recurrence.is_bound()):
             return None
         self._ready(name, entry[0])
-        self._bound[kind] = Bound(entry[1], kind, (self.sizes, self.flat, self._new_scratch()))
-        return self._bound[kind]
+        return Bound(entry[1], kind, (self.sizes, self.flat, self._new_scratch()))
 
     def releases(self, tau: Array, removed: Array) -> tuple[Array, Array]:
         """Codes and flight time, velocity, depth and bound, shape (10, n), of masses released at rest."""
@@ -453,7 +371,7 @@ class CompiledModel:
 
     def iterate(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array]:
         """The last states of orbits of so many impacts, and the code of the flight that ended an orbit before."""
-        if self.linear and tau.size <= TABLES.alone:
+        if self.linear and tau.size <= TABLES.alone and impacts <= TABLES.block:
             return self._iterate_alone(tau, v, impacts)
         size = -(-tau.size // LANES) * LANES if self.linear else tau.size
         times, speeds = np.resize(tau, size), np.resize(v, size)
@@ -489,13 +407,9 @@ class CompiledModel:
         """`iterate` of each orbit as a segment."""
         times, speeds, codes = tau.copy(), v.copy(), np.where(v > 0, 0, entries.AT_REST).astype(np.int8)
         for index in np.flatnonzero(codes == 0).tolist():
-            for begin in range(0, impacts, TABLES.block):
-                count = min(TABLES.block, impacts - begin)
-                rows, codes[index] = self.segment(times[index], speeds[index], count)
-                if len(rows):
-                    times[index], speeds[index] = times[index] + rows[-1, 0], rows[-1, 1]
-                if codes[index]:
-                    break
+            rows, codes[index] = self.segment(times[index], speeds[index], impacts)
+            if len(rows):
+                times[index], speeds[index] = times[index] + rows[-1, 0], rows[-1, 1]
         return times, speeds, codes
 
     def brackets(self, tau: Array, velocities: Array, settings: tuple[float, ...]) -> tuple[Array, Array] | None:
@@ -584,17 +498,13 @@ class CompiledModel:
     def follow_all(self, tau: Array, v: Array, counts: Array, times: Array, height: float = 0.0) -> Array:
         """`follow` of many flights, one after the other: counts[i] of the times are those of flight i."""
         out, states = np.full((times.size, 2), np.nan), np.stack([tau, v, np.full(tau.size, height)], axis=1)
-        ends = np.cumsum(counts).tolist()
-        entry = self._compiled("judge_entry", self.price * tau.size) if times.size else None
-        if entry is None:
-            try:
-                for (start, speed, place), begin, end in zip(states.tolist(), [0, *ends], ends, strict=False):
-                    self.interpreter.follow(start, speed, place, times[begin:end], out[begin:end])
-                return out
-            except LEFT_OPEN:
-                entry = self._here("judge_entry")
-        each = _Each(entry, counts.tolist())
-        self._call(each, (entries.FOLLOW, tau.size, 0), (states, states[0, 1:], times), out)
+        if times.size:
+            entry = self._unless_done(
+                "judge_entry", self.price * tau.size, lambda: self.interpreter.follow(states, counts, times, out)
+            )
+            if entry is not None:
+                arrays = states, states[0, 1:], times
+                self._call(one_by_one(entry, counts.tolist()), (entries.FOLLOW, tau.size, 0), arrays, out)
         return out
 
     def judged(self, tau: Array, v: Array, removed: Array) -> Array:
@@ -608,31 +518,13 @@ class CompiledModel:
 
     def _judged(self, tau: Array, v: Array, removed: Array, room: int) -> Array:
         out = np.empty((11, tau.size))
-        entry = self._compiled("judge_entry", self.price * tau.size)
-        if entry is None:
-            try:
-                self.interpreter.judged(tau, v, removed, out, room)
-                return out
-            except LEFT_OPEN:
-                entry = self._here("judge_entry")
-        trace = self._new_scratch(room)
-        self._call(entry, (entries.JUDGE, tau.size, room), (tau, v, removed), out, trace=trace)
+        entry = self._unless_done(
+            "judge_entry", self.price * tau.size, lambda: self.interpreter.judged(tau, v, removed, out, room)
+        )
+        if entry is not None:
+            job = entries.JUDGE, tau.size, room
+            self._call(entry, job, (tau, v, removed), out, trace=self._new_scratch(room))
         return out
-
-
-class _Each:
-    """An entry called for flights one after the other, each with as many times as `counts` says."""
-
-    def __init__(self, entry: Callable[..., int], counts: list[int]) -> None:
-        self.entry, self.counts = entry, counts
-
-    def __call__(self, sizes: Any, model: int, scratch: int, tau: int, v: int, w: int, out: int, status: int) -> int:
-        entry = self.entry
-        for count in self.counts:
-            sizes[layout.COUNT] = count
-            entry(sizes, model, scratch, tau, v, w, out, status)
-            tau, v, w, out = tau + 24, v + 24, w + 8 * count, out + 16 * count
-        return 0
 
 
 _SIZES = ctypes.c_int64 * 8

@@ -27,7 +27,7 @@ from singimpact.flights.horizons import Allowance, horizon_of, steps_of
 from singimpact.flights.impact_map import plain_hit
 from singimpact.flights.kernels.state import TIME_BY_TAU, VELOCITY_BY_V
 from singimpact.flights.rebound_law import rebound, rebound_slope
-from singimpact.flights.response import derivatives_of_one, response, touching
+from singimpact.flights.response import response, response_of_one, touching
 from singimpact.flights.results import SCALAR_STATUS, Derivative
 from singimpact.flights.states import States
 from singimpact.flights.undecided import Flown, flights_and_rows
@@ -57,9 +57,9 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
     """
     flown = None
     if type(tau) is float and type(v) is float and horizon is None and not names_in(osc.restitution):
-        found, flown = _of_one(osc, tau, v)
-        if found is not None:
-            return found
+        result, flown = _of_one(osc, tau, v)
+        if result is not None:
+            return result
     if many(tau, v):
         return in_blocks(partial(derivative, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     states = States.of(osc, tau, v)
@@ -98,7 +98,7 @@ def _of_one(osc: Oscillator, tau: float, v: float) -> tuple[Derivative | None, F
         return None, flown
     late, later, faster, fast = hit[TIME_BY_TAU : VELOCITY_BY_V + 1]
     if not model.linear or isnan(late):
-        late, later, faster, fast = derivatives_of_one(osc, tau, v, hit[0], hit[1])
+        late, later, faster, fast = response_of_one(osc, tau, v, hit[0], hit[1])
     matrix = np.array([[1 + late, later], [-model.r * faster, -model.r * fast]])
     return Derivative(matrix, SCALAR_STATUS[0]), None
 

@@ -62,13 +62,9 @@ def path(osc: Oscillator, tau: Any, v: Any, t: Any) -> Path:
         chosen = np.flatnonzero(side)
         chosen = chosen[np.argsort(np.abs(flat[chosen]), kind="stable")]
         if chosen.size:
-            out[chosen] = _followed(osc, states, flat[chosen])
+            out[chosen] = many_paths(osc, states.tau, states.v, [flat[chosen]])[0]
     x, xdot = out[:, 0] + as_float(osc.clearance), out[:, 1]
     return Path(x.reshape(times.shape)[()], xdot.reshape(times.shape)[()])
-
-
-def _followed(osc: Oscillator, states: States, times: Array) -> Array:
-    return many_paths(osc, states.tau, states.v, [times])[0]
 
 
 def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[Array]) -> list[Array]:
@@ -86,7 +82,7 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[Array]) -> lis
     flight_count.add(len(times))
     model = compiled_model(osc)
     starts = model.near(np.asarray(tau, dtype=float))
-    counts, at = np.array([part.size for part in times], dtype=int), np.concatenate([*times, np.zeros(0)])
+    counts, at = np.array([own.size for own in times], dtype=int), np.concatenate([*times, np.zeros(0)])
     if model.linear:
         both = model.places(np.repeat(starts, counts), np.repeat(v, counts), at)
     else:
@@ -150,13 +146,12 @@ def ends(osc: Oscillator, tau: Array, v: Array, times: Array) -> tuple[Array, Ar
     [[0.0], [-3.0], [-2.0]]
     """
     flight_count.add(tau.size)
-    model = compiled_model(osc)
+    model, rows, ended = compiled_model(osc), np.full((tau.size, 2), np.nan), np.isfinite(times)
+    start, velocity, time = model.near(tau)[ended], v[ended], times[ended]
     if model.linear:
-        rows = model.places(model.near(tau), v, times)
+        rows[ended] = model.places(start, velocity, time)
     else:
-        rows = np.full((tau.size, 2), np.nan)
-        for i in np.flatnonzero(np.isfinite(times)).tolist():
-            rows[i] = model.follow(float(tau[i]), float(v[i]), times[i : i + 1])[0]
+        rows[ended] = model.follow_all(start, velocity, np.ones(time.size, int), time)
     position, speed = rows.T
     with np.errstate(all="ignore"):
         forcing = evaluate(osc.forcing(), {"t": tau + times}, DOUBLES)

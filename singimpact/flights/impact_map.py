@@ -17,7 +17,8 @@ from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.flights import undecided
 from singimpact.flights.blocks import in_blocks, many
-from singimpact.flights.compiled_model import EPSILON, CompiledModel, allowed, compiled_model
+from singimpact.flights.compiled_model import CompiledModel, allowed, compiled_model
+from singimpact.flights.flat_numbers import EPSILON
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.kernels.entries import HITS
 from singimpact.flights.kernels.hits import CANCELS
@@ -180,7 +181,7 @@ def plain_fields(model: CompiledModel, tau: float, v: float) -> tuple[dict[str, 
         "notes": NO_NOTES,
     }
     if not model.linear:
-        return fields | {"later": undecided.Judge(model, tau, v, ())}, None
+        return fields | {"later": partial(undecided.judged_alone, model, tau, v)}, None
     fields["condition"], fields["velocity_condition"], fields["time_error"], fields["velocity_error"] = hit[2:6]
     fields["later"] = None
     return fields, None
@@ -283,4 +284,4 @@ def shaped(flight: Flight, shape: tuple[int, ...]) -> Flight:
         if name != "_later"
     }
     fields["status"] = status_array(fields["status"])
-    return type(flight).made(None if later is None else undecided.Shaped(later, shape), **fields)
+    return type(flight).made(None if later is None else partial(undecided.in_shape, later, shape), **fields)

@@ -85,16 +85,16 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     kappas = np.where(fates.status == Status.hit, kappas, np.nan)
     error = np.where(fates.status == Status.hit, 10.0 ** -min(digits, 300), np.nan)
     time, velocity, depth, bound = fields
-    return Flight.made(
-        flight_time=time,
-        velocity=velocity,
-        status=fates.status,
-        depth=depth,
-        bound=bound,
-        condition=kappas[0],
-        velocity_condition=kappas[1],
-        time_error=error,
-        velocity_error=error.copy(),
+    return Flight(
+        time,
+        velocity,
+        fates.status,
+        depth,
+        bound,
+        kappas[0],
+        kappas[1],
+        error,
+        error.copy(),
         cause=fates.cause,
         notes=notes,
         certified=certified,
@@ -120,19 +120,18 @@ def _plain_hit(osc: Oscillator, states: States, digits: int, allowance: Allowanc
         numbers = [for_user(+mp.convert(entry.value)) for entry in (proved.impact.flight_time, proved.impact.velocity)]
     time, velocity, certified = np.array([[*numbers, proved.impact]], dtype=object).T
     nothing, error = np.array([np.nan]), np.array([10.0 ** -min(digits, 300)])
-    return Flight.made(
-        flight_time=time,
-        velocity=velocity,
-        status=np.zeros(1, np.int8),
-        depth=nothing,
-        bound=nothing.copy(),
-        condition=kappas[:1],
-        velocity_condition=kappas[1:],
-        time_error=error,
-        velocity_error=error.copy(),
-        cause=np.zeros(1, np.int8),
-        notes={},
+    return Flight(
+        time,
+        velocity,
+        np.zeros(1, np.int8),
+        nothing,
+        nothing.copy(),
+        kappas[:1],
+        kappas[1:],
+        error,
+        error.copy(),
         certified=certified,
+        cause=np.zeros(1, np.int8),
     )
 
 

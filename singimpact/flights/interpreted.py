@@ -106,13 +106,16 @@ class Interpreter:
         self.space["linear_places"](tau.tolist(), v.tolist(), times.tolist(), self.model, work, rows)
         out[...] = rows
 
-    def follow(self, tau: float, v: float, height: float, times: Array, out: Array) -> None:
-        """`follow` of a Taylor flow."""
-        work, _ = self.work()
-        t, t_low = self.space["reduced_twice"](tau, self.model.turn)
-        self.space["placed"](t, t_low, self.model, work)
-        rows, work.flight.q[0] = out.tolist(), height
-        self.space["follow"](work.launch, v, times.tolist(), self.model.numbers, self.model.rules, work.flight, rows)
+    def follow(self, states: Array, counts: Array, times: Array, out: Array) -> None:
+        """`follow` of Taylor flows from rows of t, x', x - c, each at as many of the times as `counts` says."""
+        (work, _), rows, moments, begin = self.work(), out.tolist(), times.tolist(), 0
+        for (tau, v, height), count in zip(states.tolist(), counts.tolist(), strict=True):
+            t, t_low = self.space["reduced_twice"](tau, self.model.turn)
+            self.space["placed"](t, t_low, self.model, work)
+            places, work.flight.q[0] = rows[begin : begin + count], height  # the lists in it are those of `rows`
+            parts = moments[begin : begin + count], self.model.numbers, self.model.rules, work.flight, places
+            self.space["follow"](work.launch, v, *parts)
+            begin += count
         out[...] = rows
 
     def judged(self, tau: Array, v: Array, removed: Array, out: Array, room: int) -> None:

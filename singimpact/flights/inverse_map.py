@@ -16,7 +16,7 @@ from singimpact.flights.impact_map import first_hit, landing_times, plain_fields
 from singimpact.flights.rebound_law import sharpened, speed_before
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
-from singimpact.flights.undecided import Shaped
+from singimpact.flights.undecided import in_shape
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status, status_array
 
@@ -115,7 +115,7 @@ def _step(states: States, hit: Any, fields: dict[str, Any], dead: Array) -> Step
     shaped = {name: np.reshape(value, shape)[()] for name, value in fields.items()}
     shaped["status"] = status_array(shaped["status"])
     later = vars(hit).get("_later")
-    return Step.made(None if later is None else Shaped(later, shape), **shaped, notes=hit.notes)
+    return Step.made(None if later is None else partial(in_shape, later, shape), **shaped, notes=hit.notes)
 
 
 def _in_digits(states: States, hit: Any, speeds: Any, digits: int) -> dict[str, Any]:

@@ -359,46 +359,52 @@ class Called:
 
 
 class Bound:
-    """An entry over memory of its own, for the flights of few states: no call looks up an address."""
+    """An entry over memory of its own, lent to one call at a time, for the flights of few states.
+
+    No call looks up an address.
+    """
 
     def __init__(self, entry: Callable[..., int], kind: int, model: tuple[Array, Array, Array]) -> None:
         """`model` : sizes, numbers and scratch of a model."""
-        numbers, status = np.zeros(14 * FEW), np.zeros(FEW, np.int8)
-        sizes = model[0].copy()
+        numbers, status, sizes = np.zeros(14 * FEW), np.zeros(FEW, np.int8), model[0].copy()
         sizes[layout.KIND] = kind
         arrays = sizes, *model[1:], *(numbers[FEW * k :] for k in (0, 1, 2, 4)), status
-        self._entry, self._arrays, self._free = entry, arrays, Lock()
+        self._entry, self._arrays = entry, arrays
         self._addresses = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
         # Python's own view of the memory is faster for single numbers
-        self._sizes = (ctypes.c_int64 * sizes.size).from_buffer(sizes)
-        self._numbers = (ctypes.c_double * numbers.size).from_buffer(numbers)
-        self._status = (ctypes.c_int8 * FEW).from_buffer(status)
+        self._sizes = (ctypes.c_int64 * sizes.size).from_address(sizes.ctypes.data)
+        self._numbers = (ctypes.c_double * numbers.size).from_address(numbers.ctypes.data)
+        self._status = (ctypes.c_int8 * FEW).from_address(status.ctypes.data)
 
-    def one(self, tau: float, v: float, quantity: float = nan, other: float = 0.0) -> tuple[int, list[float]] | None:
-        """Code and the first ten results of one state; None while another thread is in this memory."""
-        if not self._free.acquire(blocking=False):
-            return None
-        try:
-            numbers = self._numbers
-            numbers[0], numbers[FEW], numbers[2 * FEW], numbers[2 * FEW + 1] = tau, v, quantity, other
-            self._sizes[layout.COUNT] = 1
-            self._entry(*self._addresses)
-            return self._status[0], numbers[4 * FEW : 4 * FEW + 10]
-        finally:
-            self._free.release()
+    def one(self, tau: float, v: float, quantity: float = nan, other: float = 0.0) -> tuple[int, list[float]]:
+        """Code and the first ten results of one state."""
+        numbers = self._numbers
+        numbers[0], numbers[FEW], numbers[2 * FEW], numbers[2 * FEW + 1] = tau, v, quantity, other
+        self._sizes[layout.COUNT] = 1
+        self._entry(*self._addresses)
+        return self._status[0], numbers[4 * FEW : 4 * FEW + 10]
 
-    def few(self, tau: Array, v: Array, quantities: Array | float) -> tuple[Array, Array] | None:
-        """Codes, and ten rows of results, of at most `FEW` states; None while another thread is in this memory."""
-        if not self._free.acquire(blocking=False):
-            return None
-        try:
-            count, (*_, times, speeds, others, results, status) = tau.size, self._arrays
-            times[:count], speeds[:count], others[:count] = tau, v, quantities
-            self._sizes[layout.COUNT] = count
-            self._entry(*self._addresses)
-            return status[:count].copy(), results[: 10 * count].reshape(10, count).copy()
-        finally:
-            self._free.release()
+    def few(self, tau: Array, v: Array, quantities: Array | float) -> tuple[Array, Array]:
+        """Codes, and ten rows of results, of at most `FEW` states."""
+        count, (*_, times, speeds, others, results, status) = tau.size, self._arrays
+        times[:count], speeds[:count], others[:count] = tau, v, quantities
+        self._sizes[layout.COUNT] = count
+        self._entry(*self._addresses)
+        return status[:count].copy(), results[: 10 * count].reshape(10, count).copy()
+
+
+def one_by_one(entry: Callable[..., int], counts: list[int]) -> Callable[..., int]:
+    """An entry called for flights one after the other, each with as many times and results as `counts` says."""
+
+    def follow(sizes: Any, model: int, scratch: int, tau: int, v: int, w: int, out: int, status: int) -> int:
+        for count in counts:
+            sizes[layout.COUNT] = count
+            entry(sizes, model, scratch, tau, v, w, out, status)
+            # rows of three numbers a flight; a time, and two results, of 8 bytes each
+            tau, v, w, out = tau + 24, v + 24, w + 8 * count, out + 16 * count
+        return 0
+
+    return follow
 
 
 @lru_cache(maxsize=1)

@@ -151,10 +151,10 @@ def _of_one(osc: Oscillator, x: float, xdot: float, t: float) -> Launched | None
 
 @lru_cache(maxsize=256)
 def _usual(osc: Oscillator) -> tuple[CompiledModel, CompiledModel, tuple[float, float]]:
-    """The model in Taylor steps under the default rules, the compiled one, and the clearance with what it leaves out."""
+    """The model in Taylor steps under the default rules, the compiled one, and the clearance with its rounding."""
     high = as_float(osc.clearance)
-    low = as_float(subtract(osc.clearance, Number(Fraction(high))))
-    return stepped(osc, horizon_of(osc, None), reach_of(osc)), compiled_model(osc), (high, low)
+    parts = high, as_float(subtract(osc.clearance, Number(Fraction(high))))
+    return stepped(osc, horizon_of(osc, None), reach_of(osc)), compiled_model(osc), parts
 
 
 def _objects(name: str, value: Any) -> Array:

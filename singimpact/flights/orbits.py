@@ -11,13 +11,14 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.flights.blocks import LEAST, in_blocks, many
 from singimpact.flights.causes import decoded
-from singimpact.flights.compiled_model import EPSILON, allowed, compiled_model
+from singimpact.flights.compiled_model import allowed, compiled_model
+from singimpact.flights.flat_numbers import EPSILON
 from singimpact.flights.kernels.entries import AT_REST
 from singimpact.flights.kernels.hits import PRESSED
-from singimpact.oscillator.phase import reduced
 from singimpact.flights.states import States
 from singimpact.inputs import require_memory
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.phase import reduced
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, default_axes, in_words
 from singimpact.status import Status, status_array
@@ -118,15 +119,14 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
     model = compiled_model(osc)
     if tolerance > EPSILON and not model.linear:
         model = allowed(osc, replace(model.allowance, epsilon=tolerance))
-    start = model.near(states.tau)
-    times, speeds, codes = model.iterate(start, states.v, impacts)
+    times, speeds, codes = model.iterate(states.tau, states.v, impacts)
     if tolerance > EPSILON and (left := codes == Status.unresolved).any():
         # a graze that a coarse flight does not decide: one more impact, accurately
         times[left], speeds[left], codes[left] = compiled_model(osc).iterate(times[left], speeds[left], 1)
     codes = np.where(codes == AT_REST, np.int8(Status.sticks), codes)
     over = _completed(osc, times, speeds, codes)
     codes[over], speeds[over] = Status.complete, 0.0
-    parts = times + (states.tau - start + states.turns), speeds, decoded(codes)[0]
+    parts = times + states.turns, speeds, decoded(codes)[0]
     return Ends(*(column.reshape(states.shape)[()] for column in parts))
 
 
@@ -151,13 +151,12 @@ def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool) -> End
         return Ends(ends.tau, ends.v, status_array(ends.status))
     states = States.read(tau, v).in_period(osc)
     require_memory("iterates kept", (impacts + 1, *states.shape), 2 * LEAST)  # rows, and rows put together
-    start = compiled_model(osc).near(states.tau)
-    rows = [Ends(start, states.v, np.zeros(states.v.size, np.int8))]
+    rows = [Ends(states.tau, states.v, np.zeros(states.v.size, np.int8))]
     for _ in range(impacts):
         last = rows[-1]
         ends = iterate(osc, last.tau, last.v, 1)
         rows.append(Ends(ends.tau, ends.v, np.where(last.status != 0, last.status, ends.status)))
     times, speeds = np.stack([row.tau for row in rows]), np.stack([row.v for row in rows])
-    times += states.tau - start + states.turns
+    times += states.turns
     shape = (impacts + 1, *states.shape)
     return Ends(times.reshape(shape), speeds.reshape(shape), status_array(rows[-1].status.reshape(states.shape)))

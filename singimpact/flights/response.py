@@ -8,34 +8,31 @@ differences.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import evaluate, substitute
+from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float, as_mpf
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES, Multiprecision
-from singimpact.codegen.scalar import in_floats
 from singimpact.flights.bind import over_mpmath
-from singimpact.flights.compiled_model import EPSILON, compiled_model
+from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.flat_numbers import EPSILON
 from singimpact.flights.kernels.entries import VARIATIONS
 from singimpact.flights.kernels.state import Columns, Rules, Work
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, recurrence_of
-from singimpact.oscillator.phase import reduced
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.phase import reduced
+from singimpact.oscillator.wall_acceleration import in_floats_of
 
 Array = np.ndarray[Any, Any]
 
 
-@dataclass(frozen=True)
-class Response:
+class Response(NamedTuple):
     """Derivatives at a hit: of the flight time and of x' there, by tau and by v."""
 
     time_by_tau: Any
@@ -61,23 +58,15 @@ def response(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array
     return _response(parts.T, velocity, _acceleration(osc, tau, time, velocity))
 
 
-def derivatives_of_one(osc: Oscillator, tau: float, v: float, time: float, velocity: float) -> tuple[float, ...]:
-    """dT/dtau, dT/dv, dx'/dtau, dx'/dv of one hit of a launch with v > 0, as by `response`."""
-    forcing, force = _in_floats(osc)
-    _, (by_v, by_v_dot, by_tau, by_tau_dot, *_) = compiled_model(osc).one(VARIATIONS, tau, v, time)
-    start = tau if osc.period is None else float(reduced(np.array([tau]), osc.period)[0])
-    ahead = forcing(start + time)
+def response_of_one(osc: Oscillator, tau: float, v: float, time: float, velocity: float) -> Response:
+    """`response` of one hit of a launch with v > 0, in floats."""
+    forcing, force = in_floats_of(osc)
+    parts = compiled_model(osc).one(VARIATIONS, tau, v, time)[1][:4]
+    ahead = forcing((tau if osc.period is None else float(reduced(np.array([tau]), osc.period)[0])) + time)
     there = ahead - force(velocity)
     if not abs(there) >= LIMITS.cancelled * abs(ahead):
-        there = float(_acceleration(osc, np.array([tau]), np.array([time]), np.array([velocity]))[0])
-    late, later = -by_tau / velocity, -by_v / velocity
-    return late, later, by_tau_dot + there * late, by_v_dot + there * later
-
-
-@lru_cache(maxsize=256)
-def _in_floats(osc: Oscillator) -> tuple[Callable[[float], float], Callable[[float], float]]:
-    """g(t), and f(c, x'), as functions of floats."""
-    return in_floats(osc.forcing(), "t"), in_floats(substitute(osc.force(), {"x": osc.clearance}), "xdot")
+        there = float(_acceleration(osc, *(np.array([number]) for number in (tau, time, velocity)))[0])
+    return _response(parts, velocity, there)
 
 
 def usual_errors(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array) -> tuple[Array, Array]:

@@ -23,9 +23,9 @@ from singimpact.algebra.numbers import (
 )
 from singimpact.flights.blocks import LEAST
 from singimpact.flights.limits import LIMITS
-from singimpact.oscillator.phase import phase_of
 from singimpact.inputs import InputError, refuse, require_memory
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.phase import phase_of
 from singimpact.oscillator.wall_acceleration import Zero, sign_of_acceleration, zero_beside
 
 FAR = 2.0**25

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,25 +13,28 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.precision import balls_at
 from singimpact.flights.causes import decoded, explained
-from singimpact.flights.compiled_model import EPSILON, CompiledModel
+from singimpact.flights.compiled_model import CompiledModel
+from singimpact.flights.flat_numbers import EPSILON
 from singimpact.flights.flight_path import path
 from singimpact.flights.kernels.hits import CANCELS, NOT_REFINED
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.no_return.averaged import stays_up
 from singimpact.flights.no_return.barrier import kept_up
 from singimpact.flights.no_return.polynomial import never_returns, never_turns
-from singimpact.oscillator.phase import reduced
 from singimpact.flights.response import response, usual_errors
 from singimpact.flights.results import JUDGED, Flight
 from singimpact.flights.states import States
 from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.phase import reduced
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Cause, Status
 
 Array = np.ndarray[Any, Any]
 Flown = tuple[Array, Array]
 """Codes and columns of hits, as `CompiledModel.hits` returns them."""
+PLAIN = ("flight_time", "velocity", "status", "cause", "notes")
+"""Fields that are filled of every flight."""
 NEAR = Fraction(1, 10**7)
 """Of its size: so far a hit in doubles is from the true one at most, where it is isolated."""
 STEPS = 6
@@ -68,25 +71,18 @@ class Fates:
 class Judge:
     """Conditions and errors of the hits of a Taylor flow, when they are read."""
 
-    def __init__(self, model: CompiledModel, tau: Any, v: Any, shape: tuple[int, ...] | None = None) -> None:
-        self.model, self.tau, self.v, self.shape = model, tau, v, shape
-        if shape is None:
-            self.tau, self.v = tau.copy(), v.copy()  # they may be the caller's own, and change
-            self.removed, self.hits = np.ones((2, tau.size))
+    def __init__(self, model: CompiledModel, tau: Array, v: Array) -> None:
+        # they may be the caller's own, and change
+        self.model, self.tau, self.v = model, tau.copy(), v.copy()
+        self.removed, self.hits = np.ones((2, tau.size))
 
     def __call__(self, _name: str) -> dict[str, Any]:
-        if self.shape is not None:  # one state, as numbers
-            self.tau, self.v = np.array([self.tau]), np.array([self.v])
-            self.removed, self.hits = np.ones((2, 1))
         rows = np.full((4, self.tau.size), np.nan)
         chosen = np.flatnonzero(self.hits)
         judged = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])
         rows[:, chosen] = judged[2:6]
         rows[2:] = LIMITS.margin * rows[2:] + EPSILON
-        values = dict(zip(JUDGED, rows, strict=True))
-        if self.shape is None:
-            return values
-        return {name: value.reshape(self.shape)[()] for name, value in values.items()}
+        return dict(zip(JUDGED, rows, strict=True))
 
     def steps(self) -> tuple[Array, Array]:
         """Taylor steps of each hit, and both condition numbers, shape (2, n); nan elsewhere."""
@@ -96,14 +92,14 @@ class Judge:
         return found[0], found[1:]
 
 
-class Shaped:
+def in_shape(later: Any, shape: tuple[int, ...], name: str) -> dict[str, Any]:
     """The values of another function, in a shape."""
+    return {each: np.asarray(value).reshape(shape)[()] for each, value in later(name).items()}
 
-    def __init__(self, later: Any, shape: tuple[int, ...]) -> None:
-        self.later, self.shape = later, shape
 
-    def __call__(self, name: str) -> dict[str, Any]:
-        return {each: np.asarray(value).reshape(self.shape)[()] for each, value in self.later(name).items()}
+def judged_alone(model: CompiledModel, tau: float, v: float, name: str) -> dict[str, Any]:
+    """Conditions and errors of the hit of one state, as numbers."""
+    return in_shape(Judge(model, np.array([tau]), np.array([v])), (), name)
 
 
 def flights(osc: Oscillator, model: CompiledModel, states: States, hits: Flown | None = None) -> Flight:
@@ -123,7 +119,9 @@ def flights_and_rows(
     codes, rows = hits or launched(osc, model, states)
     if not np.count_nonzero(codes) and not model.sometimes_kept:
         return plain(model, states, codes, rows), rows
-    fates, judge = (decided(osc, model, states, codes, rows), None) if model.linear else _judged(osc, model, states, codes, rows)
+    fates, judge = (
+        (decided(osc, model, states, codes, rows), None) if model.linear else _judged(osc, model, states, codes, rows)
+    )
     # first: a flight that left the range of doubles would be followed again in many digits
     escapes(osc, model, states, fates)
     settled = _settled(osc, model, states, fates)
@@ -178,19 +176,13 @@ def plain(model: CompiledModel, states: States, codes: Array, rows: Array) -> Fl
     """Hits and nothing else."""
     judge = None if model.linear else Judge(model, states.tau, states.v)
     judged = dict(zip(JUDGED, rows[2:6], strict=True)) if model.linear else {}
-    cause = np.zeros(codes.size, np.int8)
-    fields = {"flight_time": rows[0], "velocity": rows[1], "status": codes, "cause": cause, "notes": {}}
-    return Flight.made(Nowhere(codes.size, judge), **fields, **judged)
+    fields = dict(zip(PLAIN, (*rows[:2], codes, np.zeros(codes.size, np.int8), {}), strict=True))
+    return Flight.made(partial(_read_later, codes.size, judge), **fields, **judged)
 
 
-class Nowhere:
-    """Depths of hits, which have none; with the conditions and errors of a Taylor flow."""
-
-    def __init__(self, size: int, judge: Judge | None) -> None:
-        self.size, self.judge = size, judge
-
-    def __call__(self, name: str) -> dict[str, Any]:
-        return {name: np.full(self.size, np.nan)} if self.judge is None or name not in JUDGED else self.judge(name)
+def _read_later(size: int, judge: Judge | None, name: str) -> dict[str, Any]:
+    """Depths of hits, which have none; conditions and errors of a Taylor flow."""
+    return {name: np.full(size, np.nan)} if judge is None or name not in JUDGED else judge(name)
 
 
 def _decided_at_launch(osc: Oscillator, model: CompiledModel, states: States, fates: Fates) -> None:

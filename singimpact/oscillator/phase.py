@@ -13,7 +13,7 @@ from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import rational_near
 
 TURNS = 2.0**20
-"""Periods within which two doubles hold the period well enough: phases above its part 1/TURNS keep to 2^-10 of a unit."""
+"""Periods within which a period in two doubles is enough: phases above its part 1/TURNS keep to 2^-10 of a unit."""
 
 
 def reduced(tau: np.ndarray[Any, Any], period: Expression) -> np.ndarray[Any, Any]:

@@ -76,7 +76,7 @@ def acceleration_at(osc: Oscillator, tau: float) -> float:
     >>> acceleration_at(Oscillator("x", "cos(t)", 1, 1), 1e-9)
     -5e-19
     """
-    forcing, force = _in_floats(osc)
+    forcing, force = in_floats_of(osc)[0], _resting_float(osc)
     phase = tau if -NEAR <= tau <= NEAR else float(_near(osc, np.array([tau]))[0])
     if -NEAR <= phase <= NEAR:
         ahead = forcing(phase)
@@ -87,9 +87,10 @@ def acceleration_at(osc: Oscillator, tau: float) -> float:
 
 
 @lru_cache(maxsize=256)
-def _in_floats(osc: Oscillator) -> tuple[Callable[[float], float], float]:
-    """g(t) as a function of floats, and f(c, 0)."""
-    return in_floats(_forcing_tree(osc)[0], "t"), _resting_float(osc)
+def in_floats_of(osc: Oscillator) -> tuple[Callable[[float], float], Callable[[float], float]]:
+    """g(t), and f(c, x'), as functions of floats."""
+    force = substitute(osc.force(), {"x": osc.clearance})
+    return in_floats(_forcing_tree(osc)[0], "t"), in_floats(force, "xdot")
 
 
 def _near(osc: Oscillator, tau: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

@@ -153,12 +153,11 @@ def clearance_film(
     swan = _nearest_swan(model, ends)
     views = _across(model, ends, steps) if swan is None else _through(swan, ends, steps)
     surfaces, frames = [], []
-    for clearance, view in views:
+    for n, (clearance, view) in enumerate(views):
+        progress(n, len(views), f"c = {clearance:.6g}")
         at = swan.place if swan is not None and clearance == swan.clearance else clearance
         surfaces.append(ImpactSurface(model.replace(clearance=at), view.tau, view.t, 1 / SETTINGS.pixels))
-    for n, ((clearance, view), surface) in enumerate(zip(views, surfaces, strict=True)):
-        progress(n, len(views), f"c = {clearance:.6g}")
-        frames.append(_frame(surface, clearance, view))
+        frames.append(_frame(surfaces[-1], clearance, view))
     flights = sum(surface.flights for surface in surfaces)
     widest = max((view for _, view in views), key=lambda view: view.size)
     return ClearanceFilm(model, swan, tuple(frames), widest.tau, widest.t, widest.v, flights)

@@ -256,9 +256,6 @@ class ImpactSurface:
     @cached_property
     def lines(self) -> list[NamedLine]:
         """Z with its named points and x' at the other end; H and P follow from it by symmetry."""
-        return self._traced()
-
-    def _traced(self) -> list[NamedLine]:
         cell = 1 / (CELLS_A_RADIAN * fastest_rate(self.model))
         made = traced(self._rest.grid, self._rest.y_and_gradient, self.window, cell, self._speed)
         zeros = [tau for _, tau in self.placed_tangencies]

@@ -17,7 +17,7 @@ from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import acceleration
-from singimpact.flights.flight_path import many_paths
+from singimpact.flights.flight_path import ends, many_paths
 from singimpact.flights.inverse_map import backwards
 from singimpact.flights.response import variations
 from singimpact.oscillator.model import Oscillator
@@ -61,9 +61,7 @@ class RestFlights:
     def ends(self, tau: Array, t: Array) -> tuple[Array, Array]:
         """x - c and x' at time t of the flight from tau, one pair each."""
         self.flown += len(tau)
-        paths = many_paths(self.model, tau, np.zeros(len(tau)), [np.array([s]) for s in t.tolist()])
-        both = np.array([path[0] for path in paths]).reshape(len(tau), 2)
-        return both[:, 0], both[:, 1]
+        return ends(self.model, tau, np.zeros(len(tau)), t)[:2]
 
     def by_speed(self, tau: Array, t: Array) -> Array:
         """Derivatives of x and x' at time t by the launch velocity, shape (n, 2)."""
@@ -91,17 +89,12 @@ class RestFlights:
         slope = np.asarray(evaluate(self._slope, {"t": tau}, DOUBLES) + 0.0 * tau)
         gradient[:, 0], gradient[:, 1] = slope / 2, slope / 6
         tau, t = tau[there], t[there]
-        height, velocity[there] = self.ends(tau, t)
+        self.flown += len(tau)
+        height, velocity[there], late = ends(self.model, tau, np.zeros(len(tau)), t)
         push, by_speed = self.acceleration(tau), self.by_speed(tau, t)
         # the launch moved at rest is a launch with -a
-        by_tau, late = velocity[there] - push * by_speed[:, 0], self._late(tau + t, height, velocity[there])
+        by_tau = velocity[there] - push * by_speed[:, 0]
         bend[there] = np.stack([late - push * by_speed[:, 1], late], axis=1)
         y[there] = height / t**2
         gradient[there] = np.stack([by_tau / t**2, velocity[there] / t**2 - 2 * y[there] / t], axis=1)
         return y, gradient, velocity, bend
-
-    def _late(self, when: Array, height: Array, velocity: Array) -> Array:
-        """x'' at the end of a flight."""
-        place = {"x": as_float(self.model.clearance) + height, "xdot": velocity}
-        pull = evaluate(self.model.force(), place, DOUBLES)
-        return np.asarray(evaluate(self.model.forcing(), {"t": when}, DOUBLES) - pull + 0.0 * when)

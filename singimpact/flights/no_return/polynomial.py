@@ -22,9 +22,9 @@ from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.model_numbers import turn
-from singimpact.oscillator.phase import reduced
 from singimpact.oscillator.linear import LinearForm, at_rest
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.phase import reduced
 
 Array = np.ndarray[Any, Any]
 
