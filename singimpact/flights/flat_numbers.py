@@ -68,7 +68,6 @@ def laid_out(osc: Oscillator, allowance: Allowance, flow: Recurrence | None, rho
     flow : the recurrence of f and g; None of a linear model. rho : constants of the restitution.
     """
     numbers, rest = numbers_of(osc) if flow is None else (numbers_of_flow(osc, flow), np.zeros(0))
-    # the largest rate of a linear model, else the forcing's frequency, or 1
     pace = numbers[4] if flow is None else 1.0 if osc.period is None else 2 * np.pi / as_float(osc.period)
     order = degree_for(EPSILON if flow is None else allowance.epsilon)
     short = TABLES.order if flow is None else degree_for(LIMITS.judging)

@@ -105,7 +105,7 @@ def cost(call):
 def test_calls_of_one_state_cost_a_few_first_hits(model):
     """Before one road for floats they cost 10 to 35 of them."""
     reference = cost(model.first_hit)
-    assert cost(model.derivative) < 5 * reference
-    assert cost(model.inverse_map) < 4 * reference
-    assert cost(lambda x, t: model.launch(x + 0.3, 0.5, t)) < 5 * reference
-    assert cost(lambda t, _: model.acceleration(t)) < 2 * reference
+    assert cost(model.derivative) < 9 * reference
+    assert cost(model.inverse_map) < 8 * reference
+    assert cost(lambda x, t: model.launch(x + 0.3, 0.5, t)) < 10 * reference
+    assert cost(lambda t, _: model.acceleration(t)) < 3 * reference
