@@ -275,7 +275,7 @@ class CompiledModel:
         return status, out
 
     def _hits_of_few(self, tau: Array, v: Array, pushes: Array | None) -> tuple[Array, Array] | None:
-        """`hits` of few states that take no time; None for long flights, which hear an interruption, and uncompiled ones."""
+        """`hits` of few states; None for long flights, which hear an interruption, and until they are compiled."""
         is_long, begun = self._is_long(entries.HITS, tau.size), perf_counter()
         bound = None if is_long else self._bound.pop(entries.HITS, None) or self._for_few(entries.HITS)
         if bound is None:
