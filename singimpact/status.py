@@ -74,6 +74,7 @@ class Cause(IntEnum):
     kink = 4
     overflow = 5
     impacts_exhausted = 6
+    settled = 7
 
     @property
     def sentence(self) -> str:
@@ -94,6 +95,8 @@ _CAUSES = {
     Cause.overflow: "x or x' leaves the range of doubles: type digits=20",
     Cause.impacts_exhausted: "the impacts neither accumulate nor lift off within the number given: type impacts= with "
     "a larger number, or fly osc.orbit to see where they go",
+    Cause.settled: "the impacts repeat themselves to all digits, and neither accumulate nor lift off: fly osc.orbit to "
+    "see the periodic orbit",
 }
 
 

@@ -21,7 +21,15 @@ from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
-from singimpact.flights.kernels.chatter import COMPLETED, EXHAUSTED, LIFTED, NO_ROOM, TOO_WIDE
+from singimpact.flights.kernels.chatter import (
+    CLOSE,
+    COMPLETED,
+    EXHAUSTED,
+    LIFTED,
+    NO_ROOM,
+    REPEATS,
+    TOO_WIDE,
+)
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
 from singimpact.inputs import whole
@@ -38,6 +46,7 @@ ENDED = {
     LIFTED: (Status.lifts_off, Cause.decided),
     EXHAUSTED: (Status.unresolved, Cause.impacts_exhausted),
     TOO_WIDE: (Status.unresolved, Cause.overflow),
+    REPEATS: (Status.unresolved, Cause.settled),
 }
 """Statuses and causes of the codes of `kernels.chatter`."""
 
@@ -281,7 +290,20 @@ class _Flown:
         if segment.status and len(self.times) > 1 and acceleration(self.osc, np.array(self.times[-1:]))[0] >= 0:
             return Status.hit  # the mass lifts off here, so the status of the flight after it does not matter
         self.cause, self.short = Cause(segment.cause), self.short or segment.short
+        if not segment.status and self._is_settled(length):
+            self.cause = Cause.settled
+            return Status.unresolved
         return Status(segment.status)
+
+    def _is_settled(self, count: int) -> bool:
+        """Whether the last of so many impacts repeats one of the others, see `CLOSE`."""
+        if self.osc.period is None:
+            return False
+        turns = np.array(self.times[-count:]) / as_float(self.osc.period)
+        apart, speeds = np.abs(turns[:-1] - turns[-1]), np.array(self.speeds[-count:])
+        # times lose digits in their size
+        close = np.abs(apart - np.round(apart)) <= CLOSE + EPSILON * abs(turns[-1])
+        return bool((close & (np.abs(speeds[:-1] - speeds[-1]) <= CLOSE * speeds[-1])).any())
 
     def _kept(self, found: Segment) -> int:
         lifted = np.flatnonzero(found.acceleration[1:] >= 0)

@@ -6,7 +6,7 @@ would have to be inverted, and lose all digits after a hundred impacts.
 
 from __future__ import annotations
 
-from math import inf, log
+from math import inf, log, nan
 from typing import Any
 
 from singimpact.flights.kernels.hits import NOT_REFINED, PRESSED, UNIT, linear_hit
@@ -24,15 +24,18 @@ from singimpact.flights.kernels.state import (
 )
 from singimpact.generated.completion import linear_chatter_terms
 
-COMPLETED, LIFTED, EXHAUSTED, TOO_WIDE, NO_ROOM = 60, 61, 62, 63, 64
+COMPLETED, LIFTED, EXHAUSTED, TOO_WIDE, NO_ROOM, REPEATS = 60, 61, 62, 63, 64, 65
 """Codes of `chatter_end`: the rest is summed up; a_c no longer presses; all impacts are flown; a term leaves the range
-of doubles; more impacts than rows."""
+of doubles; more impacts than rows; the orbit repeats itself."""
 NEAR, MOST, TRUST = range(3)
 """Settings: the part of the time on which a_c changes that the chatter left must be below to be summed up (0 for
 never), impacts flown at most, and the factor by which errors are called larger."""
 SETTINGS_OF_CHATTER = 3
 BLOCK = 4096
 """Impacts flown at most between two sums."""
+CLOSE = 1e-13
+"""An orbit repeats itself whose phase, in periods, and velocity come back to this: it neither accumulates nor lifts
+off, for a chatter multiplies velocities by r."""
 
 
 def linear_limits(tau: Any, v: Any, search: Any, model: Any, work: Any, rows: Any, out: Any, status: Any) -> int:
@@ -54,13 +57,19 @@ def chatter_end(tau: float, v: float, search: Any, model: Any, work: Any, rows: 
 
     Returns
     -------
-    code : one of the five above, or that of a flight, see `hits.linear_hit`.
+    code : one of the six above, or that of a flight, see `hits.linear_hit`.
     """
     r = search.rho[0]
     near, most, trust = search.settings[NEAR], int(search.settings[MOST]), search.settings[TRUST]
     since, lost, n, look = 0.0, 0.0, 0, -1
+    # Brent's search for a cycle: states are compared with the one after the last power of two
+    mark, t_marked, v_marked = 0, nan, nan
     while True:
         t, t_low = launched(tau, since, lost, model)
+        if abs(t - t_marked) <= CLOSE * model.turn[0] and abs(v - v_marked) <= CLOSE * v:
+            return REPEATS, tau, 0.0, n
+        if n >= 2 * mark:
+            mark, t_marked, v_marked = n, t, v
         code, a = linear_hit(t, t_low, v, near if look < 0 else (inf if n == look else 0.0), model, work)
         # the wall no longer presses: the mass has left it, or leaves it now
         if n > 0 and a >= 0:
