@@ -30,13 +30,7 @@ if TYPE_CHECKING:
 @over_option
 @click.option("--from", "low", metavar="NUMBER", help="Its least value.  [default: half of the model's value]")
 @click.option("--to", "high", metavar="NUMBER", help="Its largest value.  [default: 1.5 times the model's]")
-@click.option(
-    "--points",
-    type=click.IntRange(2, 1_000_000),
-    default=2000,
-    show_default=True,
-    help="Points at most, in each direction.",
-)
+@click.option("--points", type=click.IntRange(2, 1_000_000), default=2000, show_default=True, help="At most, each way.")
 @click.option(
     "--height", type=click.Choice(["v", "phase"]), default="v", show_default=True, help="Vertical axis of the picture."
 )

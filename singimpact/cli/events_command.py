@@ -41,13 +41,7 @@ FOLLOWED = tuple(kind.name for kind in KINDS if kind.look is not None)
     "--event", "kinds", type=click.Choice(FOLLOWED), multiple=True, help="Events of this kind.  [default: all]"
 )
 @click.option("--index", type=click.IntRange(1), help="Only the event with this number in the list of `branch`.")
-@click.option(
-    "--points",
-    type=click.IntRange(2, 1_000_000),
-    default=1000,
-    show_default=True,
-    help="Points at most, in each direction.",
-)
+@click.option("--points", type=click.IntRange(2, 1_000_000), default=1000, show_default=True, help="At most, each way.")
 @click.option(
     "--csv", metavar="FILE.csv", help="Write one line for each point: curve, kind, both parameters, states, visible."
 )

@@ -46,19 +46,8 @@ def command(
     result = lyapunov(osc, tau, v, impacts, transient=transient)
     status = Status(int(result.status))
     if as_json:
-        names = (
-            "exponents",
-            "error",
-            "per_impact",
-            "impacts",
-            "time",
-            "superstable",
-            "status",
-            "transient",
-            "converged",
-        )
         values = result.as_dict()
-        emit(as_json_text({"model": osc.to_dict(), **{name: values[name] for name in names}}), output)
+        emit(as_json_text({"model": osc.to_dict(), **{name: values[name] for name in SHOWN}}), output)
         return
     numbers = {"exponents": result.exponents, "error": result.error, "per impact": result.per_impact}
     rows = {name: "  ".join(f"{value:.9g}" for value in values.tolist()) for name, values in numbers.items()}

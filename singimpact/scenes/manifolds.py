@@ -71,12 +71,17 @@ def draw_manifolds(manifolds: Sequence[Manifold], axes: Any) -> Any:
     else:
         axes.set_xlim(*limits[0])
         axes.set_ylim(*limits[1])
+    return _with_legend(axes, entries)
+
+
+def _with_legend(axes: Any, entries: dict[str, Any], columns: int = 3) -> Any:
+    """The axes with their legend below."""
     axes.legend(
         entries.values(),
         entries.keys(),
         loc="upper center",
         bbox_to_anchor=(0.5, -0.13),
-        ncols=3,
+        ncols=columns,
         frameon=False,
         fontsize="small",
     )
@@ -102,16 +107,7 @@ def draw_crossings(crossings: Crossings, axes: Any) -> Any:
         entries[f"{kind} points, one of each orbit"] = _mark("o", SETTINGS.crossing, pen.color, pen.color)
     axes.set_xlim(*limits[0])
     axes.set_ylim(*limits[1])
-    axes.legend(
-        entries.values(),
-        entries.keys(),
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.13),
-        ncols=3,
-        frameon=False,
-        fontsize="small",
-    )
-    return axes
+    return _with_legend(axes, entries)
 
 
 def draw_certified_crossing(crossing: EnclosedCrossing, axes: Any) -> Any:
@@ -161,16 +157,7 @@ def draw_certified_crossing(crossing: EnclosedCrossing, axes: Any) -> Any:
     if fresh:
         axes.set_xlabel(r"launch phase $\tau$")
         axes.set_ylabel("launch velocity $v$")
-    axes.legend(
-        entries.values(),
-        entries.keys(),
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.13),
-        ncols=2,
-        frameon=False,
-        fontsize="small",
-    )
-    return axes
+    return _with_legend(axes, entries, 2)
 
 
 def _orbit(found: Manifold) -> str:

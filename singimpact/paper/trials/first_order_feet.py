@@ -112,19 +112,12 @@ FINE = 4001  # times at which the height of a hop is sampled
 FROM = ((0.3, 0.0), (0.5, 0.0), (0.3, 0.02), (0.6, 0.01))  # (phase in periods, v) of starts that end in the same orbit
 
 
-class Lift(NamedTuple):
-    """An oscillator whose a_c is largest at t = 0 modulo its period, where it is 0 at the clearance 1."""
-
-    name: str
-    f: str
-    g: str
-
-
 LIFTS = (
-    Lift("x'' + x = cos 2t", "x", "cos(2*t)"),
-    Lift("x'' + x'/2 + x = cos 2t", "x + 0.5*xdot", "cos(2*t)"),
-    Lift("x'' + x'/10 + x + 3x^3/10 = (13/10) cos 2t", "x + 0.1*xdot + 0.3*x**3", "1.3*cos(2*t)"),
+    Model("x'' + x = cos 2t", "x", "cos(2*t)"),
+    Model("x'' + x'/2 + x = cos 2t", "x + 0.5*xdot", "cos(2*t)"),
+    Model("x'' + x'/10 + x + 3x^3/10 = (13/10) cos 2t", "x + 0.1*xdot + 0.3*x**3", "1.3*cos(2*t)"),
 )
+"""Oscillators whose a_c is largest at t = 0 modulo its period, where it is 0 at the clearance 1."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +148,7 @@ def clearance(depth: int) -> str:
 
 
 @cache
-def hop(lift: Lift, rate: str, depth: int) -> Hop:
+def hop(lift: Model, rate: str, depth: int) -> Hop:
     """The orbit from rest between two swans, over three turns."""
     osc = Oscillator(lift.f, lift.g, clearance(depth), rate)
     assert osc.period is not None
