@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import stat
 import sys
-import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import lru_cache
@@ -285,72 +284,3 @@ def lock(descriptor: int) -> bool:
     except OSError:  # a network file system without locks
         return True
     return True
-
-
-class FileLock:
-    """A file that one process at a time holds, with a line of text about what it does.
-
-    Parameters
-    ----------
-    path : of the file, which stays when the lock is released.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> path = Path(tempfile.mkdtemp()) / "lock"
-    >>> holder = FileLock(path)
-    >>> holder.take("compiles"), FileLock(path).holder(), FileLock(path).take("waits")
-    (True, 'compiles', False)
-    >>> holder.release()
-    >>> FileLock(path).holder() is None
-    True
-    """
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self._descriptor: int | None = None
-
-    def take(self, text: str = "", seconds: float = 0.0) -> bool:
-        """Take the lock; False when another process holds it for so many seconds.
-
-        Raises
-        ------
-        OSError : the file cannot be opened or written.
-        """
-        end = time.monotonic() + seconds
-        while True:
-            descriptor = self._opened(os.O_RDWR | os.O_CREAT)
-            if lock(descriptor):
-                break
-            os.close(descriptor)
-            if time.monotonic() >= end:
-                return False
-            time.sleep(RETRY)
-        self._descriptor = descriptor
-        os.ftruncate(descriptor, 0)
-        os.write(descriptor, text.encode())
-        return True
-
-    def release(self) -> None:
-        """Release the lock, if it is held here."""
-        if self._descriptor is not None:
-            os.close(self._descriptor)
-            self._descriptor = None
-
-    def holder(self) -> str | None:
-        """The text that the process that holds the lock wrote about itself; None when no living process holds it."""
-        try:
-            descriptor = self._opened(os.O_RDWR)
-        except OSError:
-            return None
-        try:
-            if lock(descriptor):
-                return None
-            with suppress(OSError):
-                return os.read(descriptor, 4096).decode("utf-8", "replace")
-            return ""
-        finally:
-            os.close(descriptor)
-
-    def _opened(self, flags: int) -> int:
-        return os.open(self.path, flags | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0), 0o600)

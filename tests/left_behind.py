@@ -1,8 +1,6 @@
 """Processes that a run of the suite has left behind."""
 
-import contextlib
 import os
-import signal
 import time
 from pathlib import Path
 
@@ -11,14 +9,10 @@ SUITE = "SINGIMPACT_SUITE"
 
 
 def left_behind(mark, patience=10.0):
-    """Process number -> command of the processes of a run, but for this one; those that compile are ended first."""
+    """Process number -> command of the processes of a run, but for this one, that live on after a while."""
     end = time.monotonic() + patience
     while True:
         left = marked_processes(mark)
-        for pid, command in left.items():
-            if "singimpact.flights.compiler_process" in command:  # they outlive programs, as they should
-                with contextlib.suppress(ProcessLookupError):
-                    os.kill(pid, signal.SIGTERM)
         if not left or time.monotonic() > end:
             return left
         time.sleep(0.05)

@@ -13,7 +13,6 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
-UNRUN = 1  # an address of a function that is compiled and never called
 NEVER_CALLED = r"(NRT_|Py|_Py|numba_)"
 """How names begin that compiled code would call to raise an exception: it raises none, so they end the process."""
 
@@ -64,30 +63,6 @@ def _closed(text: str) -> str:
         rf"(?m)^(@{NEVER_CALLED}\w*) = external (.*)global (\S+).*$", r"\1 = internal global \4 0", defined
     )
     return defined if "declare void @abort()" in defined else f"{defined}\ndeclare void @abort()\n"
-
-
-def without_machine_code() -> None:
-    """Leave out the machine code of every function that numba links into its process: a quarter of the time is saved.
-
-    For a process that wants text alone and runs nothing of it.  The names are numba's own; where they are not there
-    nothing is changed.
-    """
-    try:
-        from numba import _dynfunc  # type: ignore[attr-defined]
-        from numba.core.codegen import JITCodeLibrary
-        from numba.core.cpu import CPUContext
-    except ImportError:
-        return
-    if not (hasattr(JITCodeLibrary, "_finalize_specific") and hasattr(CPUContext, "get_executable")):
-        return
-
-    def unlinked(library: Any) -> None:
-        library.codegen._scan_and_fix_unresolved_refs(library._final_module)
-
-    def unrun(_context: Any, library: Any, fndesc: Any, env: Any) -> Any:
-        return _dynfunc.make_function(fndesc.lookup_module(), fndesc.qualname, "", UNRUN, env, (library,))
-
-    JITCodeLibrary._finalize_specific, CPUContext.get_executable = unlinked, unrun  # type: ignore[method-assign]
 
 
 @lru_cache(maxsize=1)

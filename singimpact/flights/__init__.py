@@ -10,7 +10,6 @@ from singimpact.handed_on import names_of
 _FILES = {
     "bind": "Emitted LAW MODULES constants floats_of over_floats over_lists",
     "compiled_model": "CompiledModel allowed recurrence_of",
-    "compiler_process": "first_wanted",
     "compilers": "KernelCompiler text_of_model",
     "enclosures.analytic_flow": "AnalyticFlow Discs",
     "enclosures.certified_hit": "Launch certified_hit",

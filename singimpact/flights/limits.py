@@ -62,8 +62,6 @@ class Limits:
     # s of one flight with interpreted kernels: linear, and by Taylor steps
     interpreted_linear: float = 8e-5
     interpreted_taylor: float = 3e-3
-    # s of interpreted iterations after which this process compiles the kernels itself
-    patience: float = 3.0
 
 
 LIMITS = Limits()

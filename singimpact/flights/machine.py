@@ -1,18 +1,15 @@
 """Compiled entries of a model: kernels that come with the package, and the model's own f, g and law, compiled once.
 
-A model's own text takes a tenth of a second and is compiled here, as soon as its interpreted flights have taken as
-long.  Where no object code of the kernels comes for the machine, one process of low priority compiles them once a
-cache, which takes a minute, and flights are interpreted until then.  It holds a lock of the cache as long as it lives;
-only who finds the lock held, or has started it, waits for it.
+A text is compiled, by another thread of this process, as soon as its interpreted flights have taken as long as that
+takes: a tenth of a second for a model's own text.  Only where no object code of the kernels comes for the machine are
+they compiled too, which takes a minute, once a cache.
 """
 
 from __future__ import annotations
 
-import atexit
 import ctypes
 import hashlib
 import os
-import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -30,35 +27,27 @@ from singimpact.flights import bind
 from singimpact.flights.bind import Emitted
 from singimpact.flights.kernels import layout
 from singimpact.flights.shipped import shipped_code, sources, why_not
-from singimpact.inputs import InputError
 from singimpact.progress import ProgressLine
-from singimpact.store import FileLock, cache_folder, folder, tell, write_text
+from singimpact.store import cache_folder, tell
 
 
 @dataclass(frozen=True)
 class CompilingSettings:
     """When models are compiled."""
 
-    # seconds that a model's own text takes to compile, at first and for each of its characters
+    # seconds that a model's own text takes to compile, at first and for each of its characters; that kernels take
     own_text: tuple[float, float] = (0.08, 3e-5)
-    # seconds between two reads of the cache while a process compiles
+    kernels: float = 30.0
+    # seconds between two reads of the cache for an entry that is not there
     look: float = 0.2
-    # seconds for which a new process waits for the lock, which others hold for an instant when they look at it
-    lock: float = 2.0
-    # seconds of waiting for a process of another program, and for one of this program, after which a line says so; on
-    # a terminal a line of progress does after one second
-    silent: tuple[float, float] = (1.0, 30.0)
-    # seconds after which the request of a process that was killed is removed
-    stale: float = 86_400.0
+    # seconds of compiling after which a line says so
+    silent: float = 1.0
     # bytes of address space that a process needs to compile; with 450 MB one was seen to import scipy without end
     space: int = 750 << 20
 
 
 SETTINGS = CompilingSettings()
 FOLDER = "kernels"
-ASKED = ".asked"
-BUSY = 75  # exit code of a process that finds the lock held for another text
-FIRST = ".first"  # beside a request: the entry that somebody waits for
 Entry = tuple[Callable[..., int], Callable[..., int]]
 Array = np.ndarray[Any, Any]
 FEW = 32
@@ -77,14 +66,12 @@ class Machine:
     def __init__(self, emitted: Emitted) -> None:
         self.emitted = emitted
         self.is_own = bool(emitted.flow or emitted.rho)  # what a model adds, in place of kernels
-        self.price = SETTINGS.own_text[0] + SETTINGS.own_text[1] * len("".join(emitted.texts))
+        own = SETTINGS.own_text[0] + SETTINGS.own_text[1] * len("".join(emitted.texts))
+        self.price = own if self.is_own else SETTINGS.kernels
         self.spent = 0.0  # seconds of flights that were interpreted
         self._entries: dict[str, Entry] = {}
         self._lock, self._compiling = Lock(), Lock()
         self._looked: dict[str, float] = {}
-        self._asked, self._tried = "", -1e9
-        self._killed = _is_confined()  # the process that compiled it, as where memory is short
-        self._given_up = False  # that process has ended without an entry: nothing waits for another one
 
     def entry(self, name: str) -> Entry | None:
         """An entry, if it is compiled: without the interpreter's lock, and with it."""
@@ -112,26 +99,14 @@ class Machine:
         return None
 
     def interpreted(self, seconds: float, name: str) -> None:
-        """Count flights that were interpreted; after a while the text is compiled, the entry `name` first."""
+        """Count flights that were interpreted; after a while the text is compiled, for an entry `name`."""
         self.spent += seconds
-        if not compilable():
-            return
-        if self.is_own:
-            if self.spent > self.price and not _is_confined():
-                self.compile_here(name)
-            return
-        if self._asked == name and _ended_with(self._request, BUSY):
-            self._asked = ""
-        if self._asked == name:
-            return
-        now = time.monotonic()
-        if now - self._tried > SETTINGS.look:
-            self._tried = now
-            self._asked = name if self._compile_elsewhere(name) else ""
+        if self.spent > self.price and compilable() and not _is_confined():
+            self.compile_here(name)
 
     def compile_here(self, name: str) -> Entry:
-        """An entry that nothing can do without: from the process that compiles for this cache, or compiled here."""
-        entry = self.entry(name) if self.is_own else self.awaited(name)
+        """An entry that nothing can do without, compiled if it is not there."""
+        entry = self.entry(name)
         if entry is not None:
             return entry
         with self._compiling:
@@ -156,7 +131,7 @@ class Machine:
             while worker.is_alive():
                 worker.join(SETTINGS.look / 10)
                 line.show(0, None, "the model's flights are compiled")
-                if silent and time.monotonic() - begun > SETTINGS.silent[0]:
+                if silent and time.monotonic() - begun > SETTINGS.silent:
                     silent = False
                     tell(f"the model's flights are compiled, once {self._reason}")
         if errors:
@@ -176,50 +151,6 @@ class Machine:
     def _reason(self) -> str:
         own = f"its f, g or law is {len(''.join(self.emitted.texts))} characters of code"
         return f"a cache: {own if self.is_own else 'there is no object code of the kernels, for ' + why_not()}"
-
-    def awaited(self, name: str) -> Entry | None:
-        """An entry from that process, started unless it runs; None when it is busy with another text, or has ended.
-
-        A model's own text is compiled here, unless memory is short.
-        """
-        if self.is_own:
-            return None if self._killed else self.compile_here(name)
-        entry = self.entry(name)
-        if entry is not None or self._given_up:
-            return entry
-        self._note_end()
-        if not self._killed:
-            self._compile_elsewhere(name)
-        file, begun, silent = self.place(name), time.monotonic(), True
-        with ProgressLine() as line:
-            while self._is_compiled_now() and not file.is_file():
-                time.sleep(SETTINGS.look / 10)
-                line.show(0, None, "another process compiles the model's flights")
-                if silent and time.monotonic() - begun > SETTINGS.silent[_runs(self._request)]:
-                    silent = False
-                    tell(f"waiting for a process that compiles kernels, usually for less than a minute: {why_not()}")
-        self._looked.pop(name, None)
-        entry = self.entry(name)
-        self._given_up = entry is None
-        return entry
-
-    def is_killed(self) -> bool:
-        """Whether the process that compiled the text was ended from outside; compiling here may end this one too."""
-        return self._killed
-
-    def _is_compiled_now(self) -> bool:
-        """Whether a living process compiles this text: one of this program, or one that holds the lock."""
-        self._note_end()
-        if self._request in _STARTED:
-            return True
-        return not self._killed and self.lock_of_cache.holder() == self._request.name
-
-    def _note_end(self) -> None:
-        """Forget the process that this program has started, if it has ended."""
-        process = _STARTED.get(self._request)
-        if process is not None and process.poll() is not None:
-            self._killed = process.returncode < 0
-            _STARTED.pop(self._request, None)
 
     def _load(self, name: str, code: bytes) -> Entry:
         from singimpact.codegen import object_code
@@ -241,70 +172,6 @@ class Machine:
             digest.update(hashlib.sha256(text.encode()).digest())
         return digest.hexdigest()[:32]
 
-    @property
-    def _request(self) -> Path:
-        return cache_folder() / FOLDER / f"{self.digest}{ASKED}"
-
-    @property
-    def lock_of_cache(self) -> FileLock:
-        """Held by the one process that compiles kernels for the cache."""
-        return FileLock(cache_folder() / FOLDER / ".kernels.lock")
-
-    def _compile_elsewhere(self, name: str) -> bool:
-        """Start a process of low priority that compiles, unless one runs for this cache; whether it compiles this text.
-
-        Where no process can be started, one line says so and flights stay interpreted.
-        """
-        if _is_confined():
-            return True
-        if not _STARTING.acquire(timeout=SETTINGS.lock):
-            return False
-        try:
-            return self._asked_elsewhere(self._request, name)
-        except (InputError, OSError) as error:
-            cache.not_kept(error)
-            return True
-        finally:
-            _STARTING.release()
-
-    def _asked_elsewhere(self, request: Path, name: str) -> bool:
-        folder(request.parent)
-        running = [other.name for other in _STARTED if _runs(other)]
-        holder = running[0] if running else self.lock_of_cache.holder()
-        if holder is not None and holder != request.name:
-            return False
-        write_text(request.with_suffix(FIRST), name)
-        if holder is None:
-            write_text(request, "steps" if self.emitted.steps else "")
-            try:
-                _STARTED[request] = _outliving(request)
-            except (OSError, ValueError) as error:
-                withdraw(request)
-                _not_started(str(error))
-        return True
-
-
-def _runs(request: Path) -> bool:
-    """Whether the process that this one has started for a request is alive."""
-    return request in _STARTED and _STARTED[request].poll() is None
-
-
-def _ended_with(request: Path, code: int) -> bool:
-    process = _STARTED.get(request)
-    return process is not None and process.poll() == code
-
-
-def withdraw(request: Path) -> None:
-    """Remove a request, whose process ends then."""
-    for path in (request, request.with_suffix(FIRST)):
-        with suppress(OSError):
-            path.unlink()
-
-
-@lru_cache(maxsize=1)
-def _not_started(reason: str) -> None:
-    tell(f"no process can be started that compiles the model's flights ({reason}): they are slower; the work goes on")
-
 
 @lru_cache(maxsize=1)
 def _is_confined() -> bool:
@@ -317,7 +184,10 @@ def _is_confined() -> bool:
         return False
     if most == resource.RLIM_INFINITY or most >= SETTINGS.space:
         return False
-    _not_started(f"it needs {SETTINGS.space >> 20} MB of address space, and {most >> 20} MB are allowed (ulimit -v)")
+    tell(
+        f"the model's flights are not compiled, for that needs {SETTINGS.space >> 20} MB of address space and"
+        f" {most >> 20} MB are allowed (ulimit -v): they are slower; the work goes on"
+    )
     return True
 
 
@@ -343,11 +213,6 @@ class Called:
                 return False
             self._bind(found)
         return True
-
-    def is_killed(self) -> bool:
-        """Whether the process that compiled the text was ended from outside, after a wait for it."""
-        (name,) = self.machine.emitted.entries
-        return self.machine.awaited(name) is None and self.machine.is_killed()
 
     def compile_here(self) -> None:
         """Object code compiled in this process, see `Machine.compile_here`."""
@@ -415,30 +280,6 @@ def _digest_of_sources() -> bytes:
 
     parts = (*sources(), Path(str(lowering.__file__)).read_bytes(), processor().encode())
     return hashlib.sha256(b"".join(hashlib.sha256(part).digest() for part in parts)).digest()
-
-
-_STARTED: dict[Path, Any] = {}  # processes by their requests
-_STARTING = Lock()  # so that two threads do not start two
-
-
-def _outliving(request: Path) -> Any:
-    """Start a process that goes on when this one ends."""
-    import subprocess  # 7 ms, and most processes find all compiled
-
-    if not sys.executable:
-        raise OSError("Python does not know its own program")
-    return subprocess.Popen(
-        [sys.executable, "-m", "singimpact.flights.compiler_process", str(request)], stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True, cwd=Path(__file__).parents[2],
-        env={**os.environ, "SINGIMPACT_CACHE": str(cache_folder())},
-    )  # fmt: skip
-
-
-@atexit.register
-def _left_alone() -> None:
-    for process in _STARTED.values():
-        if process.poll() is None:
-            process.returncode = 0  # else Python warns that it is still running
 
 
 @lru_cache(maxsize=1)

@@ -13,8 +13,7 @@ from singimpact.flights.blocks import LEAST, in_blocks, many
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import allowed, compiled_model
 from singimpact.flights.flat_numbers import EPSILON
-from singimpact.flights.kernels.entries import AT_REST
-from singimpact.flights.kernels.hits import PRESSED
+from singimpact.flights.kernels.hits import AT_REST, PRESSED
 from singimpact.flights.states import States
 from singimpact.inputs import require_memory
 from singimpact.oscillator.model import Oscillator

@@ -138,11 +138,7 @@ def why_not() -> str:
 
 
 def texts() -> dict[str, str]:
-    """Texts of LLVM by entry, made by numba on this machine; they take half a minute.
-
-    In a new process they are always the same; numba compiles nothing else in it from then on.
-    """
-    object_code.without_machine_code()
+    """Texts of LLVM by entry, made by numba on this machine in a minute; in a new process they are always the same."""
     return {
         entry: compiler.text(entry)
         for steps in (False, True)

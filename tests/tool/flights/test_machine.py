@@ -11,7 +11,6 @@ import threading
 import time
 from collections import Counter
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -37,7 +36,6 @@ from singimpact.flights import (
     KernelCompiler,
     constants,
     counted,
-    first_wanted,
     interruptible,
     machine,
     shipped_code,
@@ -207,29 +205,6 @@ def test_one_state_with_a_law_of_its_own_is_flown_once(compiled):
     assert count.flights == 1
 
 
-@pytest.mark.usefixtures("compiled")
-def test_the_entry_that_is_waited_for_is_compiled_next(tmp_path):
-    request = tmp_path / "text.asked"
-    order = first_wanted(request, ("one", "two", "three", "four"))
-    assert next(order) == "one"
-    request.with_suffix(machine.FIRST).write_text("four")
-    assert next(order) == "four"
-    assert list(order) == ["two", "three"]
-
-
-HOLDER = """
-import os, sys
-from pathlib import Path
-from singimpact.store import FileLock
-lock = FileLock(Path(sys.argv[1]))
-assert lock.take(sys.argv[2])
-print("holds", flush=True)
-sys.stdin.readline()
-os.link(*sys.argv[3:])
-sys.stdin.readline()
-"""
-
-
 @pytest.fixture(scope="module")
 def whole_entry(tmp_path_factory):
     """An entry of the kernels as a cache has it."""
@@ -251,131 +226,28 @@ def other(tmp_path, monkeypatch, compiled, whole_entry, nothing_shipped):  # noq
     """A machine without entries, in a cache of its own; in this process nothing compiles."""
     emitted = compiled_model(compiled["linear"]).machine.emitted
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(machine, "_STARTED", {})
     monkeypatch.setattr(object_code, "emitted", lambda *_: pytest.fail("compiled here"))
     other = machine.Machine(emitted)
     store.folder(other.place("linear_entry").parent)
     return other
 
 
-@pytest.fixture
-def holder(whole_entry, other, tmp_path):
-    """Another process that holds the lock, which writes the entry when it hears a line."""
-    kept = tmp_path / "kept"
-    kept.write_bytes(whole_entry)
-    place = other.place("linear_entry")
-    arguments = [other.lock_of_cache.path, other._request.name, kept, place]
-    child = subprocess.Popen(
-        [sys.executable, "-c", HOLDER, *map(str, arguments)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+def test_kernels_without_object_code_are_compiled_when_their_flights_have_cost_as_much(other, monkeypatch, capsys):
+    monkeypatch.setattr(machine, "SETTINGS", replace(machine.SETTINGS, silent=0.0))
+    calls = []
+    monkeypatch.setattr(
+        machine.Machine, "_code", lambda _, name: calls.append(name) or time.sleep(0.2) or shipped_code(name)
     )
-    assert child.stdout.readline() == "holds\n"
-    yield child
-    child.kill()
-    child.communicate()
-
-
-def while_waiting(monkeypatch, event):
-    """Something happens once a machine waits."""
-    happens = iter([event])
-
-    class Line(machine.ProgressLine):
-        def show(self, *_):
-            next(happens, lambda: None)()
-
-    monkeypatch.setattr(machine, "ProgressLine", Line)
-
-
-def test_an_entry_is_waited_for_while_another_process_compiles_it(other, holder, monkeypatch, capsys):
-    monkeypatch.setattr(machine, "SETTINGS", replace(machine.SETTINGS, silent=(0.0, 0.0)))
-    while_waiting(monkeypatch, lambda: (holder.stdin.write("\n"), holder.stdin.flush()))
-    assert other.compile_here("linear_entry")
-    assert "waiting for a process that compiles kernels" in capsys.readouterr().err
-
-
-def test_the_death_of_a_process_that_compiles_is_noticed(other, holder, monkeypatch):
-    while_waiting(monkeypatch, lambda: (holder.kill(), holder.wait()))
-    assert other.awaited("linear_entry") is None
-    assert other.lock_of_cache.holder() is None
-
-
-def test_a_request_of_a_dead_process_is_not_waited_for(other, monkeypatch):
-    """Whatever its age: a clock may jump, and file systems have clocks of their own."""
-    other._request.write_text("")
-    ended = SimpleNamespace(poll=lambda: 1, returncode=1)
-    starts = []
-    monkeypatch.setattr(machine, "_outliving", lambda *_, **__: starts.append(1) or ended)
-    monkeypatch.setattr(machine.time, "sleep", lambda _: pytest.fail("waits"))
-    for age in (-1e7, 0, 1e7):
-        os.utime(other._request, (time.time() - age,) * 2)
-        assert machine.Machine(other.emitted).awaited("linear_entry") is None
-    assert len(starts) == 3
-
-
-def refused(*_, **__):
-    raise BlockingIOError(11, "Resource temporarily unavailable")
-
-
-@pytest.mark.parametrize(
-    ("thing", "name", "value"), [(subprocess, "Popen", refused), (sys, "executable", ""), (sys, "executable", None)]
-)
-def test_where_no_process_can_be_started_flights_are_interpreted(thing, name, value, other, monkeypatch, capsys):
-    machine._not_started.cache_clear()
-    monkeypatch.setattr(thing, name, value)
-    other.interpreted(1.0, "linear_entry")
-    assert other.awaited("linear_entry") is None
-    folder = other.place("linear_entry").parent
-    assert [path.name for path in folder.iterdir() if not path.name.endswith(".lock")] == []
-    line = capsys.readouterr().err
-    assert line.count("\n") == 1
-    assert "no process can be started that compiles the model's flights" in line
-
-
-def test_flights_go_on_interpreted_where_the_process_that_compiles_is_killed(other, monkeypatch):
-    """As where memory is short: compiling here would end this process."""
-    killed = SimpleNamespace(poll=lambda: -9, returncode=-9)
-    monkeypatch.setattr(machine, "_outliving", lambda *_, **__: killed)
-    flown = CompiledModel(MODELS["linear"], compiled_model(MODELS["linear"]).allowance)
-    flown.machine, other.spent = other, 1e9
-    rows, _ = flown.segment(0.3, 0.7, 20)
-    want, _ = compiled_model(MODELS["linear"]).segment(0.3, 0.7, 20)
-    assert np.allclose(rows[:, :5], want[:, :5], rtol=1e-9)
-    assert other.is_killed()
-
-
-@pytest.fixture
-def compiling(other):
-    """A process that compiles, and holds the lock."""
-    other._request.write_text("")
-    process = machine._outliving(other._request)
-    lock = other.lock_of_cache
-    while lock.holder() != other._request.name:
-        assert process.poll() is None
-        time.sleep(0.01)
-    yield process
-    process.kill()
-    process.wait()
-
-
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL, None])
-def test_a_process_that_compiles_ends_early(number, other, compiling):
-    """At a signal, and when its request is gone; nobody has to wait for it then."""
-    if number is None:
-        other._request.unlink()
-    else:
-        compiling.send_signal(number)
-    assert compiling.wait(timeout=60) == {None: 0, signal.SIGKILL: -9}.get(number, 128 + int(number or 0))
-    assert other.lock_of_cache.holder() is None
-    left = {path.suffix for path in other._request.parent.iterdir()}
-    assert left <= ({".lock", ".asked"} if number == signal.SIGKILL else {".lock"})
-
-
-def test_of_two_processes_that_compile_one_ends_at_once(other, compiling):
-    second = subprocess.run(
-        [sys.executable, "-m", "singimpact.flights.compiler_process", str(other._request)], check=False
-    )
-    assert second.returncode == machine.BUSY
-    assert compiling.poll() is None
-    assert other._request.exists()
+    for seconds in (10.0, 19.0):
+        other.interpreted(seconds, "linear_entry")
+        assert other.entry("linear_entry") is None
+    other.interpreted(2.0, "linear_entry")
+    assert other.entry("linear_entry")
+    assert other.place("linear_entry").is_file()
+    assert "compiled, once a cache: there is no object code of the kernels" in capsys.readouterr().err
+    other.compile_here("linear_entry")
+    machine.Machine(other.emitted).compile_here("linear_entry")
+    assert calls == ["linear_entry"]
 
 
 def test_linear_models_share_their_machine():
@@ -552,7 +424,7 @@ def test_a_text_of_a_model_is_compiled_once_its_flights_have_cost_as_much(tmp_pa
 
 def test_a_text_that_takes_longer_says_so_and_threads_compile_it_once(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
-    monkeypatch.setattr(machine, "SETTINGS", replace(machine.SETTINGS, silent=(0.0, 0.0)))
+    monkeypatch.setattr(machine, "SETTINGS", replace(machine.SETTINGS, silent=0.0))
     own = machine.Machine(Emitted(rho=OWN_LAW.format(1.5)))
     codes, write = [], own._code
     monkeypatch.setattr(own, "_code", lambda name: codes.append(name) or time.sleep(0.2) or write(name))
