@@ -23,12 +23,12 @@ from singimpact.flights.kernels import (
     batch,
     batch_isolate,
     batch_refine,
+    batch_response,
     chatter,
     double_double,
     entries,
     gamma,
     hits,
-    lanes,
     layout,
     linear,
     orbits,
@@ -45,10 +45,10 @@ from singimpact.flights.kernels import (
 )
 from singimpact.generated import completion
 
-MODULES = (radii, state, lanes, double_double, waves, roots, linear, steps, taylor, tables, tabulated, variational,
-           recurrence, refine, hits, orbits, gamma, completion, chatter, batch_isolate, batch_refine, batch, layout,
-           entries)  # fmt: skip
-COMPILED = (lanes, batch_isolate, batch_refine, batch, recurrence)
+MODULES = (radii, state, double_double, waves, roots, linear, steps, taylor, tables, tabulated, variational,
+           recurrence, refine, hits, orbits, gamma, completion, chatter, batch_isolate, batch_refine, batch_response,
+           batch, layout, entries)  # fmt: skip
+COMPILED = (batch_isolate, batch_refine, batch_response, batch, recurrence)
 """Modules that are never run over lists."""
 IN_STEPS = {"step_size": "step_size_of_discs", "singular_part": "singular_part_of_discs",
             "next_hit": "next_hit_in_steps", "placed": "placed_in_steps", "quiet": "quiet_in_steps"}  # fmt: skip

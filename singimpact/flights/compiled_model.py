@@ -23,7 +23,8 @@ from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
 from singimpact.flights.interruptible import LONG, interruptible, shared_out, threads_now
 from singimpact.flights.kernels import entries, layout
 from singimpact.flights.kernels.chatter import NO_ROOM
-from singimpact.flights.kernels.lanes import LANES
+from singimpact.flights.kernels.hits import AT_REST
+from singimpact.flights.kernels.state import LANES
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.machine import FEW, Bound, Called, Machine, compilable, machine_of, one_by_one
 from singimpact.flights.model_numbers import (
@@ -206,14 +207,6 @@ class CompiledModel:
         if entry is not None:
             self._call(entry, (kind, count, 0), states, *results)
 
-    def _for_orbits(self, name: str, seconds: float) -> Callable[..., int] | None:
-        """The entry for work that calls rho; waited for after long interpreted flights, unless its compiler dies."""
-        if (self.recurrence.machine if self.recurrence else self.machine).spent > LIMITS.patience and compilable():
-            self.machine.awaited(name)
-            if not (self.machine.is_killed() or any(each.is_killed() for each in self._called(self.law))):
-                return self._here(name, self.law)
-        return self._compiled(name, seconds, self.law)
-
     @kept_property
     def sometimes_kept(self) -> bool:
         """Whether some launches of a Taylor flow are proved not to return before they are flown."""
@@ -261,15 +254,15 @@ class CompiledModel:
         else:
             out[4:] = np.nan
             states = tau, v, np.full(tau.size, np.nan) if pushes is None else pushes
-        begin = 0
+        name, least, begin = ("batch_entry", LANES, 0) if self.linear and tau.size >= LANES else (self.main, 1, 0)
         while begin < tau.size:
-            entry = self._compiled(self.main, self.price * (tau.size - begin))
+            entry = self._compiled(name, self.price * (tau.size - begin))
             if entry is None:
                 end = min(begin + TABLES.interpreted, tau.size)
                 self._interpreted_hits(states, (out, status), slice(begin, end))
             else:
                 end = min(begin + TABLES.block * threads_now(), tau.size)
-                fly = partial(self._compiled_hits, entry, states, (out, status))
+                fly = partial(self._compiled_hits, entry, states, (out, status), least)
                 shared_out(fly, begin, end, TABLES.shared)
             begin = end
         return status, out
@@ -286,15 +279,16 @@ class CompiledModel:
         results[1][4 if not self.linear else 10 :] = np.nan
         return results
 
-    def _compiled_hits(self, entry: Any, given: Any, found: Any, part: slice) -> None:
-        out, status = found
-        if part.start == 0 and part.stop == status.size:
-            self._call(entry, (entries.HITS, status.size, 0), given, out, status)
+    def _compiled_hits(self, entry: Any, states: Any, results: Any, least: int, chosen: slice) -> None:
+        out, status = results
+        if chosen.start == 0 and chosen.stop == status.size:
+            self._call(entry, (entries.HITS, status.size, 0), states, out, status)
             return
-        rows = out[:, part].copy()
-        blocks = tuple(each[part] for each in given)
-        self._call(entry, (entries.HITS, rows.shape[1], 0), blocks, rows, status[part])
-        out[:, part] = rows
+        # a batch is full: the last one flies some states again
+        chosen = slice(min(chosen.start, chosen.stop - least), chosen.stop)
+        rows = out[:, chosen].copy()
+        self._call(entry, (entries.HITS, rows.shape[1], 0), tuple(row[chosen] for row in states), rows, status[chosen])
+        out[:, chosen] = rows
 
     def _interpreted_hits(self, states: Any, results: Any, chosen: slice) -> None:
         out, status = results
@@ -304,7 +298,7 @@ class CompiledModel:
             out[:, chosen] = rows
         except LEFT_OPEN:
             if rows.shape[1] == 1:
-                self._compiled_hits(self._here(self.main), states, results, chosen)
+                self._compiled_hits(self._here(self.main), states, results, 1, chosen)
                 return
             for index in range(chosen.start, chosen.stop):
                 self._interpreted_hits(states, results, slice(index, index + 1))
@@ -355,7 +349,7 @@ class CompiledModel:
     def segment(self, tau: float, v: float, count: int, near: float = 0.0) -> tuple[Array, int]:
         """Rows of the impacts of one orbit, see `kernels.orbits`, and the code of the flight that ended it."""
         out, status = np.empty((count, 11)), np.zeros(1, np.int8)
-        entry = self._for_orbits(self.main, self.price * count)
+        entry = self._compiled(self.main, self.price * count, self.law)
         if entry is None:
             try:
                 flown, code = self.interpreter.segment(tau, v, near, self.rho, out)
@@ -374,14 +368,14 @@ class CompiledModel:
             return self._iterate_alone(tau, v, impacts)
         size = -(-tau.size // LANES) * LANES if self.linear else tau.size
         times, speeds = np.resize(tau, size), np.resize(v, size)
-        status = np.where(speeds > 0, 0, entries.AT_REST).astype(np.int8)
-        status[tau.size :] = entries.AT_REST
+        status = np.where(speeds > 0, 0, AT_REST).astype(np.int8)
+        status[tau.size :] = AT_REST
         name = "batch_entry" if self.linear else self.main
         entry, begin = self._compiled(name, 0.0, self.law), 0
         while begin < size:
             few = slice(begin, min(begin + LANES, size))
             if entry is None:
-                entry = self._for_orbits(name, self.price * (few.stop - begin) * impacts)
+                entry = self._compiled(name, self.price * (few.stop - begin) * impacts, self.law)
             if entry is None:
                 self.interpreter.iterate(times[few], speeds[few], impacts, self.rho, status[few])
                 begin = few.stop
@@ -404,7 +398,7 @@ class CompiledModel:
 
     def _iterate_alone(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array]:
         """`iterate` of each orbit as a segment."""
-        times, speeds, codes = tau.copy(), v.copy(), np.where(v > 0, 0, entries.AT_REST).astype(np.int8)
+        times, speeds, codes = tau.copy(), v.copy(), np.where(v > 0, 0, AT_REST).astype(np.int8)
         for index in np.flatnonzero(codes == 0).tolist():
             rows, codes[index] = self.segment(times[index], speeds[index], impacts)
             if len(rows):

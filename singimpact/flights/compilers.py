@@ -11,7 +11,7 @@ import ast
 import inspect
 import math
 import types
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 from singimpact.codegen import radii
@@ -31,6 +31,8 @@ from singimpact.flights.kernels import recurrence
 UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 Built = Any
 """Types, values and builders of numba and LLVM, which give them no types."""
+INLINED = {"quarters", "in_quarter", "swung", "answered", "moved_wave", "at_the_hit", "rounded", "is_rough"}
+"""Functions in loops over the states of a batch: a call would keep the loop scalar."""
 LEVEL = 3
 """Of numba's own passes: without them batches of states take three times as long."""
 
@@ -79,10 +81,10 @@ class KernelCompiler:
         self.space = vars(module)
         self.space |= {**{name: getattr(math, name) for name in FUNCTIONS}, **constants()}
         # without wrappers for Python, compiling takes a third less
-        inner: Any = numba.njit(error_model="numpy", **UNWRAPPED)
+        inner: Any = partial(numba.njit, error_model="numpy", **UNWRAPPED)
         for name, function in _chosen(steps).items():
             bound = types.FunctionType(function.__code__, self.space, name)
-            self.space[name] = bound if name.endswith("_entry") else inner(bound)
+            self.space[name] = bound if name.endswith("_entry") else inner(bound, forceinline=name in INLINED)
         self.space |= _of_addresses()
 
     def text(self, entry: str) -> str:

@@ -1,4 +1,4 @@
-"""Many orbits in lock-step batches of 64 states, so that one instruction serves several of them: `tabulated`, abreast.
+"""Many flights in lock-step batches of 64 states, so that one instruction serves several of them: `tabulated`, abreast.
 
 A state whose step needs more than a plain crossing is handed to `tabulated_flight`.  The numbers of a state stand in
 rows of one array, `lane[ROW + k]`: the compiler then sees that rows do not overlap.  Loops over the batch count to a
@@ -7,29 +7,65 @@ constant too large to be unrolled, and sum integers: both keep them vectors.
 
 from __future__ import annotations
 
-from typing import Any
-
 from singimpact.flights.kernels.batch_isolate import isolate
 from singimpact.flights.kernels.batch_refine import expand, quintic_guess, refine_roots, turn_waves
-from singimpact.flights.kernels.lanes import (
+from singimpact.flights.kernels.batch_response import judge_hits, respond
+from singimpact.flights.kernels.hits import AT_REST, linear_hit
+from singimpact.flights.kernels.orbits import rebound
+from singimpact.flights.kernels.state import (
     ACC,
+    AT,
+    COSINE,
     LANES,
+    LATE,
     LOST,
     MODE,
+    PHASE,
+    RATE,
     SINCE,
+    SINE,
     SIZE,
     SPEED,
     TIME,
     TURNS,
+    Array,
+    Batch,
+    Model,
     V,
 )
-from singimpact.flights.kernels.orbits import rebound
-from singimpact.flights.kernels.state import COSINE, PHASE, RATE, SINE
 from singimpact.flights.kernels.tabulated import tabulated_flight
-from singimpact.flights.kernels.waves import NEAREST, in_quarter, phase_of, wall_acceleration
+from singimpact.flights.kernels.waves import NEAREST, phase_of, quarters, reduced_twice, wall_acceleration
 
 
-def fly_batches(tau: Any, v: Any, count: int, w: Any, model: Any, batch: Any, status: Any) -> None:
+def hit_batches(tau: Array, v: Array, model: Model, batch: Batch, out: Array, status: Array) -> int:
+    """`entries.linear_hits` of `LANES` states or more; the last batch flies some states again."""
+    lane, work, count, others = batch.lane, batch.work, len(tau), 0
+    for begin in range(0, count, LANES):
+        b = min(begin, count - LANES)
+        for k in range(LANES):
+            lane[AT + k], lane[LATE + k] = reduced_twice(tau[b + k], model.turn)
+            lane[V + k] = v[b + k]
+            lane[MODE + k] = 0.0 if v[b + k] > 0 else 3.0
+        if fly_batch(model, batch) > 0:
+            respond(model, batch)
+            judge_hits(lane, batch.X, model)
+            for row in range(10):
+                columns = out[row, b : b + LANES]
+                for k in range(LANES):
+                    columns[k] = batch.X[row, k]
+        for k in range(LANES):
+            status[b + k] = 0 if lane[MODE + k] == 1.0 else AT_REST
+            if lane[MODE + k] != 2.0:
+                continue
+            status[b + k], _a = linear_hit(lane[AT + k], lane[LATE + k], lane[V + k], 0.0, model, work)
+            for row in range(10):
+                out[row, b + k] = work.hit[row]
+    for i in range(count):
+        others += 1 if status[i] != 0 else 0
+    return others
+
+
+def fly_batches(tau: Array, v: Array, count: int, w: Array, model: Model, batch: Batch, status: Array) -> None:
     """Fly `count` impacts from every state; tau, v become the last states, status what ended an orbit, 0 otherwise.
 
     Parameters
@@ -37,25 +73,21 @@ def fly_batches(tau: Any, v: Any, count: int, w: Any, model: Any, batch: Any, st
     tau, v : as many as a multiple of `LANES`. w : constants of rho.
     model, batch : see `state`.
     """
-    lane, wave, p, work = batch.lane, batch.wave, model.numbers, batch.work
-    step, turn, horizon = batch.table.step, batch.turn, model.rules.horizon
+    lane, work, turn = batch.lane, batch.work, batch.turn
     for b in range(0, len(v), LANES):
         for k in range(LANES):
             lane[V + k], lane[SINCE + k], lane[LOST + k], lane[TURNS + k] = v[b + k], 0.0, 0.0, 0.0
             lane[MODE + k] = 0.0 if status[b + k] == 0 else 3.0
         for _ in range(count):
-            launch_phases(b, tau, lane, wave, model, step)
-            if isolate(lane, wave, p, model.rules.ulp, batch.table) == 0:
+            for k in range(LANES):
+                lane[AT + k] = tau[b + k] + lane[SINCE + k]
+                lane[LATE + k] = late(tau[b + k], lane[SINCE + k], lane[LOST + k])
+            if fly_batch(model, batch) == 0:
                 break
-            turn_waves(lane, wave, batch.local, batch.table.waves)
-            expand(lane, batch.local, batch.series, batch.X)
-            quintic_guess(lane, step)
-            refine_roots(lane, batch.X, step, horizon)
             for k in range(LANES):
                 if lane[MODE + k] != 2.0:
                     continue
-                at_low = late(tau[b + k], lane[SINCE + k], lane[LOST + k])
-                a = wall_acceleration(tau[b + k] + lane[SINCE + k], at_low, p, model.rest, work.launch)
+                a = wall_acceleration(lane[AT + k], lane[LATE + k], model.numbers, model.rest, work.launch)
                 code, lane[TIME + k], lane[SPEED + k], _depth, _error = tabulated_flight(
                     work.launch, lane[V + k], a, model, work.flight
                 )
@@ -73,7 +105,20 @@ def fly_batches(tau: Any, v: Any, count: int, w: Any, model: Any, batch: Any, st
             tau[b + k] += (lane[SINCE + k] - lane[LOST + k]) + lane[TURNS + k] * (turn[0] + turn[1])
 
 
-def advance_times(b: int, v: Any, lane: Any, turn: Any) -> None:
+def fly_batch(model: Model, batch: Batch) -> int:
+    """The number of states that fly: TIME and SPEED of a hit where the mode becomes 1."""
+    lane, wave, table = batch.lane, batch.wave, batch.table
+    launch_phases(lane, wave, model, table.step)
+    flying = isolate(lane, wave, model.numbers, model.rules.ulp, table)
+    if flying > 0:
+        turn_waves(lane, wave, batch.local, table.waves)
+        expand(lane, batch.local, batch.series, batch.X)
+        quintic_guess(lane, table.step)
+        refine_roots(lane, batch.X, table.step, model.rules.horizon)
+    return flying
+
+
+def advance_times(b: int, v: Array, lane: Array, turn: Array) -> None:
     """Times since the start move on, compensated; whole periods are taken off, so that phases keep their digits."""
     for k in range(LANES):
         # Kahan's sum, as in `orbits.later`
@@ -86,27 +131,18 @@ def advance_times(b: int, v: Any, lane: Any, turn: Any) -> None:
         lane[V + k] = v[b + k]
 
 
-def launch_phases(b: int, tau: Any, lane: Any, wave: Any, model: Any, step: float) -> None:
+def launch_phases(lane: Array, wave: Array, model: Model, step: float) -> None:
     """`wall_acceleration` of a batch; a state whose slow return needs a_c to more than doubles is handed over."""
     p, low = model.numbers, model.rest
     for k in range(LANES):
         lane[ACC + k], lane[SIZE + k] = p.steady, abs(p.steady)
     for j in range(len(p.waves)):
         rate, rate_low, phase, phase_low = p.waves[j, RATE], low.waves[j, RATE], p.waves[j, PHASE], low.waves[j, PHASE]
-        by_cos, by_sin, c, s = p.waves[j, COSINE], p.waves[j, SINE], 2 * j, 2 * j + 1
+        by_cos, by_sin, c, s = p.waves[j, COSINE], p.waves[j, SINE], j, len(p.waves) + j
         for k in range(LANES):
-            t = tau[b + k] + lane[SINCE + k]
-            angle, rest = phase_of(
-                t, late(tau[b + k], lane[SINCE + k], lane[LOST + k]), rate, rate_low, phase, phase_low
-            )
+            angle, rest = phase_of(lane[AT + k], lane[LATE + k], rate, rate_low, phase, phase_low)
             lane[MODE + k] = 2.0 if (lane[MODE + k] == 0.0) & (abs(angle) > 1e6) else lane[MODE + k]
-            n = (angle * 0.6366197723675814 + NEAREST) - NEAREST
-            quarter = n - 4 * ((n * 0.25 + NEAREST) - NEAREST)
-            cosine, sine = in_quarter(angle, rest, n)
-            odd = abs(quarter) == 1
-            turned_c, turned_s = (sine if odd else cosine), (cosine if odd else sine)
-            wave[c, k] = -turned_c if (quarter == 1) | (abs(quarter) == 2) else turned_c
-            wave[s, k] = -turned_s if (quarter == -1) | (abs(quarter) == 2) else turned_s
+            wave[c, k], wave[s, k] = quarters(angle, rest)
             lane[ACC + k] += by_cos * wave[c, k] + by_sin * wave[s, k]
             lane[SIZE + k] += abs(by_cos * wave[c, k]) + abs(by_sin * wave[s, k])
     for k in range(LANES):

@@ -1,21 +1,35 @@
 """Roots of a batch: of x - c, or of (x - c)/t on the first step, where t = 0 is no hit.
 
 One step of Halley's method from the root of the quintic leaves an error of 1e-9 steps at most, or the state is handed
-over; Newton's step then is exact to rounding.
+over; the second step then is exact to rounding.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from singimpact.flights.kernels.state import (
+    BATCH_ORDER,
+    E0,
+    E1,
+    LANES,
+    MODE,
+    PLACE,
+    SPEED,
+    TIME,
+    TURN_COS,
+    TURN_SIN,
+    U0,
+    U1,
+    Z0,
+    Z1,
+    Array,
+)
 
-from singimpact.flights.kernels.lanes import BATCH_ORDER, E0, E1, LANES, MODE, PLACE, SPEED, TIME, U0, U1, Z0, Z1
-from singimpact.flights.kernels.state import TURN_COS, TURN_SIN
 
-
-def turn_waves(lane: Any, wave: Any, local: Any, turns: Any) -> None:
+def turn_waves(lane: Array, wave: Array, local: Array, turns: Array) -> None:
     """The waves at the start of the step that holds the root."""
-    for j in range(len(wave) // 2):
-        c, s = 2 * j, 2 * j + 1
+    count = len(wave) // 2
+    for j in range(count):
+        c, s = j, count + j
         for k in range(LANES):
             m = int(lane[PLACE + k])
             local[c, k], local[s, k] = turns[m, j, TURN_COS], turns[m, j, TURN_SIN]
@@ -25,14 +39,15 @@ def turn_waves(lane: Any, wave: Any, local: Any, turns: Any) -> None:
             local[s, k] = wave[s, k] * turn_c + wave[c, k] * turn_s
 
 
-def expand(lane: Any, local: Any, series: Any, X: Any) -> None:
+def expand(lane: Array, local: Array, series: Array, X: Array) -> None:
     """Taylor coefficients of x - c at the start of the step."""
+    count = len(local) // 2
     for i in range(3, len(series)):
         by_z, by_u, rest = series[i, 0], series[i, 1], series[i, 2]
         for k in range(LANES):
             X[i, k] = lane[Z0 + k] * by_z + lane[U0 + k] * by_u + rest
-        for j in range(len(local) // 2):
-            c, s, by_c, by_s = 2 * j, 2 * j + 1, series[i, 3 + 2 * j], series[i, 4 + 2 * j]
+        for j in range(count):
+            c, s, by_c, by_s = j, count + j, series[i, 3 + 2 * j], series[i, 4 + 2 * j]
             for k in range(LANES):
                 X[i, k] += local[c, k] * by_c + local[s, k] * by_s
     for k in range(LANES):
@@ -41,7 +56,7 @@ def expand(lane: Any, local: Any, series: Any, X: Any) -> None:
         X[2, k] = 0.5 * lane[E0 + k]
 
 
-def quintic_guess(lane: Any, step: float) -> None:
+def quintic_guess(lane: Array, step: float) -> None:
     """TIME becomes the root of the quintic on the step."""
     for k in range(LANES):
         first = lane[PLACE + k] == 0.0
@@ -65,8 +80,20 @@ def quintic_guess(lane: Any, step: float) -> None:
         lane[TIME + k] = y * step
 
 
-def refine_roots(lane: Any, X: Any, step: float, horizon: float) -> None:
+def refine_roots(lane: Array, X: Array, step: float, horizon: float) -> None:
     """TIME and SPEED of the hit; a state whose steps are not as small as they must be is handed over."""
+    halley_step(lane, X, step, 1e-2)
+    # the error of the root becomes the cube of this, and that of the velocity its square
+    halley_step(lane, X, step, 2e-8)
+    for k in range(LANES):
+        x = lane[TIME + k]
+        lane[TIME + k] = lane[PLACE + k] * step + x
+        good = (x > 0) & (x <= step) & (lane[TIME + k] <= horizon)
+        lane[MODE + k] = 2.0 if (lane[MODE + k] == 1.0) & (not good) else lane[MODE + k]
+
+
+def halley_step(lane: Array, X: Array, step: float, small: float) -> None:
+    """A step of Halley's method for TIME, and SPEED there; it must be this small, in steps of the table."""
     for k in range(LANES):
         first = lane[PLACE + k] == 0.0
         x = lane[TIME + k]
@@ -81,21 +108,10 @@ def refine_roots(lane: Any, X: Any, step: float, horizon: float) -> None:
         )  # fmt: skip
         scale = x if first else step
         change = -value / slope
-        # Halley's step; bend is half the second derivative
+        # bend is half the second derivative
         change = change / (1 + change * bend / slope)
-        good = (slope < 0) & (abs(change * bend) < -1e-3 * slope) & (abs(change) < 1e-3 * scale)
+        good = (slope < 0) & (abs(change * bend) < -small * slope) & (abs(change) < small * scale)
         x += change
-        value, slope = X[BATCH_ORDER, k], 0.0
-        for i in range(BATCH_ORDER - 1, 0, -1):
-            slope = slope * x + value
-            value = value * x + X[i, k]
-        slope, value = (slope if first else slope * x + value), (value if first else value * x + X[0, k])
-        change = -value / slope
-        x += change
-        # the error left is the square of the last step
-        good = good & (abs(change * bend) < -1e-9 * slope) & (abs(change) < 1e-9 * scale) & (x > 0) & (x <= step)
         slope += 2 * bend * change
-        lane[SPEED + k] = slope * x if first else slope
-        lane[TIME + k] = lane[PLACE + k] * step + x
-        good = good & (lane[TIME + k] <= horizon)
+        lane[TIME + k], lane[SPEED + k] = x, slope * x if first else slope
         lane[MODE + k] = 2.0 if (lane[MODE + k] == 1.0) & (not good) else lane[MODE + k]

@@ -8,10 +8,11 @@ from __future__ import annotations
 from math import nan
 from typing import Any
 
-from singimpact.flights.kernels.batch import fly_batches
+from singimpact.flights.kernels.batch import fly_batches, hit_batches
 from singimpact.flights.kernels.chatter import SETTINGS_OF_CHATTER, linear_limits
 from singimpact.flights.kernels.gamma import SETTINGS_OF_GAMMA, bracket_gamma
 from singimpact.flights.kernels.hits import (
+    AT_REST,
     carried_errors,
     launch_acceleration,
     linear_hit,
@@ -48,8 +49,6 @@ from singimpact.flights.kernels.waves import reduced_twice
 states of many orbits; derivatives of x and x' at given times; x and x' along one flight; errors and conditions of hits
 of a Taylor flow; flights from rest; brackets of gamma; ends of chatter; flights that start off the wall; x and x' of
 many flights at given times."""
-AT_REST = 40
-"""The code of a state with v = 0 among `HITS`: it is not flown."""
 
 
 def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
@@ -73,10 +72,7 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
         status[0] = code
         return int(flown)
     if kind == PREPARE:
-        tabulate(model.numbers, model.table)
-        bounds(model.numbers, model.table)
-        fill_fine(model.numbers, model.rest, model.table.step, model.fine, work.twice)
-        return 0
+        return prepare(model, work)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
     if kind == HITS:
         return linear_hits(states, speeds, model, work, block(out, 0, (10, count)), codes)
@@ -87,21 +83,21 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
 
 
-def batch_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:  # noqa: ARG001
-    """PREPARE_BATCH or ITERATE of a linear model; tau, v become the last states. w : constants of rho."""
+def batch_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
+    """PREPARE_BATCH, HITS or ITERATE, whose last states come in place of tau, v; w : constants of rho."""
     count = sizes[COUNT]
     model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
     batch = batch_model(flat, scratch, sizes, work)
     if sizes[KIND] == PREPARE_BATCH:
-        # states that a batch cannot decide are flown with the table of one flight
-        tabulate(model.numbers, model.table)
-        bounds(model.numbers, model.table)
         tabulate(model.numbers, batch.table)
         bounds(model.numbers, batch.table)
         expansions(model.numbers, batch.series)
-        return 0
-    states, speeds, rho, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(w, 0, (sizes[RHO],)), status
-    fly_batches(states, speeds, sizes[IMPACTS], rho, model, batch, block(codes, 0, (count,)))
+        # states that a batch cannot decide are flown one by one
+        return prepare(model, work)
+    states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
+    if sizes[KIND] == HITS:
+        return hit_batches(states, speeds, model, batch, block(out, 0, (10, count)), codes)
+    fly_batches(states, speeds, sizes[IMPACTS], block(w, 0, (sizes[RHO],)), model, batch, codes)
     return 0
 
 
@@ -122,6 +118,14 @@ def search_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     search = Search(block(w, 0, (SETTINGS_OF_CHATTER,)), block(w, SETTINGS_OF_CHATTER, (sizes[RHO],)))
     speeds = block(v, 0, (count,))
     return linear_limits(states, speeds, search, model, work, rows, block(out, 0, (3, count)), codes)
+
+
+def prepare(model: Any, work: Any) -> int:
+    """Fills the tables of one flight."""
+    tabulate(model.numbers, model.table)
+    bounds(model.numbers, model.table)
+    fill_fine(model.numbers, model.rest, model.table.step, model.fine, work.twice)
+    return 0
 
 
 def linear_hits(tau: Any, v: Any, model: Any, work: Any, out: Any, status: Any) -> int:

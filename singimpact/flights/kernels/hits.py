@@ -33,9 +33,9 @@ from singimpact.flights.kernels.variational import rounding
 from singimpact.flights.kernels.waves import wall_acceleration
 
 UNIT = 2.0**-52
-NOT_REFINED, PRESSED, CANCELS = 30, 31, 32
+NOT_REFINED, PRESSED, CANCELS, AT_REST = 30, 31, 32, 40
 """Codes beside those of `taylor_flight`: balls must place the hit; the chatter left is short enough to be summed; a_c
-is needed to more digits than its sum has."""
+is needed to more digits than its sum has; a state with v = 0, which is not flown."""
 
 
 def next_hit(t: float, t_low: float, v: float, near: float, model: Any, work: Any) -> Any:
@@ -79,13 +79,8 @@ def linear_hit(t: float, t_low: float, v: float, near: float, model: Any, work: 
     at, at_low = sum_twice(t, t_low, time, 0.0)
     e = wall_acceleration(at, at_low, p, model.rest, work.flight.q) - p.damping * u
     conditioned(t, v, e, (by_v, by_v_dot, by_tau, by_tau_dot), hit)
-    # rounding errors of the sums behind x and x' at the hit; phases lose digits in time
-    likely = model.rules.likely * UNIT * (1 + p.fastest * time / 64)
-    late = likely * size / abs(u)
-    off = likely * speed + abs(e) * late
-    hit[TIME_ERROR], hit[VELOCITY_ERROR] = late / time, off / abs(u)
-    rough = (hit[TIME_ERROR] > max(model.rules.rough_time, 10 * hit[CONDITION] * UNIT)
-             or hit[VELOCITY_ERROR] > max(model.rules.rough_velocity, 10 * hit[VELOCITY_CONDITION] * UNIT))  # fmt: skip
+    hit[TIME_ERROR], hit[VELOCITY_ERROR] = rounded(time, u, e, size, speed, p.fastest, model.rules.likely)
+    rough = is_rough(hit[TIME_ERROR], hit[VELOCITY_ERROR], hit[CONDITION], hit[VELOCITY_CONDITION], model.rules)
     # a flight that is pressed back at once is a short series in t that loses nothing
     if rough and (time > model.table.step or a >= 0):
         code = NOT_REFINED
@@ -115,23 +110,49 @@ def slope_of(p: Any, launch: Any) -> float:
 
 
 def conditioned(t: float, v: float, e: float, variation: Any, hit: Any) -> None:
-    """Derivatives of flight time and velocity at a hit, and condition numbers 1 + (|d_tau| |tau| + |d_v| v)/|value|.
+    """Derivatives and condition numbers of a hit, see `at_the_hit`; t, reduced by the period, and v of the launch."""
+    time, u = hit[FLIGHT_TIME], hit[VELOCITY]
+    late, off, time_by_tau, time_by_v, velocity_by_tau, velocity_by_v = at_the_hit(
+        max(abs(t), time), v, time, u, e, variation
+    )
+    hit[CONDITION], hit[VELOCITY_CONDITION], hit[TIME_BY_TAU], hit[TIME_BY_V] = late, off, time_by_tau, time_by_v
+    hit[VELOCITY_BY_TAU], hit[VELOCITY_BY_V] = velocity_by_tau, velocity_by_v
+
+
+def at_the_hit(reach: float, v: float, time: float, u: float, e: float, variation: Any) -> Any:
+    """Condition numbers 1 + (|d_tau| |tau| + |d_v| v)/|value| of flight time and velocity, and their derivatives.
 
     Parameters
     ----------
-    t, v : of the launch, t reduced by the period. e : x'' at the hit.
-    variation : dx/dv, dx'/dv, dx/dtau, dx'/dtau at fixed flight time.
+    reach : an error of tau is relative to tau, or to the flight time where tau is small: it is rounded with both.
+    e : x'' at the hit. variation : dx/dv, dx'/dv, dx/dtau, dx'/dtau at fixed flight time.
     """
     by_v, by_v_dot, by_tau, by_tau_dot = variation
-    time, u = hit[FLIGHT_TIME], hit[VELOCITY]
     # x(T; tau, v) = c: by the implicit function theorem d T = -d x/x'; x' at the hit moves by d x' + x'' d T
-    hit[TIME_BY_TAU], hit[TIME_BY_V] = -by_tau / u, -by_v / u
-    hit[VELOCITY_BY_TAU] = by_tau_dot + e * hit[TIME_BY_TAU]
-    hit[VELOCITY_BY_V] = by_v_dot + e * hit[TIME_BY_V]
-    # an error of tau is relative to tau, or to the flight time where tau is small: it is rounded with both
-    reach = max(abs(t), time)
-    hit[CONDITION] = 1 + (abs(hit[TIME_BY_TAU]) * reach + abs(hit[TIME_BY_V]) * v) / time
-    hit[VELOCITY_CONDITION] = 1 + (abs(hit[VELOCITY_BY_TAU]) * reach + abs(hit[VELOCITY_BY_V]) * v) / abs(u)
+    time_by_tau, time_by_v = -by_tau / u, -by_v / u
+    velocity_by_tau, velocity_by_v = by_tau_dot + e * time_by_tau, by_v_dot + e * time_by_v
+    late = 1 + (abs(time_by_tau) * reach + abs(time_by_v) * v) / time
+    off = 1 + (abs(velocity_by_tau) * reach + abs(velocity_by_v) * v) / abs(u)
+    return late, off, time_by_tau, time_by_v, velocity_by_tau, velocity_by_v
+
+
+def rounded(time: float, u: float, e: float, size: float, speed: float, fastest: float, likely: float) -> Any:
+    """Relative errors of flight time and velocity from the rounding of the sums behind x and x' at a hit.
+
+    Parameters
+    ----------
+    e : x'' there. size, speed : of the terms of x and x'. likely : their rounding errors, in units.
+    """
+    # phases lose digits in time
+    error = likely * UNIT * (1 + fastest * time / 64)
+    late = error * size / abs(u)
+    return late / time, (error * speed + abs(e) * late) / abs(u)
+
+
+def is_rough(late: float, off: float, condition: float, velocity_condition: float, rules: Any) -> bool:
+    """Whether a hit has errors that its condition numbers do not explain."""
+    late_by_far = late > max(rules.rough_time, 10 * condition * UNIT)
+    return bool(late_by_far | (off > max(rules.rough_velocity, 10 * velocity_condition * UNIT)))
 
 
 def launch_acceleration(model: Any, work: Any) -> Any:

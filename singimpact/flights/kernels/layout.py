@@ -8,9 +8,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from singimpact.flights.kernels.lanes import BATCH_ORDER, LANE_ROWS, LANES
 from singimpact.flights.kernels.refine import LEVEL
-from singimpact.flights.kernels.state import Batch, Columns, Flying, Linear, Model, Rules, Table, TaylorModel, Work
+from singimpact.flights.kernels.state import (
+    BATCH_ORDER,
+    LANE_ROWS,
+    LANES,
+    Batch,
+    Columns,
+    Flying,
+    Linear,
+    Model,
+    Rules,
+    Table,
+    TaylorModel,
+    Work,
+)
 
 KIND, COUNT, WAVES, ROWS, ROOM, CONSTANTS, IMPACTS, RHO = range(8)
 """Entries of `sizes`: the kind of work; states, impacts or times; waves; rows of the tables and of the work of a
@@ -72,16 +84,10 @@ def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any) -> Any:
     table = table_of(flat, at, flat[SCALARS + 9], waves, rows)
     at += table_length(waves, rows)
     series, turn = block(flat, at, (BATCH_ORDER + 1, n)), block(flat, at + (BATCH_ORDER + 1) * n, (3,))
-    free = flight_length(sizes)
-    lane, wave = (
-        block(scratch, free, (LANE_ROWS * LANES,)),
-        block(scratch, free + LANE_ROWS * LANES, (2 * waves, LANES)),
-    )
+    free, shape = flight_length(sizes), (2 * waves, LANES)
+    lane, wave = block(scratch, free, (LANE_ROWS * LANES,)), block(scratch, free + LANE_ROWS * LANES, shape)
     free += (LANE_ROWS + 2 * waves) * LANES
-    local, X = (
-        block(scratch, free, (2 * waves, LANES)),
-        block(scratch, free + 2 * waves * LANES, (BATCH_ORDER + 1, LANES)),
-    )
+    local, X = block(scratch, free, shape), block(scratch, free + 2 * waves * LANES, (BATCH_ORDER + 1, LANES))
     return Batch(table, series, turn, lane, wave, local, X, work)
 
 

@@ -9,7 +9,7 @@ resonance, critical damping and k = 0 are ordinary points.  launch = cos theta_j
 from __future__ import annotations
 
 from cmath import sqrt as complex_sqrt
-from math import cos, exp, inf, sin
+from math import cos, exp, expm1, inf, sin
 from typing import Any
 
 from singimpact.flights.kernels.double_double import product_twice
@@ -181,29 +181,52 @@ def quiet(z: Any, u: Any, W: Any, p: Any) -> Any:
 
 def response(launch: Any, v: float, time: float, p: Any) -> Any:
     """dx/dv, dx'/dv, dx/dtau, dx'/dtau at `time` after the launch, and the sizes of the terms in x - c and x'."""
-    square = p.stiffness - p.damping * p.damping / 4
-    strength = abs(p.steady)
-    for j in range(len(p.waves)):
-        strength += abs(p.waves[j, COSINE]) + abs(p.waves[j, SINE])
-    # divided differences are differences of terms that large, however small they come out
-    gap = 2 * abs(square) ** 0.5
-    reach = time if gap * time < 2 else 2 / gap
+    reach = min(time, widest(p))
     free, slope, by_tau, by_tau_dot = 0.0, 0.0, 0.0, 0.0
     if p.fastest * time < SOON:
         free, slope = soon(0.0, 0.0, 0.0, 0.0, 1.0, time, p)
         for j in range(len(p.waves)):
-            even, odd = moved_wave(launch, j, p)
+            even, odd = moved_wave(launch[2 * j], launch[2 * j + 1], j, p)
             forced, moved = soon(even, even, odd, p.waves[j, RATE], 0.0, time, p)
             by_tau, by_tau_dot = by_tau + forced, by_tau_dot + moved
-    elif square > 0 and far_from_resonance(reach, 0.0, p):
-        free, slope = swinging(time, square**0.5, p)
+    elif reach > resonant_reach(5, 0.0, p):
+        free, slope = free_motion(time, p)
         for j in range(len(p.waves)):
-            even, odd = moved_wave(launch, j, p)
-            forced, moved = answered(even, odd, p.waves[j, RATE], free, slope, time, p)
+            even, odd = moved_wave(launch[2 * j], launch[2 * j + 1], j, p)
+            c, s = turned(p.waves[j, RATE], time)
+            forced, moved = answered(even, odd, p.waves[j, RATE], c, s, free, slope, p)
             by_tau, by_tau_dot = by_tau + forced, by_tau_dot + moved
     else:
         free, slope, by_tau, by_tau_dot = response_of_differences(launch, time, p)
-    return free, slope, by_tau, by_tau_dot, (v + strength * reach) * reach, v + strength * reach
+    largest = (v + strength_of(p) * reach) * growth(time, p)
+    return free, slope, by_tau, by_tau_dot, largest * reach, largest
+
+
+def strength_of(p: Any) -> float:
+    """The size of the constant force and of all waves."""
+    strength = abs(p.steady)
+    for j in range(len(p.waves)):
+        strength += abs(p.waves[j, COSINE]) + abs(p.waves[j, SINE])
+    return float(strength)
+
+
+def growth_rate(p: Any) -> float:
+    """The larger real part of the roots of s^2 + d s + k."""
+    square = p.damping * p.damping / 4 - p.stiffness
+    root = square**0.5 if square > 0 else 0.0
+    # next to s = 0 the sum would cancel: the roots have the product k
+    return float(-p.stiffness / (p.damping / 2 + root) if p.damping > 0 and root > 0 else root - p.damping / 2)
+
+
+def growth(time: float, p: Any) -> float:
+    """The factor by which the free motion grows until `time`, where it grows."""
+    return exp(growth_rate(p) * time) if p.damping < 0 or p.stiffness < 0 else 1.0
+
+
+def widest(p: Any) -> float:
+    """The time up to which the free motion grows like t; divided differences then are differences of larger terms."""
+    gap = 2 * abs(p.stiffness - p.damping * p.damping / 4) ** 0.5
+    return 2 / gap if gap > 0 else inf
 
 
 def response_of_differences(launch: Any, time: float, p: Any) -> Any:
@@ -222,12 +245,15 @@ def response_of_differences(launch: Any, time: float, p: Any) -> Any:
     return free.real, slope.real, by_tau, by_tau_dot
 
 
-def moved_wave(launch: Any, j: int, p: Any) -> Any:
-    """The derivative of a wave by the launch time, as the real and the imaginary part of what e^{i w t} is taken by."""
+def moved_wave(c: float, s: float, j: int, p: Any) -> Any:
+    """The derivative of a wave by the launch time, as the real and the imaginary part of what e^{i w t} is taken by.
+
+    Parameters
+    ----------
+    c, s : cosine and sine of its phase at the launch.
+    """
     rate, even, odd = p.waves[j, RATE], p.waves[j, COSINE], p.waves[j, SINE]
-    return rate * (odd * launch[2 * j] - even * launch[2 * j + 1]), rate * (
-        even * launch[2 * j] + odd * launch[2 * j + 1]
-    )
+    return rate * (odd * c - even * s), rate * (even * c + odd * s)
 
 
 def place_of(launch: Any, v: float, push: float, height: float, time: float, p: Any) -> Any:
@@ -237,8 +263,7 @@ def place_of(launch: Any, v: float, push: float, height: float, time: float, p: 
     ----------
     push : a_c at the launch, known to all its digits, where the sum of constant and waves would have cancelled.
     """
-    square, span = p.stiffness - p.damping * p.damping / 4, abs(time)
-    gap = 2 * abs(square) ** 0.5
+    span = abs(time)
     if time == 0:
         return height, v
     if p.fastest * span < SOON:
@@ -248,19 +273,18 @@ def place_of(launch: Any, v: float, push: float, height: float, time: float, p: 
             forced, moved = soon(0.0, even, odd, p.waves[j, RATE], 0.0, time, p)
             z, u = z + forced, u + moved
         return z + height, u
-    if square > 0 and far_from_resonance(span if gap * span < 2 else 2 / gap, abs(p.steady), p):
-        free, slope = swinging(time, square**0.5, p)
-        z, u = answered(p.steady, 0.0, 0.0, free, slope, time, p)
-        z, u = z + v * free, u + v * slope
+    free, slope = free_motion(time, p)
+    if min(span, widest(p)) > resonant_reach(3, abs(p.steady), p):
+        z, u = v * free, v * slope
+        if p.steady != 0:
+            forced, moved = answered(p.steady, 0.0, 0.0, 1.0, 0.0, free, slope, p)
+            z, u = z + forced, u + moved
         for j in range(len(p.waves)):
             even, odd = wave_of(launch, j, p)
-            forced, moved = answered(even, odd, p.waves[j, RATE], free, slope, time, p)
+            c, s = turned(p.waves[j, RATE], time)
+            forced, moved = answered(even, odd, p.waves[j, RATE], c, s, free, slope, p)
             z, u = z + forced, u + moved
     else:
-        root = complex_sqrt(complex(-square))
-        first, second = -p.damping / 2 + root, -p.damping / 2 - root
-        difference = pair(first, second, time)
-        free, slope = difference.real, (turning(first, time) + second * difference).real
         z, u, _error = restart(launch, v, time, 0.0, 0.0, 0.0, 0.0, p)
     # the free motion from (1, 0) is the derivative of the one from (0, 1), and d times that one
     return z + height * (slope + p.damping * free), u - height * p.stiffness * free
@@ -293,22 +317,19 @@ def soon(first: float, even: float, odd: float, rate: float, speed: float, time:
     return y, y_dot / time
 
 
-def far_from_resonance(reach: float, steady: float, p: Any) -> bool:
-    """Whether the answers to all waves, over what `answered` subtracts from them, lose less than three bits.
+def resonant_reach(bits: int, steady: float, p: Any) -> float:
+    """The reach beyond which the answers to all waves, over what `answered` subtracts from them, lose fewer bits.
 
     Parameters
     ----------
     steady : the size of a constant force that is answered like a wave of rate 0.
     """
-    scale = 8 * reach * reach
-    if steady > 0 and not p.stiffness * scale > 1:
-        return False
+    least = p.stiffness * abs(p.stiffness) if steady > 0 else inf
     for j in range(len(p.waves)):
         rate = p.waves[j, RATE]
         above, drag = p.stiffness - rate * rate, p.damping * rate
-        if (above * above + drag * drag) * scale * scale < 1:
-            return False
-    return True
+        least = min(least, above * above + drag * drag)
+    return float((4.0**bits * least) ** -0.25 if least > 0 else inf)
 
 
 def turned(rate: float, time: float) -> Any:
@@ -318,19 +339,37 @@ def turned(rate: float, time: float) -> Any:
     return c - rest * s, s + rest * c
 
 
-def swinging(time: float, rate: float, p: Any) -> Any:
-    """The free motion of an underdamped model from y = 0, y' = 1, and its derivative."""
-    c, s = turned(rate, time)
-    size = exp(-p.damping / 2 * time)
+def free_motion(time: float, p: Any) -> Any:
+    """The free motion from y = 0, y' = 1, and its derivative."""
+    square, size = p.stiffness - p.damping * p.damping / 4, exp(-p.damping / 2 * time)
+    if square > 0:
+        c, s = turned(square**0.5, time)
+        return swung(c, s, size, square**0.5, p)
+    if square == 0:
+        return size * time, size * (1 - p.damping / 2 * time)
+    # e^{a t} (1 - e^{-2 q t})/(2 q), a the root with the larger e^{a t}, 2 q the distance to the other
+    a, gap = growth_rate(p), 2 * (-square) ** 0.5
+    if time < 0:
+        a, gap = a - gap, -gap
+    size, less = exp(a * time), expm1(-gap * time)
+    return -size * less / gap, size * (1 - (a - gap) * less / gap)
+
+
+def swung(c: float, s: float, size: float, rate: float, p: Any) -> Any:
+    """`free_motion` of an underdamped model, from cosine and sine of its own rate times t, and the damping `size`."""
     return size * s / rate, size * (c - p.damping / 2 * s / rate)
 
 
-def answered(even: float, odd: float, rate: float, free: float, slope: float, time: float, p: Any) -> Any:
-    """y and y' as in `soon` with y' = 0 at first: the answer to a wave, less the free motion that begins like it."""
+def answered(even: float, odd: float, rate: float, c: float, s: float, free: float, slope: float, p: Any) -> Any:
+    """y and y' as in `soon` with y' = 0 at first: the answer to a wave, less the free motion that begins like it.
+
+    Parameters
+    ----------
+    c, s : cosine and sine of rate times t. free, slope : see `free_motion`.
+    """
     above, drag = p.stiffness - rate * rate, p.damping * rate
     square = above * above + drag * drag
     even, odd = (even * above + odd * drag) / square, (odd * above - even * drag) / square
-    c, s = turned(rate, time)
     begin, speed = -even, rate * odd
     y = even * c - odd * s + begin * (slope + p.damping * free) + speed * free
     return y, -rate * (even * s + odd * c) + speed * slope - p.stiffness * begin * free

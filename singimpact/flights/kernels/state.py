@@ -7,6 +7,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
+Array = np.ndarray[Any, Any]
+
 X_BY_X, X_BY_V, X_STEADY, V_BY_X, V_BY_V, V_STEADY, SIZE_X, SIZE_STEADY = range(8)
 """Columns of `Table.rows`: x - c and x' by their values at the start and by the constant force; sizes for rounding."""
 
@@ -134,6 +138,22 @@ FLIGHT_TIME, VELOCITY, CONDITION, VELOCITY_CONDITION, TIME_ERROR, VELOCITY_ERROR
 TIME_BY_TAU, TIME_BY_V, VELOCITY_BY_TAU, VELOCITY_BY_V = range(6, 10)
 """Columns of a hit. Where a flight ends in no hit, CONDITION and VELOCITY_CONDITION are depth and bound."""
 
+LANES, LANE_ROWS = 64, 19
+"""States of a batch, and rows of the array that holds them: row ROW of state k is lane[ROW + k]."""
+V, AT, LATE, ACC, SIZE, SINCE, LOST, TURNS = range(0, 8 * LANES, LANES)
+"""v, the launch time in two parts, a_c and the size of its terms there; of an orbit the time since the start, what its
+sum has lost, whole periods less."""
+MODE, PLACE, TIME, SPEED = range(8 * LANES, 12 * LANES, LANES)
+"""What becomes of the flight (0 flies, 1 a plain crossing, 2 left to `tabulated_flight`, 3 over); its step; time and
+velocity of the hit."""
+Z0, U0, E0, Z1, U1, E1, BOUND = range(12 * LANES, 19 * LANES, LANES)
+"""x - c, x' and x'' at both ends of the step, and the bound that x - c must exceed."""
+FREE, SLOPE, BY_TAU, BY_TAU_DOT, THERE, GROWTH = range(12 * LANES, 18 * LANES, LANES)
+"""At the hit, where the step is done with: the derivatives of x and x' by v and by tau; x''; growth of the free
+motion."""
+BATCH_ORDER = 18
+"""Degree of a Taylor step of a batch: a step is one radian of the fastest motion."""
+
 
 class Flying(NamedTuple):
     """Scratch of an orbit: of one flight; the launch; the last hit; four states in double-double."""
@@ -156,8 +176,9 @@ class Batch(NamedTuple):
 
     table : longer steps than those of one flight. series : how a Taylor coefficient at the start of a step follows from
     x - c, x', 1 and cosine and sine of the waves there. turn : the period in two parts, the first of 33 bits, and its
-    inverse. lane : see `lanes`. wave, local : waves at the launches and at the steps of the hits. X : Taylor
-    coefficients. work : scratch of one flight.
+    inverse. lane : see `LANES`. wave, local : cosines of all waves, then their sines, at the launches and at the steps
+    of the hits; were they side by side, rows that a loop writes would seem to overlap, and it would stay scalar. X :
+    Taylor coefficients; then the columns of the hits. work : scratch of one flight.
     """
 
     table: Table

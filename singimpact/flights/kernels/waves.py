@@ -80,14 +80,19 @@ def wave(angle: float, rest: float) -> Any:
     if not abs(angle) < 1e6:
         c, s = cos(angle), sin(angle)
         return c - rest * s, s + rest * c
+    return quarters(angle, rest)
+
+
+def quarters(angle: float, rest: float) -> Any:
+    """Cosine and sine of angle + rest, |angle| < 1e6, without a branch: loops over a batch stay vectors."""
     # adding and taking away 3 2^51 leaves the nearest integer
     n = (angle * 0.6366197723675814 + NEAREST) - NEAREST
     quarter = n - 4 * ((n * 0.25 + NEAREST) - NEAREST)
-    c, s = in_quarter(angle, rest, n)
+    cosine, sine = in_quarter(angle, rest, n)
     # n mod 4 quarter turns: odd ones exchange cosine and sine, and two of the four change each sign
-    if abs(quarter) == 1:
-        c, s = s, c
-    return (-c if quarter == 1 or abs(quarter) == 2 else c), (-s if quarter == -1 or abs(quarter) == 2 else s)
+    odd, half = abs(quarter) == 1, abs(quarter) == 2
+    c, s = (sine if odd else cosine), (cosine if odd else sine)
+    return (-c if (quarter == 1) | half else c), (-s if (quarter == -1) | half else s)
 
 
 def in_quarter(angle: float, rest: float, n: float) -> Any:

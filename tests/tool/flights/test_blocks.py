@@ -53,7 +53,8 @@ def test_shapes_broadcast() -> None:
     tau, v = states(30)
     grid = LINEAR.impact_map(tau[:, None], v)
     assert grid.tau.shape == grid.depth.shape == (30, 30)
-    np.testing.assert_array_equal(grid.v[3], LINEAR.impact_map(np.full(30, tau[3]), v).v)
+    alone = LINEAR.impact_map(np.full(30, tau[3]), v)
+    np.testing.assert_allclose(grid.v[3], alone.v, rtol=1e-13, atol=1e-13)  # 30 states fly one by one, 900 abreast
     line = LINEAR.impact_map("0.3", np.repeat(v, 10))
     assert line.status.shape == (300,)
     with pytest.raises(InputError, match="broadcast"):
