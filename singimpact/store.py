@@ -261,7 +261,6 @@ except ImportError:
     msvcrt = None  # type: ignore[assignment]
 
 FAR = 1 << 40  # the byte that is locked on Windows, where a locked byte cannot be read
-RETRY = 0.01  # s between two attempts to take a lock
 
 
 def lock(descriptor: int) -> bool:

@@ -11,6 +11,7 @@ _FILES = {
     "groups": "GROUPS measured usual",
     "groups.command_rows": "COMMANDS PUBLIC SERIES",
     "groups.impact_map_rows": "CALLS FED sizes_of taylor_stepper",
+    "groups.limit_rows": "reference",
     "groups.regime_rows": "of_states",
     "groups.series_rows": "LIMITED",
     "groups.start_rows": "MODELS first_answer first_model script",

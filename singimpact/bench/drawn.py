@@ -7,8 +7,7 @@ same ones.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import acos, pi
@@ -17,6 +16,8 @@ from typing import Any
 import numpy as np
 
 from singimpact.bench.problems import Problem
+from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.machine import compilable
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
 Array = np.ndarray[Any, Any]
@@ -40,11 +41,15 @@ def counted(count: int, noun: str) -> str:
 
 @lru_cache(maxsize=32)
 def model(family: str, restitution: float) -> ImpactOscillator:
-    """The oscillator of a family."""
-    if family != "duffing":
-        return linear(OMEGAS[family], CLEARANCES[family], restitution)
-    force = "x + 0.1*xdot + 0.3*x**3"
-    return ImpactOscillator(force, "cos(omega*t)", CLEARANCES[family], restitution, {"omega": OMEGAS[family]})
+    """The oscillator of a family, with its tables and the code that flies it."""
+    if family == "duffing":
+        force = "x + 0.1*xdot + 0.3*x**3"
+        osc = ImpactOscillator(force, "cos(omega*t)", CLEARANCES[family], restitution, {"omega": OMEGAS[family]})
+    else:
+        osc = linear(OMEGAS[family], CLEARANCES[family], restitution)
+    compile_entries(osc)
+    osc.impact_map(0.5, 1.0)
+    return osc
 
 
 @dataclass(frozen=True)
@@ -165,50 +170,12 @@ class Fed:
         return States(self.family, self.restitution, found.tau[: self.count], found.v[: self.count])
 
 
-# Waiting, in a new cache folder, until flights are no longer interpreted.
-#
-# What the wait costs a user is timed by `bench start`.
-
-TRIED = 64  # states, or impacts, of a try
-INTERPRETED = 20e-6  # CPU seconds of one: 50 us and more when it is interpreted, 0.5 to 5 us when it is compiled
-PAUSE = 0.3  # seconds between two tries, in which the process that compiles has the machine
-
-
-def _map(states: States) -> None:
-    states.osc.impact_map(states.tau, states.v)
-
-
-def _orbit(states: States) -> None:
-    states.osc.orbit(float(states.tau[0]), float(states.v[0]), TRIED)
-
-
-def _iterate(states: States) -> None:
-    states.osc.iterate(states.tau, states.v, 1)
-
-
-WORKS: dict[str, Callable[[States], None]] = {"map": _map, "orbit": _orbit, "iterate": _iterate}
-
-
-def compiled(works: Sequence[str], wait: float) -> list[str]:
-    """Notes about work, keys of `WORKS`, that is still interpreted so many seconds after a first wait."""
-    return [note for family in ("linear", "duffing") for work in works for note in _waited(family, work, wait)]
-
-
-@lru_cache(maxsize=1)
-def _begun() -> float:
-    return time.monotonic()
-
-
-@lru_cache(maxsize=16)
-def _waited(family: str, work: str, wait: float) -> tuple[str, ...]:
-    draw, begun = Draws(family, "generic", TRIED, 0.9), _begun()
-    WORKS[work](draw())  # loads modules, and lays out tables
-    while True:
-        states = draw()
-        start = time.thread_time()
-        WORKS[work](states)
-        if time.thread_time() - start < INTERPRETED * TRIED:
-            return ()
-        if time.monotonic() - begun > wait:
-            return (f"{family}, {work}: still interpreted {wait:g} s after compiling began.",)
-        time.sleep(PAUSE)
+def compile_entries(osc: ImpactOscillator) -> None:
+    """Load the code that flies a model, or compile it where none comes with the package."""
+    if compilable():
+        flown = compiled_model(osc)
+        for name in flown.machine.emitted.entries:
+            flown.machine.compile_here(name)
+        for part in (flown.recurrence, flown.law):
+            if part is not None:
+                part.compile_here()

@@ -23,38 +23,22 @@ def spent_so_far():
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + ended.ru_utime + ended.ru_stime
 {before}
-base, start, begun = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, spent_so_far(), time.perf_counter()
+base, start = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, spent_so_far()
 {timed}
-wall, spent = time.perf_counter() - begun, spent_so_far() - start
+spent = spent_so_far() - start
 most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 {after}
-print(json.dumps([spent, (most - base) / 1024, answer, wall]))
+print(json.dumps([spent, (most - base) / 1024, answer]))
 """
 
 
 @dataclass(frozen=True)
 class Cost:
-    """CPU seconds (with those of children that have ended) and megabytes of what was timed, the `answer` given, and
-    seconds by the clock on the wall.
-    """
+    """CPU seconds (with those of children that have ended) and megabytes of what was timed, and the `answer` given."""
 
     seconds: float
     megabytes: float
     answer: Any
-    wall: float
-
-
-CHILDREN = """
-import os
-answer = None
-while hasattr(os, "wait4"):
-    try:
-        _, _, used = os.wait4(-1, 0)
-    except ChildProcessError:
-        break
-    answer = [(answer or [0])[0] + used.ru_utime + used.ru_stime, time.perf_counter() - begun]
-"""
-"""An `after` that waits for children: their CPU seconds, and seconds from the beginning until the last has ended."""
 
 
 NO_SPINNING = {"OPENBLAS_NUM_THREADS": "1"}

@@ -39,7 +39,6 @@ class Effort:
     once : a method that takes so many seconds is timed once after the first round: its noise is below its length.
     fresh : rounds of a method that runs in a process of its own, which costs a second beside what is timed.
     states : of a regime. judged : random states whose answers are compared with the truth.
-    wait : seconds to wait for a process that compiles, in a new cache folder.
     """
 
     quick: bool = False
@@ -49,11 +48,10 @@ class Effort:
     fresh: int = 3
     states: int = 40
     judged: int = 400
-    wait: float = 300.0
 
 
 FULL = Effort()
-QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, fresh=1, states=4, judged=40, wait=60.0)
+QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, fresh=1, states=4, judged=40)
 
 
 @dataclass(frozen=True)

@@ -28,11 +28,11 @@ the run. Ratios carry over to another machine, microseconds do not. This page is
 ```
 
 Rows named *singimpact* call public names only, with all that Python adds; a test follows their calls. Rows named
-*kernel* time a private function. CPU time includes that of child processes, but for the one that compiles, which has
-rows of its own under [a new process](#a-new-process). In the groups `map` and `orbit`, and where a case says *a call*,
-every timed call has other states, and restitutions go from 0.5 to 0.999; answers are judged by flights in balls, with
-condition numbers of their own, where tau counts within one period: an error by rounding $\\omega\\tau$ is an error. A
-peer that is too slow for all states has the first ones of the same states, and its row says how many."""
+*kernel* time a private function. CPU time includes that of child processes. In the groups `map` and `orbit`, and where
+a case says *a call*, every timed call has other states, and restitutions go from 0.5 to 0.999; answers are judged by
+flights in balls, with condition numbers of their own, where tau counts within one period: an error by rounding
+$\\omega\\tau$ is an error. A peer that is too slow for all states has the first ones of the same states, and its row
+says how many."""
 TITLES = {
     "map": "The impact map",
     "orbit": "Orbits and iterates",
@@ -49,6 +49,7 @@ TITLES = {
     "scale": "Large arrays",
     "branches": "Periodic orbits and their branches",
     "start": "A new process",
+    "limit": "Figures to reach",
 }
 STRESS_COMMAND = "singimpact stress --format page -o docs/stress.md"
 STRESS_ABOUT = f"""# Stress: next to every bad place

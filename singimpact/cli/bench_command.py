@@ -301,10 +301,12 @@ if TYPE_CHECKING:
     show_default=True,
     help="Smooth states enclosed twice, as well.",
 )
+@click.option("--store", is_flag=True, help="Store the ratios of the group limit in place of those of the package.")
 @output_options
 def command(
     groups: tuple[str, ...],
     quick: bool,
+    store: bool,
     plots: str | None,
     picture: str,
     form: str,
@@ -321,8 +323,11 @@ def command(
     output: str | None,
 ) -> None:
     """Measure CPU times and compare them with other tools. The groups are map, orbit, regimes, chatter, threshold,
-    series, fixed-points, emitted, figures, growth, commands, sweep, scale, branches, start. The default is all of
-    them (with --quick all but the last).
+    series, fixed-points, emitted, figures, growth, commands, sweep, scale, branches, start, limit. The default is all
+    of them (with --quick all but the last two).
+
+    The group `limit` compares public calls with a reference computation of the same run; the exit code is 1 if a ratio
+    is more than half above its stored one.
 
     The group `states` compares random states with a slow solver of 60 digits; --states, --seed, --workers and
     --keep belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed
@@ -341,7 +346,7 @@ def command(
     tables = _measured([group for group in chosen if group != "states"], effort)
     values = {"quick": quick, **_joined(tables)}
     texts = _page(tables, directory, picture, output) if form == "page" else [_text(table, form) for table in tables]
-    wrong = False
+    wrong = _is_over(tables, store)
     if "states" in chosen and family == "steep":
         steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs, smooth_pairs), not quick)
         values["states"], wrong = steep.data, steep.wrong
@@ -365,6 +370,19 @@ def _measured(chosen: list[str], effort: Effort) -> list[Measured]:
             measured(name, effort, lambda text, at=at: line.show(at, len(chosen), text))  # type: ignore[misc]
             for at, name in enumerate(chosen)
         ]
+
+
+def _is_over(tables: list[Measured], store: bool) -> bool:
+    """Whether a ratio of the group limit is too large, each with a line on stderr; or store the ratios."""
+    from singimpact.bench.groups import limit_rows
+
+    rows = [row for table in tables if table.group == "limit" for row in table.rows]
+    if store:
+        limit_rows.store(rows)
+    lines = limit_rows.over(rows)
+    for line in lines:
+        click.echo(line, err=True)
+    return bool(lines)
 
 
 def _joined(found: list[Measured]) -> dict[str, Any]:

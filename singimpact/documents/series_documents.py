@@ -29,7 +29,6 @@ from singimpact.theory.notation import latex
 from singimpact.theory.plane_forms import HIGHEST, HIGHEST_NUMBERS, FoldForm
 from singimpact.theory.power_series import TRUST, PowerSeries
 
-TEXT_FORMS = ("sympy", "numpy")
 NAMES = {0: "generic", 1: "tangency", 2: "swan"}
 SIGN = {1: "a' > 0", 2: "a'' < 0"}  # where gamma ends
 VALID = 1e-12  # the error that `valid` of a series allows

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from functools import lru_cache
@@ -32,6 +33,7 @@ from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
 
 EPSILON = 2.0**-52
+Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
@@ -39,9 +41,8 @@ class Search:
     """Settings of the decision on which side of gamma an orbit is, and of the bracket of v."""
 
     narrow: float = 4 * EPSILON  # relative width of the last bracket; rounding errors decide in narrower ones
-    # impacts of the first block; each block is twice as long as the one before, up to the longest: with blocks of 64
-    # alone the overhead was three quarters of the time
-    block: int = 64
+    # impacts of the first block; each block is twice as long as the one before, up to the longest
+    block: int = 16
     longest: int = 4096
     impacts: int = 640_000  # default limit for one velocity; r = 0.9999 takes 400 000
     # chatter completes if its predicted time is below this part of the time to the end of gamma; on gamma the part is
@@ -53,13 +54,15 @@ class Search:
     elastic: int = 8
     edges: int = 40  # bisections towards velocities whose side doubles do not decide
     widest: float = 1e-3  # relative error of v at most; the status is `unresolved` beyond it
-    first: int = 6  # impacts in the first refinement with digits=
-    more: int = 4  # additional impacts in each further refinement
-    rounds: int = 2000  # impacts at most in a refinement
+    rounds: int = 100  # steps of Newton's method with digits=, each of which gives ten of them
     # relative width of the bracket in which Newton's method starts; the series of gamma applies at a distance ten times
     # larger
     coarse: float = 2.0**-12
     bits: int = 128  # of the balls in which that series is computed
+    # nonlinear models: width of the bracket in which Newton's method starts, its steps, half widths about its root
+    rough: float = 2.0**-5
+    steps: int = 8
+    widths: tuple[float, ...] = (2 * EPSILON, 16 * EPSILON, 256 * EPSILON)
 
 
 SEARCH = Search()
@@ -153,23 +156,26 @@ class _Side(Enum):
 
 
 def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> Threshold:
-    end, elastic = zero.tau, compare(osc.slope_at_rest(), 1) == 0
+    sides, end = _Sides(osc, tau, zero, impacts), zero.tau
     low, high = 0.0, -float(acceleration(osc, np.array([tau]))[0]) * (end - tau) / 4
     if not 0 < high < np.inf:
         return _without(Status.unresolved)
-    while (side := _side(osc, tau, high, zero, impacts)) != _Side.above:
+    while (side := sides.of(high)) != _Side.above:
         low, high = high, 2 * high
         if side != _Side.below or high > 1e12:
             return _without(Status.unresolved)
-    low, high = _bracket(osc, tau, low, high, zero, impacts)
+    low, high = sides.bracket(low, high)
+    rough = sides.reach > 0
     while high - low > SEARCH.narrow * high:
+        if rough and high - low < SEARCH.rough * high:
+            low, high, rough = *sides.around_root(low, high), False
+            continue
         middle = (low + high) / 2
-        side = _side(osc, tau, middle, zero, impacts)
-        if side == _Side.exhausted and not elastic:
+        side = sides.of(middle)
+        if side == _Side.exhausted and not sides.elastic:
             return _without(Status.unresolved)
         if side in (_Side.near, _Side.exhausted):
-            halvings = SEARCH.elastic if elastic else SEARCH.edges
-            low, high = (_edge(osc, tau, (decided, middle), zero, (impacts, halvings)) for decided in (low, high))
+            low, high = (sides.edge(decided, middle) for decided in (low, high))
             break
         low, high = (low, middle) if side == _Side.above else (middle, high)
     v = (low + high) / 2
@@ -181,122 +187,148 @@ def _bisected(osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> T
     return Threshold(np.float64(v), np.float64(error), np.int8(Status.complete))
 
 
-def _bracket(
-    osc: Oscillator, tau: float, low: float, high: float, zero: ContactZero, impacts: int
-) -> tuple[float, float]:
-    """The narrowest bracket of gamma that the compiled loop of a linear model decides."""
-    model = compiled_model(osc)
-    # the loop knows the time left of a chatter from r alone
-    if abs(tau) >= model.nearest or not model.linear or compare(osc.slope_at_rest(), 1) == 0:
+class _Sides:
+    """The sides of gamma on which velocities at one phase lie."""
+
+    def __init__(self, osc: Oscillator, tau: float, zero: ContactZero, impacts: int) -> None:
+        self.osc, self.tau, self.zero, self.impacts = osc, tau, zero, impacts
+        self.end, self.elastic = zero.tau, compare(osc.slope_at_rest(), 1) == 0
+        self.model = compiled_model(osc)
+        smooth = self.model.constant_restitution and not self.elastic and abs(tau) < self.model.nearest
+        reach, balls = _series(osc, replace(zero, turns=0)) if smooth else (0.0, [0.0] * TERMS_OF_GAMMA)
+        self.reach, self.series = reach, [float(ball) for ball in balls]
+
+    def bracket(self, low: float, high: float) -> tuple[float, float]:
+        """The narrowest bracket of gamma that the compiled loop of a linear model decides."""
+        # the loop knows the time left of a chatter from r alone
+        if abs(self.tau) >= self.model.nearest or not self.model.linear or self.elastic:
+            return low, high
+        settings = SEARCH.short, SEARCH.narrow, float(self.impacts), SEARCH.coarse
+        series, ahead = (self.reach, float(self.zero.order), *self.series), self.end - self.tau
+        brackets = self.model.brackets(np.array([self.tau]), np.array([[low, high, ahead]]), (*settings, *series))
+        return (low, high) if brackets is None else (float(brackets[0][0, 0]), float(brackets[0][0, 1]))
+
+    def around_root(self, low: float, high: float) -> tuple[float, float]:
+        """A narrow bracket about the velocity from which an orbit meets the series of gamma, or else the given one."""
+        v = (low + high) / 2
+        for _ in range(SEARCH.steps):
+            change = self.miss(v)
+            v = min(max(v - change, low), high)
+            if abs(change) <= SEARCH.narrow * v:
+                break
+        for width in SEARCH.widths:
+            below, above = v * (1 - width), v * (1 + width)
+            if low < below and above < high and self.of(below) == _Side.below and self.of(above) == _Side.above:
+                return below, above
         return low, high
-    series = _series(osc, replace(zero, turns=0)) if model.constant_restitution else (0.0, 1.0, *[0.0] * TERMS_OF_GAMMA)
-    settings = SEARCH.short, SEARCH.narrow, float(impacts), SEARCH.coarse, *series
-    brackets = model.brackets(np.array([tau]), np.array([[low, high, zero.tau - tau]]), settings)
-    return (low, high) if brackets is None else (float(brackets[0][0, 0]), float(brackets[0][0, 1]))
+
+    def miss(self, v: float) -> float:
+        """The distance in v from the series of gamma where an orbit comes near the end, over its derivative by v."""
+        segment = orbit_segment(self.osc, self.tau, v, SEARCH.block)
+        taus, speeds = np.append(self.tau, segment.tau), np.append(v, segment.v)
+        if not (near := np.flatnonzero((self.end - taus < self.reach) & (taus < self.end))).size:
+            return np.inf
+        column, count = np.array([0.0, 1.0]), int(near[0])
+        for matrix in derivative(self.osc, taus[:count], speeds[:count]).matrix if count else ():
+            column = matrix @ column
+        miss, slope = _miss(taus[count] - self.end, speeds[count], column, (self.zero.order + 1, self.series))
+        return float(miss / slope) if slope else np.inf
+
+    def edge(self, decided: float, near: float) -> float:
+        """A velocity whose side is decided, next to the interval around gamma in which it is not.
+
+        Parameters
+        ----------
+        decided, near : a velocity whose side is decided, and one where it is not.
+        """
+        for _ in range(SEARCH.elastic if self.elastic else SEARCH.edges):
+            middle = (decided + near) / 2
+            if self.of(middle) in (_Side.below, _Side.above):
+                decided = middle
+            else:
+                near = middle
+        return decided
+
+    def of(self, v: float) -> _Side:
+        """The side on which v lies."""
+        osc, tau, end = self.osc, self.tau, self.end
+        short = 1 / (SEARCH.part * (self.zero.order + 1)) if self.elastic else SEARCH.short
+        block, remaining = SEARCH.block, self.impacts
+        while remaining > 0:
+            segment = orbit_segment(osc, tau, v, block)
+            if np.any(segment.tau >= end):
+                return _Side.above
+            left = rest_after(osc, segment.v[:-1], segment.acceleration[1:])
+            pressed = segment.acceleration[1:] < 0
+            if np.any(pressed & (left < short * (end - segment.tau[:-1]))):
+                return _Side.below
+            if segment.tau.size:
+                tau, v = float(segment.tau[-1]), float(segment.v[-1])
+            if segment.status:
+                if segment.status != Status.unresolved:
+                    return _Side.above
+                # undecided, or an overflow long after the end: only the motion before the end of gamma matters
+                step = impact_map(osc, tau, v, horizon=max(end - tau, EPSILON * abs(end)))
+                if step.status in (Status.no_return, Status.escaped):
+                    return _Side.above
+                if step.status != Status.hit:
+                    return _Side.near
+                tau, v = float(step.tau), float(step.v)
+            block, remaining = min(2 * block, SEARCH.longest), remaining - block
+        return _Side.exhausted
 
 
 @lru_cache(maxsize=256)
-def _series(osc: Oscillator, zero: ContactZero) -> tuple[float, ...]:
-    """The distance from the end of gamma within which the series has full accuracy, or 0; j; the coefficients."""
+def _series(osc: Oscillator, zero: ContactZero, bits: int = SEARCH.bits) -> tuple[float, list[Any]]:
+    """The distance from the end of gamma within which the series has half of the bits, or 0; the coefficients."""
     first, last = zero.order + 1, zero.order + TERMS_OF_GAMMA
-    graph = curve_at(Place(osc, zero.order, None, zero), last, Balls(SEARCH.bits)).graph
-    g = [float(graph[n].mid()) for n in range(first, last + 1)]
-    if not (np.isfinite(g).all() and g[0]):
-        return 0.0, float(zero.order), *[0.0] * TERMS_OF_GAMMA
+    graph = curve_at(Place(osc, zero.order, None, zero), last, Balls(bits)).graph
+    g = [graph[n].mid() for n in range(first, last + 1)]
+    if not (all(ball.is_finite() for ball in g) and float(g[0])):
+        return 0.0, g
     # the last two coefficients, because every other one vanishes for symmetric forcing; further ones are taken as large
-    sizes = [(EPSILON / 4 * abs(g[0] / g[n])) ** (1 / (n + 1)) for n in (len(g) - 2, len(g) - 1) if g[n]]
-    return min(sizes, default=1.0), float(zero.order), *g
-
-
-def _edge(
-    osc: Oscillator, tau: float, between: tuple[float, float], zero: ContactZero, rules: tuple[int, int]
-) -> float:
-    """A velocity whose side is decided, next to the interval around gamma in which it is not.
-
-    Parameters
-    ----------
-    between : a velocity whose side is decided, and one where it is not. rules : impacts, and halvings.
-    """
-    (decided, near), (impacts, halvings) = between, rules
-    for _ in range(halvings):
-        middle = (decided + near) / 2
-        if _side(osc, tau, middle, zero, impacts) in (_Side.below, _Side.above):
-            decided = middle
-        else:
-            near = middle
-    return decided
-
-
-def _side(osc: Oscillator, tau: float, v: float, zero: ContactZero, impacts: int) -> _Side:
-    """The side of gamma on which (tau, v) lies."""
-    end, elastic = zero.tau, compare(osc.slope_at_rest(), 1) == 0
-    short = 1 / (SEARCH.part * (zero.order + 1)) if elastic else SEARCH.short
-    block, remaining = SEARCH.block, impacts
-    while remaining > 0:
-        segment = orbit_segment(osc, tau, v, block)
-        if np.any(segment.tau >= end):
-            return _Side.above
-        left = rest_after(osc, segment.v[:-1], segment.acceleration[1:])
-        pressed = segment.acceleration[1:] < 0
-        if np.any(pressed & (left < short * (end - segment.tau[:-1]))):
-            return _Side.below
-        if segment.tau.size:
-            tau, v = float(segment.tau[-1]), float(segment.v[-1])
-        if segment.status:
-            if segment.status != Status.unresolved:
-                return _Side.above
-            # undecided, or an overflow long after the end: only the motion before the end of gamma matters
-            step = impact_map(osc, tau, v, horizon=max(end - tau, EPSILON * abs(end)))
-            if step.status in (Status.no_return, Status.escaped):
-                return _Side.above
-            if step.status != Status.hit:
-                return _Side.near
-            tau, v = float(step.tau), float(step.v)
-        block, remaining = min(2 * block, SEARCH.longest), remaining - block
-    return _Side.exhausted
+    wanted = EPSILON / 4 if bits == SEARCH.bits else 2.0 ** (32 - bits)
+    sizes = [(wanted * abs(float(g[0] / g[n]))) ** (1 / (n + 1)) for n in (len(g) - 2, len(g) - 1) if float(g[n])]
+    return min(sizes, default=1.0), g
 
 
 def _refined(osc: Oscillator, phase: Any, rough: Threshold, end: ContactZero, digits: int) -> Threshold:
-    """The threshold in many digits. Gamma repels, so each impact reduces the effect of an error at its end."""
+    """The threshold in many digits: Newton's method for the velocity from which an orbit meets the series of gamma."""
     with digits_at(digits + 20) as mp:
-        tau, v = as_mpf(phase, mp), mp.mpf(float(rough.v))
-        goal = _Gamma(osc, end, mp)
-        small, change = mp.mpf(10) ** (-digits - 1), mp.inf
-        for count in range(SEARCH.first, SEARCH.rounds, SEARCH.more):
-            miss, slope = goal.miss(tau, v, count)
-            if not slope:  # below the range of doubles
-                return _without(Status.unresolved)
-            last, change = change, abs(miss / slope)
-            v -= miss / slope
-            if (
-                not abs(v - rough.v) < rough.v
-            ):  # Newton's method goes elsewhere: its slope is below the range of doubles
-                return _without(Status.unresolved)
-            if max(change, last * change / v) < small * v and last < mp.mpf(10) ** (-digits // 2) * v:
+        start, v, small = as_mpf(phase, mp), mp.mpf(float(rough.v)), mp.mpf(10) ** (-digits - 1)
+        bits, change = mp.prec + 32, mp.mpf(float(rough.error))
+        reach, balls = _series(osc, end, bits)
+        stop, g = _middle(end.moved(bits), mp), [_middle(ball, mp) for ball in balls] if reach else []
+        for _ in range(SEARCH.rounds if reach else 0):
+            tau, speed, column = start, v, np.array([0.0, 1.0])
+            # as far as the orbit is beside gamma for all that is known of v
+            while stop - tau >= reach and 0 < abs(column[1] * change) < speed / 100:
+                column = derivative(osc, float(tau), float(speed)).matrix @ column
+                step = impact_map(osc, tau, speed, digits=mp.dps - 5)
+                tau, speed = mp.convert(step.tau), mp.convert(step.v)
+            miss, slope = _miss(tau - stop, speed, column, (end.order + 1, g))
+            # Newton's method goes elsewhere, or its slope is below the range of doubles
+            if not slope or not abs(miss / slope) < rough.v / 2:
                 break
-    with digits_at(digits):
-        return Threshold(for_user(+v), for_user(2 * change + small * v), np.int8(Status.complete))
+            change = miss / slope
+            v -= change
+            if abs(change) < small * v:
+                with digits_at(digits):
+                    return Threshold(for_user(+v), for_user(2 * abs(change) + small * v), np.int8(Status.complete))
+    return _without(Status.unresolved)
 
 
-class _Gamma:
-    """The end of gamma, v = sigma^(j+1) (first + second sigma) + ..., at the precision of an mpmath context."""
+def _miss(sigma: Any, v: Any, column: Array, series: tuple[int, Sequence[Any]]) -> tuple[Any, float]:
+    """The distance of a state at sigma and v from gamma, and its derivative by the first velocity.
 
-    def __init__(self, osc: Oscillator, end: ContactZero, mp: Any) -> None:
-        self.osc, self.power, self.mp = osc, end.order + 1, mp
-        bits = mp.prec + 32
-        first, second, _ = enclosed.end_of_gamma(osc, end, bits)
-        self.tau, self.first, self.second = (_middle(ball, mp) for ball in (end.moved(bits), first, second))
-
-    def miss(self, tau: Any, v: Any, count: int) -> tuple[Any, Any]:
-        """v - gamma after `count` impacts, and its derivative by the first v."""
-        column = np.array([0.0, 1.0])
-        for _ in range(count):
-            column = derivative(self.osc, float(tau), float(v)).matrix @ column
-            step = impact_map(self.osc, tau, v, digits=self.mp.dps - 5)
-            tau, v = self.mp.convert(step.tau), self.mp.convert(step.v)
-        sigma, n = tau - self.tau, self.power
-        along = sigma ** (n - 1) * (n * self.first + (n + 1) * self.second * sigma)
-        return v - sigma**n * (self.first + self.second * sigma), float(column[1]) - float(along) * float(column[0])
+    Parameters
+    ----------
+    column : the derivatives of this state by the first velocity. series : the lowest power, and coefficients.
+    """
+    first, g = series
+    along = sum(c * (first + k) * sigma ** (first + k - 1) for k, c in enumerate(g))
+    slope = float(column[1]) - float(along) * float(column[0])
+    return v - sum(c * sigma ** (first + k) for k, c in enumerate(g)), slope
 
 
 def _middle(ball: Any, mp: Any) -> Any:

@@ -38,8 +38,6 @@ class CompilingSettings:
     # seconds that a model's own text takes to compile, at first and for each of its characters; that kernels take
     own_text: tuple[float, float] = (0.08, 3e-5)
     kernels: float = 30.0
-    # seconds between two reads of the cache for an entry that is not there
-    look: float = 0.2
     # seconds of compiling after which a line says so
     silent: float = 1.0
     # bytes of address space that a process needs to compile; with 450 MB one was seen to import scipy without end
@@ -71,17 +69,16 @@ class Machine:
         self.spent = 0.0  # seconds of flights that were interpreted
         self._entries: dict[str, Entry] = {}
         self._lock, self._compiling = Lock(), Lock()
-        self._looked: dict[str, float] = {}
+        self._looked: set[str] = set()
 
     def entry(self, name: str) -> Entry | None:
         """An entry, if it is compiled: without the interpreter's lock, and with it."""
         entry = self._entries.get(name)
         if entry is not None or not compilable():
             return entry
-        now = time.monotonic()
-        if now - self._looked.get(name, -1e9) < SETTINGS.look:
+        if name in self._looked:
             return None
-        self._looked[name] = now
+        self._looked.add(name)
         code = None if self.is_own else shipped_code(name)
         if code is not None:
             return self._load(name, code)
@@ -110,7 +107,7 @@ class Machine:
         if entry is not None:
             return entry
         with self._compiling:
-            self._looked.pop(name, None)
+            self._looked.discard(name)
             return self.entry(name) or self._compiled(name)
 
     def _compiled(self, name: str) -> Entry:
@@ -129,7 +126,7 @@ class Machine:
         begun, silent = time.monotonic(), True
         with ProgressLine() as line:
             while worker.is_alive():
-                worker.join(SETTINGS.look / 10)
+                worker.join(SETTINGS.silent / 50)
                 line.show(0, None, "the model's flights are compiled")
                 if silent and time.monotonic() - begun > SETTINGS.silent:
                     silent = False

@@ -10,7 +10,6 @@ from singimpact.branches.events import KINDS
 BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00"
 BLACK, GREY, SHADE = "#000000", "#6E6E6E", "#E3E3E3"
 DASHES, DOTS, DASH_DOT, SHORT_DASHES = (0, (5, 2)), (0, (1, 1.4)), (0, (6, 2, 1, 2)), (0, (2.6, 1.2))
-INK = 0.85  # of a letter's halo, so that a curve behind it does not cut it
 
 
 ON_DARK = {BLACK: "#FFFFFF", GREY: "#A6A6A6", BLUE: "#4DA6DE", SHADE: "#3C3C3C"}

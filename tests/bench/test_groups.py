@@ -36,7 +36,7 @@ from singimpact.bench import (
 from singimpact.bench.groups import series_rows
 from singimpact.bench.measuring import QUICK
 
-SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)
+SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4)
 COSTLY = ("series", "figures", "commands", "start", "scale", "branches", "orbit", "growth", "threshold", "sweep")
 EVENTS = {"scipy DOP853, terminal event", "heyoka, terminal event"}
 PEERS = {
@@ -55,12 +55,13 @@ PEERS = {
     "scale": set(),
     "branches": set(),
     "start": EVENTS,
+    "limit": {"reference"},  # a command of .ci/check measures it
 }
 CUT = ("order", "tolerance")  # settings at which an answer is not meant to have all digits
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow if name in COSTLY else ()) for name in GROUPS]
+    "name", [pytest.param(name, marks=pytest.mark.slow if name in COSTLY else ()) for name in GROUPS if name != "limit"]
 )
 def test_group_at_its_smallest_size(name):
     pytest.importorskip("heyoka")
@@ -131,7 +132,7 @@ def test_restitutions_are_taken_in_turn():
 
 def test_groups_of_a_quick_look(singimpact):
     assert set(GROUPS) == set(usual(FULL)) == set(PEERS)
-    assert set(GROUPS) - set(usual(QUICK)) == {"start"}
+    assert set(GROUPS) - set(usual(QUICK)) == {"start", "limit"}
     told = " ".join(singimpact("bench", "--help").stdout.split())
     assert [name for name in GROUPS if name not in told] == []
 

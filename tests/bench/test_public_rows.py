@@ -32,7 +32,7 @@ from singimpact.cli import COMMANDS
 pytestmark = pytest.mark.plain_code  # compares code objects, which probes exchange
 PACKAGE = str(Path(si.__file__).parent)
 BENCH = str(Path(PACKAGE) / "bench")
-SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4, wait=0)
+SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4)
 IN_PROCESS = ["map", "orbit", "regimes", "chatter", "threshold", "fixed-points", "emitted", "growth"]
 
 

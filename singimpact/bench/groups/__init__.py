@@ -13,6 +13,7 @@ from singimpact.bench.groups import (
     fixed_point_rows,
     growth_rows,
     impact_map_rows,
+    limit_rows,
     orbit_rows,
     regime_rows,
     scale_rows,
@@ -39,8 +40,9 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "scale": scale_rows.cases,
     "branches": branch_rows.cases,
     "start": start_rows.cases,
+    "limit": limit_rows.cases,
 }
-SLOW = ("start",)  # compiles in new cache folders, again and again
+SLOW = ("start", "limit")  # new cache folders, again and again
 
 
 def usual(effort: Effort) -> list[str]:

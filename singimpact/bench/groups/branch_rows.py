@@ -31,11 +31,13 @@ def cases(effort: Effort) -> Iterator[Case]:
         yield Case(f"linear, orbits of {n} impacts in {k} periods", [method])
     points = 200 if effort.quick else MANY
     truth = [-math.hypot(1 - 0.8**2, 0.08)]
-    own = Method("singimpact, branch", f"{points} points", partial(_branch, points), epsilon=1e-14, aim=Aim(1e6 / MANY))
+    own = Method(
+        "singimpact, branch", f"{points} points", partial(linear_branch, points), epsilon=1e-14, aim=Aim(1e6 / MANY)
+    )
     yield Case("linear, a point of a branch through a graze", [own], truth, [1.0])
     duffing = Method("singimpact, branch", f"{points} points", partial(_duffing, points), aim=Aim(5e6 / MANY))
     yield Case("Duffing, a point of a branch", [duffing])
-    curve = Method("singimpact, event_curve", "200 points", _curve, epsilon=1e-13, aim=Aim(2e6 / 200))
+    curve = Method("singimpact, event_curve", "200 points", doubling_curve, epsilon=1e-13, aim=Aim(2e6 / 200))
     yield Case("bouncing ball, a point of a curve of doublings", [curve], [1.0], [1.0])
 
 
@@ -54,7 +56,7 @@ def _orbits(n: int, k: int, models: list[ImpactOscillator]) -> list[Any]:
     return [len(model.periodic(n, k)) for model in models]
 
 
-def _branch(points: int) -> Counted:
+def linear_branch(points: int) -> Counted:
     """The amplitude at the graze, and the points on both sides of it."""
     osc = linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.4")
     found = branch(osc.periodic(1, 1)[0], "amplitude", (-0.6, -0.33), step=1.6 / points)
@@ -67,7 +69,7 @@ def _duffing(points: int) -> Counted:
     return Counted(len(branch(orbit, "b", (0.1, 0.5), step=1.3 / points)), [])
 
 
-def _curve() -> Counted:
+def doubling_curve() -> Counted:
     """1, and the largest relative distance from the closed form of the doublings."""
     ball = ImpactOscillator("1", "G*cos(t)", 0, "0.5", {"G": "1.5"})
     orbits = [branch(orbit, "G", (1.4, 1.7)) for orbit in ball.periodic(1, 1)]

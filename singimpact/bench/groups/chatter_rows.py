@@ -4,14 +4,13 @@ wanted; and c = 0.7 or Duffing's model, from other states in every timed call.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from math import cos
 from typing import Any
 
-from singimpact.bench.drawn import CHATTERING, Draws, States, compiled, counted, model
+from singimpact.bench.drawn import CHATTERING, Draws, States, counted, model
 from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
 from singimpact.bench.peers import followed_impacts, many_digits, runge_kutta, taylor_events
@@ -26,9 +25,8 @@ STOPS = (1e-3, 1e-4, 1e-5, 1e-6)
 
 def cases(effort: Effort) -> Iterator[Case]:
     """Two restitutions as close as wanted; then a state a call by restitution, and an array."""
-    notes = compiled(("orbit",), effort.wait)
     for r in ("0.5", "0.9"):
-        yield replace(_case(r, effort), notes=notes)
+        yield _case(r, effort)
     for restitution in (0.9,) if effort.quick else (0.5, 0.9, 0.99, 0.999):
         yield _drawn(CHATTERING, restitution, 1, effort)
     yield _drawn("duffing", 0.7, 1, effort)
@@ -75,7 +73,6 @@ def _in_digits(problem: Problem, stop: float, digits: int) -> Method:
 
 
 CALLS = 20  # of a timed run of a state a call
-LONGEST = 10.0  # CPU seconds of a timed call of an array: where it would take longer it has fewer states
 JUDGED = {0.5: 5, 0.7: 2, 0.9: 3, 0.99: 1, 0.999: 1}  # states with 25 digits, by the impacts that they take
 TO = 1e-3  # of the first velocity: where a peer ends
 
@@ -84,8 +81,6 @@ def _drawn(family: str, restitution: float, count: int, effort: Effort) -> Case:
     """Some calls of one state, or one of an array."""
     draw = partial(Draws, family, "chattering", restitution=restitution)
     osc, run = model(family, restitution), _a_state if count == 1 else _an_array
-    if count > 1:
-        count = affordable(_an_array, draw, count)
     setting, problems = f"{counted(count, 'state')} a call", CALLS if count == 1 else count
     own = [Method("singimpact, chatter_limit", setting, run, problems=problems, draw=draw(problems))]
     kind = "duffing" if family == "duffing" else "linear"
@@ -97,18 +92,6 @@ def _drawn(family: str, restitution: float, count: int, effort: Effort) -> Case:
     truth, kappas = _in_digits_of(osc, draw(1 if effort.quick else JUDGED[restitution])())
     name = "linear" if family == CHATTERING else "Duffing"
     return Case(f"{name}, r = {restitution:g}, {setting}", methods, truth, kappas, skipped)
-
-
-def affordable(run: Callable[[Any], Any], draw: Callable[[int], Draws], count: int) -> int:
-    """The count, divided by ten until a call takes `LONGEST` seconds at most, estimated from 100 states."""
-    few = draw(min(100, count))
-    run(few())
-    states, start = few(), time.process_time()
-    run(states)
-    each = (time.process_time() - start) / states.tau.size
-    while count > 100 and each * count > LONGEST:
-        count //= 10
-    return count
 
 
 def _a_state(states: States) -> list[float]:

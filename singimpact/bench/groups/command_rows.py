@@ -1,19 +1,17 @@
 """`bench commands`: series in symbols and the commands of the README, each in a new process, against figures to reach.
 
-CPU seconds of the process and of its children.  Each command has a cache folder of its own with object code and nothing
-else in it: what compiling costs is shown by `bench start`.
+CPU seconds of the process and of its children.  Each command begins with a new cache folder of its own.
 """
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from singimpact.bench.fresh import CHILDREN, cost
+from singimpact.bench.fresh import cost
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Timed
 
 PUBLIC = "import flint, numpy, sympy\nfrom singimpact import theory\n"
@@ -43,14 +41,14 @@ SERIES = (
     Series("made = theory.v_c(12, at='generic')", 1.2),
     Series("made = theory.v_c(12, at='generic')", 1e-3, "theory.v_c(12, at='generic')", "again"),
     Series("text = str(made)", 1.0, "made = theory.v_c(12, at='generic')", "of v_c(12)"),
-    Series("made = theory.chatter_limit(8)", 0.5),
+    Series("made = theory.chatter_limit(8)", 0.4),
     Series("made = theory.gamma(8)", 0.1),
 )
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command line, and the seconds to reach: with object code as the only cached result, and again. None: no aim."""
+    """A command line, and the seconds to reach: with a new cache folder, and again. None: no aim."""
 
     line: str
     new: float | None = None
@@ -80,24 +78,15 @@ COMMANDS = (
 
 
 def cases(effort: Effort) -> Iterator[Case]:
-    """Series, then with full effort the commands, first with object code alone in the cache folder, then again."""
+    """Series, then with full effort the commands, first with a new cache folder, then again."""
     rows = [Method("singimpact", f"{_words(series)}", series.timed, aim=Aim(series.seconds * 1e6)) for series in SERIES]
     yield Case("series in symbols, new process", rows)
     if effort.quick:  # most commands take longer than two seconds in a new folder
         return
     with tempfile.TemporaryDirectory() as directory:
         (Path(directory) / "duffing.toml").write_text(MODEL, encoding="utf-8")
-        _compile(directory)
         for command in COMMANDS:
             yield Case(f"singimpact {command.line}", _turns(command, directory))
-
-
-def _compile(place: str) -> None:
-    """Object code of all models of the commands, in the folder that every command's own begins with."""
-    duffing = "si.ImpactOscillator('x + 0.1*xdot + 0.3*x**3', 'cos(1.7*t)', 0.3, 0.6)"
-    for model in ("si.linear(2.8, 0.1, 0.8)", duffing):
-        text = f"import singimpact as si\n{model}.impact_map([0.1] * 1000, [0.7] * 1000)"
-        cost(text, "", CHILDREN, {"SINGIMPACT_CACHE": str(Path(place) / "compiled")})
 
 
 def _words(series: Series) -> str:
@@ -110,7 +99,7 @@ def _turns(command: Command, place: str) -> list[Method]:
     first = _run(command, place)
     again = partial(_run, command, place)
     return [
-        Method("singimpact", "nothing kept but object code", lambda: first, first=True, aim=_aim(command.new)),
+        Method("singimpact", "new cache folder", lambda: first, first=True, aim=_aim(command.new)),
         Method("singimpact", "again", again, aim=_aim(command.again)),
     ]
 
@@ -122,7 +111,5 @@ def _aim(seconds: float | None) -> Aim:
 def _run(command: Command, place: str) -> Timed:
     text = RUN.format(words=command.line.split(), place=place)
     cache = Path(place) / "cache" / command.line.split()[0]
-    if not cache.exists():
-        shutil.copytree(Path(place) / "compiled" / "kernels", cache / "kernels")
     around = {"SINGIMPACT_CACHE": str(cache)}
     return Timed(cost(text, "import subprocess, sys", around=around).seconds, [None])

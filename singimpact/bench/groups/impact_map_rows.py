@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.bench.drawn import RESTITUTIONS, Draws, Fed, States, compiled, counted, model
+from singimpact.bench.drawn import RESTITUTIONS, Draws, Fed, States, counted, model
 from singimpact.bench.measuring import Aim, Case, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta, taylor_events
 from singimpact.bench.truth import drawn_flights
@@ -81,19 +81,14 @@ CALLS = (
 
 def cases(effort: Effort) -> Iterator[Case]:
     """A case a way to call the map; then its derivative and its inverse on arrays."""
-    sizes, notes = sizes_of(effort), _warm(effort)
+    sizes = sizes_of(effort)
+    for restitution in RESTITUTIONS:
+        for family in ("linear", "duffing"):
+            model(family, restitution)  # built outside the clock
     for calls in CALLS:
-        yield replace(_map(calls, sizes), notes=notes)
+        yield _map(calls, sizes)
     yield _derivative(sizes)
     yield _inverse(sizes)
-
-
-def _warm(effort: Effort) -> list[str]:
-    """The models' tables, and code where it is compiled meanwhile: what `bench start` times."""
-    for restitution in RESTITUTIONS:
-        model("linear", restitution).impact_map(0.5, 1.0)
-        model("duffing", restitution).impact_map(0.5, 1.0)
-    return compiled(("map",), effort.wait)
 
 
 def _map(calls: Calls, sizes: Sizes) -> Case:

@@ -6,14 +6,13 @@ Every timed call has other states; the times of some impacts of the first call a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import partial
 from itertools import chain as joined
 from typing import Any
 
 import numpy as np
 
-from singimpact.bench.drawn import CHATTERING, CLEARANCES, RESTITUTIONS, Draws, States, compiled, counted
+from singimpact.bench.drawn import CHATTERING, CLEARANCES, RESTITUTIONS, Draws, States, counted
 from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import NO_AIM, Aim, Case, Counted, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta
@@ -38,10 +37,9 @@ NAMES = {"linear": "linear", "duffing": "Duffing", CHATTERING: "linear, chatter 
 def cases(effort: Effort) -> Iterator[Case]:
     """Orbits of both families, and orbits that chatter; then iterates of arrays."""
     rates = RESTITUTIONS[::4] if effort.quick else RESTITUTIONS
-    notes = compiled(("orbit", "iterate"), effort.wait)
     for family in ("linear", "duffing"):
         for restitution in rates:
-            yield replace(_orbit(family, restitution, effort), notes=notes)
+            yield _orbit(family, restitution, effort)
     yield _orbit(CHATTERING, 0.5, effort)
     for restitution in rates:
         yield _iterate("linear", restitution, effort)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from singimpact.bench.drawn import compiled
 from singimpact.bench.fresh import Cost, cost
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Timed
 
@@ -76,7 +75,7 @@ def cases(effort: Effort) -> Iterator[Case]:
             aim=Aim(1.2),
         ),
     ]
-    yield Case("linear, a state of a large array", methods, notes=_notes(count, effort))
+    yield Case("linear, a state of a large array", methods, notes=_notes(count))
 
 
 OUT = """, out={name: np.lib.format.open_memmap(f"{folder}/{name}.npy", "w+", "f8", tau.shape)
@@ -92,16 +91,15 @@ def _cost(count: int, out: str = "") -> Cost:
     return cost(MAPPED.format(out=out), before, KEPT.format(count=count) + "import shutil; shutil.rmtree(folder)\n")
 
 
-def _notes(count: int, effort: Effort) -> list[str]:
+def _notes(count: int) -> list[str]:
     """Sentences, each with what is to be reached and whether it was."""
-    notes = list(compiled(("map", "iterate"), effort.wait))
     measured = _cost(count)
     states_, all_of_them = measured.answer
     beside = measured.megabytes - all_of_them
-    notes.append(
+    notes = [
         f"memory: {states_:.0f} bytes a state of results (at most {BYTES}: {_word(states_ <= BYTES)}), at most "
         f"{max(beside, 0):.0f} MB beside them (at most {BESIDE}: {_word(beside <= BESIDE)})"
-    )
+    ]
     ratios = cost(PAIRED.format(count=1_000_000), BEFORE.format(count=1_000_000), "answer = ratios").answer
     notes.append(
         f"two threads: {sorted(ratios)[2]:.2f} times as fast as one, best of five {max(ratios):.2f} (at least "

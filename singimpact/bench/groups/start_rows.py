@@ -1,14 +1,11 @@
 """`bench start`: what a new process costs, with object code in the cache folder, and in a new cache folder.
 
-Each row is a process of its own, in a cache folder made for it; the states are others in every process.  Where no
-object code of the kernels comes with the package a child compiles them, which goes on when the process has ended: it
-is waited for after the clock has stopped, and has rows of its own.  CPU seconds do not hold the time that threads of
-numpy's linear algebra spend while they wait for work (`fresh.NO_SPINNING`).
+Each row is a process of its own, in a cache folder made for it; the states are others in every process.  CPU seconds
+do not hold the time that threads of numpy's linear algebra spend while they wait for work (`fresh.NO_SPINNING`).
 """
 
 from __future__ import annotations
 
-import os
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -16,12 +13,10 @@ from functools import partial
 from itertools import count
 from pathlib import Path
 
-from singimpact.bench import first_commands
 from singimpact.bench.drawn import CLEARANCES, OMEGAS
-from singimpact.bench.fresh import CHILDREN, Cost, cost
+from singimpact.bench.fresh import Cost, cost
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Timed, with_peers
 from singimpact.bench.peers import runge_kutta, taylor_events
-from singimpact.store import cache_folder
 
 IMPORT = "import singimpact as si"
 MODELS = {
@@ -45,8 +40,6 @@ draw = Draws("linear", "generic", {states})
 draw.turn = {seed}
 problems = draw().problems()
 """
-SHORT_CHILDREN = "import resource; resource.setrlimit(resource.RLIMIT_CPU, (3, resource.RLIM_INFINITY))"
-"""Ends a child that compiles for a folder that is given up, after three seconds of its CPU time."""
 SEEDS = count()
 FEW, MANY = 1000, 100_000
 
@@ -74,9 +67,9 @@ class Script:
     timed: Callable[[], str]
     before: str = ""
 
-    def in_folder(self, place: str, after: str = "answer = None") -> Cost:
+    def in_folder(self, place: str) -> Cost:
         """Run with the cache in a folder."""
-        return cost(self.timed(), self.before, after, {"SINGIMPACT_CACHE": place})
+        return cost(self.timed(), self.before, around={"SINGIMPACT_CACHE": place})
 
 
 def cases(effort: Effort) -> Iterator[Case]:
@@ -86,69 +79,30 @@ def cases(effort: Effort) -> Iterator[Case]:
     """
     with tempfile.TemporaryDirectory() as directory:
         for family in MODELS:
-            Script(partial(script, family, 10), SHORT_CHILDREN).in_folder(str(Path(directory) / "unused"), CHILDREN)
+            Script(partial(script, family, 10)).in_folder(str(Path(directory) / "unused"))
         for family in MODELS:
             yield _new_folder(family, directory)
         yield _warm(effort, str(Path(directory) / "kept"))
-    if not effort.quick:
-        yield _first_commands()
-
-
-def _first_commands() -> Case:
-    """A user's first commands with all their descendants, each in a new cache folder."""
-    rows = first_commands.measured()
-    own = [_known(f"singimpact, {row.name}", "CPU with descendants", row.seconds) for row in rows[1:]]
-    peer = _known("reference computation", "a loop of Python and numpy", rows[0].seconds)
-    notes = [f"{row.name}: {row.ratio:.2f} times the reference, {row.stored:.2f} stored." for row in rows[1:]]
-    return Case("first commands", [*own, peer], notes=notes)
 
 
 def _new_folder(family: str, directory: str) -> Case:
     """The script leaves its object code in `directory`; the first answer has a folder of its own."""
     with tempfile.TemporaryDirectory() as alone:
-        answer = Script(partial(first_answer, family), SHORT_CHILDREN).in_folder(alone, CHILDREN)
+        answer = Script(partial(first_answer, family)).in_folder(alone)
     directory = str(Path(directory) / "kept")
-    before = _files(directory)
     many = Script(partial(script, family, MANY))
-    first, second = many.in_folder(directory, CHILDREN), many.in_folder(directory, CHILDREN)
-    sizes = {path: size for path, size in _files(directory).items() if path not in before}
+    first, second = many.in_folder(directory), many.in_folder(directory)
     own = [
         _known("singimpact, first answer", "CPU", answer.seconds, Aim(0.3e6)),
-        _known("singimpact, first answer", "wall", answer.wall),
-        _known("singimpact, script", f"{MANY} states, wall", first.wall),
         _known("singimpact, script", f"{MANY} states, CPU", first.seconds, Aim(AIMS[family][0])),
         _known("singimpact, script again", f"{MANY} states, CPU", second.seconds, Aim(AIMS[family][1])),
-        _known("singimpact, script again", f"{MANY} states, wall", second.wall),
     ]
-    if first.answer is not None:
-        spent, until = first.answer
-        name = "singimpact, child that compiles"
-        own += [_known(name, "CPU", spent), _known(name, "wall, from the script's first line", until)]
-    return Case(f"new cache folder, {family}", own, notes=[_place(family, sizes)])
+    return Case(f"new cache folder, {family}", own)
 
 
 def _known(name: str, setting: str, seconds: float, aim: Aim = Aim()) -> Method:  # noqa: B008
     """A row of what has been measured: a folder is new once."""
     return Method(name, setting, lambda: Timed(seconds, [None]), first=True, aim=aim)
-
-
-def _files(place: str) -> dict[str, int]:
-    """Bytes of the files in a folder."""
-    return {
-        path.relative_to(place).as_posix(): path.stat().st_size for path in Path(place).rglob("*") if path.is_file()
-    }
-
-
-def _place(family: str, made: dict[str, int]) -> str:
-    """Where compiling leaves its object code."""
-    if not made:
-        return f"{family}: nothing is compiled."
-    names = sorted({f"{path.partition('/')[0]}/*{path[path.index('.') :]}" for path in made})
-    if "SINGIMPACT_CACHE" in os.environ:
-        where = "the folder named by SINGIMPACT_CACHE"
-    else:
-        where = str(cache_folder()).replace(str(Path.home()), "~", 1)
-    return f"{family}: compiling keeps {sum(made.values()) / 1e6:.2f} MB in {', '.join(names)} of {where}."
 
 
 def _warm(effort: Effort, directory: str) -> Case:

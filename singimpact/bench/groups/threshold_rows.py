@@ -10,8 +10,7 @@ from functools import partial
 from math import pi
 from typing import Any
 
-from singimpact.bench.drawn import Draws, States, compiled, counted, model, pressing
-from singimpact.bench.groups.chatter_rows import affordable
+from singimpact.bench.drawn import Draws, States, counted, model, pressing
 from singimpact.bench.groups.impact_map_rows import HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
 from singimpact.bench.peers import followed_impacts, many_digits, runge_kutta, taylor_events
@@ -27,8 +26,7 @@ GUESS = 0.05
 
 def cases(effort: Effort) -> Iterator[Case]:
     """One phase as close as wanted, then others by restitution, and an array; peers bisect, to a relative width."""
-    notes = compiled(("orbit",), effort.wait)
-    yield replace(_one(effort), notes=notes)
+    yield _one(effort)
     for restitution in (0.5, 0.9) if effort.quick else (0.5, 0.7, 0.9, 0.99):
         yield _drawn("linear", restitution, 1, effort)
     yield _drawn("duffing", 0.7, 1, effort)
@@ -73,8 +71,6 @@ def _drawn(family: str, restitution: float, count: int, effort: Effort) -> Case:
     """Some calls of one phase, or one of an array."""
     draw = partial(Draws, family, "chattering", restitution=restitution)
     osc, run = model(family, restitution), _a_phase if count == 1 else _an_array
-    if count > 1:
-        count = affordable(_an_array, draw, count)
     setting, problems = f"{counted(count, 'phase')} a call", CALLS if count == 1 else count
     own = [Method("singimpact, threshold", setting, run, problems=problems, draw=draw(problems))]
     methods, skipped = with_peers(

@@ -11,13 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.bench.drawn import compile_entries
 from singimpact.bench.selftest.draws import Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS
 from singimpact.bench.truth.plain_orbits import PlainOrbits
-from singimpact.flights.compiled_model import compiled_model
-from singimpact.flights.machine import compilable
-from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.status import Status
 
 LANES, GRAZES = "states of a batch", "beside a graze"
@@ -42,16 +40,6 @@ class BatchSettings:
 BATCHES = BatchSettings()
 
 
-def compiled(osc: ImpactOscillator) -> None:
-    """Compile what `osc.iterate` flies arrays with: until then it is interpreted, which has no batches."""
-    if compilable():
-        model = compiled_model(osc)
-        model.machine.compile_here("batch_entry" if model.linear else model.main)
-        for part in (model.recurrence, model.law):
-            if part is not None:
-                part.compile_here()
-
-
 @against_plain_orbits(LANES)
 def lanes(flown: Flown, plain: PlainOrbits) -> Row:
     """`osc.iterate` of an array, each state against its own flights."""
@@ -62,7 +50,7 @@ def lanes(flown: Flown, plain: PlainOrbits) -> Row:
     places = np.resize(hit, BATCHES.states)
     # repeated states are moved by less than a thousandth, so that all of an array differ
     tau, v = flown.tau[places] + 1e-4 * np.arange(places.size) / flown.scales.rate, flown.v[places]
-    compiled(flown.osc)
+    compile_entries(flown.osc)
     for impacts in BATCHES.impacts:
         ends = flown.osc.iterate(tau, v, impacts)
         tally.restart()
@@ -109,7 +97,7 @@ def grazes(flown: Flown, plain: PlainOrbits) -> Row:
     tau, v = grazing_states(flown, plain)
     if not tau.size:
         return Row(GRAZES, note="no launch that grazes lies among those looked at")
-    compiled(flown.osc)
+    compile_entries(flown.osc)
     # an array longer than a batch; the batch kernels take no shorter one
     ends = flown.osc.iterate(np.resize(tau, max(tau.size, 2 * 64)), np.resize(v, max(tau.size, 2 * 64)), 1)
     step = flown.osc.impact_map(tau, v)

@@ -23,7 +23,6 @@ COMPARED: dict[str, Callable[[Flown], Row]] = {
     "rebounds": responses.rebounds,
     "basins": basin_pixels.row,
     "tangency points": tangencies.row,
-    # last, because by then a second process has compiled what flies batches
     "batches": batches.lanes,
     "grazes": batches.grazes,
 }

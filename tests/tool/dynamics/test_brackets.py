@@ -30,7 +30,7 @@ def compiled():
 
 
 def halved_alone(monkeypatch):
-    monkeypatch.setattr(threshold, "_series", lambda _osc, zero: (0.0, float(zero.order), *[0.0] * TERMS_OF_GAMMA))
+    monkeypatch.setattr(threshold, "_series", lambda *_: (0.0, [0.0] * TERMS_OF_GAMMA))
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -56,9 +56,52 @@ def inside(osc, tau):
     """The kernels over lists, the numbers they take, and a bracket that is wide."""
     model, zero = compiled_model(osc), next_zero(osc, constant("tau", tau)).zero
     settings = threshold.SEARCH.short, threshold.SEARCH.narrow, 20_000.0, threshold.SEARCH.coarse
-    search = Search([*settings, *threshold._series(osc, zero)], model.rho.tolist())
+    reach, series = threshold._series(osc, zero)
+    search = Search([*settings, reach, float(zero.order), *map(float, series)], model.rho.tolist())
     wide = 0.0, -float(osc.acceleration(tau)) * (zero.tau - tau) / 2, zero.tau - tau
     return over_floats(), search, wide, (model.interpreter.model, model.interpreter.work()[0])
+
+
+CURVED = {
+    "Duffing": (si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.8"), "1.2"),
+    "far below": (si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.2"), "0.9"),
+    "next to its end": (si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.8"), "2.775"),
+    "tanh": (si.ImpactOscillator("x + 0.2*tanh(5*xdot)", "cos(1.7*t)", "0.3", "0.5"), "1.4"),
+    "swan": (si.ImpactOscillator("x**3", "cos(2*t)", "1", "0.6"), "-0.5"),
+}
+
+
+@pytest.mark.parametrize("name", CURVED)
+@pytest.mark.parametrize("factor", [1.0, 1 + 1e-10, 0.9, 0.0])
+def test_nonlinear_velocities_are_those_that_halving_finds(name, factor, monkeypatch):
+    """Whatever the series says: the sides are decided by flights."""
+    osc, tau = CURVED[name]
+    series = threshold._series
+
+    def scaled(*given):
+        reach, coefficients = series(*given)
+        return reach, [factor * float(each) for each in coefficients]
+
+    monkeypatch.setattr(threshold, "_series", scaled)
+    found = threshold.threshold(osc, tau)
+    halved_alone(monkeypatch)
+    plain = threshold.threshold(osc, tau)
+    assert found.status == plain.status == Status.complete
+    assert abs(found.v - plain.v) <= found.error + plain.error
+    assert found.error < 8 * plain.error
+
+
+def test_newtons_method_spares_most_of_the_halvings(monkeypatch):
+    """Sides that are decided, by flights of orbits, for a nonlinear model."""
+    osc, tau = CURVED["Duffing"]
+    asked, side = [], threshold._Sides.of
+    monkeypatch.setattr(threshold._Sides, "of", lambda sides, v: asked.append(v) or side(sides, v))
+    threshold.threshold(osc, tau)
+    assert len(asked) < 20
+    asked.clear()
+    halved_alone(monkeypatch)
+    threshold.threshold(osc, tau)
+    assert len(asked) > 45
 
 
 @pytest.mark.parametrize("name", ["r = 0.5", "r = 0.8", "damped", "swan"])

@@ -14,13 +14,13 @@ import resource
 import sys
 import time
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from random import Random
 from typing import Any
 
-sys.path[:0] = [str(Path(__file__).parents[3])]
+sys.path[:0] = [str(Path(__file__).parents[3]), str(Path(__file__).parents[2])]
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Bounds:
 
     Parameters
     ----------
-    seconds : of CPU for one call; the first one makes the model too. memory : bytes of the process. killed : seconds of
+    seconds : of CPU for one call, on a machine as fast as that of `slowness`; the first one makes the model too. memory : bytes of the process. killed : seconds of
         CPU after which the process is ended. address_space : bytes beyond which the process has no memory.
     """
 
@@ -169,6 +169,9 @@ def main() -> int:
         ):  # a busy machine takes more CPU time for the same work: the least of three counts
             again = (flown(options.seed, number) for _ in range(2))
             each = min((each, *again), key=lambda run: run.seconds)
+            from slowness import slowness
+
+            each = replace(each, seconds=each.seconds / slowness())
         found.append(each)
         if each.fault or options.only:
             print(f"{each.number}: {each.seconds:.2f} s, {each.memory >> 20} MB, {each.end[:300]}", flush=True)

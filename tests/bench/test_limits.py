@@ -1,0 +1,43 @@
+"""Ratios of public calls to a reference computation: stored for every row, and a row that costs more fails."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from singimpact.bench import Aim
+from singimpact.bench.groups import limit_rows
+from singimpact.bench.measuring import QUICK, Row
+
+CASES = {case.name: case for case in limit_rows.cases(QUICK)}
+ROW = Row("limit", "arrays", "singimpact, f", "ten", None, 3.0, None, None, None, 1, 3.0, (2.9, 3.1), 3, Aim(), None)
+
+
+def test_a_ratio_that_has_grown_by_half_is_over(monkeypatch, tmp_path):
+    monkeypatch.setattr(limit_rows, "STORED", tmp_path / "limits.json")
+    limit_rows.store([ROW])
+    assert json.loads(limit_rows.STORED.read_text()) == {"arrays: f, ten": 3.0}
+    assert limit_rows.over([ROW, replace(ROW, spread=(4.4, 9.0))]) == []
+    assert limit_rows.over([replace(ROW, spread=(4.6, 9.0))]) == ["arrays: f, ten: 4.6 times the reference, 3 stored"]
+    assert len(limit_rows.over([replace(ROW, method="singimpact, g")])) == 1  # not stored
+    assert limit_rows.over([replace(ROW, group="map")]) == []
+
+
+def test_every_row_has_a_stored_ratio():
+    rows = [
+        replace(ROW, case=case.name, method=method.name, setting=method.setting)
+        for case in CASES.values()
+        for method in case.methods
+    ]
+    names = [name for name, _ in limit_rows._named(rows)]
+    assert len(set(names)) == len(names)
+    assert set(json.loads(limit_rows.STORED.read_text())) == set(names)
+
+
+@pytest.mark.parametrize("name", ["arrays", "calls"])
+def test_every_call_ends(name):
+    """Each once: a row whose call raises would be missed by the command alone."""
+    for method in CASES[name].methods:
+        method.run(*(() if method.draw is None else (replace(method.draw, count=20)(),)))
