@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from singimpact.cli.output import as_json_text, columns, emit, markdown, output_options, save
-from singimpact.inputs import unknown
+from singimpact.inputs import InputError, unknown
 from singimpact.progress import ProgressLine
 from singimpact.store import folder
 
@@ -342,6 +342,10 @@ def command(
     for group in chosen:
         if group not in (*GROUPS, "states"):
             raise unknown("group", group, (*GROUPS, "states"))
+    if store and "limit" not in chosen:
+        raise InputError(
+            f"--store is not accepted with {', '.join(chosen)}: give the group limit, whose ratios it keeps"
+        )
     directory = None if plots is None else folder(plots)
     tables = _measured([group for group in chosen if group != "states"], effort)
     values = {"quick": quick, **_joined(tables)}
@@ -349,11 +353,11 @@ def command(
     wrong = _is_over(tables, store)
     if "states" in chosen and family == "steep":
         steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs, smooth_pairs), not quick)
-        values["states"], wrong = steep.data, steep.wrong
+        values["states"], wrong = steep.data, wrong or steep.wrong
         texts.append(steep.text)
     elif "states" in chosen:
         values["states"], text = _states(states, seed, workers, keep)
-        wrong = any(row["wrong"] for row in values["states"])
+        wrong |= any(row["wrong"] for row in values["states"])
         texts.append(text)
     if directory is not None:
         _draw(tables, directory, picture)

@@ -41,3 +41,10 @@ def test_every_call_ends(name):
     """Each once: a row whose call raises would be missed by the command alone."""
     for method in CASES[name].methods:
         method.run(*(() if method.draw is None else (replace(method.draw, count=20)(),)))
+
+
+def test_ratios_are_stored_with_their_group_alone(singimpact):
+    before = limit_rows.STORED.read_text()
+    refused = singimpact("bench", "map", "--quick", "--store")
+    assert "give the group limit" in refused.output
+    assert limit_rows.STORED.read_text() == before

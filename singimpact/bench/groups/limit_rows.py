@@ -160,7 +160,8 @@ def calls(effort: Effort) -> list[Method]:
             rows.append(_drawn(what, f"{name}, one state", aim, _states(count), _split(1, call)))
     osc, times, orbit = MODELS["linear"], np.linspace(0.01, 1, 1000), MODELS["linear"].orbit(0.3, 0.7, 300)
     at = np.linspace(orbit.tau[0], orbit.tau[-1], 1000)
-    plain = [
+    return [
+        *rows,
         _plain("acceleration", "linear, one state", 3.0, 1, lambda: osc.acceleration(0.3)),
         _plain("iterate", "linear, one state, 100 impacts", 1.2, 100, lambda: osc.iterate(0.3, 0.7, 100)),
         _plain("flight", "linear, a time", 0.15, 1000, lambda: osc.flight(0.3, 0.7, times)),
@@ -169,7 +170,6 @@ def calls(effort: Effort) -> list[Method]:
         _plain("first_hit", "linear, digits=20", 1e3, 1, lambda: osc.first_hit("0.3", "0.7", digits=20)),
         _plain("first_hit", "damped, digits=50", None, 1, lambda: MODELS["damped"].first_hit("0.3", "0.7", digits=50)),
     ]
-    return [*rows, *plain]
 
 
 def _plain(name: str, setting: str, aim: float | None, problems: int, call: Callable[[], object]) -> Method:
@@ -187,30 +187,21 @@ def searches(effort: Effort) -> list[Method]:
     chaotic, released = si.linear("2.8", 0, "0.8"), si.linear("2.8", "0.6", "1/2")
     saddle = next(orbit for orbit in two.periodic(3, 3) if not orbit.stable)
     chattering = partial(Draws, CHATTERING, "chattering", restitution=0.9)
-    pressed = np.linspace(0.9, 2.7, phases)
-    plain = [
+    pressed, exponents = np.linspace(0.9, 2.7, phases), partial(si.lyapunov, duffing, 0.3, 0.7)
+    return [
         _plain("threshold", "Duffing, one phase", 4e3, 1, lambda: si.threshold(duffing, "1.2")),
         _plain("threshold", "Duffing, an array, a phase", 1e3, phases, lambda: si.threshold(duffing, pressed)),
         _plain("orbit", "Duffing, an impact", None, impacts, lambda: duffing.orbit(0.3, 0.7, impacts)),
-        _plain(
-            "lyapunov",
-            "Duffing, an impact",
-            None,
-            impacts,
-            lambda: si.lyapunov(duffing, 0.3, 0.7, impacts, transient=0),
-        ),
+        _plain("lyapunov", "Duffing, an impact", None, impacts, partial(exponents, impacts, transient=0)),
         _plain("branch", "linear, a point", 500.0, 200, partial(branch_rows.linear_branch, 200)),
         _plain("event_curve", "bouncing ball, a point", None, 200, branch_rows.doubling_curve),
         _plain("basins", "linear, a pixel", 4.2, pixels**2, lambda: si.basins(two, size=pixels)),
         _plain("manifold", "linear", None, 1, lambda: si.manifold(saddle, v=1)),
         _plain("homoclinic_points", "linear", None, 1, lambda: si.homoclinic_points(chaotic.periodic(1, 1)[0])),
         _plain("border_orbits", "linear", None, 1, lambda: si.border_orbits(released, "clearance", (0.6, 0.7))),
-    ]
-    return [
         _drawn("chatter_limit", "linear", 3.0, chattering(1000), si.linear(2, "0.7", "0.9").chatter_limit),
         _drawn("chatter_limit", "Duffing", 100.0, Draws("duffing", "chattering", limits, 0.8), duffing.chatter_limit),
         _drawn("impact_map", "smoothed one-sided spring", 20.0, _states(20), MODELS["smoothed spring"].impact_map),
-        *plain,
         *(Method("singimpact", row.made[7:], row.timed, aim=Aim(row.seconds * 1e6)) for row in SERIES[3:]),
     ]
 
