@@ -18,11 +18,11 @@ from singimpact.branches.enclosed_event import EnclosedEvent
 from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.krawczyk import EnclosedOrbit
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.certificates.checker import KINDS, SCHEMA, TOUCHING, Refused, digest_of, read, sentence
+from singimpact.certificates.checker import KINDS, SCHEMA, SECONDS, TOUCHING, Refused, digest_of, read, sentence
 from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
 from singimpact.flights.results import CertifiedImpact, Flight
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.store import write_text
@@ -59,19 +59,17 @@ class Certificate:
         """Write the certificate to a file."""
         write_text(path, self.text)
 
-    def check(self) -> None:
-        """Let the second program enclose the motion again, in a process of its own.
+    def check(self, seconds: int = SECONDS) -> None:
+        """Let the second program enclose the motion again, in a process of its own, within so many seconds of CPU.
 
         Raises
         ------
         InputError : it does not accept the certificate; its reason.
         """
+        limited = [sys.executable, "-I", str(CHECKER), "--seconds", str(whole("seconds", seconds, 1, 10**6))]
         with TemporaryDirectory() as folder:
-            path = Path(folder) / "certificate.json"
-            path.write_text(self.text, encoding="utf-8")
-            done = subprocess.run(
-                [sys.executable, "-I", str(CHECKER), str(path)], capture_output=True, text=True, check=False
-            )
+            self.save(f"{folder}/certificate.json")
+            done = subprocess.run([*limited, f"{folder}/certificate.json"], capture_output=True, text=True, check=False)
         if done.returncode:
             reason = (done.stdout or done.stderr).strip().partition("refused: ")[2] or done.stderr.strip()
             raise InputError(f"the certificate is refused: {reason}")
@@ -293,8 +291,8 @@ def _wider(number: Certified) -> dict[str, str]:
     return {"value": texts["value"], "radius": f"{float(radius):.3g}"}
 
 
-def read_certificate(path: Any) -> Certificate:
-    """A certificate from a file, once the second program has accepted it.
+def read_certificate(path: Any, seconds: int = SECONDS) -> Certificate:
+    """A certificate from a file, once the second program has accepted it within so many seconds of CPU.
 
     Raises
     ------
@@ -315,5 +313,5 @@ def read_certificate(path: Any) -> Certificate:
     except Refused as reason:
         raise InputError(f"{path} is no certificate: {reason}") from None
     certificate = Certificate(content if isinstance(content, dict) else {})
-    certificate.check()
+    certificate.check(seconds)
     return certificate

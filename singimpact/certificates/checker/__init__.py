@@ -12,9 +12,9 @@ balls up to its first hit) and `first_impact`.  What else a certificate may say:
 series made by `growing`), and `after_contact`.  `__main__` runs the program.
 """
 
-from .files import check, digest_of, main
-from .formulas import Refused, Wrong
+from .files import SECONDS, check, digest_of, main
+from .formulas import Refused
 from .schema import KINDS, SCHEMA, TOUCHING, read
 from .sentences import sentence
 
-__all__ = ["KINDS", "SCHEMA", "TOUCHING", "Refused", "Wrong", "check", "digest_of", "main", "read", "sentence"]
+__all__ = ["KINDS", "SCHEMA", "SECONDS", "TOUCHING", "Refused", "check", "digest_of", "main", "read", "sentence"]

@@ -24,7 +24,7 @@ from .schema import read, require_form, require_statement
 from .told import balls_of
 
 LEAST = 80  # bits, for bounds that are given with a few digits
-SECONDS, ORDINARY = 9.0, 640  # of CPU for a certificate of at most so many bits; more bits have more, by their square
+SECONDS, ORDINARY = 9, 640  # of CPU for a certificate of at most so many bits; more bits have more, by their square
 TERMS = 10_000  # flint cuts a series after ctx.cap terms without a word
 STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "first impact": first_impact,
@@ -98,7 +98,7 @@ def answered() -> Iterator[None]:
 
 def main(arguments: Sequence[str]) -> int:
     """0 where all certificates hold, else 1; `--seconds N` before the files is the CPU time of each."""
-    failed, seconds, paths = 0, SECONDS, list(arguments)
+    failed, seconds, paths = 0, float(SECONDS), list(arguments)
     if paths[:1] == ["--seconds"]:
         seconds, paths = float(paths[1]), paths[2:]
     for path in paths:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from second_program import changed, dropped, places_of, refuses, renewed, weakened
+from slowness import slowness
 
 import singimpact as si
 from singimpact.certificates import (
@@ -63,7 +64,7 @@ def certificates():
 def test_a_certificate_is_accepted_from_its_file(name, certificates, tmp_path):
     path = tmp_path / "certificate.json"
     certificates[name].save(path)
-    assert si.read_certificate(path) == certificates[name]
+    assert si.read_certificate(path, seconds=round(9 * slowness())) == certificates[name]
 
 
 @pytest.mark.parametrize("name", ["linear", "duffing"])
@@ -222,6 +223,12 @@ def test_text_of_a_model_is_data(certificates):
     content = json.loads(json.dumps(certificates["pendulum"].content))
     content["model"]["f"] = "__import__('os').getcwd()"
     refuses(content, "not understood")
+
+
+@pytest.mark.parametrize(("seconds", "why"), [(1, "not decided within 1 s of CPU"), ("long", "seconds = 'long'")])
+def test_so_many_seconds_and_no_more(seconds, why, certificates):
+    with pytest.raises(InputError, match=why):
+        certificates["layer"].check(seconds=seconds)
 
 
 def test_results_without_certificate_are_refused():

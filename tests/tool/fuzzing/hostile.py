@@ -29,8 +29,9 @@ class Bounds:
 
     Parameters
     ----------
-    seconds : of CPU for one call, on a machine as fast as that of `slowness`; the first one makes the model too. memory : bytes of the process. killed : seconds of
-        CPU after which the process is ended. address_space : bytes beyond which the process has no memory.
+    seconds : of CPU for one call, on a machine as fast as that of `slowness`; the first one makes the model too.
+        memory : bytes of the process. killed : seconds of CPU after which the process is ended. address_space : bytes
+        beyond which the process has no memory.
     """
 
     seconds: float = 2.0
@@ -39,7 +40,6 @@ class Bounds:
     address_space: int = 2**31
 
 
-BOUNDS = Bounds()
 NUMBERS = ["1e-65", "1e65", "1e-300", "1e300", "1e-3000", "3/7", "0.1", "2", "1e4", "-1", "pi", "7", "1e-12", "10**300"]
 EXPONENTS = ["1000", "999", "511", "-1000", "-7", "0.5", "(1/3)", "(-997/1000)", "17", "2", "(999/2)", "64", "127"]
 FUNCTIONS = ["sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "atan"]
@@ -86,7 +86,7 @@ class Flown:
     def fault(self) -> bool:
         """Whether it ended otherwise than in a status or a sentence, or took too much."""
         told = self.end.startswith(("status", "refused"))
-        return not told or self.seconds > BOUNDS.seconds or self.memory > BOUNDS.memory
+        return not told or self.seconds > Bounds.seconds or self.memory > Bounds.memory
 
 
 def flown(seed: int, number: int) -> Flown:
@@ -97,8 +97,8 @@ def flown(seed: int, number: int) -> Flown:
         os.close(reading)
         end, times = "no end", [time.process_time()]
         try:
-            resource.setrlimit(resource.RLIMIT_CPU, (BOUNDS.killed, BOUNDS.killed))
-            resource.setrlimit(resource.RLIMIT_AS, (BOUNDS.address_space, BOUNDS.address_space))
+            resource.setrlimit(resource.RLIMIT_CPU, (Bounds.killed, Bounds.killed))
+            resource.setrlimit(resource.RLIMIT_AS, (Bounds.address_space, Bounds.address_space))
             end = _end(model(seed, number), times)
         except BaseException as error:
             end = f"{type(error).__name__}: {str(error)[:100]}{_places(error)}"
@@ -116,11 +116,19 @@ def flown(seed: int, number: int) -> Flown:
     return Flown(number, end, longest, both, used.ru_maxrss * 1024)
 
 
+def _on_usual_machine(seed: int, number: int) -> Flown:
+    """A model flown again, its seconds divided by the slowness of this machine meanwhile."""
+    from slowness import slowness
+
+    before = slowness()
+    run = flown(seed, number)
+    return replace(run, seconds=run.seconds / max(before, slowness()))
+
+
 def _places(error: BaseException) -> str:
     import traceback
 
-    frames = traceback.extract_tb(error.__traceback__)
-    return f" at {Path(frames[-1].filename).name}:{frames[-1].lineno}"
+    return " at {0.filename}:{0.lineno}".format(traceback.extract_tb(error.__traceback__)[-1])
 
 
 def _end(fields: dict[str, Any], times: list[float]) -> str:
@@ -164,24 +172,17 @@ def main() -> int:
     numbers = range(options.models) if options.only is None else options.only
     for number in numbers:
         each = flown(options.seed, number)
-        if (
-            each.seconds > BOUNDS.seconds
-        ):  # a busy machine takes more CPU time for the same work: the least of three counts
-            again = (flown(options.seed, number) for _ in range(2))
-            each = min((each, *again), key=lambda run: run.seconds)
-            from slowness import slowness
-
-            each = replace(each, seconds=each.seconds / slowness())
+        if each.seconds > Bounds.seconds:  # a busy machine takes more CPU time for the same work
+            each = min((_on_usual_machine(options.seed, number) for _ in range(3)), key=lambda run: run.seconds)
         found.append(each)
         if each.fault or options.only:
             print(f"{each.number}: {each.seconds:.2f} s, {each.memory >> 20} MB, {each.end[:300]}", flush=True)
-    ends = Counter(each.end.split(":")[0] for each in found)
-    print(", ".join(f"{count} {end}" for end, count in ends.most_common()))
-    slow = sorted(found, key=lambda each: -each.seconds)[:8]
-    print("slowest calls:", ", ".join(f"{each.number} {each.seconds:.2f} s ({each.end[:30]})" for each in slow))
+    print(", ".join(f"{count} {end}" for end, count in Counter(run.end.split(":")[0] for run in found).most_common()))
+    slowest = sorted(found, key=lambda run: -run.seconds)[:8]
+    print("slowest calls:", ", ".join(f"{run.number} {run.seconds:.2f} s ({run.end[:30]})" for run in slowest))
     print(f"longest process: {max(each.both for each in found):.2f} s")
     print(f"largest: {max(each.memory for each in found) >> 20} MB")
-    faults = sum(each.fault for each in found)
+    faults = sum(run.fault for run in found)
     print(f"{len(found)} models, seed {options.seed}, {time.monotonic() - start:.0f} s; faults: {faults or 'none'}")
     return 1 if faults else 0
 
