@@ -63,16 +63,12 @@ class Monomials:
             if len(args) == 1:
                 return keys[0], args[0]
         else:
-            keys, args = [_number_key(value), *keys], [value, *args]
+            keys, args = [_rational_key(value.p, value.q), *keys], [value, *args]
         return (MULTIPLE, len(args), keys), sympy.Mul._from_args(args, is_commutative=True)
 
 
-def _number_key(value: Any) -> Key:
-    """The key of a rational: sympy sorts by its classes first, and numbers before symbols."""
-    return _rational_key(value.p, value.q)
-
-
 def _rational_key(p: int, q: int) -> Key:
+    """The key of a rational: sympy sorts by its classes first, and numbers before symbols."""
     if (p, q) == (1, 2):
         return (-4,)
     if (p, q) == (-1, 1):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from math import ceil, log
 from typing import Any
 
@@ -59,6 +61,7 @@ class Ending:
     many: int = 8  # terms with digits=
     # longest remaining time, as a part of the time scale of a_c; successive terms then fall by a factor above 10
     near: float = 1 / 64
+    kept: int = 20_000  # impacts of sequences that are flown abreast
     elastic: int = 256  # impacts between two estimates where r = 1
     impacts: int = 1_000_000  # default limit; r = 0.9999 from v = 1 to 1e-17 takes 400 000
     # factor on the error estimate: the last term, and the rounding error of every impact carried to the end
@@ -170,8 +173,8 @@ def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
         status[codes == code], cause[codes == code] = ended, why
     none = (status != Status.complete) & (status != Status.lifts_off)
     tau[none] = error[none] = np.nan
-    for index in np.flatnonzero(codes == NO_ROOM).tolist():
-        one = _Flown(osc, states, most, index).limit()
+    for flown in _abreast(osc, states, most, np.flatnonzero(codes == NO_ROOM).tolist()):
+        index, one = flown.index, flown.ended()
         tau[index], error[index], impacts[index] = one.tau, one.error, one.impacts
         status[index], cause[index] = one.status, one.cause
     if not states.shape:
@@ -226,42 +229,105 @@ def _last(terms: list[Any]) -> Any:
     return max(abs(last), abs(before) * abs(before / first) ** (first * 0 + 1 / (len(terms) - 2)))
 
 
+def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> Iterator[_Flown]:
+    """The sequences of some of the states, in blocks in which a formula is evaluated for all states at once."""
+    begin, many, law = 0, 4, _Law(osc)
+    while begin < len(at):
+        block = [_Flown(law, states, most, index) for index in at[begin : begin + many]]
+        going = block
+        while going := [flown for flown in going if flown.is_going]:
+            _look_ahead(osc, going)
+        _differentiate(osc, [flown for flown in block if flown.over and len(flown.matrices) < len(flown.times) - 1])
+        yield from block
+        begin += many
+        # as many as have about so many impacts together: each is kept until the block ends
+        many = max(1, min(4 * many, ENDING.kept * len(block) // sum(len(flown.times) for flown in block)))
+
+
+def _look_ahead(osc: Oscillator, going: list[_Flown]) -> None:
+    """Estimate what is left of each sequence, which ends or is flown further."""
+    tau, v = np.array([(flown.times[-1], flown.speeds[-1]) for flown in going]).T
+    a = acceleration(osc, tau)
+    left, error = np.full((2, tau.size), np.nan)
+    summed = np.array([flown.short or flown.law.tried for flown in going]) & (a < 0)
+    if summed.any():
+        left[summed], error[summed] = remaining(osc, tau[summed], v[summed], a[summed])
+    for flown, *numbers in zip(going, a.tolist(), left.tolist(), error.tolist(), strict=True):
+        flown.go_on(*numbers)
+
+
+def _differentiate(osc: Oscillator, flown: list[_Flown]) -> None:
+    """D G of every impact of some sequences."""
+    launches = [pair for one in flown for pair in zip(one.times[:-1], one.speeds[:-1], strict=True)]
+    matrices = iter(derivative(osc, *np.array(launches).T).matrix.tolist() if launches else ())
+    for one in flown:
+        one.matrices = list(islice(matrices, len(one.times) - 1))
+
+
+class _Law:
+    """What all sequences of a model share.
+
+    Parameters
+    ----------
+    osc : the model. Attributes are r = -rho'(0), whether it is 1, and whether chatter completes nevertheless.
+    """
+
+    def __init__(self, osc: Oscillator) -> None:
+        self.osc, slope = osc, osc.slope_at_rest()
+        self.r, self.elastic = as_float(slope), compare(slope, 1) == 0
+        # where r = 1 no time is short by the rules of the kernels, which know r alone: the sum is tried in any case
+        self.tried = self.elastic and chatter_completes(osc)
+        self.has_slopes = not names_in(osc.restitution) and compiled_model(osc).linear
+
+
 class _Flown:
     """A chatter sequence in doubles, for any model; `kernels.chatter` is the compiled version for linear models."""
 
-    def __init__(self, osc: Oscillator, states: States, most: int, index: int = 0) -> None:
-        self.osc, self.given, self.most = osc, states.given(index), most
+    def __init__(self, law: _Law, states: States, most: int, index: int) -> None:
+        self.law, self.osc, self.given, self.most, self.index = law, law.osc, states.given(index), most, index
         self.turns = float(np.broadcast_to(states.turns, states.tau.shape)[index])
         self.times, self.speeds, self.cause = [float(states.tau[index])], [float(states.v[index])], Cause.decided
-        self.slopes: list[list[float]] = []
         self.short = False  # whether the rest is summed up from the last impact
-        self._known: list[Any] | None = None
+        self.matrices: list[Any] = []
+        self.over: tuple[float, float, Status] | None = None
+        self.status, self.push = self._first(), np.nan
 
-    def limit(self) -> ChatterLimit:
-        elastic = compare(self.osc.slope_at_rest(), 1) == 0
-        # where r = 1 no time is short by the rules of the kernels, which know r alone: the sum is tried in any case
-        tried = elastic and chatter_completes(self.osc)
-        status, count = self._first(), 256
-        while status == Status.hit:
-            tau, v = self.times[-1], self.speeds[-1]
-            a = acceleration(self.osc, np.array([tau]))
-            if a[0] >= 0 and len(self.times) > 1:
-                return self._ended(tau, 0.0, Status.lifts_off)
-            if self.short or (tried and a[0] < 0):
-                left, error = (
-                    float(estimate[0]) for estimate in remaining(self.osc, np.array([tau]), np.array([v]), a)
-                )
-                if error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290:
-                    return self._ended(tau + left, error, Status.complete)
-                if not np.isfinite(error) and self.short:  # a derivative of a_c leaves the range of doubles
-                    status, self.cause = Status.unresolved, Cause.overflow
-                    continue
-                count = impacts_until(self.osc, error, EPSILON * abs(tau) / 8)
-            if self._left() > 0:
-                status = self._fly(count, 0.0 if self.short or elastic else ENDING.near)
-            else:
-                status, self.cause = Status.unresolved, Cause.impacts_exhausted
-        return ChatterLimit(np.nan, len(self.times) - 1, np.nan, np.int8(status), cause=np.int8(self.cause))
+    @property
+    def is_going(self) -> bool:
+        """Whether neither an end nor a last flight has been reached."""
+        return self.over is None and self.status == Status.hit
+
+    def go_on(self, a: float, left: float, error: float) -> None:
+        """End, or fly further impacts.
+
+        Parameters
+        ----------
+        a : a_c at the last impact. left, error : what is left of the chatter, and the last term of its series.
+        """
+        tau, v, self.push = self.times[-1], self.speeds[-1], a
+        summed = self.short or (self.law.tried and a < 0)
+        if a >= 0 and len(self.times) > 1:
+            self.over = tau, 0.0, Status.lifts_off
+        elif summed and (error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290):
+            self.over = tau + left, error, Status.complete
+        elif self.short and not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
+            self.status, self.cause = Status.unresolved, Cause.overflow
+        elif self._left() <= 0:
+            self.status, self.cause = Status.unresolved, Cause.impacts_exhausted
+        else:
+            count = impacts_until(self.osc, error, EPSILON * abs(tau) / 8) if summed else 256
+            self.status = self._fly(count, 0.0 if self.short or self.law.elastic else ENDING.near)
+
+    def ended(self) -> ChatterLimit:
+        """The limit of a sequence that is not going on."""
+        count = len(self.times) - 1
+        if self.over is None:
+            return ChatterLimit(np.nan, count, np.nan, np.int8(self.status), cause=np.int8(self.cause))
+        tau, error, status = self.over
+        total = ENDING.trust * error + self.rounding(tau, status)
+        if self.turns:
+            tau, total = tau + self.turns, total + EPSILON / 2 * abs(tau + self.turns)
+        return ChatterLimit(np.float64(tau), count, np.float64(total), np.int8(status))
 
     def _left(self) -> int:
         """The number of impacts that are left of the limit."""
@@ -284,13 +350,15 @@ class _Flown:
         length = self._kept(segment)
         self.times += segment.tau[:length].tolist()
         self.speeds += segment.v[:length].tolist()
-        self.slopes += segment.slopes.T[:length].tolist()
+        if self.law.has_slopes:
+            r, slopes = self.law.r, segment.slopes.T[:length].tolist()
+            self.matrices += [((1 + a, b), (-r * c, -r * d)) for a, b, c, d in slopes]
         if length != segment.tau.size:
             return Status.hit
         if segment.status and len(self.times) > 1 and acceleration(self.osc, np.array(self.times[-1:]))[0] >= 0:
             return Status.hit  # the mass lifts off here, so the status of the flight after it does not matter
         self.cause, self.short = Cause(segment.cause), self.short or segment.short
-        if not segment.status and self._is_settled(length):
+        if not segment.status and not self.short and self._is_settled(length):
             self.cause = Cause.settled
             return Status.unresolved
         return Status(segment.status)
@@ -309,24 +377,17 @@ class _Flown:
         lifted = np.flatnonzero(found.acceleration[1:] >= 0)
         return int(lifted[0]) + 1 if lifted.size else int(found.tau.size)
 
-    def _ended(self, tau: float, error: float, status: Status) -> ChatterLimit:
-        total = ENDING.trust * error + self.rounding(tau, status)
-        if self.turns:
-            tau, total = tau + self.turns, total + EPSILON / 2 * abs(tau + self.turns)
-        return ChatterLimit(np.float64(tau), len(self.times) - 1, np.float64(total), np.int8(status))
-
     def rounding(self, end: float, status: Status) -> float:
         """The rounding errors of all impacts, carried to the end by D G: an adjoint sweep from the last impact."""
         first, times, speeds = self.times[0], self.times, self.speeds
         by_tau, by_v = 1.0, 0.0
         if status == Status.complete:
-            a = float(acceleration(self.osc, np.array(times[-1:]))[0])
-            by_v = -2 / a / (1 - as_float(self.osc.slope_at_rest())) if self.osc.smooth_at_rest else self._end_by_v()
+            by_v = -2 / self.push / (1 - self.law.r) if self.osc.smooth_at_rest else self._end_by_v()
         total = 0.0
         for index in range(len(times) - 1, -1, -1):
             total += abs(by_tau) * (abs(times[index]) + abs(times[index] - first)) + 4 * abs(by_v) * speeds[index]
             if index:
-                (a, b), (c, d) = self._matrices[index - 1]
+                (a, b), (c, d) = self.matrices[index - 1]
                 by_tau, by_v = by_tau * a + by_v * c, by_tau * b + by_v * d
         return ENDING.trust * EPSILON * (total + abs(end))
 
@@ -335,20 +396,6 @@ class _Flown:
         v = self.speeds[-1]
         (less, _), (more, _) = (chatter_left(self.osc, self.times[-1], speed) or (0.0, 0.0) for speed in (v / 2, v))
         return 2 * (more - less) / v if v > 0 else 0.0
-
-    @property
-    def _matrices(self) -> list[Any]:
-        """D G of every impact."""
-        if self._known is None:
-            self._known = self._derivatives()
-        return self._known
-
-    def _derivatives(self) -> list[Any]:
-        constant = not names_in(self.osc.restitution)
-        if constant and compiled_model(self.osc).linear and len(self.slopes) == len(self.times) - 1:
-            r = as_float(self.osc.restitution)
-            return [((1 + a, b), (-r * c, -r * d)) for a, b, c, d in self.slopes]
-        return derivative(self.osc, np.array(self.times[:-1]), np.array(self.speeds[:-1])).matrix.tolist()  # type: ignore[no-any-return]
 
 
 def _precise(osc: Oscillator, states: States, rough: ChatterLimit, digits: int) -> ChatterLimit:

@@ -224,7 +224,8 @@ def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> li
     else:
         events += _touches(family, values, times)
         followed = FollowedRests(family, ends, gaps_of(times))
-        near = [(rests.value, *_first_and_gap(rests)) for rests in events if rests.kind == "undecided"]
+        undecided = [rests for rests in events if rests.kind == "undecided"]
+        near = [(rests.value, min(rests.tau, rests.tau + rests.t), abs(rests.t)) for rests in undecided]
         both = [pair for pair in (followed.both_ends(*point) for point in near) if pair is not None]
     changes = [rests for rests in events if not any(_is_that(rests, other) for other in both)]
     changes += [
@@ -243,10 +244,6 @@ def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> li
 
 def _two(tau: float, t: float) -> tuple[float, float]:
     return (tau, tau + t) if t > 0 else (tau + t, tau)
-
-
-def _first_and_gap(found: Transition) -> tuple[float, float]:
-    return min(found.tau, found.tau + found.t), abs(found.t)
 
 
 def _is_that(found: Transition, both: Rests) -> bool:

@@ -225,7 +225,7 @@ def _inverse(sizes: Sizes) -> Case:
         Method(
             "singimpact, inverse_map",
             f"{sizes.many} states a call",
-            _before,
+            lambda states: states.osc.inverse_map(states.tau, states.v).flight_time,
             problems=sizes.many,
             draw=draw(sizes.many),
             aim=Aim(2.5),
@@ -234,10 +234,6 @@ def _inverse(sizes: Sizes) -> Case:
     methods, skipped = _beside(own, "linear", (lambda count: _Mirrored(draw(count)), sizes), Aim())
     truth, kappas = drawn_flights.backward_hits(draw(sizes.many)(), sizes.judged["linear"])
     return Case("linear, inverse of the map", methods, truth, kappas, skipped)
-
-
-def _before(states: States) -> Any:
-    return states.osc.inverse_map(states.tau, states.v).flight_time
 
 
 @dataclass

@@ -113,7 +113,7 @@ def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any,
     for _ in range(TIMED.halvings):
         before = centre(left - last)
         during = before.union(left)
-        if _falls(motion, during) if crosses else _bends_upwards(motion, during):
+        if _falls(motion, during) if crosses else bool(_acceleration(motion, during) > 0):
             if before > 0:
                 _above(motion, inner, before, crosses)
             return
@@ -176,10 +176,6 @@ def _above(motion: CarriedMotion, inner: tuple[Tube, Tube], length: Any, crosses
         raise Refused(f"the flight is not shown to be above the wall before {ends}") from None
     if root is not None:
         raise Refused(f"the flight meets the wall before {ends}")
-
-
-def _bends_upwards(motion: CarriedMotion, during: Any) -> bool:
-    return bool(_acceleration(motion, during) > 0)
 
 
 def _falls(motion: CarriedMotion, during: Any) -> bool:

@@ -15,7 +15,7 @@ from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import tangency_points
 from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.dynamics.chatter import chatter_limit
-from singimpact.dynamics.orbit import Orbit, orbit
+from singimpact.dynamics.orbit import orbit
 from singimpact.impact_oscillator import universal
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
@@ -164,7 +164,8 @@ def hop(lift: Model, rate: str, depth: int) -> Hop:
     completed = float(run.tau[start + 1 :][run.kind[start + 1 :] == "complete"][0])
     path = run.sample(np.linspace(A, float(hits[0]), FINE))
     top = float(np.max(path.x)) - as_float(osc.clearance)
-    others = [_release(orbit(osc, share * period, speed, 400), period) for share, speed in FROM]
+    runs = [orbit(osc, share * period, speed, 400) for share, speed in FROM]
+    others = [float(other.tau[other.kind == "release"][0]) % period for other in runs]
     return Hop(
         half=half,
         first=(float(hits[0]) - A) / half,
@@ -175,8 +176,3 @@ def hop(lift: Model, rate: str, depth: int) -> Hop:
         impacts=int(releases[1] - releases[0] - 2),
         merged=bool(np.ptp(others) < 1e-12),
     )
-
-
-def _release(run: Orbit, period: float) -> float:
-    """The phase of the first release."""
-    return float(run.tau[run.kind == "release"][0]) % period

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -94,10 +93,6 @@ def ends() -> tuple[Leaf, ...]:
                 tau, v = float(step.tau), float(step.v)
                 if v < 1e-13:
                     break
-            rest = tau + _remaining(model, tau, v, r)
+            rest = tau - 2 * v / (float(model.acceleration(tau)) * (1 - r))
             rows.append(Leaf(name, rest - point, end))
     return tuple(rows)
-
-
-def _remaining(model: Any, tau: float, v: float, r: float) -> float:
-    return -2 * v / (float(model.acceleration(tau)) * (1 - r))

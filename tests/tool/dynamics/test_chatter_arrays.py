@@ -9,7 +9,7 @@ import pytest
 import singimpact as si
 from singimpact.algebra import DOUBLES
 from singimpact.dynamics import ENDING, chatter_limit
-from singimpact.dynamics.chatter import _Flown
+from singimpact.dynamics.chatter import _abreast
 from singimpact.dynamics.remaining import remaining
 from singimpact.flights import Search, States, linear_model, listed, orbit_segment, over_floats
 from singimpact.flights.compiled_model import compiled_model
@@ -36,7 +36,7 @@ def compiled():
 
 
 def plain(osc, tau, v, impacts=10**6):
-    return _Flown(osc, States.of(osc, tau, v), impacts).limit()
+    return next(_abreast(osc, States.of(osc, tau, v), impacts, [0])).ended()
 
 
 def drawn(count, seed, fastest=0.3):
@@ -218,3 +218,19 @@ def test_an_orbit_that_repeats_itself_is_given_up(osc, omega):
         # it never chatters: velocities do not shrink
         assert speeds.min() > 1e-3
     assert ends.sentence[settled[0]].startswith("the impacts repeat themselves")
+
+
+@pytest.mark.parametrize("f", ["x + 0.1*xdot + 0.3*x**3", "x + 0.2*tanh(5*xdot)"])
+def test_states_of_other_models_abreast_are_those_one_by_one(f):
+    """Starts at rest, lift-offs, chatters of many lengths and orbits that are given up, in blocks of several sizes."""
+    osc = si.ImpactOscillator(f, "cos(1.7*t)", "0.3", "0.8")
+    random = np.random.default_rng(7)
+    tau, v = random.uniform(0, 3.7, 40), np.append(10 ** random.uniform(-6, 0.2, 37), [0.0, 0.0, 0.0])
+    found = osc.chatter_limit(tau, v, impacts=300)
+    assert {Status.complete, Status.lifts_off} <= set(found.status.tolist())
+    for index in range(tau.size):
+        one = osc.chatter_limit(float(tau[index]), float(v[index]), impacts=300)
+        assert (one.status, one.cause, one.impacts) == tuple(
+            getattr(found, name)[index] for name in ("status", "cause", "impacts")
+        )
+        assert np.array_equal([one.tau, one.error], [found.tau[index], found.error[index]], equal_nan=True)

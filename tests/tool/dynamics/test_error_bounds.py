@@ -8,7 +8,7 @@ import pytest
 
 import singimpact as si
 from singimpact.dynamics import ENDING
-from singimpact.dynamics.chatter import _Flown
+from singimpact.dynamics.chatter import _abreast
 from singimpact.dynamics.remaining import _coefficients, remaining
 from singimpact.flights import States
 
@@ -53,8 +53,8 @@ def test_a_chatter_is_summed_up_only_where_the_last_term_is_below_rounding():
     """Starts of all speeds: some have a last term between one rounding and a hundred when they are first looked at."""
     for v in np.geomspace(1e-6, 5e-3, 40):
         model = si.linear("2.8", 0, "0.8")
-        flown = _Flown(model, States.of(model, 0.9, float(v)), 10_000)
-        found = flown.limit()
+        flown = next(_abreast(model, States.of(model, 0.9, float(v)), 10_000, [0]))
+        found = flown.ended()
         series = found.error - flown.rounding(float(found.tau), found.status)
         assert series <= ENDING.trust * EPSILON * abs(float(found.tau)) / 4 * (1 + 1e-6) + 1e-22
 
@@ -62,8 +62,8 @@ def test_a_chatter_is_summed_up_only_where_the_last_term_is_below_rounding():
 def test_the_rounding_of_nearly_a_bouncing_ball_is_that_of_each_impact():
     """tau_inf = tau + 2 v/(g (1 - r)) from every impact: each brings the roundings of its tau and of its v."""
     ball, r, g = si.ImpactOscillator("0", "-2 + t/1000", 0, "1/2"), 0.5, 2.0  # constant gravity needs no impact
-    flown = _Flown(ball, States.of(ball, 0.0, 0.01), 10_000)
-    found = flown.limit()
+    flown = next(_abreast(ball, States.of(ball, 0.0, 0.01), 10_000, [0]))
+    found = flown.ended()
     times, speeds = np.array(flown.times), np.array(flown.speeds)
     expected = ENDING.trust * EPSILON * ((2 * times + 4 * speeds * 2 / (g * (1 - r))).sum() + found.tau)
     assert len(times) == 2

@@ -120,11 +120,6 @@ def _phi(time: Any) -> Check:
     return identity(lambda: sheet.to_sympy(sheet.xdot), "the launch velocity after the involution")(taken)
 
 
-def _at_launch(stated: Any) -> Check:
-    """y_c at t = 0 as a function of (sigma, v), to order 4."""
-    return identity(lambda: route.y_c(4).subs(t, 0))(stated)
-
-
 def _depends_on_c(stated: tuple[Any, Any]) -> Check:
     """d/dc of a' and a'' at tau_*(c), the zero of a_c: implicit differentiation of g(tau) = f(c, 0)."""
     derived = followed_zero()
@@ -241,7 +236,7 @@ CLAIMS = (
         section="4",
         title="y_c = v at t = 0, so dy_c/dv = 1 and its other v- and tau-derivatives vanish on Pi_0",
         printed=Statement(r"v=\dot x_c(\tau,v;0)=y_c(\tau,v;0)", v),
-        verify=_at_launch,
+        verify=identity(lambda: route.y_c(4).subs(t, 0)),
         mutants=(2 * v, v + sigma, v + v**2),
         rests_on=("e:yeq",),
     ),

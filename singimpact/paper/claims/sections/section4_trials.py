@@ -105,10 +105,6 @@ def _fold_eta(place: Place, k: float, h: float) -> float:
     return -float(np.sqrt((-top.fun - place.launch(-h, RAY * h)) / k))
 
 
-def _next_state(printed: Any, corrected: Any) -> list[Trial]:
-    return [*_next_eta(printed, corrected), *_bent_sigma(printed, corrected)]
-
-
 def _arcs(_printed: Any, _corrected: Any) -> list[Trial]:
     """Invariant arcs that end at w_*: gamma, found by following G backwards, and the states at rest before it."""
     return arcs_at(tangencies(), 1)
@@ -253,7 +249,7 @@ TRIALS: dict[str, Trials] = {
     "e:vtaylor-t3": _coefficient(lambda place: place.taylor(0.0, 3)),
     "e:phinew": _impact,
     "e:defq": _bent_sigma,
-    "e:hdef": _next_state,
+    "e:hdef": lambda printed, corrected: [*_next_eta(printed, corrected), *_bent_sigma(printed, corrected)],
     "s4-blowup": _bent_sigma,
     "t:t2-unique": _arcs,
     "t:t2-fixed": rest_at_tangency,

@@ -69,11 +69,12 @@ def _exists(stated: tuple[int, int, Any]) -> Check:
     rate = r_of_lambda(1)
     jump = sympy.cancel(fold.horizon()[1] / (6 * fold.k * route.sigma**2))  # of P_*, beside a' sigma^2 too
     ends = tuple(value_at(coefficient, lambda_, end) for end in (0, 1))
+    transverse = 1 - fold.N_r_at_fixed_points().subs(m, lambda_ + HALF)  # 1 - mu, lambda = m3 - 1/2
     return every(
         [
             (
                 "h' has a hyperbolic saddle on s = 0 for every r in (0, 1)",
-                _interval_map(rate) and negative_on(_transverse(), lambda_, 0, 1),
+                _interval_map(rate) and negative_on(transverse, lambda_, 0, 1),
             ),
             *orbits.relation(1),
             *orbits.saddle(1),
@@ -98,11 +99,6 @@ def _interval_map(rate: Any) -> bool:
     """lambda -> r is an increasing bijection of (0, 1) onto itself, so "every r" is "every lambda"."""
     ends = (value_at(rate, lambda_, 0), value_at(rate, lambda_, 1))
     return ends == (0, 1) and positive_on(sympy.diff(rate, lambda_), lambda_, 0, 1)
-
-
-def _transverse() -> Any:
-    """1 - mu as a function of lambda = m3 - 1/2, from the blow-up."""
-    return 1 - fold.N_r_at_fixed_points().subs(m, lambda_ + HALF)
 
 
 def _unique(stated: tuple[Any, int]) -> Check:

@@ -69,11 +69,6 @@ def _coordinates(time: Any) -> Check:
     )
 
 
-def _h_bar(stated: Any) -> Check:
-    """r (impact polynomial of m) = (1+m)^3 (launch polynomial of mbar), as left side minus right side."""
-    return identity(swan.h_bar)(stated)
-
-
 def _intersections(count: int) -> Check:
     """Common points of f and g with m real: m = 0, which is Pi_0, and one in (-1, 0)."""
     zero = is_zero(swan.h_bar().subs({m: 0, mbar: 0}))
@@ -382,7 +377,7 @@ CLAIMS = (
             r"r(6m+8m^2+3m^3)=(1+m)^3(6\bar m+4\bar m^2+\bar m^3)+O(s)",
             r * _IMPACT - (1 + m) ** 3 * _LAUNCH.subs(m, mbar),
         ),
-        _h_bar,
+        identity(swan.h_bar),
         (r * _IMPACT - (1 + m) ** 2 * _LAUNCH.subs(m, mbar), -r * _IMPACT - (1 + m) ** 3 * _LAUNCH.subs(m, mbar)),
         ("e:pdeg3", "s5-phi"),
     ),

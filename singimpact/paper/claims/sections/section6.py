@@ -251,6 +251,7 @@ def _gamma(stated: tuple[tuple[str, ...], tuple[Any, Any]]) -> Check:
         f"({float(left):.5f}, {float(right):.5f}) at r = {rate}" for rate, (left, right) in places.items()
     )
     landing, launch = model.impact_velocity(), model.launch_velocity()
+    push = sympy.cancel(model.acceleration() / kappa)
     turns = [
         sympy.expand(sympy.diff(expression, sigma) - sympy.diff(expression, t)) for expression in (landing, launch)
     ]
@@ -269,15 +270,10 @@ def _gamma(stated: tuple[tuple[str, ...], tuple[Any, Any]]) -> Check:
             ),
             (f"from sigma <= {min(first)} the first flight lands at B or later", min(first) == -1 - LAST),
             ("along (1, -1) x' at the landing is stationary on Z, and v has the slope a", all(map(is_zero, left_over))),
-            ("a > 0 for sigma < -1: transverse", _lifted_left_of_A()),
+            ("a > 0 for sigma < -1: transverse", positive_on(push, sigma, -sympy.oo, -1)),
         ],
         kind="certified",
     )
-
-
-def _lifted_left_of_A() -> bool:
-    """Whether a/kappa > 0 to the left of A."""
-    return positive_on(sympy.cancel(model.acceleration() / kappa), sigma, -sympy.oo, -1)
 
 
 def _universal(middle: int) -> Any:

@@ -25,11 +25,6 @@ from singimpact.paper.trials.true_orbits import lambda_of
 from singimpact.theory.multipliers import lambda_, mu_of_lambda
 
 
-def _corresponds(point: tuple[Any, Any]) -> Check:
-    """A cusp point of p that phi takes to B."""
-    return cusp_above(point, model.B, "B")
-
-
 def cusp_above(point: tuple[Any, Any], tangency: tuple[Any, Any], name: str) -> Check:
     """Whether a point is a cusp point of p that phi takes to a tangency point."""
     conditions = model.cusp_conditions(point)
@@ -223,7 +218,7 @@ CLAIMS = (
         "s6n-corr",
         "B corresponds to the cusp point D of p, near the swan",
         Statement(r"\phi(D)=B,\ D\ \text{a cusp point of}\ p", model.D),
-        _corresponds,
+        lambda point: cusp_above(point, model.B, "B"),
         (model.C, model.E),
         ("s6-lips", "s6-scaling", "s2-horizon"),
     ),

@@ -74,11 +74,6 @@ def _tangencies() -> list[tuple[str, Any]]:
     return [(f"a'({name})", model.slope_of_acceleration(point[0])) for name, point in (("A", model.A), ("B", model.B))]
 
 
-def _counterpart(point: tuple[Any, Any]) -> Check:
-    """A cusp point of p with t < 0 that phi takes to A."""
-    return cusp_above(point, model.A, "A")
-
-
 def _cusp_of_phi(point: tuple[Any, Any]) -> Check:
     """v = 0, a = 0, a' != 0 at the launch and x-dot != 0 at the landing: a cusp of phi (p:phising-cusp)."""
     point_ = {sigma: point[0], t: point[1]}
@@ -162,7 +157,7 @@ REGIONS = (
         "s6n-corr-A",
         "A corresponds to the counterpart of D with t < 0, another cusp point of p",
         Statement(r"\phi(3,-4)=A,\ (3,-4)\ \text{a cusp point of}\ p", (sympy.Integer(3), -sympy.Integer(4))),
-        _counterpart,
+        lambda point: cusp_above(point, model.A, "A"),
         (model.D, (sympy.Integer(3), sympy.Integer(4))),
         ("s6n-corr", "s6-scaling"),
     ),
