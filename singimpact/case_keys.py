@@ -433,7 +433,8 @@ class _Digest:
 
     def _package(self, module: str) -> None:
         """The version of an installed package, and the precision at which it computes."""
-        self.text("version", f"{_version(module)} {precision_of(module)}")
+        version = getattr(sys.modules.get(module.partition(".")[0]), "__version__", "")
+        self.text("version", f"{version} {precision_of(module)}")
 
 
 def _is_put_in(value: Any) -> bool:
@@ -457,8 +458,3 @@ def _is_cached(kind: type, name: str) -> bool:
 
 def _name(value: Any) -> str:
     return f"{getattr(value, '__module__', '')}.{getattr(value, '__qualname__', getattr(value, '__name__', '?'))}"
-
-
-def _version(module: str) -> str:
-    """The version of an installed package, where it has one."""
-    return str(getattr(sys.modules.get(module.partition(".")[0]), "__version__", ""))

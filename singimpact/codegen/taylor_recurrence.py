@@ -397,7 +397,8 @@ def _logistic(writer: _Writer, argument: Expression) -> _Series:
 
 def _softplus(writer: _Writer, argument: Expression) -> _Series:
     """y = log(1 + e^w) from y' = w'/(1 + e^-w)."""
-    inner, slope = _series(writer, argument), _series(writer, _falling_logistic(argument))
+    logistic = Power(Sum((number(1), Call("exp", multiply(number(-1), argument)))), number(-1))
+    inner, slope = _series(writer, argument), _series(writer, logistic)
     target = writer.row()
     writer.starts(
         target,
@@ -405,11 +406,6 @@ def _softplus(writer: _Writer, argument: Expression) -> _Series:
         *_driven(target, inner, slope),
     )
     return target
-
-
-def _falling_logistic(argument: Expression) -> Expression:
-    """1/(1 + e^-w)."""
-    return Power(Sum((number(1), Call("exp", multiply(number(-1), argument)))), number(-1))
 
 
 def _atan(writer: _Writer, argument: Expression) -> _Series:

@@ -265,7 +265,7 @@ def _differentiate(osc: Oscillator, flown: list[_Flown]) -> None:
 
 
 class _Law:
-    """What all sequences of a model share.
+    """The restitution at rest that all chatter sequences of a model share.
 
     Parameters
     ----------

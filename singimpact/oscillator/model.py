@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Collection, Mapping
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Self
@@ -16,7 +17,6 @@ from singimpact.algebra.rings import to_sympy
 from singimpact.inputs import InputError, refuse, shown, unknown
 from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, period_of
-from singimpact.oscillator.rebound import rho_of
 from singimpact.store import read_bounded
 
 STATE = ("x", "xdot")
@@ -73,8 +73,10 @@ class Oscillator:
             if name not in used:
                 raise unknown("parameter", name, sorted((used | {name}) - {*STATE, "t", "v", name}))
         self.clearance = constant("clearance", clearance)
-        period_ = period_of(self.forcing())
-        self._period = period_ if period is None else checked_period(self.forcing(), period, period_)
+        forcing = substitute(self.g, values)
+        self._period = period_of(forcing)
+        if period is not None:
+            self._period = checked_period(forcing, period, self._period)
         self._texts = (
             str(self.f),
             str(self.g),
@@ -107,18 +109,15 @@ class Oscillator:
 
     def force(self, keep: Collection[str] = ()) -> Expression:
         """f with the parameters' values put in; those in `keep` stay letters."""
-        return substitute(self.f, self._values(keep))
+        return _with_values(self, "f", frozenset(keep))
 
     def forcing(self, keep: Collection[str] = ()) -> Expression:
         """g with the parameters' values put in; those in `keep` stay letters."""
-        return substitute(self.g, self._values(keep))
+        return _with_values(self, "g", frozenset(keep))
 
     def rho(self, keep: Collection[str] = ()) -> Expression:
         """The restitution as a tree in v with the parameters' values put in; those in `keep` stay letters."""
-        return substitute(rebound.rho_of(self.restitution), self._values(keep))
-
-    def _values(self, keep: Collection[str]) -> dict[str, Expression]:
-        return {name: value for name, value in self.parameters.items() if name not in keep}
+        return _with_values(self, "restitution", frozenset(keep))
 
     def slope_at_rest(self) -> Expression:
         """r = -rho'(0).
@@ -193,6 +192,13 @@ class Oscillator:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_rebuilt, (type(self), self.to_dict()))
+
+
+@lru_cache(maxsize=1024)
+def _with_values(osc: Oscillator, field: str, keep: frozenset[str]) -> Expression:
+    """A field of a model with the values of its parameters put in, but of some."""
+    tree = rebound.rho_of(osc.restitution) if field == "restitution" else getattr(osc, field)
+    return substitute(tree, {name: value for name, value in osc.parameters.items() if name not in keep})
 
 
 def _rebuilt(kind: type[Oscillator], fields: dict[str, Any]) -> Oscillator:
@@ -313,7 +319,7 @@ def equation(
     """
     force = "" if to_sympy(f) == 0 else f" + {latex(f)}".replace("+ -", "-")
     parts = [rf"\ddot x{force} = {latex(g)}", rf"x \ge {latex(clearance)}"]
-    parts.append(rf"v \mapsto {latex(rho_of(restitution))}")
+    parts.append(rf"v \mapsto {latex(rebound.rho_of(restitution))}")
     parts += [f"{latex_name(name)} = {latex(value)}" for name, value in parameters.items()]
     return r",\quad ".join(parts)
 

@@ -6,7 +6,7 @@ import json
 import sys
 import textwrap
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
@@ -310,14 +310,11 @@ class VerdictTable(Sequence["Verdict"]):
 
 
 def _misprint(verdict: Verdict, width: int | None) -> str:
+    witness = ", ".join(f"{name} = {value}" for name, value in (verdict.witness or {}).items()) or "none"
     lines = [
         verdict.id,
         *wrapped("  printed    ", verdict.printed, width),
         *wrapped("  corrected  ", f"{verdict.corrected}   [{verdict.worth}]", width),
-        *wrapped("  witness    ", _witness(verdict.witness), width),
+        *wrapped("  witness    ", witness, width),
     ]
     return "\n".join(lines)
-
-
-def _witness(witness: Mapping[str, Any] | None) -> str:
-    return ", ".join(f"{name} = {value}" for name, value in (witness or {}).items()) or "none"
